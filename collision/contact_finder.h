@@ -1,0 +1,54 @@
+// Contacts between probes and deforming surfaces over a swept step.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "modules/core/messages.h"
+#include "modules/geometry/triangle_surface.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::collision {
+
+/// Probe shape with its meshes loaded; the collision library reads no files.
+struct ProbeGeometry {
+  scene::ProbeShape shape;
+  geometry::TriangleSurface mesh;  ///< only for MeshShape: closed, in the probe's frame [m]
+};
+
+/// Motion of a probe over the step: linear in position, constant rotation rate.
+struct ProbeMotion {
+  Pose pose_t0, pose_t1;
+};
+
+/// Finds, for each probe, the places where it touches or may touch an organ before the next
+/// search. Keeps, between calls, which side of a surface the probe came from, so that a probe
+/// that was driven through a wall is still known to be outside.
+///
+/// Deterministic: same calls, same contacts, sorted by (organ, triangle).
+class ContactFinder {
+ public:
+  /// @param triangles  of each organ; node indices refer to the positions given to update_organ()
+  ContactFinder(std::vector<std::vector<geometry::Triangle>> organ_triangles,
+                std::vector<ProbeGeometry> probes);
+  ~ContactFinder();
+
+  /// New node positions of an organ [m]; at least as many as its triangles name.
+  void update_organ(std::size_t organ, std::span<const Vec3> positions);
+
+  /// Forgets what is remembered of earlier calls (reset, teleport).
+  void reset();
+
+  /// Contacts of one probe that moved from pose_t0 to pose_t1 since the last call, all with
+  /// gap ≤ margin at t1 or swept through in between. Point, normal and gap hold at pose_t1.
+  /// At most kMaxContactsPerProbe; `result.truncated` says if there were more.
+  /// @param margin  how far tissue and probe may approach until the next search [m], > 0
+  void find(std::size_t probe, const ProbeMotion& motion, double margin, Contacts& result);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::collision

@@ -1,0 +1,33 @@
+// The topics: their names, message types, and kinds of delivery. docs/topics.md is the reference.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "modules/core/messages.h"
+
+namespace palpate::bus {
+
+enum class Delivery {
+  kStream,   ///< best effort, newest sample per key
+  kState,    ///< reliable, newest sample per key also to late joiners
+};
+
+template <class Message>
+struct TopicOf {
+  std::string_view name;
+  Delivery delivery;
+};
+
+inline constexpr TopicOf<SceneDescription> kScene{"scene", Delivery::kState};
+inline constexpr TopicOf<SurfaceTopology> kSurface{"surface", Delivery::kState};
+inline constexpr TopicOf<NodePositions> kNodePositions{"node_positions", Delivery::kStream};
+inline constexpr TopicOf<ProbeState> kProbeState{"probe_state", Delivery::kStream};
+inline constexpr TopicOf<ProbeState> kProbeInput{"probe_input", Delivery::kStream};
+inline constexpr TopicOf<Contacts> kContacts{"contacts", Delivery::kStream};
+inline constexpr TopicOf<ContactModel> kContactModel{"contact_model", Delivery::kStream};
+inline constexpr TopicOf<HapticForce> kHapticForce{"haptic_force", Delivery::kStream};
+inline constexpr TopicOf<ModuleStatus> kModuleStatus{"module_status", Delivery::kState};
+inline constexpr TopicOf<SessionControl> kSessionControl{"session_control", Delivery::kState};
+
+}  // namespace palpate::bus

@@ -1,0 +1,190 @@
+// What the modules tell each other, as plain structs. The wire types in idl/ mirror them; the
+// codecs in modules/bus translate and check. Field units and frames as in idl/README.md.
+//
+// Sign conventions: a contact normal points from tissue to probe; a gap is positive when apart;
+// force_on_probe acts on the probe, the tissue receives its negative.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modules/core/types.h"
+
+namespace palpate {
+
+/// Version of the message set; processes with different versions refuse to work together.
+inline constexpr std::uint32_t kProtocolVersion = 1;
+
+// Bounds of the lists on the wire.
+inline constexpr std::size_t kMaxContactsPerProbe = 1024;
+inline constexpr std::size_t kMaxNodes = 200'000;
+inline constexpr std::size_t kMaxTriangles = 400'000;
+inline constexpr std::size_t kMaxSprings = 4'000'000;
+inline constexpr std::size_t kMaxInputs = 16;
+inline constexpr std::size_t kMaxTextBytes = 1u << 20;
+
+/// First field of every message.
+struct Header {
+  std::uint64_t sequence = 0;       ///< counts up from 1 per writer
+  std::int64_t sim_time_ns = 0;     ///< simulated time since the session started [ns]
+  std::int64_t source_time_ns = 0;  ///< the writer's monotonic clock at sampling [ns]
+};
+
+/// Pose of one probe. Written by haptics (topic probe_state) and by outside drivers of a probe
+/// whose device is `topic` (topic probe_input).
+struct ProbeState {
+  Header header;
+  std::uint32_t probe = 0;    ///< index in the scene's list (key)
+  Pose pose;                  ///< X_WP
+  Twist twist;                ///< in W
+  std::uint32_t buttons = 0;  ///< bit i = button i held
+};
+
+/// One place where a probe touches, or within this step may touch, an organ.
+struct Contact {
+  std::uint32_t organ = 0;     ///< index in the scene's list
+  std::uint32_t triangle = 0;  ///< index in the organ's surface
+  Vec3 barycentric = Vec3::Zero();     ///< weights of the triangle's nodes, ≥ 0, sum 1
+  Vec3 point_on_probe = Vec3::Zero();  ///< nearest point of the probe's surface, in W [m]
+  Vec3 normal = Vec3::UnitZ();         ///< unit, from tissue to probe, in W
+  double gap = 0;                      ///< along the normal; negative = penetration [m]
+  double time_of_impact = 1;  ///< fraction of the swept step at first touch, 1 = no touch within
+};
+
+/// Contacts of one probe, found with the probe at `probe_pose`.
+struct Contacts {
+  Header header;
+  std::uint32_t probe = 0;  ///< (key)
+  Pose probe_pose;          ///< X_WP for which point_on_probe and normal hold
+  std::uint64_t node_positions_sequence = 0;  ///< the surface they were found on
+  bool truncated = false;   ///< more than kMaxContactsPerProbe were found; the deepest are kept
+  std::vector<Contact> contacts;  ///< sorted by (organ, triangle)
+};
+
+/// How the tissue's force on a probe varies near `anchor`:
+/// f(x) = force + stiffness · (anchor − x), its normal part ≥ 0, its tangential part within the
+/// friction cone. Not valid further than `validity_radius` from the anchor.
+struct ContactModel {
+  Header header;
+  std::uint32_t probe = 0;              ///< (key)
+  bool touching = false;                ///< false: the tissue gives no force near the anchor
+  Vec3 anchor = Vec3::Zero();           ///< probe origin at which `force` was computed, in W [m]
+  Vec3 force = Vec3::Zero();            ///< on the probe, in W [N]
+  Vec3 torque = Vec3::Zero();           ///< on the probe about its origin, in W [N·m]
+  Mat3 stiffness = Mat3::Zero();        ///< −∂force/∂x, symmetric, positive semidefinite [N/m]
+  Vec3 normal = Vec3::UnitZ();          ///< unit, from tissue to probe, in W
+  double friction_coefficient = 0;
+  double validity_radius = 0;           ///< [m]
+};
+
+/// Deformed nodes of one organ: surface nodes first, then virtual nodes.
+struct NodePositions {
+  Header header;
+  std::uint32_t organ = 0;       ///< (key)
+  std::uint32_t generation = 0;  ///< of the SurfaceTopology these belong to
+  double volume = 0;             ///< enclosed [m³]
+  double target_volume = 0;      ///< V* [m³]
+  double pressure = 0;           ///< of the contents over the outside, p = −λ [Pa]
+  double kinetic_energy = 0;     ///< [J]
+  double elastic_energy = 0;     ///< in all springs [J]
+  std::vector<float> positions;  ///< x, y, z per node, in W [m]  (node_count × 3)
+};
+
+enum class SpringFamily : std::uint8_t { kStructural = 0, kBending = 1, kInner = 2 };
+
+/// What does not change while an organ deforms.
+struct SurfaceTopology {
+  struct Spring {
+    std::uint32_t node_a = 0, node_b = 0;
+    SpringFamily family = SpringFamily::kStructural;
+  };
+  Header header;
+  std::uint32_t organ = 0;         ///< (key)
+  std::uint32_t generation = 0;    ///< counts restarts and resets of the organ
+  std::string name;
+  std::uint32_t surface_node_count = 0;
+  std::vector<float> rest_positions;                     ///< (node_count × 3) in W [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;   ///< outward orientation
+  std::vector<std::uint32_t> fixed_nodes;
+  std::vector<Spring> springs;
+};
+
+/// Why the rendered force differs from the model's. Bits.
+enum ForceLimit : std::uint32_t {
+  kForceNotLimited = 0,
+  kForceSaturated = 1u << 0,     ///< magnitude clamped to the scene's max_force_n
+  kForceSlewLimited = 1u << 1,   ///< change per tick clamped
+  kForceStaleFade = 1u << 2,     ///< contact model too old: fading to zero
+  kForcePassivity = 1u << 3,     ///< passivity controller dissipates
+  kForceNotFinite = 1u << 4,     ///< model or device gave NaN/Inf: treated as zero
+  kForceOutOfValidity = 1u << 5  ///< probe outside the model's validity radius
+};
+
+/// Force commanded to the device.
+struct HapticForce {
+  Header header;
+  std::uint32_t probe = 0;     ///< (key)
+  Vec3 force = Vec3::Zero();   ///< on the probe, in W [N]
+  Vec3 torque = Vec3::Zero();  ///< on the probe about its origin, in W [N·m]
+  std::uint32_t limits = kForceNotLimited;  ///< ForceLimit bits
+  double passivity_energy = 0;  ///< energy observed at the probe port, negative = generated [J]
+  double contact_model_age = 0; ///< at the tick; infinity before the first [s]
+};
+
+enum class ModuleState : std::uint8_t {
+  kStarting = 0,  ///< loading, or waiting for an input it cannot do without
+  kReady = 1,     ///< waiting for the session to start
+  kRunning = 2,
+  kPaused = 3,
+  kDegraded = 4,  ///< running, but a guard acts or an input is stale; last_error says which
+  kFault = 5,     ///< holds its last good state; last_error says why
+  kStopped = 6    ///< said goodbye
+};
+
+/// Published by every process, a few times a second.
+struct ModuleStatus {
+  struct Input {
+    std::string topic;
+    double age = 0;             ///< of the newest sample; infinity before the first [s]
+    std::uint64_t received = 0;
+    std::uint64_t dropped = 0;  ///< gaps in the writers' sequence numbers
+    std::uint64_t rejected = 0; ///< samples refused by the codec
+  };
+  Header header;
+  std::string module;  ///< "deformation", "collision", … (key)
+  ModuleState state = ModuleState::kStarting;
+  std::int64_t process_id = 0;
+  double rate_hz = 0;           ///< cycles per wall second since the last status
+  double nominal_rate_hz = 0;
+  std::uint64_t cycles = 0;     ///< since start
+  std::uint64_t overruns = 0;   ///< cycles that missed their period, since start
+  double worst_lateness = 0;    ///< of a wake-up since start [s]
+  double busy_fraction = 0;     ///< of the period spent working, mean since the last status
+  double real_time_factor = 0;  ///< simulated per wall time, 0 where it has no meaning
+  bool realtime_priority = false;
+  std::string last_error;       ///< empty if none
+  std::vector<Input> inputs;    ///< at most kMaxInputs
+};
+
+/// The resolved scene, for late joiners and recordings.
+struct SceneDescription {
+  Header header;
+  std::uint32_t protocol_version = kProtocolVersion;
+  std::string name;
+  std::string digest;         ///< of the resolved scene and its meshes; equal iff same physics
+  std::string resolved_text;  ///< YAML with every default written out
+};
+
+enum class SessionCommand : std::uint8_t { kStart = 0, kPause = 1, kReset = 2, kStop = 3 };
+
+struct SessionControl {
+  Header header;
+  SessionCommand command = SessionCommand::kStart;
+  std::uint32_t reset_count = 0;  ///< counts kReset commands, so that none is applied twice
+  /// Simulated time zero on the monotonic clock of the launcher's host, valid for kStart [ns].
+  std::int64_t start_time_ns = 0;
+};
+
+}  // namespace palpate

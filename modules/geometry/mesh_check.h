@@ -1,0 +1,42 @@
+// What is right and wrong with a surface that shall hold a volume.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "modules/geometry/triangle_surface.h"
+
+namespace palpate::geometry {
+
+struct MeshReport {
+  std::size_t node_count = 0, triangle_count = 0;
+  std::size_t component_count = 0;
+  int genus = 0;                               ///< of a closed one-component surface
+  double area = 0, volume = 0;                 ///< [m²], [m³]
+  Vec3 min_corner = Vec3::Zero(), max_corner = Vec3::Zero();  ///< [m]
+  double shortest_edge = 0, longest_edge = 0, worst_aspect = 0;
+  double leak = 0;  ///< largest difference of the three-axis volumes over the area·extent
+  // Places: indices of offenders.
+  std::vector<std::array<std::uint32_t, 2>> border_edges;        ///< in one triangle only
+  std::vector<std::array<std::uint32_t, 2>> non_manifold_edges;  ///< in more than two triangles
+  std::vector<std::uint32_t> non_manifold_nodes;                 ///< with more than one fan
+  std::vector<std::uint32_t> unused_nodes;
+  std::vector<std::uint32_t> degenerate_triangles;  ///< area below 1e-12 of the extent squared
+  std::vector<std::uint32_t> duplicate_triangles;
+  std::vector<std::array<std::uint32_t, 2>> inconsistent_edges;  ///< same direction used twice
+  std::vector<std::array<std::uint32_t, 2>> self_intersections;  ///< pairs of triangles
+  bool inside_out = false;  ///< consistent, but the volume is negative
+
+  /// Closed, manifold, one component, oriented outward, no degenerate or intersecting triangles.
+  bool holds_volume() const;
+};
+
+/// Never throws for a finite surface with valid indices.
+MeshReport check_surface(const TriangleSurface& surface);
+
+/// Human-readable lines, most serious first: what is wrong, where (index and position in metres),
+/// and what to do.
+std::vector<std::string> describe_problems(const MeshReport& report,
+                                           const TriangleSurface& surface);
+
+}  // namespace palpate::geometry

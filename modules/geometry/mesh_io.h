@@ -1,0 +1,21 @@
+// Mesh import and export (the only user of assimp).
+#pragma once
+
+#include <filesystem>
+
+#include "modules/geometry/triangle_surface.h"
+
+namespace palpate::geometry {
+
+/// Reads any surface format assimp reads, merges all its meshes, triangulates, welds vertices at
+/// the same position, and scales to metres.
+/// @param unit  unit of the file's numbers, see metres_per_unit()
+/// @throws InputError naming the file and what is wrong (missing, not a mesh, no triangles,
+///         not finite, index out of range).
+TriangleSurface read_surface(const std::filesystem::path& file, std::string_view unit);
+
+/// Writes by file extension (ply, stl, obj, off), in metres; whole file or nothing.
+/// @throws InputError for an extension not known; std::runtime_error if writing fails.
+void write_surface(const TriangleSurface& surface, const std::filesystem::path& file);
+
+}  // namespace palpate::geometry

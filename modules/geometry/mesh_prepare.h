@@ -1,0 +1,32 @@
+// From what users hand over to an organ surface: repair what is safe, resample, load.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "modules/geometry/mesh_check.h"
+
+namespace palpate::geometry {
+
+struct RepairLog {
+  std::vector<std::string> actions;  ///< what was done, one line each; empty if nothing
+};
+
+/// Welds coincident nodes, drops unused nodes, duplicate and degenerate triangles, and orients all
+/// triangles consistently outward. Does nothing that changes the shape.
+RepairLog repair_surface(TriangleSurface& surface);
+
+/// Decimates or refines a closed manifold surface to exactly `node_count` nodes where reachable
+/// (else the nearest count), keeping it closed, manifold and free of self-intersections; scales
+/// about the centroid so that the enclosed volume is kept. Deterministic.
+/// @param node_count  4 … kMaxNodes
+/// @throws InputError if the surface cannot be resampled.
+TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count);
+
+/// read → repair → (resample if node_count > 0) → check.
+/// @throws InputError naming file, problems and what to do if the result cannot hold a volume.
+TriangleSurface load_organ_surface(const std::filesystem::path& file, std::string_view unit,
+                                   std::size_t node_count);
+
+}  // namespace palpate::geometry

@@ -1,0 +1,25 @@
+// Strict YAML → Scene. Unknown and missing keys, wrong types, units and ranges are errors.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "modules/scene/scene.h"
+
+namespace palpate::scene {
+
+/// @throws InputError "file:line: key 'organs[0].tissue.youngs_modulus_pa' = '-3': must be …".
+/// All files the scene names are resolved against its folder and must exist.
+Scene load_scene(const std::filesystem::path& file);
+
+/// The same from text; `file` is used for messages and for resolving relative paths.
+Scene parse_scene(std::string_view text, const std::filesystem::path& file);
+
+/// YAML with every default written out; parse_scene() of it gives the same scene.
+std::string resolved_text(const Scene& scene);
+
+/// 16 hex digits over the resolved text (without folder names) and the bytes of every file it
+/// names: equal iff the physics is the same, wherever the files lie.
+std::string scene_digest(const Scene& scene);
+
+}  // namespace palpate::scene
