@@ -11,13 +11,19 @@
 
 namespace palpate::deformation {
 
+/// What an advance had to do beyond stepping. Never silent: the process publishes it.
+struct AdvanceReport {
+  bool diverged = false;  ///< an organ became not finite or too fast: last good state restored
+  bool volume_skipped = false;  ///< gᵀM⁻¹g vanished in some sub-step: volume not corrected there
+  bool probe_jumped = false;    ///< a probe moved faster than believed: its contacts were dropped
+};
+
 class DeformationWorld {
  public:
   /// @param rest_surfaces  one per organ of the scene, closed, outward, in W [m]
   /// @throws InputError naming the organ if it cannot be simulated (all nodes fixed, stable step
   ///         below 1 µs, …)
-  DeformationWorld(const scene::Scene& scene,
-                   std::vector<geometry::TriangleSurface> rest_surfaces);
+  DeformationWorld(const scene::Scene& scene, std::vector<geometry::TriangleSurface> rest_surfaces);
   ~DeformationWorld();
   DeformationWorld(DeformationWorld&&) noexcept;
 
@@ -33,12 +39,12 @@ class DeformationWorld {
 
   /// Advances every organ by `period` [s] in its stable sub-steps. Contacts hold unilaterally,
   /// with friction, inside the volume solve.
-  void advance(double period);
+  AdvanceReport advance(double period);
 
   /// Back to rest at time 0; generations count up.
   void reset();
 
-  double time() const;  ///< simulated [s]
+  double time() const;                          ///< simulated [s]
   double stable_step(std::size_t organ) const;  ///< largest sub-step the organ is given [s]
   int substeps(std::size_t organ, double period) const;
 

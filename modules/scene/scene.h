@@ -1,6 +1,7 @@
 // The scene: these structs are the schema. Each field's name carries its unit where it crosses
 // the border (the YAML key is the field's name with the unit suffix given in its comment).
-// Ranges are those the reader enforces; defaults are physical and printed by `palpate check`.
+// Ranges are those the reader enforces (points: within ±100 m; schema.h has them in code);
+// defaults are physical and printed by `palpate check`.
 #pragma once
 
 #include <filesystem>
@@ -27,11 +28,10 @@ struct Tissue {
   double drag = 2;               ///< `drag_per_s`: velocity decay by the surroundings [0 … 100]
 };
 
-/// Stiffness of the spring families that have no continuum meaning, relative to the mean
-/// structural spring; 0 leaves the family out.
+/// The spring families that have no continuum meaning of their own; 0 leaves a family out.
 struct Springs {
-  double bending_ratio = 0.3;     ///< `bending_ratio` [0 … 10]
-  double inner_ratio = 0.1;       ///< `inner_ratio` [0 … 10]
+  double bending_ratio = 0.1;  ///< `bending_ratio`: stiffness over a structural spring's [0 … 10]
+  double inner_ratio = 0.5;    ///< `inner_ratio`: stiffness per area over E t / R² [0 … 100]
   std::size_t virtual_nodes = 6;  ///< `virtual_nodes` on the dominant axis [0 … 64]; 0 = no inner
 };
 
@@ -46,27 +46,36 @@ struct BoxRegion {
 using Region = std::variant<SphereRegion, BoxRegion>;  ///< keys `sphere`, `box`
 
 struct Organ {
-  std::string name;               ///< unique
+  std::string name;  ///< unique
   Mesh mesh;
-  Pose pose;                      ///< `position_m`, `rotation_xyzw`; applied to the mesh
+  Pose pose;  ///< `position_m`, `rotation_xyzw`; applied to the mesh
   Tissue tissue;
   Springs springs;
-  bool preserve_volume = true;    ///< `preserve_volume`: the implicit volume constraint on or off
-  std::vector<Region> fixed;      ///< `fixed`
+  bool preserve_volume = true;  ///< `preserve_volume`: the implicit volume constraint on or off
+  std::vector<Region> fixed;    ///< `fixed`
 };
 
-struct SphereShape { double radius = 0.006; };                    ///< `radius_m` [1e-4 … 0.5]
-struct CapsuleShape { double radius = 0.005, length = 0.05; };    ///< `radius_m`, `length_m`; along z
-struct BoxShape { Vec3 size = Vec3::Constant(0.02); };            ///< `size_m`, about the origin
-struct PlaneShape {};                                             ///< solid half-space z ≤ 0
-struct MeshShape { Mesh mesh; };                                  ///< `mesh`: closed surface
+struct SphereShape {
+  double radius = 0.006;  ///< `radius_m` [1e-4 … 0.5]
+};
+struct CapsuleShape {
+  double radius = 0.005;  ///< `radius_m` [1e-4 … 0.5]
+  double length = 0.05;   ///< `length_m`, between the end centres, along z [1e-4 … 2]
+};
+struct BoxShape {
+  Vec3 size = Vec3::Constant(0.02);  ///< `size_m`, about the origin [1e-4 … 2 each]
+};
+struct PlaneShape {};  ///< solid half-space z ≤ 0
+struct MeshShape {
+  Mesh mesh;  ///< closed surface in the probe's frame; the keys of Mesh
+};
 using ProbeShape = std::variant<SphereShape, CapsuleShape, BoxShape, PlaneShape, MeshShape>;
 ///< keys `sphere`, `capsule`, `box`, `plane`, `mesh`
 
 /// A recorded pose over time, CSV columns t, x, y, z, qx, qy, qz, qw [, fx, fy, fz] (s, m, N).
 struct TrajectoryDevice {
   std::filesystem::path file;  ///< `file`
-  Pose offset;  ///< `position_m`, `rotation_xyzw`: X_WR of the recording's frame R
+  Pose offset;                 ///< `position_m`, `rotation_xyzw`: X_WR of the recording's frame R
   bool loop = false;           ///< `loop`: start again at the end, else hold the last pose
 };
 /// Minimum-jerk moves between points.
@@ -75,9 +84,9 @@ struct ScriptedDevice {
     std::optional<Vec3> to;  ///< `to_m`; absent for a wait
     double duration = 1;     ///< `duration_s` [1e-3 … 3600] (`wait_s` for a wait)
   };
-  Vec3 start = Vec3::Zero();          ///< `start_m`
-  Quat rotation = Quat::Identity();   ///< `rotation_xyzw`
-  std::vector<Move> moves;            ///< `moves`; ends holding the last point
+  Vec3 start = Vec3::Zero();         ///< `start_m`
+  Quat rotation = Quat::Identity();  ///< `rotation_xyzw`
+  std::vector<Move> moves;           ///< `moves`; ends holding the last point
 };
 /// Any outside process writes the pose on topic probe_input.
 struct TopicDevice {
@@ -88,26 +97,26 @@ using Device = std::variant<TrajectoryDevice, ScriptedDevice, TopicDevice>;
 ///< keys `trajectory`, `scripted`, `topic`
 
 struct Probe {
-  std::string name;            ///< unique
+  std::string name;  ///< unique
   ProbeShape shape;
-  double friction = 0.1;       ///< `friction`, Coulomb coefficient [0 … 2]
+  double friction = 0.1;  ///< `friction`, Coulomb coefficient [0 … 2]
   Device device;
 };
 
 struct Haptics {
-  double max_force = 3.3;           ///< `max_force_n` [0.1 … 100]
-  double max_force_rate = 200;      ///< `max_force_rate_n_per_s` [1 … 1e5]
-  double device_damping = 0.2;      ///< `device_damping_n_s_per_m`, b of the device [0 … 50]
-  double stale_after = 0.05;        ///< `stale_after_s`: older contact models fade [0.005 … 1]
-  double fade_time = 0.05;          ///< `fade_time_s`: from full force to zero [0.005 … 1]
+  double max_force = 3.3;       ///< `max_force_n` [0.1 … 100]
+  double max_force_rate = 200;  ///< `max_force_rate_n_per_s` [1 … 1e5]
+  double device_damping = 0.2;  ///< `device_damping_n_s_per_m`, b of the device [0 … 50]
+  double stale_after = 0.05;    ///< `stale_after_s`: older contact models fade [0.005 … 1]
+  double fade_time = 0.05;      ///< `fade_time_s`: from full force to zero [0.005 … 1]
 };
 
 /// Cycles per second of each process.
 struct Rates {
-  double haptics = 1000;    ///< `haptics_hz` [500 … 4000]
-  double collision = 250;   ///< `collision_hz` [10 … 2000]
-  double deformation = 250; ///< `deformation_hz` [10 … 2000]
-  double visualizer = 30;   ///< `visualizer_hz` [1 … 120]
+  double haptics = 1000;     ///< `haptics_hz` [500 … 4000]
+  double collision = 250;    ///< `collision_hz` [10 … 2000]
+  double deformation = 250;  ///< `deformation_hz` [10 … 2000]
+  double visualizer = 30;    ///< `visualizer_hz` [1 … 120]
 };
 
 struct Camera {
@@ -115,12 +124,12 @@ struct Camera {
 };
 
 struct Scene {
-  std::filesystem::path file;       ///< where it was read from
-  std::string name;                 ///< default: file name without extension
-  std::vector<Organ> organs;        ///< `organs`, at least one
-  std::vector<Probe> probes;        ///< `probes`, at least one
-  Vec3 gravity = Vec3::Zero();      ///< `gravity_m_per_s2`; the rest shape is free of it
-  double duration = 0;              ///< `duration_s`: 0 = until stopped [0 … 1e6]
+  std::filesystem::path file;   ///< where it was read from
+  std::string name;             ///< default: file name without extension
+  std::vector<Organ> organs;    ///< `organs`, at least one
+  std::vector<Probe> probes;    ///< `probes`, at least one
+  Vec3 gravity = Vec3::Zero();  ///< `gravity_m_per_s2`; the rest shape is free of it
+  double duration = 0;          ///< `duration_s`: 0 = until stopped [0 … 1e6]
   Rates rates;
   Haptics haptics;
   Camera camera;

@@ -1,0 +1,58 @@
+// Contacts inside the volume solve.
+//
+// Unknowns of one step: the volume impulse σ (one equation) and per contact a normal impulse
+// j ≥ 0 and a tangential impulse within Coulomb's cone. The tissue point of a contact is
+// Σ b_k x_k; the probe's plane moves with velocity v_c. With w the node velocities including all
+// contact impulses, the node velocities are v⁺ = w − M⁻¹g σ and
+//     σ(w) = ((Φ + h Φ_t)/h + g·w) / (gᵀM⁻¹g)                            (volume_constraint.h)
+//     non-penetration:  n·(v_c − Σ b_k v⁺_k) ≥ −gap/h                    (n from tissue to probe)
+// σ is eliminated exactly (a rank-one update of each contact's inverse mass), and projected
+// Gauss–Seidel runs on the contacts alone. So the linearised volume holds after every sweep,
+// however few; sweeps only sharpen the contact impulses.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "deformation/organ_model.h"
+#include "deformation/volume_constraint.h"
+
+namespace palpate::deformation {
+
+/// One contact for one step.
+struct ContactRow {
+  std::array<std::uint32_t, 3> nodes{};
+  Vec3 weights = Vec3::Zero();  ///< barycentric b_k
+  Vec3 normal = Vec3::UnitZ();  ///< n, unit, from tissue to probe
+  double gap = 0;               ///< n·(probe point − tissue point) at the step's start [m]
+  Vec3 probe_velocity = Vec3::Zero();  ///< v_c of the probe's surface there [m/s]
+  double friction = 0;                 ///< Coulomb coefficient
+  // In: impulses to start from (those of the last step). Out: the solution.
+  double normal_impulse = 0;               ///< j ≥ 0, on the tissue along −n [N·s]
+  Vec3 tangential_impulse = Vec3::Zero();  ///< on the tissue, ⟂ n, norm ≤ friction·j [N·s]
+};
+
+/// What the volume solve needs of this step; absent for plain mass-spring.
+struct VolumeRow {
+  const VolumeGradient& at;
+  double rate = 0;  ///< (Φ + h Φ_t)/h [m³/s]
+};
+
+struct ContactSolveReport {
+  int sweeps = 0;
+  double volume_impulse = 0;    ///< σ [Pa·s]
+  bool volume_skipped = false;  ///< gᵀM⁻¹g vanished
+};
+
+/// Penetration is undone no faster than this [m/s], so that a probe which jumps does not shoot the
+/// tissue away; the remaining depth follows in the next steps.
+inline constexpr double kMaxSeparationSpeed = 1.0;
+
+/// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.
+/// Sweeps end when no contact velocity changes by more than 1e-9 m/s, or after 60.
+ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const VolumeRow* volume,
+                                             double h, std::span<ContactRow> rows,
+                                             std::vector<Vec3>& velocities);
+
+}  // namespace palpate::deformation

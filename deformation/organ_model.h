@@ -1,0 +1,59 @@
+// One organ: what is constant while it deforms, and its state.
+#pragma once
+
+#include <vector>
+
+#include "deformation/spring_network.h"
+#include "modules/geometry/triangle_surface.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::deformation {
+
+/// Constant after construction.
+struct OrganModel {
+  SpringNetwork network;
+  std::vector<geometry::Triangle> triangles;
+  std::vector<double> masses;          ///< [kg]  (node_count)
+  std::vector<double> inverse_masses;  ///< [1/kg], 0 for fixed nodes  (node_count)
+  std::vector<double> node_stiffness;  ///< Σ_j k_ij of a node's springs [N/m]  (node_count)
+  std::vector<double> spring_damping;  ///< axial, per spring [N·s/m]
+  std::vector<std::uint32_t> fixed_nodes;
+  Vec3 gravity = Vec3::Zero();  ///< [m/s²]
+  double drag = 0;              ///< [1/s]
+  bool preserve_volume = true;
+  double rest_volume = 0;       ///< V₀ [m³]
+  double rest_denominator = 0;  ///< gᵀM⁻¹g at rest [m⁴/kg]
+
+  std::size_t node_count() const { return masses.size(); }
+  std::size_t surface_node_count() const { return network.surface_node_count; }
+};
+
+struct OrganState {
+  std::vector<Vec3> positions;   ///< surface nodes, then virtual nodes, in W [m]
+  std::vector<Vec3> velocities;  ///< [m/s]
+  double volume = 0;             ///< of the positions [m³]
+  double target_volume = 0;      ///< V* [m³]
+  double pressure = 0;           ///< p = −λ of the last step [Pa]
+};
+
+/// The organ's total mass is density × enclosed volume (filled organ), spread over the surface
+/// nodes by area. A virtual node gets as much mass per spring stiffness as the mean surface node,
+/// so that it never limits the step; the sum is then scaled back to the total.
+/// Spring damping is ζ of each spring's own critical damping, c = 2 ζ √(k m_a m_b/(m_a+m_b)).
+/// @param rest_surface  closed, oriented outward, in W [m]
+/// @throws InputError naming the organ if every node is fixed or the volume is not positive
+OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
+                             const geometry::TriangleSurface& rest_surface);
+
+OrganState rest_state(const OrganModel& model);
+
+/// Bound of the highest squared frequency by Gershgorin's circles of M⁻¹K [rad²/s²]:
+/// ω² ≤ 2 max_i Σ_j k_ij/m_i.
+double highest_squared_frequency_bound(const OrganModel& model);
+
+/// Largest step [s] for which symplectic Euler with damping evaluated at the old velocity is
+/// stable. Each mode ẍ + d ẋ + ω² x = 0 needs 4 − 2 h d − h² ω² > 0, that is
+/// h < (2/ω)(√(1+ζ²) − ζ) with ζ = d/2ω; ω and d are taken from Gershgorin's bounds.
+double stable_step_bound(const OrganModel& model);
+
+}  // namespace palpate::deformation
