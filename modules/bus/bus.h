@@ -17,12 +17,17 @@ struct BusOptions {
 
 struct ReaderStatistics {
   std::uint64_t received = 0;
-  std::uint64_t dropped = 0;   ///< gaps in the writers' sequence numbers
+  /// Gaps in the writers' sequence numbers: lost on the way, or replaced by a newer sample of the
+  /// same key before it was taken.
+  std::uint64_t dropped = 0;
   std::uint64_t rejected = 0;  ///< refused by the codec: size, range, not finite
+  /// Its wire name (idl/), "payload" for a sample that could not be read; nullptr if none.
+  const char* last_rejected_field = nullptr;
   std::int64_t newest_source_time_ns = 0;  ///< 0 before the first
 };
 
-/// Writes messages of one topic. Fills header.sequence. Not thread-safe.
+/// Writes messages of one topic. Fills header.sequence; where header.source_time_ns is 0, the time
+/// of writing is sent (the message keeps its 0 and may be used again). Not thread-safe.
 template <class Message>
 class Writer {
  public:
@@ -33,6 +38,8 @@ class Writer {
   /// it. No allocation once message sizes have been seen.
   bool write(Message& message);
   int matched_readers() const;
+  /// Wire name (idl/) of the field for which the last write was refused; nullptr if it was not.
+  const char* refused_field() const;
 
  private:
   friend class Bus;
@@ -41,14 +48,16 @@ class Writer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads messages of one topic; poll it from the module's own loop.
+/// Reads messages of one topic; poll it from the module's own loop, until take gives false. Not
+/// thread-safe.
 template <class Message>
 class Reader {
  public:
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;
   ~Reader();
-  /// The next unread valid sample; false if none. Invalid ones are counted and skipped.
+  /// The next unread valid sample (the newest of its key); false if none. Invalid ones are counted
+  /// and skipped. No allocation once message sizes have been seen. Never throws.
   bool take(Message& message);
   /// Waits until a sample may be there. False on timeout. timeout in seconds.
   bool wait(double timeout);
@@ -62,9 +71,12 @@ class Reader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// One DDS participant. Outlives its writers and readers.
+/// One DDS participant. Outlives its writers and readers. Its threads inherit the scheduling of the
+/// thread that constructs it: set real-time priority before.
 class Bus {
  public:
+  /// @throws InputError for a domain outside 0 to 200, or a session that is not 1 to 64 letters,
+  /// digits, '_', '-', '.', or an address in PALPATE_INTERFACES that this host does not have
   /// @throws std::runtime_error if DDS cannot start (domain in use up, no loopback, …)
   explicit Bus(const BusOptions& options);
   ~Bus();

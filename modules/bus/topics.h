@@ -9,8 +9,8 @@
 namespace palpate::bus {
 
 enum class Delivery {
-  kStream,   ///< best effort, newest sample per key
-  kState,    ///< reliable, newest sample per key also to late joiners
+  kStream,  ///< best effort, newest sample per key
+  kState,   ///< reliable, newest sample per key also to late joiners
 };
 
 template <class Message>

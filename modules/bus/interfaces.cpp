@@ -1,0 +1,53 @@
+#include "modules/bus/interfaces.h"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <netinet/in.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "modules/core/error.h"
+
+namespace palpate::bus {
+namespace {
+
+std::vector<std::string> addresses_of_this_host() {
+  std::vector<std::string> addresses;
+  ifaddrs* interfaces = nullptr;
+  if (getifaddrs(&interfaces) != 0) return addresses;
+  for (const ifaddrs* i = interfaces; i != nullptr; i = i->ifa_next) {
+    if (i->ifa_addr == nullptr || i->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN] = "";
+    // By void*: the general address is known to be an IPv4 one here.
+    const void* const ipv4 = i->ifa_addr;
+    inet_ntop(AF_INET, &static_cast<const sockaddr_in*>(ipv4)->sin_addr, text, sizeof text);
+    addresses.emplace_back(text);
+  }
+  freeifaddrs(interfaces);
+  return addresses;
+}
+
+void check_is_of_this_host(const std::string& address) {
+  const std::vector<std::string> own = addresses_of_this_host();
+  if (std::find(own.begin(), own.end(), address) != own.end()) return;
+  std::string message = "PALPATE_INTERFACES: \"" + address + "\": allowed are the addresses";
+  for (const std::string& allowed : own) message.append(" ").append(allowed);
+  throw InputError(message);
+}
+
+}  // namespace
+
+std::vector<std::string> interfaces_from(const char* comma_separated) {
+  std::vector<std::string> addresses;
+  std::istringstream list(comma_separated == nullptr ? "" : comma_separated);
+  for (std::string address; std::getline(list, address, ',');) {
+    if (address.empty()) continue;
+    check_is_of_this_host(address);
+    addresses.push_back(address);
+  }
+  if (addresses.empty()) addresses.emplace_back("127.0.0.1");
+  return addresses;
+}
+
+}  // namespace palpate::bus

@@ -1,0 +1,109 @@
+#include "modules/bus/participant.h"
+
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "modules/bus/interfaces.h"
+#include "modules/bus/qos.h"
+#include "modules/core/error.h"
+
+namespace palpate::bus {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+
+constexpr int kMaxDomain = 200;  // higher ones have ports beyond 65535 for many participants
+constexpr std::size_t kMaxSessionBytes = 64;
+
+void check(const BusOptions& options) {
+  if (options.domain < 0 || options.domain > kMaxDomain) {
+    throw InputError("domain: " + std::to_string(options.domain) + ": allowed are 0 to " +
+                     std::to_string(kMaxDomain));
+  }
+  // A partition with * ? [ ] would match other sessions.
+  const bool plain = options.session.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789_-.") == std::string::npos;
+  if (options.session.empty() || options.session.size() > kMaxSessionBytes || !plain) {
+    throw InputError("session: \"" + options.session + "\": allowed are 1 to " +
+                     std::to_string(kMaxSessionBytes) + " letters, digits, '_', '-', '.'");
+  }
+}
+
+template <class Entity>
+Entity* demand_created(Entity* entity, const char* what) {
+  if (entity == nullptr) throw std::runtime_error(std::string("DDS refused a ") + what);
+  return entity;
+}
+
+}  // namespace
+
+Participant::Participant(const BusOptions& options) {
+  check(options);
+  dds::DomainParticipantQos qos;
+  apply_transport(interfaces_from(std::getenv("PALPATE_INTERFACES")), qos);
+  qos.name(options.participant_name);
+  participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<std::uint32_t>(options.domain), qos);
+  if (participant_ == nullptr) {
+    throw std::runtime_error("DDS cannot start in domain " + std::to_string(options.domain) +
+                             ": is the loopback interface up?");
+  }
+  try {
+    dds::PublisherQos publisher_qos;
+    publisher_qos.partition().push_back(options.session.c_str());
+    publisher_ = demand_created(participant_->create_publisher(publisher_qos), "publisher");
+    dds::SubscriberQos subscriber_qos;
+    subscriber_qos.partition().push_back(options.session.c_str());
+    subscriber_ = demand_created(participant_->create_subscriber(subscriber_qos), "subscriber");
+  } catch (...) {
+    close();
+    throw;
+  }
+}
+
+Participant::~Participant() { close(); }
+
+void Participant::close() {
+  participant_->delete_contained_entities();
+  dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+dds::Topic* Participant::topic(std::string_view name, dds::TopicDataType* type) {
+  dds::TypeSupport support(type);
+  const auto known = topics_.find(name);
+  if (known != topics_.end()) return known->second;
+  participant_->register_type(support);
+  dds::Topic* created = demand_created(
+      participant_->create_topic(std::string(name), support.get_type_name(), dds::TopicQos()),
+      "topic");
+  topics_.emplace(name, created);
+  return created;
+}
+
+dds::DataWriter* Participant::add_writer(std::string_view name, Delivery delivery,
+                                         dds::TopicDataType* type) {
+  dds::DataWriterQos qos;
+  apply_profile(delivery, qos);
+  return demand_created(publisher_->create_datawriter(topic(name, type), qos), "writer");
+}
+
+dds::DataReader* Participant::add_reader(std::string_view name, Delivery delivery,
+                                         dds::TopicDataType* type) {
+  dds::DataReaderQos qos;
+  apply_profile(delivery, qos);
+  return demand_created(subscriber_->create_datareader(topic(name, type), qos), "reader");
+}
+
+void Participant::remove(dds::DataWriter* writer) { publisher_->delete_datawriter(writer); }
+void Participant::remove(dds::DataReader* reader) { subscriber_->delete_datareader(reader); }
+
+}  // namespace palpate::bus

@@ -1,0 +1,51 @@
+// The DDS entities of one process, without their types.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "modules/bus/bus.h"
+
+namespace eprosima::fastdds::dds {
+class DataReader;
+class DataWriter;
+class DomainParticipant;
+class Publisher;
+class Subscriber;
+class Topic;
+class TopicDataType;
+}  // namespace eprosima::fastdds::dds
+
+namespace palpate::bus {
+
+/// A participant with one publisher and one subscriber in the session's partition.
+class Participant {
+ public:
+  /// @throws InputError if the session name, the domain or PALPATE_INTERFACES is not acceptable
+  /// @throws std::runtime_error if DDS cannot start
+  explicit Participant(const BusOptions& options);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  // `type` is taken over. Endpoints are given back with remove() before the participant ends.
+  eprosima::fastdds::dds::DataWriter* add_writer(std::string_view topic, Delivery delivery,
+                                                 eprosima::fastdds::dds::TopicDataType* type);
+  eprosima::fastdds::dds::DataReader* add_reader(std::string_view topic, Delivery delivery,
+                                                 eprosima::fastdds::dds::TopicDataType* type);
+  void remove(eprosima::fastdds::dds::DataWriter* writer);
+  void remove(eprosima::fastdds::dds::DataReader* reader);
+
+ private:
+  eprosima::fastdds::dds::Topic* topic(std::string_view name,
+                                       eprosima::fastdds::dds::TopicDataType* type);
+  void close();
+
+  eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
+  eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
+  eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;
+  std::map<std::string, eprosima::fastdds::dds::Topic*, std::less<>> topics_;
+};
+
+}  // namespace palpate::bus

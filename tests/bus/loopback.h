@@ -1,0 +1,66 @@
+// Buses of their own for each test, and waiting on conditions with a deadline.
+#pragma once
+
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "modules/bus/bus.h"
+
+namespace palpate::bus::testing {
+
+inline constexpr double kDeadline = 20;  // [s] far beyond any sound run, even on a busy machine
+
+template <class Condition>
+bool wait_until(const Condition& condition, double deadline = kDeadline) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+/// Options that no other test shares: domain from the process, session from a count. Samples
+/// between buses of one process then travel by UDP, as between processes.
+inline BusOptions own_options() {
+  static std::atomic<int> count{0};
+  eprosima::fastrtps::LibrarySettingsAttributes settings;
+  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+
+  BusOptions options;
+  options.domain = 1 + static_cast<int>(getpid() % 90);  // below the ephemeral ports
+  options.session = std::to_string(getpid()).append("_").append(std::to_string(++count));
+  return options;
+}
+
+/// A writer and a reader of one topic on two buses, matched.
+template <class Message>
+struct Pair {
+  explicit Pair(const TopicOf<Message>& topic, const BusOptions& options = own_options())
+      : writer_bus(options),
+        reader_bus(options),
+        writer(writer_bus.writer(topic)),
+        reader(reader_bus.reader(topic)) {
+    matched =
+        wait_until([&] { return writer.matched_readers() == 1 && reader.matched_writers() == 1; });
+  }
+
+  Bus writer_bus, reader_bus;
+  Writer<Message> writer;
+  Reader<Message> reader;
+  bool matched = false;
+};
+
+/// Waits for the next sample.
+template <class Message>
+bool take_soon(Reader<Message>& reader, Message& message, double deadline = kDeadline) {
+  return wait_until([&] { return reader.take(message); }, deadline);
+}
+
+}  // namespace palpate::bus::testing
