@@ -1,5 +1,5 @@
 // Latency of node positions from one process to another, beside the same number of bytes through
-// plain UDP on loopback:  bench-topic-latency [SECONDS [RATE_HZ]]
+// plain UDP on loopback:  palpate-bench-topic-latency [SECONDS [RATE_HZ]]
 //
 // The reading process starts the writing ones (itself with other arguments). Latency is the
 // monotonic clock after taking the sample minus that before writing it, so translation, checks and
@@ -211,7 +211,7 @@ Latencies read_udp(const LoopbackSocket& socket, const Load& load) {
 class WriterProcess {
  public:
   WriterProcess(const std::string& path, const std::string& target, const Load& load) {
-    const std::array<std::string, 6> words{"bench-topic-latency",        path, target,
+    const std::array<std::string, 6> words{"palpate-bench-topic-latency", path, target,
                                            std::to_string(load.nodes),    //
                                            std::to_string(load.samples),  //
                                            std::to_string(load.rate_hz)};
@@ -279,7 +279,7 @@ int main(int argc, char** argv) {
   try {
     return run(std::vector<std::string>(argv + 1, argv + argc));
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "bench-topic-latency: %s\n", error.what());
+    std::fprintf(stderr, "palpate-bench-topic-latency: %s\n", error.what());
     return 1;
   }
 }

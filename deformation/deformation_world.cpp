@@ -149,7 +149,7 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
   for (std::uint32_t i = 0; i < rest_surfaces.size(); ++i) {
     impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity, rest_surfaces[i]));
   }
-  for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe.friction);
+  for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }
 
 DeformationWorld::~DeformationWorld() = default;

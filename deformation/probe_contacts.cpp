@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modules/geometry/closest_points.h"
+
 namespace palpate::deformation {
 namespace {
 
@@ -9,7 +11,21 @@ bool same_place(const CarriedContact& a, const CarriedContact& b) {
   return a.organ == b.organ && a.triangle == b.triangle;
 }
 
+std::optional<RoundCore> core_of(const scene::ProbeShape& shape) {
+  if (const auto* sphere = std::get_if<scene::SphereShape>(&shape)) {
+    return RoundCore{Vec3::Zero(), Vec3::Zero(), sphere->radius};
+  }
+  if (const auto* capsule = std::get_if<scene::CapsuleShape>(&shape)) {
+    const Vec3 half(0, 0, capsule->length / 2);
+    return RoundCore{-half, half, capsule->radius};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+ProbeContacts::ProbeContacts(const scene::Probe& probe)
+    : friction_(probe.friction), core_(core_of(probe.shape)) {}
 
 void ProbeContacts::reset() {
   placed_ = false;
@@ -67,12 +83,30 @@ Pose ProbeContacts::pose_at(double fraction) const {
           start_.rotation.slerp(fraction, target_.rotation)};
 }
 
+void ProbeContacts::measure_again(const OrganModel& model, const OrganState& state,
+                                  const Pose& pose, CarriedContact& contact) const {
+  const auto& nodes = model.triangles[contact.triangle];
+  const auto closest = geometry::closest_of_segment_and_triangle(
+      pose.to_world(core_->end_a), pose.to_world(core_->end_b),
+      {state.positions[nodes[0]], state.positions[nodes[1]], state.positions[nodes[2]]});
+  // A core that touches the triangle has no direction to it: the last one stays.
+  if (!(closest.distance > 1e-3 * core_->radius)) return;
+  const Vec3 away = (closest.on_segment - closest.on_triangle.point) / closest.distance;
+  const Vec3 last = pose.rotation * contact.normal_P;
+  // A core driven through the wall still belongs to the side it came from.
+  const Vec3 normal = away.dot(last) >= 0 ? away : -away;
+  contact.weights = closest.on_triangle.weights;
+  contact.normal_P = pose.rotation.conjugate() * normal;
+  contact.point_P = pose.to_body(closest.on_segment - core_->radius * normal);
+}
+
 void ProbeContacts::append_rows(std::uint32_t organ, const OrganModel& model,
                                 const OrganState& state, double h, double fraction,
                                 std::vector<ContactRow>& rows) {
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
-  for (const CarriedContact& contact : contacts_) {
+  for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
+    if (core_) measure_again(model, state, before, contact);
     ContactRow row;
     row.nodes = model.triangles[contact.triangle];
     row.weights = contact.weights;

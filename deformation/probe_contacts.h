@@ -1,30 +1,42 @@
 // The contacts of one probe, carried along with it through the sub-steps of an advance.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "deformation/contact_response.h"
 #include "deformation/contact_solve.h"
 #include "modules/core/messages.h"
+#include "modules/scene/scene.h"
 
 namespace palpate::deformation {
 
 /// Faster than any hand or surgical tool [m/s]: a probe that seems to move faster has jumped.
 inline constexpr double kMaxProbeSpeed = 3.0;
 
-/// A contact in the probe's frame, where it stays fixed until the next contacts arrive.
+/// A contact between two messages from collision. Flat probe surfaces stay the planes they are and
+/// move with the probe. Round ones (sphere, capsule) are measured anew in every sub-step against
+/// their core: a plane frozen for a period would tilt late as the tissue slides under a fingertip,
+/// which feeds energy into the sideways swing of the patch.
 struct CarriedContact {
   std::uint32_t organ = 0;
   std::uint32_t triangle = 0;
-  Vec3 weights = Vec3::Zero();
-  Vec3 point_P = Vec3::Zero(), normal_P = Vec3::UnitZ();
+  Vec3 weights = Vec3::Zero();             ///< of the triangle's nodes
+  Vec3 point_P = Vec3::Zero();             ///< on the probe's surface, in the probe's frame [m]
+  Vec3 normal_P = Vec3::UnitZ();           ///< in the probe's frame
   double normal_impulse = 0;               ///< of the last sub-step, for its next start [N·s]
   Vec3 tangential_impulse = Vec3::Zero();  ///< likewise
 };
 
+/// The line at whose distance `radius` a round shape has its surface, in the probe's frame [m].
+struct RoundCore {
+  Vec3 end_a = Vec3::Zero(), end_b = Vec3::Zero();  ///< equal for a sphere
+  double radius = 0;
+};
+
 class ProbeContacts {
  public:
-  explicit ProbeContacts(double friction) : friction_(friction) {}
+  explicit ProbeContacts(const scene::Probe& probe);
 
   void reset();
   void set_pose(const Pose& pose);
@@ -51,8 +63,12 @@ class ProbeContacts {
 
  private:
   Pose pose_at(double fraction) const;
+  /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
+  void measure_again(const OrganModel& model, const OrganState& state, const Pose& pose,
+                     CarriedContact& contact) const;
 
   double friction_;
+  std::optional<RoundCore> core_;
   bool placed_ = false;
   Pose start_, target_;
   double period_ = 0;

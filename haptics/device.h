@@ -1,6 +1,7 @@
 // Where a probe's pose comes from.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,8 +13,8 @@ namespace palpate::haptics {
 
 /// One complete sample, by value.
 struct DeviceSample {
-  Pose pose;   ///< X_WP
-  Twist twist; ///< in W
+  Pose pose;    ///< X_WP
+  Twist twist;  ///< in W
   std::uint32_t buttons = 0;
 };
 
@@ -26,7 +27,8 @@ class Device {
 };
 
 /// Builds the device a probe's scene entry names.
-/// @param warnings  receives a line for each gap or bad row of a recording
+/// @param warnings  receives a line for each gap or bad row of a recording, at most 20 of either
+///                  kind and one line counting them all
 /// @throws InputError "file.csv:17: …" if a recording cannot be used
 std::unique_ptr<Device> make_device(const scene::Device& device,
                                     std::vector<std::string>& warnings);
@@ -35,15 +37,20 @@ std::unique_ptr<Device> make_device(const scene::Device& device,
 /// told to. make_device() returns one for scene::TopicDevice.
 class TopicDevice : public Device {
  public:
+  static constexpr double kMaxSpeed = 0.5;      ///< [m/s]
+  static constexpr double kMaxTurn = 6.3;       ///< [rad/s]
+  static constexpr double kLongestStep = 0.01;  ///< of one read(), whatever time has passed [s]
+  static constexpr double kRampDelay = 0.02;    ///< how far behind a steady motion it is [s]
+
   explicit TopicDevice(const scene::TopicDevice& config);
-  /// New commanded pose, received at session time `time` [s]. Not finite: ignored.
+  /// New commanded pose, received at session time `time` [s]. Its quaternion is normalised; its
+  /// twist is not used. Ignored if not finite, beyond 1000 m, or without a rotation.
   void command(const ProbeState& commanded, double time);
   DeviceSample read(double time) override;
 
  private:
   DeviceSample current_;
   Pose target_;
-  std::uint32_t buttons_ = 0;
   double last_time_ = 0;
 };
 

@@ -25,6 +25,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 FRAME_NAME = re.compile(r"frame_(\d+(?:\.\d+)?)\.png$")
 SMALLEST_ERROR = 1e-16  # rounding of a relative volume: what a logarithmic axis can show of zero
+SELDOM_WRITTEN = {"scene", "surface", "session_control"}  # old by nature: their age says nothing
 MOST_POINTS = 4000  # per curve: more cannot be seen
 
 
@@ -97,11 +98,23 @@ def draw_rates(axes, folder):
 
 def draw_ages(axes, folder):
     axes.set_ylabel("age of inputs [ms]")
+    goodbyes = {
+        (module, sequence)
+        for module, table in tables(folder, "module_status")
+        for sequence, state in zip(table["sequence"], table["state"])
+        if state == "stopped"
+    }
     for module, table in tables(folder, "module_inputs"):
         times = numbers(table, "sim_time_s")
         ages = [1e3 * age if math.isfinite(age) else math.nan for age in numbers(table, "age_s")]
         for topic in dict.fromkeys(table["topic"]):
-            rows = [i for i, name in enumerate(table["topic"]) if name == topic]
+            if topic in SELDOM_WRITTEN:
+                continue
+            rows = [
+                i
+                for i, name in enumerate(table["topic"])
+                if name == topic and (module, table["sequence"][i]) not in goodbyes
+            ]
             draw(axes, [times[i] for i in rows], [ages[i] for i in rows], f"{module} ← {topic}")
     axes.set_yscale("log")
 

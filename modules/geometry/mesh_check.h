@@ -11,11 +11,12 @@ namespace palpate::geometry {
 struct MeshReport {
   std::size_t node_count = 0, triangle_count = 0;
   std::size_t component_count = 0;
-  int genus = 0;                               ///< of a closed one-component surface
-  double area = 0, volume = 0;                 ///< [m²], [m³]
+  int genus = 0;                                              ///< of a closed one-component surface
+  double area = 0, volume = 0;                                ///< [m²], [m³]
   Vec3 min_corner = Vec3::Zero(), max_corner = Vec3::Zero();  ///< [m]
-  double shortest_edge = 0, longest_edge = 0, worst_aspect = 0;
-  double leak = 0;  ///< largest difference of the three-axis volumes over the area·extent
+  double shortest_edge = 0, longest_edge = 0;                 ///< [m]
+  double worst_aspect = 0;  ///< largest √3/4·(longest edge)²/area; 1 = equilateral
+  double leak = 0;          ///< largest difference of the three-axis volumes over the area·extent
   // Places: indices of offenders.
   std::vector<std::array<std::uint32_t, 2>> border_edges;        ///< in one triangle only
   std::vector<std::array<std::uint32_t, 2>> non_manifold_edges;  ///< in more than two triangles
@@ -27,6 +28,8 @@ struct MeshReport {
   std::vector<std::array<std::uint32_t, 2>> self_intersections;  ///< pairs of triangles
   bool inside_out = false;  ///< consistent, but the volume is negative
 
+  /// No border, non-manifold, duplicate, degenerate, unused or inconsistent part.
+  bool is_closed_manifold() const;
   /// Closed, manifold, one component, oriented outward, no degenerate or intersecting triangles.
   bool holds_volume() const;
 };

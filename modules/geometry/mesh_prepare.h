@@ -13,13 +13,16 @@ struct RepairLog {
   std::vector<std::string> actions;  ///< what was done, one line each; empty if nothing
 };
 
-/// Welds coincident nodes, drops unused nodes, duplicate and degenerate triangles, and orients all
-/// triangles consistently outward. Does nothing that changes the shape.
+/// Welds coincident nodes, closes cracks thinner than 1e-6 of the size, drops unused nodes,
+/// duplicate and degenerate triangles, and orients all triangles consistently outward. Does nothing
+/// that changes the shape.
 RepairLog repair_surface(TriangleSurface& surface);
 
 /// Decimates or refines a closed manifold surface to exactly `node_count` nodes where reachable
 /// (else the nearest count), keeping it closed, manifold and free of self-intersections; scales
-/// about the centroid so that the enclosed volume is kept. Deterministic.
+/// about the centroid so that the enclosed volume is kept. Edges become nearly equal and sharp
+/// corners a little rounder. A surface that has this count already is returned as it is.
+/// Deterministic.
 /// @param node_count  4 … kMaxNodes
 /// @throws InputError if the surface cannot be resampled.
 TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count);

@@ -29,6 +29,10 @@ Contacts contacts_on(std::vector<std::uint32_t> triangles, const Pose& pose, con
   return contacts;
 }
 
+scene::Probe plate(double friction) {
+  return {"plate", scene::PlaneShape{}, friction, scene::ScriptedDevice{}};
+}
+
 struct Ball {
   OrganModel model = testing::ball_model(1);
   OrganState state = rest_state(model);
@@ -37,7 +41,7 @@ struct Ball {
 TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
   // Oracle: rigid motion by hand; a quarter turn takes +x to +y.
   const Ball ball;
-  ProbeContacts probe(0.3);
+  ProbeContacts probe(plate(0.3));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
   probe.end(1e9);
@@ -61,7 +65,7 @@ TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
 TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
   // Oracle: the sum of the parts is the whole way.
   const Ball ball;
-  ProbeContacts probe(0);
+  ProbeContacts probe(plate(0));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
   probe.end(1e9);
@@ -80,7 +84,7 @@ TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
 TEST_CASE("probe contacts: a triangle touched again starts from its last impulses") {
   // Oracle: definition; triangles 2 and 5 stay, 3 is new, 7 is gone.
   const Ball ball;
-  ProbeContacts probe(0.1);
+  ProbeContacts probe(plate(0.1));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.set_contacts(contacts_on({2, 5, 7}, Pose(), Vec3::Zero(), Vec3::UnitZ()));
   probe.begin(kPeriod);
@@ -101,7 +105,7 @@ TEST_CASE("probe contacts: a triangle touched again starts from its last impulse
 TEST_CASE("probe contacts: force and torque are impulses over the period") {
   // Oracle: analytic; a unit impulse along −n on the tissue at 1 cm beside the probe's origin.
   const Ball ball;
-  ProbeContacts probe(0.5);
+  ProbeContacts probe(plate(0.5));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.set_contacts(contacts_on({0}, Pose(), Vec3(0.01, 0, 0), Vec3::UnitZ()));
   probe.begin(kPeriod);

@@ -1,5 +1,6 @@
 #include "modules/pipeline/pipeline.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -122,6 +123,33 @@ TEST_CASE("pipeline: a tip at 500 mm/s does not pass through, at any collision r
   }
   CHECK(fastest > 0.5);
   CHECK(force > 0.1);
+}
+
+TEST_CASE("pipeline: a sliding tip feels a steady force, however late contacts are") {
+  // Oracle: the same slide with contacts of every step. A slow collision leaves contacts up to four
+  // deformation steps old; what is felt may then differ by what a contact found late would add.
+  const auto slide = [](double collision_hz, double& largest_step) {
+    auto scene = press_scene({{at_depth(0.012), 1.0}, {at_depth(0.012) + Vec3(0.03, 0, 0), 2.0}});
+    scene.rates.collision = collision_hz;
+    auto pipeline = ball_pipeline(scene);
+    std::vector<double> forces;
+    while (pipeline.time() < 2.9) {
+      pipeline.run_until(pipeline.time() + 0.004);
+      forces.push_back(pipeline.contact_model(0).force.norm());
+      if (forces.size() < 2) continue;
+      largest_step = std::max(largest_step, std::abs(forces.back() - forces[forces.size() - 2]));
+    }
+    return forces;
+  };
+  double step_at_250 = 0, step_at_60 = 0;
+  const auto prompt = slide(250, step_at_250), late = slide(62.5, step_at_60);
+  const double largest = *std::max_element(prompt.begin(), prompt.end());
+  REQUIRE(largest > 0.05);
+  CHECK(step_at_250 < 0.1 * largest);
+  CHECK(step_at_60 < 0.1 * largest);
+  for (std::size_t i = 0; i < prompt.size(); ++i) {
+    CHECK(std::abs(prompt[i] - late[i]) < 0.05 * largest);
+  }
 }
 
 TEST_CASE("pipeline: every module runs at its own rate") {

@@ -1,0 +1,260 @@
+#include "collision/core_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace palpate::collision {
+namespace {
+
+/// Below this distance the direction between closest points is noise [m]; the triangle's normal
+/// takes over.
+constexpr double kDirectionless = 1e-9;
+/// A triangle belongs to the wall a core is behind if its normal is within 78° of the wall's.
+constexpr double kSameWall = 0.2;
+
+double side(const SweptTriangle& triangle, const SegmentAndTriangle& pair) {
+  return triangle.normal_end.dot(pair.on_segment - triangle.end[0]);
+}
+
+struct Candidate {
+  const SweptTriangle& triangle;
+  SegmentAndTriangle pair;  ///< at the end
+  double side = 0;          ///< of the core at the end, > 0 in front [m]
+  std::optional<Crossing> crossing;
+  bool remembered = false;
+  bool on_wall = false;  ///< connected with what the core is behind of
+
+  double gap(const Core& core) const { return pair.distance - core.radius; }
+  FoundContact contact(const OrganStep& step, const Core& core) const {
+    FoundContact result;
+    result.organ = step.organ_index;
+    result.triangle = triangle.index;
+    result.weights = pair.on_triangle.weights;
+    const bool may_touch = gap(core) < triangle.travel + core.radius * 1e-6;
+    result.time_of_impact = may_touch ? time_of_touch(core, triangle) : 1;
+    return result;
+  }
+};
+
+/// Did the core go from the front of the triangle through it?
+std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
+                                       const SweptTriangle& triangle,
+                                       const SegmentAndTriangle& pair_end, double side_end) {
+  const double separation = step.motion.chord_error();
+  if (side_end > 0 || pair_end.distance > triangle.travel + separation) return {};
+  const Vec3 normal_start = unit_normal(triangle.start);
+  const SegmentAndTriangle pair_start = closest(core, triangle.start);
+  if (!(normal_start.dot(pair_start.on_segment - triangle.start[0]) > 0)) return {};
+  return first_crossing(core, triangle, separation);
+}
+
+/// Core in front of the triangle at the end.
+void append_front(const OrganStep& step, const Core& core, const Candidate& candidate,
+                  std::vector<FoundContact>& found) {
+  FoundContact contact = candidate.contact(step, core);
+  const SegmentAndTriangle& pair = candidate.pair;
+  contact.normal = pair.distance > kDirectionless
+                       ? Vec3((pair.on_segment - pair.on_triangle.point) / pair.distance)
+                       : candidate.triangle.normal_end;
+  contact.point = pair.on_segment - core.radius * contact.normal;
+  contact.gap = contact.normal.dot(contact.point - pair.on_triangle.point);
+  append_contact(contact, candidate.triangle.nodes, found);
+}
+
+/// Touched in passing but neither in front within the margin nor crossed: the contact of the
+/// closest approach, carried to the end.
+void append_graze(const OrganStep& step, const Core& core, const Candidate& candidate,
+                  std::vector<FoundContact>& found) {
+  const SweptTriangle& triangle = candidate.triangle;
+  if (candidate.gap(core) > triangle.travel) return;
+  const double touch = time_of_touch(core, triangle);
+  if (touch >= 1) return;
+  const ClosestApproach nearest = closest_approach(core, triangle, touch);
+  if (nearest.pair.distance >= core.radius || nearest.pair.distance < kDirectionless) return;
+  const Vec3 apart = nearest.pair.on_segment - nearest.pair.on_triangle.point;
+  if (apart.dot(unit_normal(triangle.at(nearest.time))) <= 0) return;
+  FoundContact contact = candidate.contact(step, core);
+  contact.normal = apart / nearest.pair.distance;
+  contact.weights = nearest.pair.on_triangle.weights;
+  contact.point = nearest.pair.on_segment - core.radius * contact.normal;
+  Vec3 tissue = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) tissue += contact.weights[k] * triangle.end[k];
+  contact.gap = contact.normal.dot(contact.point - tissue);
+  if (contact.gap <= step.margin) append_contact(contact, triangle.nodes, found);
+}
+
+/// How far the rounded core reaches below q against n, on the line through q along n, there where
+/// it is nearest; 1 if that line misses it.
+double reach_below(const Core& core, const Vec3& nearest, const Vec3& q, const Vec3& n) {
+  const double height = n.dot(nearest - q);
+  const double sideways_squared = (nearest - q - height * n).squaredNorm();
+  const double half_squared = core.radius * core.radius - sideways_squared;
+  return half_squared > 0 ? height - std::sqrt(half_squared) : 1;
+}
+
+/// Core behind the triangle, which still pushes it out along its outward normal.
+/// @param depth_limit  deeper, the wall is given up [m]
+/// @param nearest_of_wall  the core gets this contact even if the triangle is not straight above
+bool append_behind(const OrganStep& step, const Core& core, const Candidate& candidate,
+                   double depth_limit, bool nearest_of_wall, std::vector<FoundContact>& found) {
+  const SweptTriangle& triangle = candidate.triangle;
+  const SegmentAndTriangle& pair = candidate.pair;
+  FoundContact contact = candidate.contact(step, core);
+  contact.normal = triangle.normal_end;
+  contact.gap = reach_below(core, pair.on_segment, pair.on_triangle.point, contact.normal);
+  if (contact.gap > 0 && nearest_of_wall) {
+    const Vec3 outward = pair.on_triangle.point - pair.on_segment;
+    if (outward.dot(contact.normal) > kSameWall * pair.distance)
+      contact.normal = outward.normalized();
+    contact.gap = -pair.distance - core.radius;
+  }
+  if (contact.gap > 0 || -contact.gap > depth_limit) return false;
+  contact.point = pair.on_triangle.point + contact.gap * contact.normal;
+  append_contact(contact, triangle.nodes, found);
+  return true;
+}
+
+/// Crossed in this step and already off to the side or deep: the contact of the crossing.
+void append_crossed(const OrganStep& step, const Core& core, const Candidate& candidate,
+                    std::vector<FoundContact>& found) {
+  FoundContact contact = candidate.contact(step, core);
+  contact.weights = candidate.crossing->weights;
+  contact.normal = candidate.triangle.normal_end;
+  contact.point = candidate.crossing->on_core - core.radius * contact.normal;
+  Vec3 tissue = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) tissue += contact.weights[k] * candidate.triangle.end[k];
+  contact.gap = contact.normal.dot(contact.point - tissue);
+  append_contact(contact, candidate.triangle.nodes, found);
+}
+
+/// Marks what is connected, over nodes shared by triangles facing like the wall, with the
+/// crossed and remembered triangles.
+void mark_wall(std::vector<Candidate>& candidates) {
+  Vec3 outward = Vec3::Zero();
+  std::vector<std::uint32_t> nodes;
+  const auto add = [&](Candidate& c) {
+    c.on_wall = true;
+    nodes.insert(nodes.end(), c.triangle.nodes.begin(), c.triangle.nodes.end());
+  };
+  for (Candidate& c : candidates) {
+    if (!c.crossing && !c.remembered) continue;
+    outward += c.triangle.normal_end;
+    add(c);
+  }
+  const double limit = kSameWall * outward.norm();
+  for (std::size_t before = 0; before != nodes.size();) {
+    before = nodes.size();
+    std::sort(nodes.begin(), nodes.end());
+    const auto known = nodes;
+    for (Candidate& c : candidates) {
+      if (c.on_wall || !(c.triangle.normal_end.dot(outward) > limit)) continue;
+      const auto is_known = [&](std::uint32_t node) {
+        return std::binary_search(known.begin(), known.end(), node);
+      };
+      if (std::any_of(c.triangle.nodes.begin(), c.triangle.nodes.end(), is_known)) add(c);
+    }
+  }
+}
+
+/// Contacts of a core that is behind the wall. @returns the triangles it is behind of now
+std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, double depth_limit,
+                                       std::vector<Candidate>& candidates,
+                                       std::vector<FoundContact>& found) {
+  mark_wall(candidates);
+  const Candidate* nearest = nullptr;
+  for (const Candidate& c : candidates) {
+    if (!c.on_wall || c.side > 0) continue;
+    if (nearest == nullptr || c.pair.distance < nearest->pair.distance) nearest = &c;
+  }
+  std::vector<std::uint32_t> behind;
+  for (const Candidate& c : candidates) {
+    if (!c.on_wall) continue;
+    if (c.side > 0) {
+      if (c.gap(core) <= step.margin) append_front(step, core, c, found);
+      continue;
+    }
+    bool is_behind = append_behind(step, core, c, depth_limit, &c == nearest, found);
+    if (!is_behind && c.crossing) {
+      append_crossed(step, core, c, found);
+      is_behind = true;
+    }
+    if (is_behind) behind.push_back(c.triangle.index);
+  }
+  return behind;
+}
+
+}  // namespace
+
+void CoreContacts::reset() {
+  before_.clear();
+  now_.clear();
+}
+
+void CoreContacts::begin_step() {
+  before_.swap(now_);
+  now_.clear();
+  std::sort(before_.begin(), before_.end(), [](const Behind& a, const Behind& b) {
+    return std::tie(a.organ, a.core, a.triangle) < std::tie(b.organ, b.core, b.triangle);
+  });
+}
+
+std::span<const CoreContacts::Behind> CoreContacts::remembered(std::uint32_t organ,
+                                                               std::uint32_t core) const {
+  const auto [first, last] =
+      std::equal_range(before_.begin(), before_.end(), Behind{organ, core, 0, 0},
+                       [](const Behind& a, const Behind& b) {
+                         return std::tie(a.organ, a.core) < std::tie(b.organ, b.core);
+                       });
+  return {first, last};
+}
+
+void CoreContacts::append_remembered(std::uint32_t organ, std::vector<std::uint32_t>& triangles,
+                                     double& depth_limit) const {
+  for (const Behind& b : before_) {
+    if (b.organ != organ) continue;
+    triangles.push_back(b.triangle);
+    depth_limit = std::max(depth_limit, b.depth_limit);
+  }
+}
+
+void CoreContacts::append_remembered(std::uint32_t organ, std::uint32_t core,
+                                     std::vector<std::uint32_t>& triangles) const {
+  for (const Behind& b : remembered(organ, core)) triangles.push_back(b.triangle);
+}
+
+void CoreContacts::find(const OrganStep& step, const Core& core,
+                        std::span<const SweptTriangle> candidates,
+                        std::vector<FoundContact>& found) {
+  const auto before = remembered(step.organ_index, core.index);
+  double depth_limit = 0;
+  for (const Behind& b : before) depth_limit = std::max(depth_limit, b.depth_limit);
+  std::vector<Candidate> near;
+  bool is_behind = !before.empty();
+  for (const SweptTriangle& triangle : candidates) {
+    Candidate c{triangle, closest(core, triangle.end), 0, {}, false, false};
+    if (before.empty() && c.gap(core) > std::max(step.margin, triangle.travel)) continue;
+    c.side = side(triangle, c.pair);
+    c.remembered = std::any_of(before.begin(), before.end(),
+                               [&](const Behind& b) { return b.triangle == triangle.index; });
+    c.crossing = crossed_inward(step, core, triangle, c.pair, c.side);
+    if (c.crossing) depth_limit = std::max(depth_limit, step.depth_limit);
+    is_behind = is_behind || c.crossing;
+    near.push_back(c);
+  }
+  if (is_behind) {
+    for (const std::uint32_t triangle : append_wall(step, core, depth_limit, near, found)) {
+      now_.push_back({step.organ_index, core.index, triangle, depth_limit});
+    }
+    return;
+  }
+  for (const Candidate& c : near) {
+    if (c.side > 0 && c.gap(core) <= step.margin) {
+      append_front(step, core, c, found);
+    } else {
+      append_graze(step, core, c, found);
+    }
+  }
+}
+
+}  // namespace palpate::collision

@@ -1,0 +1,49 @@
+// A tree of axis-aligned boxes over the triangles of a surface that does not change.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+
+#include "modules/geometry/triangle_surface.h"
+
+namespace palpate::geometry {
+
+class AabbTree {
+ public:
+  /// Copies what it needs. @param surface  at least one triangle
+  explicit AabbTree(const TriangleSurface& surface);
+
+  struct Nearest {
+    std::uint32_t triangle = 0;
+    Vec3 point = Vec3::Zero();    ///< on the surface [m]
+    double squared_distance = 0;  ///< [m²]
+  };
+  /// The point of the surface nearest to `point`; of equally near triangles the first visited.
+  Nearest nearest(const Vec3& point) const;
+
+  /// Calls `visit(a, b)`, a < b, once for every pair of triangles whose boxes touch.
+  void for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
+
+ private:
+  using Box = Eigen::AlignedBox3d;
+  struct Branch {
+    Box box;
+    std::uint32_t begin = 0, end = 0;  ///< range of order_, used by leaves
+    std::uint32_t left = 0;            ///< children at left and left + 1; 0: a leaf
+  };
+
+  void build();
+  void split(std::uint32_t branch);
+  Vec3 nearest_on(std::uint32_t triangle, const Vec3& point) const;
+
+  std::vector<std::array<Vec3, 3>> corners_;  // of each triangle
+  std::vector<Box> boxes_;                    // of each triangle
+  std::vector<std::uint32_t> order_;          // triangles, each leaf's side by side
+  std::vector<Branch> branches_;
+};
+
+/// The point of the triangle (a, b, c) nearest to p. Ericson, Real-Time Collision Detection,
+/// §5.1.5.
+Vec3 nearest_point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
+
+}  // namespace palpate::geometry

@@ -1,0 +1,40 @@
+#include "modules/geometry/edge_uses.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace palpate::geometry {
+
+std::vector<EdgeUse> edge_uses_of(std::span<const Triangle> triangles) {
+  std::vector<EdgeUse> uses;
+  uses.reserve(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t from = triangles[t][i], to = triangles[t][(i + 1) % 3];
+      if (from != to) uses.push_back({std::min(from, to), std::max(from, to), t, from < to});
+    }
+  }
+  std::sort(uses.begin(), uses.end(), [](const EdgeUse& x, const EdgeUse& y) {
+    return std::tie(x.a, x.b, x.triangle) < std::tie(y.a, y.b, y.triangle);
+  });
+  return uses;
+}
+
+DisjointSets::DisjointSets(std::size_t count) : parent_(count) {
+  std::iota(parent_.begin(), parent_.end(), 0u);
+}
+
+std::uint32_t DisjointSets::root(std::uint32_t item) {
+  while (parent_[item] != item) item = parent_[item] = parent_[parent_[item]];
+  return item;
+}
+
+// The smaller index becomes the root, so that roots do not depend on the order of joining.
+void DisjointSets::join(std::uint32_t a, std::uint32_t b) {
+  a = root(a);
+  b = root(b);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+}  // namespace palpate::geometry

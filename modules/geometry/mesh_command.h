@@ -1,0 +1,22 @@
+// What `palpate mesh IN -o OUT [--nodes N] [--unit mm]` does.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+
+namespace palpate::geometry {
+
+struct MeshCommandOptions {
+  std::filesystem::path input;
+  std::filesystem::path output;  ///< empty: check only; else .ply, .stl, .obj or .off, in metres
+  std::size_t node_count = 0;    ///< to decimate or refine to; 0: keep
+  std::string unit = "m";        ///< of the input's numbers, see metres_per_unit()
+};
+
+/// Reads, repairs, resamples where asked, and prints a one-screen report to `out`; writes the
+/// result only if it holds a volume. What is wrong goes to `err`.
+/// @return kExitDone, kExitBadInput (not written), or kExitFailed if writing failed
+int run_mesh_command(const MeshCommandOptions& options, std::ostream& out, std::ostream& err);
+
+}  // namespace palpate::geometry

@@ -1,0 +1,136 @@
+#include "modules/launcher/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+
+#include "modules/core/error.h"
+#include "modules/geometry/mesh_command.h"
+#include "modules/launcher/check_command.h"
+#include "modules/launcher/replay_command.h"
+#include "modules/launcher/run_command.h"
+#include "modules/recording/commands.h"
+#include "modules/runtime/module_options.h"
+
+namespace palpate::launcher {
+namespace {
+
+using Job = std::function<int()>;
+
+bool no_display() {
+  const char* display = std::getenv("DISPLAY");
+  return display == nullptr || *display == '\0';
+}
+
+void add_view_options(CLI::App& command, RunOptions& options) {
+  command.add_flag("--headless", options.headless,
+                   "No window; pictures only with --frames (assumed where there is no display)");
+  command.add_option("--frames", options.frames, "Folder for a PNG sequence");
+  command
+      .add_option("--frame-interval-s", options.frame_interval,
+                  "Simulated seconds between two pictures of the sequence")
+      ->check(CLI::Range(0.001, 3600.0))
+      ->capture_default_str();
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  runtime::add_bus_options(command, options.bus);
+  add_view_options(command, options);
+  command.add_option("--duration", options.duration, "Seconds to run; else the scene's duration_s")
+      ->check(CLI::Range(0.0, 1e6));
+  command.add_option("--record", options.record, "Recording to write (MCAP)");
+  command.add_option("--summary", options.summary, "Text file for the summary of the end");
+  command.add_option("--only", options.only, "Start only these modules, joining a running session")
+      ->delimiter(',');
+  command.add_flag("!--no-visualizer", options.visualizer, "Do not start the visualizer");
+  command.add_flag("!--no-realtime", options.realtime, "Do not ask for real-time priority");
+}
+
+void add_run(CLI::App& app, RunOptions& options, Job& job) {
+  auto* command = app.add_subcommand("run", "Run a scene: start, watch and stop its processes");
+  command->add_option("SCENE", options.scene, "Scene file (YAML)")->required();
+  add_run_options(*command, options);
+  command->final_callback(
+      [&] { job = [&] { return run_command(options, std::cout, std::cerr); }; });
+}
+
+void add_replay(CLI::App& app, std::filesystem::path& recording, RunOptions& options, Job& job) {
+  auto* command = app.add_subcommand(
+      "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion");
+  command->add_option("RECORDING", recording, "Recording (MCAP)")->required();
+  command->add_option("SCENE", options.scene, "Scene file (YAML)");
+  add_run_options(*command, options);
+  command->final_callback(
+      [&] { job = [&] { return replay_command(recording, options, std::cout, std::cerr); }; });
+}
+
+void add_inspect(CLI::App& app, recording::InspectOptions& options, Job& job) {
+  auto* command = app.add_subcommand("inspect", "Print what a recording holds");
+  command->add_option("RECORDING", options.recording, "Recording (MCAP)")->required();
+  command->add_option("--csv", options.csv_folder, "Folder for one CSV file per topic");
+  command->final_callback(
+      [&] { job = [&] { return recording::run_inspect_command(options, std::cout, std::cerr); }; });
+}
+
+void add_check(CLI::App& app, std::filesystem::path& scene, double& measure_for, Job& job) {
+  auto* command = app.add_subcommand("check", "Print what a scene holds and what it costs here");
+  command->add_option("SCENE", scene, "Scene file (YAML)")->required();
+  command->add_option("--measure-s", measure_for, "Seconds to measure the cost of a step for")
+      ->check(CLI::Range(0.01, 600.0))
+      ->capture_default_str();
+  command->final_callback(
+      [&] { job = [&] { return check_command(scene, measure_for, std::cout); }; });
+}
+
+void add_mesh(CLI::App& app, geometry::MeshCommandOptions& options, Job& job) {
+  auto* command = app.add_subcommand("mesh", "Check, repair, decimate or refine a surface mesh");
+  command->add_option("IN", options.input, "Any surface format assimp reads")->required();
+  command->add_option("-o,--output", options.output, "ply, stl, obj or off file, in metres");
+  command->add_option("--nodes", options.node_count, "Decimate or refine to this many nodes");
+  command->add_option("--unit", options.unit, "Unit of the input: m, dm, cm, mm, um, in")
+      ->capture_default_str();
+  command->final_callback(
+      [&] { job = [&] { return geometry::run_mesh_command(options, std::cout, std::cerr); }; });
+}
+
+int report_failure(const Job& job) {
+  try {
+    return job();
+  } catch (const InputError& error) {
+    std::cerr << "palpate: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "palpate: " << error.what() << '\n';
+    return kExitFailed;
+  }
+}
+
+}  // namespace
+
+int palpate_command(int argc, char** argv) {
+  CLI::App app("Press a soft organ and feel it.", "palpate");
+  app.require_subcommand(1);
+  RunOptions run;
+  run.bus.session = random_session_name();
+  RunOptions replay = run;
+  std::filesystem::path recording, scene;
+  recording::InspectOptions inspect;
+  geometry::MeshCommandOptions mesh;
+  double measure_for = 1;
+  Job job;
+  add_run(app, run, job);
+  add_replay(app, recording, replay, job);
+  add_inspect(app, inspect, job);
+  add_check(app, scene, measure_for, job);
+  add_mesh(app, mesh, job);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  }
+  if (no_display()) run.headless = replay.headless = true;
+  return report_failure(job);
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,75 @@
+#include "modules/recording/commands.h"
+
+#include <chrono>
+#include <ostream>
+#include <thread>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/recording/inspect.h"
+#include "modules/recording/player.h"
+#include "modules/runtime/clock.h"
+
+namespace palpate::recording {
+namespace {
+
+constexpr double kAcknowledgeTimeout = 1;  // [s] per topic
+
+template <class Job>
+int report_failure(std::ostream& err, const Job& job) {
+  try {
+    job();
+    return kExitDone;
+  } catch (const InputError& error) {
+    err << "error: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    err << "error: " << error.what() << '\n';
+    return kExitFailed;
+  }
+}
+
+// True once someone listens to the organs' motion.
+bool wait_for_reader(const RawWriter& session, double timeout,
+                     const std::function<bool()>& stop_requested) {
+  const RecordedTopic& topic = *find_recorded_topic(bus::kNodePositions.name);
+  const std::int64_t end_ns = runtime::monotonic_now_ns() + ns_from_seconds(timeout);
+  while (session.matched_readers(topic) == 0) {
+    if (stop_requested() || runtime::monotonic_now_ns() >= end_ns) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+void replay(const ReplayOptions& options, const std::function<bool()>& stop_requested,
+            std::ostream& out, std::ostream& err) {
+  SampleReader recording(options.recording);
+  RawWriter session(options.session);
+  if (!wait_for_reader(session, options.wait_for_reader, stop_requested) && !stop_requested()) {
+    err << "warning: nobody listens in session '" << options.session.session << "', domain "
+        << options.session.domain << "; playing all the same\n";
+  }
+  const PlayReport report = play(recording, session, stop_requested);
+  if (!report.stopped) session.wait_for_acknowledgments(kAcknowledgeTimeout);
+  if (recording.torn()) err << "warning: " << recording.torn_warning() << '\n';
+  if (report.refused > 0) err << "warning: " << report.refused << " samples could not be sent\n";
+  out << (report.stopped ? "stopped after " : "replayed ") << report.samples << " samples, "
+      << report.duration << " s\n";
+}
+
+}  // namespace
+
+int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err) {
+  return report_failure(err, [&] {
+    const RecordingSummary summary = summarize(options.recording, options.csv_folder);
+    print_summary(summary, out);
+    if (summary.torn) err << "warning: " << summary.torn_warning << '\n';
+  });
+}
+
+int run_replay_command(const ReplayOptions& options, const std::function<bool()>& stop_requested,
+                       std::ostream& out, std::ostream& err) {
+  return report_failure(err, [&] { replay(options, stop_requested, out, err); });
+}
+
+}  // namespace palpate::recording

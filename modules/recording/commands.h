@@ -1,0 +1,32 @@
+// What `palpate inspect` and `palpate replay` do, after their options have been parsed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+
+#include "modules/bus/bus.h"
+
+namespace palpate::recording {
+
+struct InspectOptions {
+  std::filesystem::path recording;   ///< RECORDING
+  std::filesystem::path csv_folder;  ///< --csv DIR; empty: none
+};
+
+/// Prints the recording's table to `out`; a torn file's warning and errors go to `err`.
+/// @return an exit code of core/error.h
+int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err);
+
+struct ReplayOptions {
+  std::filesystem::path recording;  ///< RECORDING
+  bus::BusOptions session;          ///< --session, --domain: where it is played
+  double wait_for_reader = 5;       ///< longest wait for someone who shows it [s]
+};
+
+/// Plays a recording into a session (without SCENE; with one, see extract_probe_trajectories).
+/// @return an exit code of core/error.h; kExitDone also when stopped
+int run_replay_command(const ReplayOptions& options, const std::function<bool()>& stop_requested,
+                       std::ostream& out, std::ostream& err);
+
+}  // namespace palpate::recording

@@ -1,0 +1,79 @@
+#include "modules/recording/csv_export.h"
+
+#include <cctype>
+#include <sstream>
+#include <stdexcept>
+
+#include "modules/recording/csv_columns.h"
+
+namespace palpate::recording {
+namespace {
+
+constexpr const char* kTimeColumns = "time_s,sim_time_s,latency_s,sequence";
+
+// A module's name comes from outside: it must not leave the folder.
+std::string file_part(const std::string& key) {
+  std::string part = key;
+  for (char& letter : part) {
+    if (!std::isalnum(static_cast<unsigned char>(letter)) && letter != '-') letter = '_';
+  }
+  return part;
+}
+
+std::string times_of(const Header& header, std::int64_t received_ns, std::int64_t start_ns) {
+  std::ostringstream stream;
+  write_seconds(stream, received_ns - start_ns);
+  write_seconds(stream << ',', header.sim_time_ns);
+  write_seconds(stream << ',', received_ns - header.source_time_ns);
+  stream << ',' << header.sequence;
+  return stream.str();
+}
+
+}  // namespace
+
+CsvExport::CsvExport(std::filesystem::path folder) : folder_(std::move(folder)) {
+  std::filesystem::create_directories(folder_);
+}
+
+std::ofstream& CsvExport::file(const std::string& name, const std::string& columns) {
+  const auto [place, is_new] = files_.try_emplace(name);
+  if (is_new) {
+    place->second.open(folder_ / (name + ".csv"));
+    place->second << kTimeColumns << ',' << columns << '\n';
+  }
+  return place->second;
+}
+
+void CsvExport::add(const RecordedSample& sample, const AnyMessage& message,
+                    std::int64_t start_ns) {
+  const std::string key = key_of(message);
+  std::string name(sample.topic->name);
+  if (!key.empty()) name.append("_").append(file_part(key));
+  const std::string times = times_of(header_of(message), sample.received_time_ns, start_ns);
+  std::ofstream& stream = file(name, csv_columns(message));
+  stream << times << ',';
+  write_csv_values(stream, message);
+  stream << '\n';
+  if (const auto* status = std::get_if<ModuleStatus>(&message)) add_inputs(*status, times);
+}
+
+void CsvExport::add_inputs(const ModuleStatus& status, const std::string& times) {
+  for (const ModuleStatus::Input& input : status.inputs) {
+    std::ofstream& stream =
+        file("module_inputs_" + file_part(status.module), "topic,age_s,received,dropped,rejected");
+    stream << times << ',' << csv_text(input.topic) << ',';
+    write_number(stream, input.age);
+    stream << ',' << input.received << ',' << input.dropped << ',' << input.rejected << '\n';
+  }
+}
+
+void CsvExport::close() {
+  for (auto& [name, stream] : files_) {
+    stream.close();
+    if (!stream) {
+      throw std::runtime_error((folder_ / (name + ".csv")).string() + ": cannot be written");
+    }
+  }
+}
+
+}  // namespace palpate::recording

@@ -1,0 +1,160 @@
+#include "modules/recording/inspect.h"
+
+#include <algorithm>
+#include <ctime>
+#include <iomanip>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <sstream>
+
+#include "modules/core/units.h"
+#include "modules/recording/csv_export.h"
+#include "modules/recording/recorder.h"
+
+namespace palpate::recording {
+namespace {
+
+// Sequence numbers of one writer.
+struct WriterSequence {
+  std::uint64_t first = 0, last = 0, samples = 0;
+  std::uint64_t missing() const {
+    const std::uint64_t expected = last - first + 1;
+    return expected > samples ? expected - samples : 0;
+  }
+};
+
+class Summarizer {
+ public:
+  void add(const RecordedSample& sample, bool valid) {
+    TopicSummary& topic = topics_[sample.topic->name];
+    const std::int64_t time = sample.received_time_ns;
+    if (topic.samples == 0) {
+      topic.topic = sample.topic;
+      topic.first_ns = topic.last_ns = time;
+    }
+    topic.longest_spacing_ns = std::max(topic.longest_spacing_ns, time - topic.last_ns);
+    topic.first_ns = std::min(topic.first_ns, time);
+    topic.last_ns = std::max(topic.last_ns, time);
+    ++topic.samples;
+    topic.bytes += sample.payload.size();
+    if (!valid) ++topic.invalid;
+    add_sequence(sample);
+  }
+
+  void finish(RecordingSummary& summary) {
+    for (const auto& [channel, writer] : writers_) {
+      TopicSummary& topic = topics_[channel.first];
+      ++topic.writers;
+      topic.missing += writer.missing();
+    }
+    summary.first_ns = topics_.empty() ? 0 : std::numeric_limits<std::int64_t>::max();
+    for (const auto& [name, topic] : topics_) {
+      summary.first_ns = std::min(summary.first_ns, topic.first_ns);
+      summary.last_ns = std::max(summary.last_ns, topic.last_ns);
+      summary.topics.push_back(topic);
+    }
+  }
+
+ private:
+  void add_sequence(const RecordedSample& sample) {
+    const std::uint64_t sequence = header_of(sample.payload).sequence;
+    WriterSequence& writer = writers_[{sample.topic->name, sample.channel}];
+    if (writer.samples == 0) writer.first = writer.last = sequence;
+    writer.first = std::min(writer.first, sequence);
+    writer.last = std::max(writer.last, sequence);
+    ++writer.samples;
+  }
+
+  std::map<std::string_view, TopicSummary> topics_;
+  std::map<std::pair<std::string_view, std::uint16_t>, WriterSequence> writers_;
+};
+
+std::string entry(const McapMap& map, const std::string& key) {
+  const auto found = map.find(key);
+  return found == map.end() ? "?" : found->second;
+}
+
+std::string fixed(double value, int decimals) {
+  std::ostringstream stream;
+  stream << std::fixed << std::setprecision(decimals) << value;
+  return stream.str();
+}
+
+std::string time_of_day(const std::string& unix_ns) {
+  try {
+    const std::time_t seconds = std::stoll(unix_ns) / kNanosecondsPerSecond;
+    std::tm utc{};
+    std::ostringstream stream;
+    stream << std::put_time(gmtime_r(&seconds, &utc), "%Y-%m-%d %H:%M:%S UTC");
+    return stream.str();
+  } catch (const std::logic_error&) {  // the recording does not say
+    return "at an unknown time";
+  }
+}
+
+void print_row(const TopicSummary& topic, std::int64_t start_ns, std::ostream& out) {
+  const std::string type(topic.topic->type_name.substr(topic.topic->type_name.rfind(':') + 1));
+  out << std::left << std::setw(17) << topic.topic->name << std::setw(18) << type << std::right
+      << std::setw(8) << topic.samples << std::setw(9) << fixed(topic.rate_hz(), 1) << std::setw(12)
+      << topic.bytes << std::setw(9) << fixed(seconds_from_ns(topic.first_ns - start_ns), 3)
+      << std::setw(9) << fixed(seconds_from_ns(topic.last_ns - start_ns), 3) << std::setw(9)
+      << topic.missing << std::setw(12) << fixed(1e3 * seconds_from_ns(topic.longest_spacing_ns), 1)
+      << std::setw(8) << topic.invalid << std::setw(8) << topic.writers << '\n';
+}
+
+}  // namespace
+
+double TopicSummary::rate_hz() const {
+  if (samples < 2 || last_ns <= first_ns) return 0;
+  return static_cast<double>(samples - 1) / seconds_from_ns(last_ns - first_ns);
+}
+
+RecordingSummary summarize(const std::filesystem::path& recording,
+                           const std::filesystem::path& csv_folder) {
+  SampleReader reader(recording);
+  Summarizer summarizer;
+  std::optional<CsvExport> csv;
+  std::optional<std::int64_t> start_ns;
+  AnyMessage message;
+  while (const auto sample = reader.next()) {
+    if (!start_ns) start_ns = sample->received_time_ns;
+    const bool valid = sample->topic->decode(sample->payload, message) == nullptr;
+    summarizer.add(*sample, valid);
+    if (csv_folder.empty() || !valid) continue;
+    if (!csv) csv.emplace(csv_folder);
+    csv->add(*sample, message, *start_ns);
+  }
+  if (csv) csv->close();
+
+  RecordingSummary summary;
+  summary.file = recording;
+  summary.file_bytes = reader.file_bytes();
+  summary.torn = reader.torn();
+  if (summary.torn) summary.torn_warning = reader.torn_warning();
+  summary.session = reader.metadata(kSessionMetadata);
+  summary.scene = reader.metadata(kSceneMetadata);
+  summarizer.finish(summary);
+  return summary;
+}
+
+void print_summary(const RecordingSummary& summary, std::ostream& out) {
+  out << "recording  " << summary.file.string() << ", "
+      << fixed(1e-6 * double(summary.file_bytes), 1) << " MB, "
+      << (summary.torn ? "torn: ends at its last whole record" : "whole") << '\n'
+      << "session    " << entry(summary.session, "session") << " in domain "
+      << entry(summary.session, "domain") << ", recorded "
+      << time_of_day(entry(summary.session, "start_unix_ns")) << '\n';
+  if (summary.scene.empty()) {
+    out << "scene      none was heard\n";
+  } else {
+    out << "scene      " << entry(summary.scene, "name") << ", digest "
+        << entry(summary.scene, "digest") << '\n';
+  }
+  out << "duration   " << fixed(seconds_from_ns(summary.last_ns - summary.first_ns), 3) << " s\n\n"
+      << "topic            type               samples  rate Hz       bytes  first s   last s"
+         "  missing  longest ms invalid writers\n";
+  for (const TopicSummary& topic : summary.topics) print_row(topic, summary.first_ns, out);
+}
+
+}  // namespace palpate::recording

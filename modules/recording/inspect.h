@@ -1,0 +1,51 @@
+// What a recording holds.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <map>
+#include <vector>
+
+#include "modules/recording/sample_reader.h"
+
+namespace palpate::recording {
+
+struct TopicSummary {
+  const RecordedTopic* topic = nullptr;
+  std::size_t writers = 0;
+  std::uint64_t samples = 0;
+  std::uint64_t bytes = 0;              ///< of the payloads
+  std::uint64_t missing = 0;            ///< gaps in the writers' sequence numbers
+  std::uint64_t invalid = 0;            ///< refused by the codec: size, range, not finite
+  std::int64_t first_ns = 0;            ///< earliest receive time
+  std::int64_t last_ns = 0;             ///< latest receive time
+  std::int64_t longest_spacing_ns = 0;  ///< between samples that follow each other
+
+  double rate_hz() const;  ///< mean over the topic's samples; 0 for fewer than two
+};
+
+struct RecordingSummary {
+  std::filesystem::path file;
+  std::uint64_t file_bytes = 0;
+  bool torn = false;
+  std::string torn_warning;  ///< one line; empty if the file is whole
+  McapMap session;           ///< recorder.h: kSessionMetadata
+  McapMap scene;             ///< recorder.h: kSceneMetadata; empty if no scene was heard
+  std::int64_t first_ns = 0, last_ns = 0;  ///< receive times over all topics
+  std::vector<TopicSummary> topics;        ///< those with samples, in the order of their names
+};
+
+/// Reads all of a recording.
+/// @param csv_folder  if not empty: gets one file per topic and key, `probe_state_0.csv`,
+/// `module_status_haptics.csv`, with the columns time_s (receive time since the recording's first
+/// sample), sim_time_s, latency_s (receive time less source time), sequence, and the message's
+/// own; and `module_inputs_haptics.csv` with a row per input of each status. Positions of nodes
+/// are left out.
+/// @throws InputError as SampleReader does; std::runtime_error if a CSV file cannot be written
+RecordingSummary summarize(const std::filesystem::path& recording,
+                           const std::filesystem::path& csv_folder = {});
+
+/// The one-screen table.
+void print_summary(const RecordingSummary& summary, std::ostream& out);
+
+}  // namespace palpate::recording

@@ -1,0 +1,139 @@
+#include "modules/recording/player.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <thread>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/recording/csv_columns.h"
+#include "modules/runtime/clock.h"
+
+namespace palpate::recording {
+namespace {
+
+constexpr std::int64_t kLongestSleepNs = 20'000'000;
+
+// False if asked to stop before `due_ns`.
+bool sleep_until(std::int64_t due_ns, const std::function<bool()>& stop_requested) {
+  for (;;) {
+    if (stop_requested()) return false;
+    const std::int64_t left = due_ns - runtime::monotonic_now_ns();
+    if (left <= 0) return true;
+    std::this_thread::sleep_for(std::chrono::nanoseconds(std::min(left, kLongestSleepNs)));
+  }
+}
+
+struct Row {
+  std::int64_t time_ns;
+  Pose pose;
+};
+
+struct Motion {
+  std::vector<Row> rows;
+  std::size_t resets = 0;
+};
+
+void append(const ProbeState& state, Motion& motion) {
+  const std::int64_t time_ns = state.header.sim_time_ns;
+  if (!motion.rows.empty() && time_ns < motion.rows.back().time_ns) {
+    motion.rows.clear();
+    ++motion.resets;
+  }
+  // Standing still before the start and while paused repeats a time: the newest pose holds.
+  if (!motion.rows.empty() && time_ns == motion.rows.back().time_ns) motion.rows.pop_back();
+  motion.rows.push_back({time_ns, state.pose});
+}
+
+std::map<std::uint32_t, Motion> read_motions(SampleReader& recording, std::size_t& invalid) {
+  std::map<std::uint32_t, Motion> motions;
+  AnyMessage message;
+  while (const auto sample = recording.next()) {
+    if (sample->topic->name != bus::kProbeState.name) continue;
+    if (sample->topic->decode(sample->payload, message) != nullptr) {
+      ++invalid;
+      continue;
+    }
+    const auto& state = std::get<ProbeState>(message);
+    append(state, motions[state.probe]);
+  }
+  return motions;
+}
+
+void write_trajectory(const std::filesystem::path& file, const std::vector<Row>& rows) {
+  std::ofstream stream(file);
+  stream << "t,x,y,z,qx,qy,qz,qw\n";
+  for (const Row& row : rows) {
+    const Quat& q = row.pose.rotation;
+    write_seconds(stream, row.time_ns);
+    for (const double value : {row.pose.position.x(), row.pose.position.y(), row.pose.position.z(),
+                               q.x(), q.y(), q.z(), q.w()}) {
+      write_number(stream << ',', value);
+    }
+    stream << '\n';
+  }
+  stream.close();
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+}  // namespace
+
+PlayReport play(SampleReader& recording, RawWriter& session,
+                const std::function<bool()>& stop_requested) {
+  PlayReport report;
+  std::optional<std::int64_t> shift_ns;  // from a sample's time to the present
+  std::int64_t first_ns = 0;
+  while (const auto sample = recording.next()) {
+    if (!shift_ns) {
+      first_ns = sample->received_time_ns;
+      shift_ns = runtime::monotonic_now_ns() - first_ns;
+    }
+    if (!sleep_until(sample->received_time_ns + *shift_ns, stop_requested)) {
+      report.stopped = true;
+      break;
+    }
+    if (!session.write(*sample->topic, sample->payload)) ++report.refused;
+    ++report.samples;
+    report.duration =
+        std::max(report.duration, seconds_from_ns(sample->received_time_ns - first_ns));
+  }
+  return report;
+}
+
+std::vector<ProbeTrajectory> extract_probe_trajectories(const std::filesystem::path& recording,
+                                                        const std::filesystem::path& folder,
+                                                        std::vector<std::string>& warnings) {
+  SampleReader reader(recording);
+  std::size_t invalid = 0;
+  const auto motions = read_motions(reader, invalid);
+  const std::string name = recording.string();
+  if (reader.torn()) warnings.push_back(reader.torn_warning());
+  if (invalid > 0) {
+    warnings.push_back(name + ": " + std::to_string(invalid) +
+                       " invalid probe_state samples left out");
+  }
+  if (motions.empty()) throw InputError(name + ": holds no motion of a probe (topic probe_state)");
+
+  std::filesystem::create_directories(folder);
+  std::vector<ProbeTrajectory> trajectories;
+  for (const auto& [probe, motion] : motions) {
+    const std::string label = "probe_" + std::to_string(probe);
+    if (motion.resets > 0) {
+      std::ostringstream warning;
+      warning << name << ": " << label << ": only the motion after the last of " << motion.resets
+              << " resets is used";
+      warnings.push_back(warning.str());
+    }
+    const auto file = folder / (label + ".csv");
+    write_trajectory(file, motion.rows);
+    trajectories.push_back(
+        {probe, file, motion.rows.size(), seconds_from_ns(motion.rows.back().time_ns)});
+  }
+  return trajectories;
+}
+
+}  // namespace palpate::recording

@@ -1,0 +1,108 @@
+#include "modules/runtime/module.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "modules/core/units.h"
+#include "modules/runtime/clock.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::runtime {
+namespace {
+
+constexpr int kRealtimeFifo = 80;
+constexpr int kPreferredFifo = 20;
+/// A loop that works more than this part of its periods would keep everybody else, and by the
+/// kernel's throttling even the haptic loop, from running.
+constexpr double kBusyAllTheTime = 0.9;
+constexpr int kBackgroundSteps = 10;
+/// A guard that acted for a moment stays visible for this long.
+constexpr std::int64_t kGuardShownNs = kNanosecondsPerSecond;
+
+Realtime take_priority(Priority priority, bool realtime_wanted) {
+  if (priority == Priority::kBackground) lower_priority(kBackgroundSteps);
+  if (!realtime_wanted) return {};
+  if (priority == Priority::kPreferred) return request_realtime(kPreferredFifo, false);
+  if (priority != Priority::kRealtime) return {};
+  Realtime granted = request_realtime(kRealtimeFifo, true);
+  if (!granted.refused.empty()) spdlog::warn("{}", granted.refused);
+  return granted;
+}
+
+bus::BusOptions named(bus::BusOptions options, const std::string& name) {
+  options.participant_name = name;
+  return options;
+}
+
+}  // namespace
+
+Module::Module(const ModuleOptions& options, const scene::Scene& scene, std::string name,
+               double rate_hz, Priority priority)
+    : name_(std::move(name)),
+      priority_(priority),
+      realtime_(take_priority(priority, options.realtime)),
+      bus_(named(options.bus, name_)),
+      session_(bus_, scene::scene_digest(scene)),
+      loop_(rate_hz),
+      status_(bus_, name_, rate_hz, realtime_.priority) {}
+
+Module::~Module() {
+  const std::int64_t now = monotonic_now_ns();
+  const LoopStatistics& loop = loop_.statistics();
+  const double worst = seconds_from_ns(loop.worst_lateness_ns);
+  status_.set_state(ModuleState::kStopped, status_.status().last_error);
+  status_.publish(now, session_.time(now), loop);
+  spdlog::info(
+      "{} cycles at {:.0f} Hz, {:.3f} % on time, late by at most {:.3f} ms ({:.3f} ms in 99.9 %)",
+      loop.cycles, loop_.rate_hz(), 100 * loop.on_time_fraction(), 1e3 * worst,
+      1e3 * std::min(worst, loop.lateness.quantile(0.999)));
+}
+
+void Module::ready() { ready_ = true; }
+
+bool Module::next_cycle() {
+  while (!loop_.wait_for_period() && !stop_.requested()) {
+  }
+  session_.poll();
+  report_state();
+  if (status_.poll(now_ns(), time(), loop_.statistics())) give_way_if_busy();
+  return !stop_.requested() && session_.phase() != SessionPhase::kStopped;
+}
+
+void Module::report_state() {
+  if (*guard_ != '\0') guard_since_ns_ = now_ns();
+  if (!session_.fault().empty()) {
+    status_.set_state(ModuleState::kFault, session_.fault());
+  } else if (!ready_) {
+    status_.set_state(ModuleState::kStarting);
+  } else if (session_.phase() == SessionPhase::kWaiting) {
+    status_.set_state(ModuleState::kReady);
+  } else if (session_.phase() == SessionPhase::kPaused) {
+    status_.set_state(ModuleState::kPaused);
+  } else if (*guard_ != '\0') {
+    status_.set_state(ModuleState::kDegraded, guard_);
+  } else if (now_ns() - guard_since_ns_ > kGuardShownNs) {
+    status_.set_state(ModuleState::kRunning);
+  }
+}
+
+void Module::give_way_if_busy() {
+  const double busy = status_.status().busy_fraction;
+  if (priority_ != Priority::kPreferred || !realtime_.priority || busy < kBusyAllTheTime) return;
+  give_up_realtime();
+  realtime_.priority = false;
+  status_.set_realtime_priority(false);
+  spdlog::info("busy {:.0f} % of the time: back to normal priority", 100 * busy);
+}
+
+double Module::period() const { return seconds_from_ns(loop_.period_ns()); }
+
+Header Module::header() const {
+  Header header;
+  header.sim_time_ns = ns_from_seconds(time());
+  header.source_time_ns = now_ns();
+  return header;
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,83 @@
+// What all modules have in common: priority, bus, session, loop and status, in the right order.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "modules/runtime/module_options.h"
+#include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/realtime.h"
+#include "modules/runtime/session.h"
+#include "modules/runtime/status_reporter.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::runtime {
+
+/// How a module shares the processor.
+enum class Priority {
+  kRealtime,   ///< SCHED_FIFO and locked memory where granted; a warning where not
+  kPreferred,  ///< SCHED_FIFO below it, given up by a loop that is busy all the time
+  kBackground  ///< gives way to the others
+};
+
+/// Age from which an input no longer counts as telling the present [s].
+inline constexpr double kInputStaleAfter = 0.05;
+
+/// One module's life: construct, make readers and writers, watch() the readers, ready(), then
+/// while (next_cycle()) { … }.
+class Module {
+ public:
+  Module(const ModuleOptions& options, const scene::Scene& scene, std::string name, double rate_hz,
+         Priority priority);
+  ~Module();  ///< says goodbye: state kStopped, and one line of loop statistics in the log
+
+  bus::Bus& bus() { return bus_; }
+
+  /// An input whose age and losses the status reports. The reader outlives the module's last cycle.
+  template <class Message>
+  void watch(const bus::TopicOf<Message>& topic, const bus::Reader<Message>& reader) {
+    status_.watch(topic.name, reader.statistics());
+  }
+
+  /// Everything is loaded: the session may start.
+  void ready();
+
+  /// Waits for the next period, follows the session and publishes the status. False when a signal
+  /// or the session says stop. Never throws; allocates and logs nothing but what StatusReporter
+  /// says and, once, that a priority is given back.
+  bool next_cycle();
+
+  std::int64_t now_ns() const { return loop_.woke_ns(); }  ///< when this cycle began
+  double period() const;                                   ///< [s]
+  /// Session time of this cycle [s].
+  double time() const { return session_.time(now_ns()); }
+  bool running() const { return session_.running(); }
+  bool take_reset() { return session_.take_reset(); }
+  const Session& session() const { return session_; }
+
+  /// Guards that act in this cycle, for the status; empty if none. A pointer to a constant text.
+  void set_guard(const char* acting) { guard_ = acting; }
+  void set_real_time_factor(double factor) { status_.set_real_time_factor(factor); }
+
+  /// A header for a message of this cycle.
+  Header header() const;
+
+ private:
+  void report_state();
+  void give_way_if_busy();
+
+  std::string name_;
+  Priority priority_;
+  StopSignal stop_;
+  Realtime realtime_;
+  bus::Bus bus_;
+  Session session_;
+  PeriodicLoop loop_;
+  StatusReporter status_;
+  const char* guard_ = "";
+  std::int64_t guard_since_ns_ = 0;
+  bool ready_ = false;
+};
+
+}  // namespace palpate::runtime

@@ -1,0 +1,38 @@
+// What every module's command line has, and what happens around its run function.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "modules/bus/bus.h"
+
+namespace CLI {
+class App;
+}
+
+namespace palpate::runtime {
+
+struct ModuleOptions {
+  std::filesystem::path scene;  ///< SCENE
+  bus::BusOptions bus;          ///< --session, --domain (or PALPATE_DOMAIN)
+  bool realtime = true;         ///< --no-realtime
+};
+
+struct ModuleProgram {
+  std::string name;     ///< "haptics"; the program is palpate-haptics
+  std::string purpose;  ///< one sentence for --help
+  /// Options beyond the common ones; may be empty.
+  std::function<void(CLI::App&)> add_options;
+};
+
+/// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
+void add_bus_options(CLI::App& app, bus::BusOptions& bus);
+
+/// The whole of a module's main: parses, starts the log on stderr ("[haptics] warning: …"), runs,
+/// and reports what is thrown in one line.
+/// @return kExitDone, kExitBadInput for an InputError or a wrong command line, else kExitFailed
+int run_module(int argc, char** argv, const ModuleProgram& program,
+               const std::function<void(const ModuleOptions&)>& run);
+
+}  // namespace palpate::runtime

@@ -1,0 +1,61 @@
+#include "modules/runtime/realtime.h"
+
+#include <linux/capability.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace palpate::runtime {
+namespace {
+
+bool has_capability(int capability) {
+  __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct data[2]{};
+  if (syscall(SYS_capget, &header, data) != 0) return false;
+  return (data[CAP_TO_INDEX(capability)].effective & CAP_TO_MASK(capability)) != 0;
+}
+
+/// With a finite limit, locking what is mapped later makes mmap itself fail one day.
+bool may_lock_everything() {
+  rlimit limit{};
+  return has_capability(CAP_IPC_LOCK) ||
+         (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
+}
+
+}  // namespace
+
+Realtime request_realtime(int fifo_priority, bool lock_memory) {
+  Realtime granted;
+  sched_param parameters{};
+  parameters.sched_priority = fifo_priority;
+  granted.priority = sched_setscheduler(0, SCHED_FIFO, &parameters) == 0;
+  if (!granted.priority) {
+    granted.refused = std::string("no real-time priority (") + std::strerror(errno) +
+                      "; allow it with 'ulimit -r 80' or CAP_SYS_NICE)";
+  }
+  if (!lock_memory) return granted;
+  granted.memory_locked = may_lock_everything() && mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
+  if (!granted.memory_locked) {
+    granted.refused += granted.refused.empty() ? "" : "; ";
+    granted.refused += "memory not locked (allow it with 'ulimit -l unlimited' or CAP_IPC_LOCK)";
+  }
+  return granted;
+}
+
+void give_up_realtime() {
+  const sched_param none{};
+  sched_setscheduler(0, SCHED_OTHER, &none);
+}
+
+void lower_priority(int steps) {
+  errno = 0;
+  const int ignored = nice(steps);
+  static_cast<void>(ignored);
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,55 @@
+// A module's part in the session: follows session_control and checks that all play the same scene.
+#pragma once
+
+#include <string>
+
+#include "modules/bus/bus.h"
+#include "modules/runtime/session_state.h"
+
+namespace palpate::runtime {
+
+class Session {
+ public:
+  /// @param scene_digest  of the scene this module loaded
+  Session(bus::Bus& bus, std::string scene_digest);
+
+  /// Takes what has arrived. No allocation once the scene has come.
+  void poll();
+
+  SessionPhase phase() const { return state_.phase(); }
+  bool running() const { return phase() == SessionPhase::kRunning && fault_.empty(); }
+  bool take_reset() { return state_.take_reset(); }
+  double time(std::int64_t now_ns) const { return state_.time(now_ns); }  ///< [s]
+  const SessionState& state() const { return state_; }
+
+  /// Why this module cannot take part: another scene, another protocol version. Empty if it can.
+  const std::string& fault() const { return fault_; }
+
+ private:
+  bus::Reader<SessionControl> controls_;
+  bus::Reader<SceneDescription> scenes_;
+  std::string scene_digest_;
+  SessionState state_;
+  SessionControl control_;
+  SceneDescription scene_;
+  std::string fault_;
+};
+
+/// One line saying why a module with `own_digest` cannot play `scene`; empty if it can.
+std::string scene_mismatch(const SceneDescription& scene, const std::string& own_digest);
+
+/// Gives the commands. The launcher holds one, and a visualizer whose keys pause and reset.
+class SessionConductor {
+ public:
+  explicit SessionConductor(bus::Bus& bus);
+
+  /// Gives the command that leads on from `state`, as of now. A reset is to be followed by kStart.
+  void command(const SessionState& state, SessionCommand wanted);
+  /// Says the session's last command again, for whoever missed it.
+  void repeat(const SessionState& state);
+
+ private:
+  bus::Writer<SessionControl> writer_;
+};
+
+}  // namespace palpate::runtime

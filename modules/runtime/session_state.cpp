@@ -1,0 +1,63 @@
+#include "modules/runtime/session_state.h"
+
+#include "modules/core/units.h"
+
+namespace palpate::runtime {
+
+void SessionState::apply(const SessionControl& command) {
+  if (command.header.source_time_ns < last_.header.source_time_ns) return;
+  const bool first = last_.header.source_time_ns == 0;
+  if (!first && command.reset_count != last_.reset_count) reset_pending_ = true;
+  last_ = command;
+  switch (command.command) {
+    case SessionCommand::kStart:
+      phase_ = SessionPhase::kRunning;
+      break;
+    case SessionCommand::kPause:
+      phase_ = SessionPhase::kPaused;
+      break;
+    case SessionCommand::kReset:
+      phase_ = SessionPhase::kWaiting;
+      break;
+    case SessionCommand::kStop:
+      phase_ = SessionPhase::kStopped;
+      break;
+  }
+}
+
+bool SessionState::take_reset() {
+  const bool pending = reset_pending_;
+  reset_pending_ = false;
+  return pending;
+}
+
+double SessionState::time(std::int64_t now_ns) const {
+  switch (phase_) {
+    case SessionPhase::kWaiting:
+      return 0;
+    case SessionPhase::kRunning: {
+      const double time = seconds_from_ns(now_ns - last_.start_time_ns);
+      return time > 0 ? time : 0;
+    }
+    case SessionPhase::kPaused:
+    case SessionPhase::kStopped:
+      return seconds_from_ns(last_.header.sim_time_ns);
+  }
+  return 0;
+}
+
+SessionControl next_command(const SessionState& state, SessionCommand wanted, std::int64_t now_ns) {
+  SessionControl command = state.last_command();
+  const double time = state.time(now_ns);
+  command.command = wanted;
+  command.header.source_time_ns = now_ns;
+  command.header.sim_time_ns = ns_from_seconds(time);
+  if (wanted == SessionCommand::kStart) command.start_time_ns = now_ns - ns_from_seconds(time);
+  if (wanted == SessionCommand::kReset) {
+    ++command.reset_count;
+    command.header.sim_time_ns = 0;
+  }
+  return command;
+}
+
+}  // namespace palpate::runtime

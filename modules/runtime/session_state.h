@@ -1,0 +1,41 @@
+// What the commands of a session mean: pure rules, no bus, no clock.
+#pragma once
+
+#include <cstdint>
+
+#include "modules/core/messages.h"
+
+namespace palpate::runtime {
+
+enum class SessionPhase {
+  kWaiting,  ///< not started, or reset and not started again
+  kRunning,
+  kPaused,
+  kStopped
+};
+
+/// Follows the commands of a session. Several may give commands (the launcher; a person at the
+/// visualizer); the one with the newest source time holds, older ones are ignored.
+class SessionState {
+ public:
+  void apply(const SessionControl& command);
+
+  SessionPhase phase() const { return phase_; }
+  /// True once after each reset that came after the first command heard: a module that joins late
+  /// starts from rest anyway.
+  bool take_reset();
+  /// Session time [s]: 0 while waiting, standing still while paused and after the end.
+  double time(std::int64_t now_ns) const;
+  const SessionControl& last_command() const { return last_; }  ///< source time 0 before the first
+
+ private:
+  SessionPhase phase_ = SessionPhase::kWaiting;
+  SessionControl last_;
+  bool reset_pending_ = false;
+};
+
+/// The command that leads from the present state to the one wanted, given at `now_ns`. Resuming is
+/// kStart with a start time moved by the pause; kReset counts up and leaves the session waiting.
+SessionControl next_command(const SessionState& state, SessionCommand wanted, std::int64_t now_ns);
+
+}  // namespace palpate::runtime

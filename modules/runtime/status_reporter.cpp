@@ -1,0 +1,84 @@
+#include "modules/runtime/status_reporter.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+
+namespace palpate::runtime {
+namespace {
+constexpr std::int64_t kStatusPeriodNs = kNanosecondsPerSecond / 4;
+}
+
+StatusReporter::StatusReporter(bus::Bus& bus, std::string module, double nominal_rate_hz,
+                               bool realtime_priority)
+    : writer_(bus.writer(bus::kModuleStatus)) {
+  status_.module = std::move(module);
+  status_.process_id = getpid();
+  status_.nominal_rate_hz = nominal_rate_hz;
+  status_.realtime_priority = realtime_priority;
+  status_.last_error.reserve(kMaxErrorBytes);
+}
+
+void StatusReporter::watch(std::string_view topic, const bus::ReaderStatistics& statistics) {
+  PALPATE_DEMAND(inputs_.size() < kMaxInputs);
+  inputs_.push_back(&statistics);
+  status_.inputs.push_back({std::string(topic), 0, 0, 0, 0});
+}
+
+void StatusReporter::set_state(ModuleState state, std::string_view error) {
+  error = error.substr(0, kMaxErrorBytes);
+  if (state == status_.state && error == status_.last_error) return;
+  status_.state = state;
+  status_.last_error.assign(error);
+  changed_ = true;
+}
+
+bool StatusReporter::poll(std::int64_t now_ns, double session_time, const LoopStatistics& loop) {
+  if (!changed_ && now_ns - published_ns_ < kStatusPeriodNs) return false;
+  publish(now_ns, session_time, loop);
+  return true;
+}
+
+void StatusReporter::publish(std::int64_t now_ns, double session_time, const LoopStatistics& loop) {
+  count_cycles(now_ns, loop);
+  fill_inputs(now_ns);
+  status_.header.sim_time_ns = ns_from_seconds(session_time);
+  status_.header.source_time_ns = now_ns;
+  writer_.write(status_);
+  published_ns_ = now_ns;
+  changed_ = false;
+}
+
+void StatusReporter::count_cycles(std::int64_t now_ns, const LoopStatistics& loop) {
+  const double elapsed = seconds_from_ns(now_ns - published_ns_);
+  if (published_ns_ != 0 && elapsed > 0) {
+    const auto cycles = static_cast<double>(loop.cycles - cycles_then_);
+    status_.rate_hz = cycles / elapsed;
+    status_.busy_fraction = seconds_from_ns(loop.busy_ns - busy_then_ns_) / elapsed;
+  }
+  cycles_then_ = loop.cycles;
+  busy_then_ns_ = loop.busy_ns;
+  status_.cycles = loop.cycles;
+  status_.overruns = loop.overruns;
+  status_.worst_lateness = seconds_from_ns(loop.worst_lateness_ns);
+}
+
+void StatusReporter::fill_inputs(std::int64_t now_ns) {
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const bus::ReaderStatistics& from = *inputs_[i];
+    ModuleStatus::Input& to = status_.inputs[i];
+    // a sample may have been written after this cycle began
+    const std::int64_t age_ns = std::max<std::int64_t>(0, now_ns - from.newest_source_time_ns);
+    to.age = from.newest_source_time_ns == 0 ? std::numeric_limits<double>::infinity()
+                                             : seconds_from_ns(age_ns);
+    to.received = from.received;
+    to.dropped = from.dropped;
+    to.rejected = from.rejected;
+  }
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,50 @@
+// Tells the others how a module is: module_status, four times a second and on every change.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "modules/bus/bus.h"
+#include "modules/runtime/periodic_loop.h"
+
+namespace palpate::runtime {
+
+/// Runs in the module's own loop: it allocates nothing after construction, and writing a status
+/// neither blocks nor waits (topic kind "state" keeps the newest only). DDS takes a dozen small
+/// blocks for a reliable sample: four times a second, not every cycle.
+class StatusReporter {
+ public:
+  StatusReporter(bus::Bus& bus, std::string module, double nominal_rate_hz, bool realtime_priority);
+
+  /// An input to report on. `statistics` outlives the reporter; at most kMaxInputs.
+  void watch(std::string_view topic, const bus::ReaderStatistics& statistics);
+
+  /// @param error  shown until another state or error is set; cut at kMaxErrorBytes
+  void set_state(ModuleState state, std::string_view error = {});
+  void set_realtime_priority(bool granted) { status_.realtime_priority = granted; }
+  void set_real_time_factor(double factor) { status_.real_time_factor = factor; }
+
+  /// Publishes if it is time to, or if the state changed since: then true.
+  bool poll(std::int64_t now_ns, double session_time, const LoopStatistics& loop);
+  /// Publishes now.
+  void publish(std::int64_t now_ns, double session_time, const LoopStatistics& loop);
+
+  const ModuleStatus& status() const { return status_; }
+
+  static constexpr std::size_t kMaxErrorBytes = 500;
+
+ private:
+  void count_cycles(std::int64_t now_ns, const LoopStatistics& loop);
+  void fill_inputs(std::int64_t now_ns);
+
+  bus::Writer<ModuleStatus> writer_;
+  ModuleStatus status_;
+  std::vector<const bus::ReaderStatistics*> inputs_;
+  bool changed_ = true;
+  std::int64_t published_ns_ = 0;
+  std::uint64_t cycles_then_ = 0;
+  std::int64_t busy_then_ns_ = 0;
+};
+
+}  // namespace palpate::runtime

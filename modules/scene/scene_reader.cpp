@@ -1,0 +1,73 @@
+#include "modules/scene/scene_reader.h"
+
+#include <fstream>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "modules/core/messages.h"
+#include "modules/scene/object_reader.h"
+
+namespace palpate::scene {
+namespace {
+
+YAML::Node parse_yaml(std::string_view text, const Source& source) {
+  try {
+    // The end mark makes yaml-cpp refuse a quoted text that is never closed.
+    const auto documents = YAML::LoadAll(std::string(text) + "\n...\n");
+    if (documents.size() > 1) {
+      throw InputError(source.name + ": holds more than one YAML document ('---' or '...')");
+    }
+    return documents.empty() ? YAML::Node() : documents.front();
+  } catch (const YAML::Exception& error) {
+    const bool is_open = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
+    throw InputError(place_in(source, error.mark.line + 1) +
+                     ": not valid YAML: " + (is_open ? "a quoted text is not closed" : error.msg));
+  }
+}
+
+void check_first_key(const YamlValue& root) {
+  const std::string wanted = std::string(kFormatKey) + ": " + std::to_string(kSceneFormat);
+  if (root.node.IsNull()) throw InputError(root.place() + ": the scene is empty");
+  if (!root.node.IsMap() || root.node.size() == 0) {
+    root.refuse("must be a mapping that begins with " + wanted);
+  }
+  const YAML::Node first = root.node.begin()->first;
+  if (!first.IsScalar() || first.Scalar() != kFormatKey) {
+    throw InputError(place_in(*root.source, line_of(first)) + ": the first key must be " + wanted);
+  }
+}
+
+}  // namespace
+
+Scene load_scene(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": no such file");
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw InputError(file.string() + ": not a scene file but a folder or device");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw InputError(file.string() + ": cannot be read");
+  return parse_scene(text.str(), file);
+}
+
+Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
+  const Source source{file.string(), file.parent_path()};
+  if (text.size() > kMaxTextBytes) {
+    throw InputError(source.name + ": longer than a scene may be (" +
+                     std::to_string(kMaxTextBytes) + " bytes)");
+  }
+  const YamlValue root{parse_yaml(text, source), 1, "", &source};
+  check_first_key(root);
+  Scene scene;
+  ObjectReader::read_object(root, scene);
+  scene.file = file;
+  if (scene.name.empty()) {
+    scene.name = file.stem().string();
+    check_name({YAML::Node(scene.name), 1, "name", &source}, scene.name);
+  }
+  return scene;
+}
+
+}  // namespace palpate::scene

@@ -1,0 +1,272 @@
+// The schema of a scene, written once: every key with its unit, range and meaning.
+//
+// describe(visitor, object) names each key of an object together with the field that holds it.
+// Visitors walk it: ObjectReader (YAML → Scene), YamlWriter (Scene → YAML), SchemaTable (the table
+// in docs/scene.md) and KeyList (which keys an object may have). A visitor offers
+//   field(key, field, about)       a value, an object, or a list of objects
+//   option<T>(key, variant, about) one alternative of a variant; exactly one key is given
+//   require(holds, rule)           a rule across fields of the object
+//   unique_names(key, list)        the rule that no two entries of a list share a name
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "modules/core/messages.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::scene {
+
+/// Version of the file format, the value of the first key.
+inline constexpr std::size_t kSceneFormat = 1;
+inline constexpr const char* kFormatKey = "palpate_scene";
+
+/// What is known of a key beside its type.
+struct About {
+  const char* meaning = "";
+  const char* unit = "";  ///< of the number or of each number of a list
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool required = false;
+  const char* default_text = nullptr;  ///< said instead of the value, where none can be shown
+  bool is_length_unit = false;         ///< a text naming a unit of length
+
+  About needed() const {
+    About copy = *this;
+    copy.required = true;
+    return copy;
+  }
+  About otherwise(const char* text) const {
+    About copy = *this;
+    copy.default_text = text;
+    return copy;
+  }
+};
+
+inline About ranged(const char* unit, double min, double max, const char* meaning) {
+  return {.meaning = meaning, .unit = unit, .min = min, .max = max};
+}
+inline About plain(const char* meaning) { return {.meaning = meaning}; }
+/// A point of W. Bounded, because positions cross the wire as float32: 8 µm at 100 m.
+inline About point(const char* meaning) { return ranged("m", -100, 100, meaning); }
+
+template <class V>
+void describe(V& v, Mesh& mesh) {
+  v.field("file", mesh.file, plain("surface mesh, relative to the scene file").needed());
+  About unit = plain("unit of the mesh file's numbers: m, dm, cm, mm, um or in");
+  unit.is_length_unit = true;
+  v.field("unit", mesh.unit, unit);
+  v.field("nodes", mesh.nodes,
+          ranged("", 0, double(kMaxNodes), "resample to this many nodes; 0 = as the file is"));
+}
+
+/// Keys of a pose, among those of the object that has it.
+template <class V>
+void describe_pose(V& v, Pose& pose, const char* position, const char* rotation) {
+  v.field("position_m", pose.position, point(position));
+  v.field("rotation_xyzw", pose.rotation, plain(rotation));
+}
+
+template <class V>
+void describe(V& v, Tissue& tissue) {
+  v.field("youngs_modulus_pa", tissue.youngs_modulus,
+          ranged("Pa", 100, 1e7, "stiffness of the wall"));
+  v.field("wall_thickness_m", tissue.wall_thickness, ranged("m", 1e-4, 0.05, "of the wall"));
+  v.field("density_kg_per_m3", tissue.density,
+          ranged("kg/m³", 100, 5000, "of the filled organ: mass over enclosed volume"));
+  v.field("damping_ratio", tissue.damping_ratio,
+          ranged("", 0, 2, "of each spring, over critical damping"));
+  v.field("drag_per_s", tissue.drag,
+          ranged("1/s", 0, 100, "velocity decay by the organ's surroundings"));
+}
+
+template <class V>
+void describe(V& v, Springs& springs) {
+  v.field("bending_ratio", springs.bending_ratio,
+          ranged("", 0, 10, "stiffness of bending springs over structural ones; 0 = none"));
+  v.field("inner_ratio", springs.inner_ratio,
+          ranged("", 0, 100, "stiffness per area of inner springs over E t / R²; 0 = none"));
+  v.field("virtual_nodes", springs.virtual_nodes,
+          ranged("", 0, 64, "nodes on the dominant axis that the inner springs hang on"));
+  v.require(springs.virtual_nodes > 0 || springs.inner_ratio == 0,
+            "inner_ratio must be 0 where virtual_nodes is 0 (inner springs hang on virtual nodes)");
+}
+
+template <class V>
+void describe(V& v, SphereRegion& sphere) {
+  v.field("center_m", sphere.center, point("centre").needed());
+  v.field("radius_m", sphere.radius, ranged("m", 1e-4, 10, "radius"));
+}
+
+template <class V>
+void describe(V& v, BoxRegion& box) {
+  v.field("min_m", box.min, point("lowest corner").needed());
+  v.field("max_m", box.max, point("highest corner").needed());
+  v.require((box.min.array() < box.max.array()).all(),
+            "min_m must be below max_m in each of x, y, z");
+}
+
+template <class V>
+void describe(V& v, Region& region) {
+  v.template option<SphereRegion>("sphere", region, plain("a ball"));
+  v.template option<BoxRegion>("box", region, plain("a box along the axes of W"));
+}
+
+template <class V>
+void describe(V& v, Organ& organ) {
+  v.field("name", organ.name, plain("unique among organs").otherwise("`organ_` and its index"));
+  v.field("mesh", organ.mesh, plain("closed surface").needed());
+  describe_pose(v, organ.pose, "where the mesh's origin is in W", "unit quaternion, of the mesh");
+  v.field("tissue", organ.tissue, plain("what it is made of"));
+  v.field("springs", organ.springs, plain("spring families without a continuum meaning"));
+  v.field("preserve_volume", organ.preserve_volume,
+          plain("the implicit volume constraint; false = plain mass-spring"));
+  v.field("fixed", organ.fixed, plain("regions of W whose nodes do not move"));
+}
+
+template <class V>
+void describe(V& v, SphereShape& sphere) {
+  v.field("radius_m", sphere.radius, ranged("m", 1e-4, 0.5, "radius"));
+}
+
+template <class V>
+void describe(V& v, CapsuleShape& capsule) {
+  v.field("radius_m", capsule.radius, ranged("m", 1e-4, 0.5, "radius"));
+  v.field("length_m", capsule.length,
+          ranged("m", 1e-4, 2, "between the centres of its ends, along the probe's z"));
+}
+
+template <class V>
+void describe(V& v, BoxShape& box) {
+  v.field("size_m", box.size, ranged("m", 1e-4, 2, "full extents about the probe's origin"));
+}
+
+template <class V>
+void describe(V&, PlaneShape&) {}
+
+template <class V>
+void describe(V& v, MeshShape& shape) {
+  describe(v, shape.mesh);
+}
+
+template <class V>
+void describe(V& v, ProbeShape& shape) {
+  v.template option<SphereShape>("sphere", shape, plain("a ball about the probe's origin"));
+  v.template option<CapsuleShape>("capsule", shape, plain("a rod with round ends"));
+  v.template option<BoxShape>("box", shape, plain("a box"));
+  v.template option<PlaneShape>("plane", shape, plain("solid where the probe's z ≤ 0; write {}"));
+  v.template option<MeshShape>("mesh", shape, plain("any closed surface, in the probe's frame"));
+}
+
+template <class V>
+void describe(V& v, TrajectoryDevice& device) {
+  v.field("file", device.file,
+          plain("CSV with columns t,x,y,z,qx,qy,qz,qw[,fx,fy,fz] in s, m, N").needed());
+  describe_pose(v, device.offset, "where the recording's origin is in W",
+                "unit quaternion, of the recording's frame");
+  v.field("loop", device.loop, plain("start again at the end; else hold the last pose"));
+}
+
+/// Either `to_m` and `duration_s`, or `wait_s`.
+template <class V>
+void describe(V& v, ScriptedDevice::Move& move) {
+  std::optional<double> duration, wait;
+  (move.to ? duration : wait) = move.duration;
+  v.field("to_m", move.to, point("where the move ends").otherwise("a wait"));
+  v.field("duration_s", duration,
+          ranged("s", 1e-3, 3600, "of the move; highest speed is 1.875 × distance / duration")
+              .otherwise("a wait"));
+  v.field("wait_s", wait, ranged("s", 1e-3, 3600, "stay where it is").otherwise("a move"));
+  v.require(move.to ? duration && !wait : wait && !duration,
+            "must hold either to_m and duration_s, or wait_s alone");
+  move.duration = duration ? *duration : wait.value_or(move.duration);
+}
+
+template <class V>
+void describe(V& v, ScriptedDevice& device) {
+  v.field("start_m", device.start, point("where it starts").needed());
+  v.field("rotation_xyzw", device.rotation, plain("unit quaternion, kept throughout"));
+  v.field("moves", device.moves,
+          plain("minimum-jerk moves, one after the other; ends holding the last point").needed());
+}
+
+template <class V>
+void describe(V& v, TopicDevice& device) {
+  v.field("start_m", device.start, point("where it is until the first sample").needed());
+  v.field("rotation_xyzw", device.rotation, plain("unit quaternion until the first sample"));
+}
+
+template <class V>
+void describe(V& v, Device& device) {
+  v.template option<ScriptedDevice>("scripted", device, plain("moves written in the scene"));
+  v.template option<TrajectoryDevice>("trajectory", device, plain("a recorded pose over time"));
+  v.template option<TopicDevice>("topic", device, plain("any process writing topic probe_input"));
+}
+
+template <class V>
+void describe(V& v, Probe& probe) {
+  v.field("name", probe.name, plain("unique among probes").otherwise("`probe_` and its index"));
+  v.field("shape", probe.shape, plain("what touches").needed());
+  v.field("friction", probe.friction, ranged("", 0, 2, "Coulomb coefficient"));
+  v.field("device", probe.device, plain("where its pose comes from").needed());
+}
+
+template <class V>
+void describe(V& v, Rates& rates) {
+  v.field("haptics_hz", rates.haptics, ranged("Hz", 500, 4000, "haptic ticks"));
+  v.field("collision_hz", rates.collision, ranged("Hz", 10, 2000, "contact searches"));
+  v.field("deformation_hz", rates.deformation,
+          ranged("Hz", 10, 2000, "updates of node positions and contact models"));
+  v.field("visualizer_hz", rates.visualizer, ranged("Hz", 1, 120, "pictures"));
+}
+
+template <class V>
+void describe(V& v, Haptics& haptics) {
+  v.field("max_force_n", haptics.max_force, ranged("N", 0.1, 100, "largest force commanded"));
+  v.field("max_force_rate_n_per_s", haptics.max_force_rate,
+          ranged("N/s", 1, 1e5, "fastest change of the force"));
+  v.field("device_damping_n_s_per_m", haptics.device_damping,
+          ranged("N·s/m", 0, 50, "physical damping of the device"));
+  v.field("stale_after_s", haptics.stale_after,
+          ranged("s", 0.005, 1, "a contact model older than this fades"));
+  v.field("fade_time_s", haptics.fade_time, ranged("s", 0.005, 1, "from full force to none"));
+}
+
+template <class V>
+void describe(V& v, Camera& camera) {
+  v.field("position_m", camera.position, point("where it stands").otherwise("all in view"));
+  v.field("target_m", camera.target, point("what it looks at").otherwise("all in view"));
+  v.require(!camera.position || !camera.target || *camera.position != *camera.target,
+            "position_m and target_m must differ");
+}
+
+/// Gives entries of a list that have no name one of their index.
+template <class T>
+void name_by_index(const char* prefix, std::vector<T>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].name.empty()) list[i].name = prefix + std::to_string(i);
+  }
+}
+
+template <class V>
+void describe(V& v, Scene& scene) {
+  std::size_t format = kSceneFormat;
+  v.field(kFormatKey, format,
+          ranged("", kSceneFormat, kSceneFormat, "version of this format; the first key").needed());
+  v.field("name", scene.name,
+          plain("of the scene").otherwise("the scene file's name without extension"));
+  v.field("organs", scene.organs, plain("soft bodies").needed());
+  name_by_index("organ_", scene.organs);
+  v.unique_names("organs", scene.organs);
+  v.field("probes", scene.probes, plain("instruments").needed());
+  name_by_index("probe_", scene.probes);
+  v.unique_names("probes", scene.probes);
+  v.field("gravity_m_per_s2", scene.gravity,
+          ranged("m/s²", -100, 100, "acceleration; the rest shape is free of it"));
+  v.field("duration_s", scene.duration, ranged("s", 0, 1e6, "of a run; 0 = until stopped"));
+  v.field("rates", scene.rates, plain("cycles per second of each process"));
+  v.field("haptics", scene.haptics, plain("limits of the force given to the hand"));
+  v.field("camera", scene.camera, plain("of the visualizer"));
+}
+
+}  // namespace palpate::scene

@@ -1,0 +1,123 @@
+#include "collision/contact_reduction.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/collision/step_scene.h"
+
+namespace palpate::collision {
+namespace {
+
+FoundContact contact(std::uint32_t organ, std::uint32_t triangle, const Vec3& weights, double gap) {
+  FoundContact result;
+  result.organ = organ;
+  result.triangle = triangle;
+  result.weights = weights;
+  result.gap = gap;
+  result.point = Vec3(0, 0, gap);
+  return result;
+}
+
+const RelativeMotion& at_origin() {
+  static const RelativeMotion motion({}, 1, false);
+  return motion;
+}
+
+}  // namespace
+
+TEST_CASE("contact reduction: a place named by two triangles is one contact, of the lowest") {
+  // Oracle: analytic.
+  std::vector<FoundContact> found;
+  append_contact(contact(0, 7, {0.25, 0.75, 0}, 0.1), {4, 5, 6}, found);
+  append_contact(contact(0, 3, {0.75, 0, 0.25}, 0.1), {5, 9, 4}, found);
+  append_contact(contact(1, 2, {0.75, 0, 0.25}, 0.1), {5, 9, 4}, found);  // another organ
+  CHECK(found[0].feature == std::array{4u, 5u, kNoNode});
+  CHECK(found[0].feature == found[1].feature);
+  Contacts result;
+  reduce_contacts(found, at_origin(), result);
+  REQUIRE(result.contacts.size() == 2);
+  CHECK(result.contacts[0].triangle == 3);
+  CHECK(result.contacts[1].organ == 1);
+}
+
+TEST_CASE("contact reduction: the same place with another normal or probe point is kept") {
+  // Oracle: analytic.
+  std::vector<FoundContact> found;
+  append_contact(contact(0, 7, {1, 0, 0}, 0.1), {4, 5, 6}, found);
+  FoundContact turned = contact(0, 7, {1, 0, 0}, 0.1), moved = turned;
+  turned.normal = Vec3::UnitX();
+  moved.point[0] = 0.01;
+  append_contact(turned, {4, 5, 6}, found);
+  append_contact(moved, {4, 5, 6}, found);
+  Contacts result;
+  reduce_contacts(found, at_origin(), result);
+  CHECK(result.contacts.size() == 3);
+}
+
+TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order they were found") {
+  // Oracle: brute force sort.
+  RandomShapes random(81);
+  std::vector<FoundContact> found;
+  for (std::uint32_t t = 0; t < 2 * kMaxContactsPerProbe; ++t) {
+    append_contact(contact(t % 2, t, {0.2, 0.3, 0.5}, random.number(-1, 1)),
+                   {3 * t, 3 * t + 1, 3 * t + 2}, found);
+  }
+  std::vector<double> gaps;
+  for (const FoundContact& c : found) gaps.push_back(c.gap);
+  std::sort(gaps.begin(), gaps.end());
+  auto reversed = found;
+  std::reverse(reversed.begin(), reversed.end());
+  Contacts one, other;
+  reduce_contacts(found, at_origin(), one);
+  reduce_contacts(reversed, at_origin(), other);
+  CHECK(one.truncated);
+  REQUIRE(one.contacts.size() == kMaxContactsPerProbe);
+  REQUIRE(other.contacts.size() == kMaxContactsPerProbe);
+  for (std::size_t i = 0; i < kMaxContactsPerProbe; ++i) {
+    CHECK(one.contacts[i].gap <= gaps[kMaxContactsPerProbe - 1]);
+    CHECK(one.contacts[i].gap == other.contacts[i].gap);
+    CHECK(one.contacts[i].triangle == other.contacts[i].triangle);
+    if (i == 0) continue;
+    const Contact& before = one.contacts[i - 1];
+    CHECK(std::pair(before.organ, before.triangle) <
+          std::pair(one.contacts[i].organ, one.contacts[i].triangle));
+  }
+}
+
+TEST_CASE("contact reduction: writes points and normals in the world") {
+  // Oracle: Pose's own transformation.
+  RandomShapes random(82);
+  const Pose pose{random.point(1), random.rotation()};
+  std::vector<FoundContact> found;
+  FoundContact c = contact(0, 1, {1, 0, 0}, -0.2);
+  c.point = random.point(1);
+  c.normal = random.direction();
+  append_contact(c, {0, 1, 2}, found);
+  Contacts result;
+  reduce_contacts(found, RelativeMotion({pose, pose}, 1, false), result);
+  REQUIRE(result.contacts.size() == 1);
+  CHECK_FALSE(result.truncated);
+  CHECK((result.contacts[0].point_on_probe - pose.to_world(c.point)).norm() < 1e-14);
+  CHECK((result.contacts[0].normal - pose.rotation * c.normal).norm() < 1e-14);
+  CHECK(result.contacts[0].gap == -0.2);
+}
+
+TEST_CASE("contact reduction: a node is named by its lowest triangle") {
+  // Oracle: brute force.
+  const auto ball = geometry::make_ball(1, 1);
+  const StepScene scene(ball, Vec3::Zero());
+  for (std::uint32_t node = 0; node < ball.nodes.size(); ++node) {
+    std::vector<FoundContact> found;
+    append_node_contact(scene.step, node, {}, found);
+    std::uint32_t lowest = 0;
+    while (std::count(ball.triangles[lowest].begin(), ball.triangles[lowest].end(), node) == 0)
+      ++lowest;
+    CHECK(found[0].triangle == lowest);
+    int corner = 0;
+    CHECK(found[0].weights.maxCoeff(&corner) == 1);
+    CHECK(ball.triangles[lowest][corner] == node);
+    CHECK(found[0].weights.sum() == 1);
+  }
+}
+
+}  // namespace palpate::collision

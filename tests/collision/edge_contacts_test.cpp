@@ -1,0 +1,95 @@
+#include "collision/edge_contacts.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/collision/step_scene.h"
+
+namespace palpate::collision {
+namespace {
+
+/// A box organ standing on its edge: the edge along x on top, at height `top`.
+geometry::TriangleSurface ridge(double top) {
+  auto box = geometry::make_box({4, 1, 1});
+  const Quat tilt(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitX()));
+  for (Vec3& x : box.nodes) x = tilt * x + Vec3(0, 0, top - std::sqrt(0.5));
+  return box;
+}
+
+/// A box probe standing on its edge: the edge along y at the bottom, at height 0.
+geometry::TriangleSurface blade() {
+  auto box = geometry::make_box({1, 4, 1});
+  const Quat tilt(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitY()));
+  for (Vec3& x : box.nodes) x = tilt * x + Vec3(0.1, 0.2, std::sqrt(0.5));
+  return box;
+}
+
+std::vector<FoundContact> find(EdgeContacts& edges, const StepScene& scene,
+                               const SharpMesh& probe) {
+  std::vector<EdgePair> pairs;
+  for (std::uint32_t i = 0; i < probe.edges().size(); ++i) {
+    for (std::uint32_t k = 0; k < scene.organ.edges().size(); ++k) pairs.push_back({i, k});
+  }
+  std::vector<FoundContact> found;
+  edges.begin_step();
+  edges.find(scene.step, probe, pairs, found);
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("edge contacts: two crossed edges have one contact, where they are closest") {
+  // Oracle: analytic.
+  const SharpMesh probe(blade());
+  EdgeContacts edges;
+  const auto found = find(edges, StepScene(ridge(-0.05), Vec3::Zero()), probe);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].gap == Approx(0.05).margin(1e-12));
+  CHECK((found[0].normal - Vec3::UnitZ()).norm() < 1e-9);
+  CHECK((found[0].point - Vec3(0.1, 0, 0)).norm() < 1e-9);
+  CHECK(found[0].time_of_impact == 1);
+  CHECK(find(edges, StepScene(ridge(-0.15), Vec3::Zero()), probe).empty());
+}
+
+TEST_CASE("edge contacts: edges that passed through each other keep their sides") {
+  // Oracle: analytic.
+  const SharpMesh probe(blade());
+  EdgeContacts edges;
+  const auto crossed = find(edges, StepScene(ridge(0.2), {0, 0, 0.5}), probe);
+  REQUIRE(crossed.size() == 1);
+  CHECK(crossed[0].gap == Approx(-0.2).margin(1e-12));
+  CHECK((crossed[0].normal - Vec3::UnitZ()).norm() < 1e-9);
+  CHECK(crossed[0].time_of_impact == Approx(0.6).margin(1e-6));
+  const auto held = find(edges, StepScene(ridge(0.25), {0, 0, 0.05}), probe);
+  REQUIRE(held.size() == 1);
+  CHECK(held[0].gap == Approx(-0.25).margin(1e-12));
+  edges.reset();
+  CHECK(find(edges, StepScene(ridge(0.25), Vec3::Zero()), probe).empty());
+}
+
+TEST_CASE("edge contacts: edges that crossed and slid off each other are found by their crossing") {
+  // Oracle: analytic; the way ends where the edges no longer lie over each other.
+  const SharpMesh probe(blade());
+  auto organ = ridge(0.2);
+  for (Vec3& x : organ.nodes) x += Vec3(0, 3, 0);  // beside the end of the blade's edge at y = 2.2
+  EdgeContacts edges;
+  const auto found = find(edges, StepScene(organ, {0, 3, 0.5}), probe);
+  REQUIRE_FALSE(found.empty());
+  CHECK(found[0].gap == Approx(-0.2).margin(1e-6));
+  CHECK(found[0].normal[2] > 0.99);
+}
+
+TEST_CASE("edge contacts: a flat diagonal is no ridge, a far edge seen from inside no contact") {
+  // Oracle: analytic. The organ's edges under the probe lie in a plane, and those on its top face
+  // form contacts straight up; the shell's bottom, seen from inside, forms none.
+  const SharpMesh probe(blade());
+  EdgeContacts edges;
+  for (const FoundContact& c :
+       find(edges, StepScene(box_at({0, 0, -1.05}, {8, 8, 2}, 2), Vec3::Zero()), probe)) {
+    CHECK((c.normal - Vec3::UnitZ()).norm() < 1e-9);
+    CHECK(c.gap == Approx(0.05).margin(1e-12));
+  }
+  CHECK(
+      find(edges, StepScene(box_at({0, 0, 2 - 0.05}, {8, 8, 4}, 2), Vec3::Zero()), probe).empty());
+}
+
+}  // namespace palpate::collision

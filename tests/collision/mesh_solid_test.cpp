@@ -1,0 +1,107 @@
+#include "collision/mesh_solid.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/collision/random_shapes.h"
+
+namespace palpate::collision {
+
+TEST_CASE("mesh solid: a meshed box answers like the box") {
+  // Oracle: the analytic box solid.
+  RandomShapes random(61);
+  const Vec3 size(1, 0.6, 0.4);
+  const SharpMesh mesh(geometry::make_box(size, 3));
+  const auto meshed = make_mesh_solid(mesh), box = make_box_solid(size);
+  int entries = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const Vec3 x = random.point(0.8), end = random.point(0.8);
+    const auto one = meshed->nearest(x, 2), other = box->nearest(x, 2);
+    REQUIRE(one);
+    CHECK(one->distance == Approx(other->distance).margin(1e-12));
+    CHECK((one->point + one->distance * one->outward - x).norm() < 1e-12);
+    const auto entered = meshed->entry(x, end, 0), wanted = box->entry(x, end, 0);
+    // Ways that touch an edge within the tolerance of the continuous test may be called either way.
+    if (wanted) {
+      REQUIRE(entered);
+      CHECK(entered->time == Approx(wanted->time).margin(1e-6));
+      ++entries;
+    }
+    CHECK(meshed->shadows(x, end.normalized()) == box->shadows(x, end.normalized()));
+  }
+  CHECK(entries > 50);
+  CHECK_FALSE(meshed->nearest({2, 0, 0}, 0.5));
+}
+
+TEST_CASE("mesh solid: the sign is right next to sharp edges and corners") {
+  // Oracle: analytic; the signed distance of a tetrahedron as the largest of its planes' distances,
+  // exact inside and of the right sign everywhere.
+  const auto tetrahedron = geometry::make_tetrahedron(1);
+  const SharpMesh mesh(tetrahedron);
+  const auto solid = make_mesh_solid(mesh);
+  RandomShapes random(62);
+  for (int trial = 0; trial < 2000; ++trial) {
+    // Near corners and edges, where the nearest feature is not a face.
+    const auto& nodes = tetrahedron.nodes;
+    const double along = trial % 2 == 0 ? 0 : random.number(0, 1);
+    const Vec3 x =
+        nodes[trial % 4] + along * (nodes[(trial + 1) % 4] - nodes[trial % 4]) + random.point(0.1);
+    double planes = -1e9;
+    for (const auto& t : tetrahedron.triangles) {
+      const TriangleCorners c{nodes[t[0]], nodes[t[1]], nodes[t[2]]};
+      planes = std::max(planes, unit_normal(c).dot(x - c[0]));
+    }
+    const auto near = solid->nearest(x, 1);
+    REQUIRE(near);
+    CHECK((near->distance < 0) == (planes < 0));
+    if (planes < 0) CHECK(near->distance == Approx(planes).margin(1e-12));
+  }
+}
+
+TEST_CASE("sharp mesh: a box has twelve edges whatever its triangles") {
+  // Oracle: analytic.
+  for (const int divisions : {1, 3}) {
+    const SharpMesh mesh(geometry::make_box({2, 2, 2}, divisions));
+    CHECK(mesh.edges().size() == 12u * divisions);
+    for (const SharpEdge& edge : mesh.edges()) {
+      CHECK(std::abs(edge.face_normals[0].dot(edge.face_normals[1])) < 1e-15);
+      for (int k = 0; k < 2; ++k) {
+        CHECK(edge.into_face[k].norm() == Approx(1));
+        CHECK(std::abs(edge.into_face[k].dot(edge.face_normals[k])) < 1e-15);
+        // Into one face is against the other's normal on a box.
+        CHECK(edge.into_face[k].dot(edge.face_normals[1 - k]) == Approx(-1));
+      }
+    }
+    CHECK(mesh.bounds().lower == Vec3(-1, -1, -1));
+    CHECK(mesh.bounds().upper == Vec3(1, 1, 1));
+  }
+}
+
+TEST_CASE("sharp mesh: features near a box are those in it") {
+  // Oracle: analytic.
+  const SharpMesh mesh(geometry::make_box({2, 2, 2}));
+  std::vector<std::uint32_t> vertices, edges;
+  Bounds corner{Vec3(1, 1, 1), Vec3(1, 1, 1)};
+  corner.inflate(0.1);
+  mesh.features_near(corner, vertices, edges);
+  REQUIRE(vertices.size() == 1);
+  CHECK(mesh.vertices()[vertices[0]] == Vec3(1, 1, 1));
+  CHECK(edges.size() == 3);
+  mesh.features_near({Vec3(-0.1, -0.1, 0.9), Vec3(0.1, 0.1, 1.1)}, vertices, edges);
+  CHECK(vertices.empty());
+  CHECK(edges.empty());
+}
+
+TEST_CASE("sharp mesh: degenerate triangles take no part") {
+  // Oracle: invariant; the same answers without them.
+  auto surface = geometry::make_box({2, 2, 2});
+  surface.triangles.push_back({0, 0, 1});
+  const SharpMesh mesh(surface);
+  const auto solid = make_mesh_solid(mesh);
+  CHECK(mesh.edges().size() == 12);
+  const auto near = solid->nearest({0.1, 0.2, 1.5}, 1);
+  REQUIRE(near);
+  CHECK(near->distance == Approx(0.5));
+  CHECK(near->outward.allFinite());
+}
+
+}  // namespace palpate::collision

@@ -1,0 +1,49 @@
+#include "collision/probe_model.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/geometry/primitives.h"
+
+namespace palpate::collision {
+
+TEST_CASE("probe model: every shape has what its searches need, and its bounds") {
+  // Oracle: analytic.
+  const ProbeModel sphere({scene::SphereShape{0.5}, {}});
+  CHECK(sphere.is_round);
+  CHECK(sphere.cores.size() == 1);
+  CHECK(sphere.cores[0].is_point());
+  CHECK(sphere.reach == 0.5);
+  CHECK(sphere.depth_believed == 1);
+  CHECK_FALSE(sphere.solid);
+
+  const ProbeModel capsule({scene::CapsuleShape{0.5, 2}, {}});
+  CHECK_FALSE(capsule.is_round);
+  REQUIRE(capsule.cores.size() == 3);
+  CHECK(capsule.cores[0].b == Vec3(0, 0, 1));
+  CHECK(capsule.bounds.upper == Vec3(0.5, 0.5, 1.5));
+  CHECK(capsule.reach == 1.5);
+  CHECK(capsule.depth_believed == 3);
+
+  const ProbeModel box({scene::BoxShape{Vec3(2, 4, 4)}, {}});
+  CHECK(box.cores.empty());
+  REQUIRE(box.sharp);
+  CHECK(box.sharp->vertices().size() == 8);
+  CHECK(box.sharp->edges().size() == 12);
+  CHECK(box.bounds.lower == Vec3(-1, -2, -2));
+  CHECK(box.reach == 3);
+
+  const ProbeModel plane({scene::PlaneShape{}, {}});
+  CHECK_FALSE(plane.is_bounded);
+  CHECK(plane.solid);
+  CHECK_FALSE(plane.sharp);
+
+  auto off_center = geometry::make_box({2, 2, 2});
+  for (Vec3& x : off_center.nodes) x[0] += 5;
+  const ProbeModel mesh({scene::MeshShape{}, off_center});
+  CHECK(mesh.solid);
+  CHECK(mesh.bounds.lower == Vec3(4, -1, -1));
+  CHECK(mesh.reach == Approx(std::sqrt(38.0)));
+  CHECK(mesh.depth_believed == 2);
+}
+
+}  // namespace palpate::collision

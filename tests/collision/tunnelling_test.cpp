@@ -1,0 +1,187 @@
+#include <catch2/catch.hpp>
+
+#include "tests/collision/finder_scene.h"
+
+namespace palpate::collision {
+namespace {
+
+constexpr double kFastest = 0.5;  // [m/s]
+
+scene::ProbeShape shape_of(int kind) {
+  switch (kind) {
+    case 0:
+      return scene::SphereShape{0.004};
+    case 1:
+      return scene::CapsuleShape{0.003, 0.02};
+    case 2:
+      return scene::BoxShape{Vec3(0.01, 0.014, 0.006)};
+    default:
+      return scene::MeshShape{};
+  }
+}
+
+ProbeGeometry probe(int kind) {
+  return {shape_of(kind),
+          kind == 3 ? geometry::make_capsule(0.004, 0.01, 8) : geometry::TriangleSurface{}};
+}
+
+/// Moves the probe along a line through the organ; did it ever touch, and did the first contacts
+/// push it back?
+void pass_through(FinderScene& scene, const Vec3& direction, const Vec3& aim, const Quat& rotation,
+                  double rate, double phase) {
+  scene.finder.reset();
+  const double step = kFastest / rate;
+  Pose pose = at(aim - (0.12 + phase * step) * direction, rotation);
+  bool touched = false;
+  while ((pose.position - aim).dot(direction) < 0.12 && !touched) {
+    Pose next = pose;
+    next.position += step * direction;
+    const Contacts found = scene.find({pose, next}, 0.0005);
+    for (const Contact& c : found.contacts) {
+      touched = touched || (c.gap < 0 && c.normal.dot(direction) < 0);
+    }
+    pose = next;
+  }
+  if (!touched) {
+    FAIL_CHECK("passed along " << direction.transpose() << " through " << aim.transpose() << " at "
+                               << rate << " Hz");
+  }
+}
+
+}  // namespace
+
+TEST_CASE("tunnelling: no probe at 500 mm/s passes an organ without contact, at any rate") {
+  // Oracle: analytic; the line passes through the organ's inside, so the probe must touch.
+  auto tetrahedron = geometry::make_tetrahedron(0.06);
+  const std::vector<geometry::TriangleSurface> organs{geometry::make_ball(0.03, 2), tetrahedron,
+                                                      geometry::make_box({0.08, 0.08, 0.0005}, 1),
+                                                      geometry::make_box({0.08, 0.08, 0.002}, 4)};
+  RandomShapes random(21);
+  for (int kind = 0; kind < 4; ++kind) {
+    for (const auto& organ : organs) {
+      FinderScene scene({organ}, {probe(kind)});
+      for (const double rate : {10.0, 25.0, 60.0, 250.0}) {
+        for (int trial = 0; trial < (rate > 100 ? 4 : 12); ++trial) {
+          const Vec3 aim = 0.2 * random.number(-1, 1) * organ.nodes[trial % organ.nodes.size()];
+          pass_through(scene, random.direction(), aim, random.rotation(), rate,
+                       random.number(0, 1));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("tunnelling: axis-aligned ways through nodes and edges are no exception") {
+  // Oracle: analytic. The degenerate ways: straight through nodes, along edges.
+  const auto ball = geometry::make_ball(0.03, 2);
+  for (int kind = 0; kind < 4; ++kind) {
+    FinderScene scene({ball}, {probe(kind)});
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {1.0, -1.0}) {
+        for (const double rate : {10.0, 40.0}) {
+          pass_through(scene, sign * Vec3::Unit(axis), Vec3::Zero(), Quat::Identity(), rate, 0.5);
+        }
+      }
+    }
+    for (std::size_t node = 0; node < ball.nodes.size(); node += 7) {
+      pass_through(scene, -ball.nodes[node].normalized(), Vec3::Zero(), Quat::Identity(), 10, 0.3);
+    }
+  }
+}
+
+TEST_CASE("tunnelling: a plane that sweeps over a whole ball keeps hold of its near half") {
+  // Oracle: brute force; the nodes that face the plane.
+  const auto ball = geometry::make_ball(0.03, 2);
+  FinderScene scene(ball, scene::PlaneShape{});
+  const Quat down(Eigen::AngleAxisd(M_PI, Vec3::UnitX()));
+  const Contacts found = scene.find({at({0, 0, 0.05}, down), at({0, 0, -0.05}, down)}, 0.001);
+  std::size_t facing = 0;
+  for (const Vec3& x : ball.nodes) facing += x[2] > 1e-9;
+  CHECK(found.contacts.size() == facing);
+  for (const Contact& c : found.contacts) {
+    CHECK(c.gap == Approx(-0.05 - scene.tissue_point(c)[2]).margin(1e-12));
+  }
+}
+
+TEST_CASE("tunnelling: grazing in passing is found with the depth of the graze") {
+  // Oracle: analytic; a sphere passes a slab's edge with 2 mm overlap within one step.
+  FinderScene scene(geometry::make_box({0.1, 0.1, 0.01}, 4), scene::SphereShape{0.006});
+  const Vec3 from(0.054, 0.003, 0.1), to(0.054, 0.003, -0.1);
+  const Contacts found = scene.find({at(from), at(to)}, 0.001);
+  REQUIRE_FALSE(found.contacts.empty());
+  CHECK(deepest_gap(found) == Approx(-0.002).margin(1e-6));
+  for (const Contact& c : found.contacts) {
+    CHECK(c.time_of_impact > 0.4);
+    CHECK(c.time_of_impact < 0.6);
+  }
+}
+
+TEST_CASE("tunnelling: a wall once passed keeps its side until the probe is back out") {
+  // Oracle: analytic; depth below a floor.
+  FinderScene scene(geometry::make_box({0.1, 0.1, 0.1}, 8), scene::SphereShape{0.006});
+  Pose pose = at({0.003, 0.001, 0.07});
+  double inside = 0;
+  for (const double z : {0.045, 0.043, 0.040, 0.043, 0.049, 0.0555, 0.0565}) {
+    Pose next = pose;
+    next.position[2] = z;
+    const Contacts found = scene.find({pose, next}, 0.002);
+    REQUIRE_FALSE(found.contacts.empty());
+    CHECK(deepest_gap(found) == Approx(z - 0.006 - 0.05).margin(1e-9));
+    for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0);
+    inside += z < 0.05;
+    pose = next;
+  }
+  CHECK(inside == 5);
+}
+
+TEST_CASE("tunnelling: below the skin, a sliding probe keeps pushing out through the near wall") {
+  // Oracle: analytic; depth below a floor while sliding over many triangles.
+  FinderScene scene(geometry::make_box({0.1, 0.1, 0.02}, 16), scene::SphereShape{0.004});
+  Pose pose = at({-0.03, 0.001, 0.03});
+  for (int step = 0; step < 30; ++step) {
+    const Pose next = at({-0.03 + 0.002 * step, 0.001, 0.008});
+    const Contacts found = scene.find({pose, next}, 0.001);
+    REQUIRE_FALSE(found.contacts.empty());
+    CHECK(deepest_gap(found) == Approx(-0.006).margin(1e-3));
+    for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0.5);
+    pose = next;
+  }
+}
+
+TEST_CASE("tunnelling: an organ that springs over a resting probe has not swallowed it") {
+  // Oracle: analytic; only the relative motion counts.
+  FinderScene scene(geometry::make_box({0.1, 0.1, 0.02}, 8), scene::SphereShape{0.004});
+  const ProbeMotion motion = resting({0.001, 0.002, 0.02});
+  CHECK(scene.find(motion, 0.001).contacts.empty());
+  for (Vec3& x : scene.organs[0].nodes) x[2] += 0.02;  // its top from 0.01 to 0.03
+  scene.update();
+  const Contacts found = scene.find(motion, 0.001);
+  REQUIRE_FALSE(found.contacts.empty());
+  CHECK(deepest_gap(found) == Approx(0.02 - 0.004 - 0.03).margin(1e-9));
+}
+
+TEST_CASE("tunnelling: reset forgets the side") {
+  // Oracle: invariant; a probe first seen inside is not in contact.
+  FinderScene scene(geometry::make_box({0.1, 0.1, 0.1}, 8), scene::SphereShape{0.006});
+  const Pose inside = at({0, 0, 0.04});
+  CHECK_FALSE(scene.find({at({0, 0, 0.06}), inside}, 0.002).contacts.empty());
+  CHECK_FALSE(scene.find({inside, inside}, 0.002).contacts.empty());
+  scene.finder.reset();
+  CHECK(scene.find({inside, inside}, 0.002).contacts.empty());
+}
+
+TEST_CASE("tunnelling: going round a sharp corner is not going through it") {
+  // Oracle: analytic; from beside a box to above it, the side wall stays free.
+  FinderScene scene(geometry::make_box({0.04, 0.04, 0.04}, 2), scene::SphereShape{0.006});
+  Pose pose = at({0.0261, 0, 0.01});
+  for (int step = 1; step <= 60; ++step) {
+    const double angle = 0.5 * M_PI * std::clamp((step - 20) / 20.0, 0.0, 1.0);
+    const double up = std::min(step, 20) * 0.0005, left = std::max(0, step - 40) * 0.0005;
+    const Pose next =
+        at({0.02 + 0.0061 * std::cos(angle) - left, 0, 0.01 + up + 0.0061 * std::sin(angle)});
+    for (const Contact& c : scene.find({pose, next}, 0.001).contacts) CHECK(c.gap > 0);
+    pose = next;
+  }
+}
+
+}  // namespace palpate::collision

@@ -1,0 +1,302 @@
+#include "haptics/haptic_renderer.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+using namespace palpate;
+using namespace palpate::haptics;
+
+namespace {
+
+constexpr double kT = 1e-3;
+
+ContactModel wall_model(const Vec3& anchor, double stiffness = 200) {
+  ContactModel model;
+  model.touching = anchor.z() < 0;
+  model.anchor = anchor;
+  model.force = Vec3(0, 0, std::max(0.0, -stiffness * anchor.z()));
+  model.torque = 0.01 * model.force.cross(Vec3::UnitX());
+  model.stiffness = Vec3(0, 0, stiffness).asDiagonal();
+  model.validity_radius = 0.01;
+  return model;
+}
+
+DeviceSample resting_at(const Vec3& position) {
+  DeviceSample sample;
+  sample.pose.position = position;
+  return sample;
+}
+
+/// A renderer with its clock; keeps the model fresh every 4th tick while `fresh`.
+struct Bench {
+  explicit Bench(const scene::Haptics& limits = {}) : renderer(limits, kT) {}
+
+  HapticForce tick(const DeviceSample& device) {
+    HapticForce out;
+    renderer.tick(time(), device, out);
+    ++ticks;
+    return out;
+  }
+  HapticForce hold(const ContactModel& model, const DeviceSample& device, int count) {
+    HapticForce out;
+    for (int i = 0; i < count; ++i) {
+      if (i % 4 == 0) renderer.update_model(model, time());
+      out = tick(device);
+    }
+    return out;
+  }
+  double time() const { return kT * ticks; }
+
+  HapticRenderer renderer;
+  int ticks = 0;
+};
+
+const Vec3 kPressed(0, 0, -0.01);  ///< 2 N
+
+}  // namespace
+
+TEST_CASE("haptic renderer: without a model there is no force and the age is infinite") {
+  // Oracle: the stated behaviour.
+  Bench bench;
+  const HapticForce out = bench.tick(resting_at(kPressed));
+  CHECK(out.force.norm() == 0);
+  CHECK(std::isinf(out.contact_model_age));
+  CHECK(out.limits == kForceNotLimited);
+}
+
+TEST_CASE("haptic renderer: at rest at the anchor it gives exactly the model's force and torque") {
+  // Oracle: the model, bit for bit, once hand-over and slew are over.
+  Bench bench;
+  const ContactModel model = wall_model(kPressed);
+  const HapticForce out = bench.hold(model, resting_at(kPressed), 40);
+  CHECK(out.force == model.force);
+  CHECK((out.torque - model.torque).norm() < 1e-15);
+  CHECK(out.limits == kForceNotLimited);
+  CHECK(out.contact_model_age == Approx(3 * kT));
+}
+
+TEST_CASE("haptic renderer: between models the force follows the probe at tick rate") {
+  // Oracle: analytic, f = K · depth at every tick though the model is 20 ms old.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 37);
+  for (int i = 1; i <= 20; ++i) {
+    DeviceSample sample = resting_at(kPressed - Vec3(0, 0, 5e-5 * i));
+    sample.twist.linear.z() = -0.05;
+    CHECK(bench.tick(sample).force.z() == Approx(200 * (0.01 + 5e-5 * i)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("haptic renderer: a stale model fades linearly to zero in the stated time") {
+  // Oracle: analytic, factor 1 − (age − stale_after)/fade_time. Rounding of times: 1e-12.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 37);
+  const double last_model = 36 * kT;
+  while (bench.time() < last_model + 0.12) {
+    const double age = bench.time() - last_model;
+    const HapticForce out = bench.tick(resting_at(kPressed));
+    const double factor = std::min(1.0, std::max(0.0, 1 - (age - 0.05) / 0.05));
+    CHECK(out.force.z() == Approx(2 * factor).margin(1e-12));
+    CHECK(out.torque.norm() == Approx(0.02 * factor).margin(1e-12));
+    CHECK(((out.limits & kForceStaleFade) != 0) == (factor < 1));
+  }
+  CHECK(bench.tick(resting_at(kPressed)).force.norm() == 0);
+
+  // Fresh again: back up, no faster than the slew limit.
+  double before = 0;
+  for (int i = 0; i < 40; ++i) {
+    const HapticForce out = bench.hold(wall_model(kPressed), resting_at(kPressed), 1);
+    CHECK(out.force.z() - before <= 0.2 + 1e-12);
+    CHECK(out.force.z() >= before);
+    before = out.force.z();
+  }
+  CHECK(before == 2);
+}
+
+TEST_CASE("haptic renderer: where the slew limit is slower than the fade, it decides") {
+  // Oracle: analytic. 10 N/s: 2 N take 200 ms however short the fade.
+  scene::Haptics limits;
+  limits.max_force_rate = 10;
+  Bench bench(limits);
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 401);
+  const double last_model = 400 * kT;
+  while (bench.time() < last_model + 0.2) bench.tick(resting_at(kPressed));
+  CHECK(bench.tick(resting_at(kPressed)).force.z() > 0.4);
+  while (bench.time() < last_model + 0.05 + 0.2 + 0.01) bench.tick(resting_at(kPressed));
+  CHECK(bench.tick(resting_at(kPressed)).force.norm() == 0);
+}
+
+TEST_CASE("haptic renderer: a model from the future is as stale as one from the past") {
+  // Oracle: the stated rule; a session clock that is set back must not keep an old model alive.
+  Bench bench;
+  bench.renderer.update_model(wall_model(kPressed), 100);
+  HapticForce out;
+  for (int i = 0; i < 20; ++i) out = bench.tick(resting_at(kPressed));
+  CHECK(out.force.norm() == 0);
+  CHECK(out.contact_model_age == Approx(100).epsilon(1e-3));
+}
+
+TEST_CASE("haptic renderer: a new model is taken over without a step") {
+  // Oracle: analytic. Models 0.1 N apart, four ticks of hand-over: steps of 0.025 N; and the new
+  // model holds exactly from the fourth tick on.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
+  ContactModel next = wall_model(kPressed);
+  next.force.z() += 0.1;
+  bench.renderer.update_model(next, bench.time());
+  for (int i = 1; i <= 4; ++i) {
+    CHECK(bench.tick(resting_at(kPressed)).force.z() == Approx(2 + 0.025 * i));
+  }
+  CHECK(bench.tick(resting_at(kPressed)).force == next.force);
+}
+
+TEST_CASE("haptic renderer: a hand-over never pulls") {
+  // Oracle: analytic. 2 N appear at the probe, which leaves by 7.5 mm in the next tick: the model
+  // gives 0.5 N there, half of the −2 N of the hand-over is still due. Zero, not −0.5 N.
+  scene::Haptics limits;
+  limits.max_force_rate = 1e5;
+  Bench bench(limits);
+  bench.hold(wall_model(Vec3(0, 0, 0.001)), resting_at(kPressed), 8);
+  bench.renderer.update_model(wall_model(kPressed), bench.time());
+  CHECK(bench.tick(resting_at(kPressed)).force.z() == Approx(0.5));
+  CHECK(bench.tick(resting_at(kPressed + Vec3(0, 0, 0.0075))).force.z() == 0);
+}
+
+TEST_CASE("haptic renderer: models as fast as the loop are not delayed") {
+  // Oracle: the stated rule, spread over the time since the model before.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
+  ContactModel model = wall_model(kPressed);
+  bench.renderer.update_model(model, bench.time());
+  bench.tick(resting_at(kPressed));
+  for (int i = 1; i <= 10; ++i) {
+    model.force.z() = 2 + 0.02 * i;
+    bench.renderer.update_model(model, bench.time());
+    CHECK(bench.tick(resting_at(kPressed)).force.z() == Approx(model.force.z()).epsilon(1e-14));
+  }
+}
+
+TEST_CASE("haptic renderer: a lost contact is let go within the hand-over and the slew limit") {
+  // Oracle: analytic. 2 N at 0.2 N per tick: ten ticks; never less than nothing.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
+  bench.renderer.update_model(wall_model(Vec3(0, 0, 0.01)), bench.time());
+  for (int i = 1; i <= 10; ++i) {
+    CHECK(bench.tick(resting_at(kPressed)).force.z() >= 2 - 0.2 * i - 1e-12);
+  }
+  const HapticForce out = bench.tick(resting_at(kPressed));
+  CHECK(out.force.norm() < 1e-12);
+  CHECK(bench.tick(resting_at(kPressed)).passivity_energy == 0);
+}
+
+TEST_CASE("haptic renderer: steps stay under 0.05 N while pressing a curved contact at 40 mm/s") {
+  // Oracle: felt threshold, 5 % of the force or 0.05 N, and a Hertz contact (E* 13.3 kPa, R 5 mm)
+  // whose models are one update old when they arrive.
+  const int update_ticks = GENERATE(4, 25);
+  Bench bench;
+  const double c = 4.0 / 3 * 13.3e3 * std::sqrt(0.005);
+  const auto hertz = [&](double depth) {
+    ContactModel model = wall_model(Vec3(0, 0, -depth));
+    const double d = std::max(0.0, depth);
+    model.force.z() = c * std::pow(d, 1.5);
+    model.stiffness(2, 2) = 1.5 * c * std::sqrt(d);
+    return model;
+  };
+  const double speed = 0.04;
+  const auto depth_at = [&](double t) {  // down 10 mm, then up again, turning smoothly
+    return 0.005 - 0.005 * std::cos(2 * speed / 0.01 * t);
+  };
+  double worst_step = 0, worst_error = 0, last = 0;
+  for (int i = 0; i < 1500; ++i) {
+    if (i % update_ticks == 0) {
+      bench.renderer.update_model(hertz(depth_at(bench.time() - kT * update_ticks)), bench.time());
+    }
+    const double depth = depth_at(bench.time());
+    DeviceSample sample = resting_at(Vec3(0, 0, -depth));
+    sample.twist.linear.z() =
+        -(depth_at(bench.time() + kT / 2) - depth_at(bench.time() - kT / 2)) / kT;
+    const double force = bench.tick(sample).force.z();
+    const double step = std::abs(force - last);
+    if (step > 0.05 * std::max(force, last)) worst_step = std::max(worst_step, step);
+    worst_error = std::max(worst_error, std::abs(force - c * std::pow(depth, 1.5)));
+    last = force;
+  }
+  std::cout << "pressing at 40 mm/s, a model every " << update_ticks
+            << " ms: largest step over 5 % " << worst_step << " N, largest error " << worst_error
+            << " N\n";
+  CHECK(worst_step < 0.05);
+  // A tangent is at most 2·25 ms · 40 mm/s = 2 mm away: ½ f″ (2 mm)², f″ = ¾ c/√d, is 0.027 N at
+  // 5 mm depth, where the motion is fastest; near the surface it slows down.
+  CHECK(worst_error < 0.05);
+}
+
+TEST_CASE("haptic renderer: force and torque are cut together") {
+  // Oracle: analytic. 6.6 N wanted, 3.3 N given: half the torque.
+  Bench bench;
+  ContactModel model = wall_model(Vec3(0, 0, -0.033));
+  const HapticForce out = bench.hold(model, resting_at(model.anchor), 60);
+  CHECK(out.force.z() == Approx(3.3).epsilon(1e-12));
+  CHECK((out.limits & kForceSaturated) != 0);
+  CHECK((out.torque - 0.5 * model.torque).norm() < 1e-14);
+  model.torque = Vec3(0, 100, 0);
+  CHECK(bench.hold(model, resting_at(model.anchor), 200).torque.norm() ==
+        Approx(3.3 * HapticRenderer::kTorqueArm).epsilon(1e-12));
+}
+
+TEST_CASE("haptic renderer: outside the validity radius is said, and the force goes no further") {
+  // Oracle: analytic. 12 mm deeper counts as 4 mm: 2 N + 0.8 N.
+  Bench bench;
+  ContactModel model = wall_model(kPressed);
+  model.validity_radius = 0.004;
+  const HapticForce out = bench.hold(model, resting_at(kPressed - Vec3(0, 0, 0.012)), 60);
+  CHECK((out.limits & kForceOutOfValidity) != 0);
+  CHECK(out.force.z() == Approx(2.8));
+}
+
+TEST_CASE("haptic renderer: a refused model is counted and said once, the one before holds") {
+  // Oracle: the stated behaviour.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
+  ContactModel bad = wall_model(kPressed);
+  bad.force.x() = std::numeric_limits<double>::quiet_NaN();
+  bench.renderer.update_model(bad, bench.time());
+  bench.renderer.update_model(wall_model(kPressed), std::nan(""));
+  CHECK(bench.renderer.refused_models() == 2);
+  HapticForce out = bench.tick(resting_at(kPressed));
+  CHECK((out.limits & kForceNotFinite) != 0);
+  CHECK(out.force.z() == 2);
+  out = bench.tick(resting_at(kPressed));
+  CHECK(out.limits == kForceNotLimited);
+  CHECK(out.contact_model_age > 4 * kT);
+}
+
+TEST_CASE("haptic renderer: a device that gives NaN gets a force going to zero, said so") {
+  // Oracle: analytic, 2 N at 0.2 N per tick.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
+  for (int i = 1; i <= 10; ++i) {
+    const HapticForce out = bench.tick(resting_at(Vec3(0, std::nan(""), 0)));
+    CHECK((out.limits & kForceNotFinite) != 0);
+    CHECK(out.force.z() == Approx(2 - 0.2 * i).margin(1e-12));
+  }
+  CHECK(bench.tick(resting_at(Vec3(0, std::nan(""), 0))).force.norm() < 1e-12);
+}
+
+TEST_CASE("haptic renderer: reset forgets everything") {
+  // Oracle: a new renderer, bit for bit.
+  Bench used, fresh;
+  used.hold(wall_model(kPressed), resting_at(kPressed), 30);
+  used.renderer.update_model(wall_model(kPressed), std::nan(""));
+  used.renderer.reset();
+  used.ticks = 0;
+  CHECK(used.renderer.refused_models() == 0);
+  CHECK(used.tick(resting_at(kPressed)).force.norm() == 0);
+  fresh.tick(resting_at(kPressed));
+  for (int i = 0; i < 20; ++i) {
+    const HapticForce a = used.hold(wall_model(kPressed), resting_at(kPressed), 1);
+    const HapticForce b = fresh.hold(wall_model(kPressed), resting_at(kPressed), 1);
+    CHECK(a.force == b.force);
+    CHECK(a.limits == b.limits);
+  }
+}

@@ -1,0 +1,101 @@
+#include "modules/runtime/periodic_loop.h"
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <random>
+
+#include "modules/runtime/clock.h"
+#include "modules/runtime/stop_signal.h"
+
+using palpate::runtime::begin_period;
+using palpate::runtime::monotonic_now_ns;
+using palpate::runtime::PeriodicLoop;
+
+TEST_CASE("begin_period: a wake-up within its period is on time, however late") {
+  // Oracle: the policy, by hand.
+  for (const std::int64_t late : {0, 1, 500, 999}) {
+    CHECK(begin_period(7000, 7000 + late, 1000).scheduled_ns == 7000);
+    CHECK(begin_period(7000, 7000 + late, 1000).missed == 0);
+  }
+  CHECK(begin_period(7000, 6990, 1000).missed == 0);  // a clock that wakes a little early
+}
+
+TEST_CASE("begin_period: periods that have passed are skipped and counted") {
+  // Oracle: the policy, by hand.
+  CHECK(begin_period(7000, 8000, 1000).missed == 1);
+  CHECK(begin_period(7000, 8000, 1000).scheduled_ns == 8000);
+  CHECK(begin_period(7000, 12'345, 1000).missed == 5);
+  CHECK(begin_period(7000, 12'345, 1000).scheduled_ns == 12'000);
+}
+
+TEST_CASE("begin_period: whatever the delays, one cycle per period and none unaccounted for") {
+  // Oracle: invariant. Cycles and misses add up to the periods passed; starts stay on the grid.
+  std::mt19937 random(2);
+  std::exponential_distribution<double> work(1.0 / 700);
+  constexpr std::int64_t kPeriod = 1000;
+  std::int64_t now = 0, scheduled = 0, last_start = -kPeriod;
+  std::int64_t cycles = 0, missed = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    now = std::max(now, scheduled);
+    const auto start = begin_period(scheduled, now, kPeriod);
+    REQUIRE(start.scheduled_ns % kPeriod == 0);
+    REQUIRE(start.scheduled_ns > last_start);  // never twice in one period: no burst
+    REQUIRE(now - start.scheduled_ns < kPeriod);
+    last_start = start.scheduled_ns;
+    ++cycles;
+    missed += static_cast<std::int64_t>(start.missed);
+    scheduled = start.scheduled_ns + kPeriod;
+    now += static_cast<std::int64_t>(work(random));
+  }
+  CHECK(cycles + missed == last_start / kPeriod + 1);
+  CHECK(missed > 0);
+}
+
+TEST_CASE("periodic loop: keeps to the grid of its first cycle") {
+  // Oracle: the clock. Never early; as many periods as time allows, missed ones counted.
+  PeriodicLoop loop(500);
+  loop.wait_for_period();
+  const std::int64_t first = loop.woke_ns();
+  for (int i = 0; i < 50; ++i) loop.wait_for_period();
+  const auto& statistics = loop.statistics();
+  CHECK(statistics.cycles == 51);
+  const auto periods = static_cast<std::int64_t>(50 + statistics.overruns);
+  CHECK(loop.woke_ns() - first >= (periods - 1) * loop.period_ns());
+  CHECK(statistics.lateness.count() == 51);
+  CHECK(statistics.worst_lateness_ns >= 0);
+}
+
+TEST_CASE("periodic loop: a cycle longer than its period costs periods and is seen") {
+  // Oracle: a cycle that works for 5.5 periods.
+  PeriodicLoop loop(1000);
+  loop.wait_for_period();
+  while (monotonic_now_ns() < loop.woke_ns() + 5'500'000) {
+  }
+  loop.wait_for_period();
+  CHECK(loop.statistics().overruns >= 4);
+  CHECK(loop.statistics().worst_lateness_ns >= 4'000'000);
+  CHECK(loop.statistics().busy_ns >= 5'500'000);
+  const double periods = 2.0 + static_cast<double>(loop.statistics().overruns);
+  CHECK(loop.statistics().on_time_fraction() == Approx(2 / periods));
+}
+
+TEST_CASE("periodic loop: a signal ends the wait") {
+  // Oracle: a loop of 0.01 Hz would sleep for 100 s.
+  const palpate::runtime::StopSignal stop;
+  PeriodicLoop loop(0.01);
+  loop.wait_for_period();
+  struct itimerval_guard {
+    ~itimerval_guard() { alarm(0); }
+  } guard;
+  struct sigaction action {
+  }, earlier{};
+  action.sa_handler = [](int) { raise(SIGTERM); };
+  sigaction(SIGALRM, &action, &earlier);
+  alarm(1);
+  CHECK_FALSE(loop.wait_for_period());
+  sigaction(SIGALRM, &earlier, nullptr);
+  CHECK(stop.requested());
+  CHECK(loop.statistics().cycles == 1);
+}

@@ -1,0 +1,103 @@
+#include "modules/runtime/session_state.h"
+
+#include <catch2/catch.hpp>
+
+using namespace palpate;
+using namespace palpate::runtime;
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// Gives a command at a time and applies it.
+SessionControl give(SessionState& state, SessionCommand command, double seconds) {
+  const auto message = next_command(state, command, static_cast<std::int64_t>(seconds * 1e9));
+  state.apply(message);
+  return message;
+}
+
+double time(const SessionState& state, double seconds) {
+  return state.time(static_cast<std::int64_t>(seconds * 1e9));
+}
+
+}  // namespace
+
+TEST_CASE("session state: time runs from start, stands in a pause and goes on where it stood") {
+  // Oracle: a stop watch, by hand.
+  SessionState state;
+  CHECK(state.phase() == SessionPhase::kWaiting);
+  CHECK(time(state, 99) == 0);
+  give(state, SessionCommand::kStart, 100);
+  CHECK(state.phase() == SessionPhase::kRunning);
+  CHECK(time(state, 102.5) == Approx(2.5));
+  give(state, SessionCommand::kPause, 103);
+  CHECK(state.phase() == SessionPhase::kPaused);
+  CHECK(time(state, 150) == Approx(3));
+  give(state, SessionCommand::kStart, 200);
+  CHECK(time(state, 201) == Approx(4));
+  give(state, SessionCommand::kStop, 202);
+  CHECK(state.phase() == SessionPhase::kStopped);
+  CHECK(time(state, 300) == Approx(5));
+}
+
+TEST_CASE("session state: a reset is told once, sets time to zero and waits for start") {
+  // Oracle: definition.
+  SessionState state;
+  give(state, SessionCommand::kStart, 100);
+  CHECK_FALSE(state.take_reset());
+  give(state, SessionCommand::kReset, 110);
+  CHECK(state.phase() == SessionPhase::kWaiting);
+  CHECK(time(state, 111) == 0);
+  CHECK(state.take_reset());
+  CHECK_FALSE(state.take_reset());
+  give(state, SessionCommand::kStart, 112);
+  CHECK(time(state, 113) == Approx(1));
+  CHECK_FALSE(state.take_reset());
+}
+
+TEST_CASE("session state: a reset whose command was replaced by the start after it is not lost") {
+  // Oracle: readers keep only the newest sample, so a module may see the start alone.
+  SessionState giver, module;
+  module.apply(give(giver, SessionCommand::kStart, 100));
+  give(giver, SessionCommand::kReset, 110);
+  module.apply(give(giver, SessionCommand::kStart, 110.001));
+  CHECK(module.take_reset());
+  CHECK(module.phase() == SessionPhase::kRunning);
+  CHECK(time(module, 111.001) == Approx(1));
+}
+
+TEST_CASE("session state: a module that joins late takes the session's time and needs no reset") {
+  // Oracle: definition.
+  SessionState giver, late;
+  give(giver, SessionCommand::kStart, 100);
+  give(giver, SessionCommand::kReset, 105);
+  late.apply(give(giver, SessionCommand::kStart, 106));
+  CHECK_FALSE(late.take_reset());
+  CHECK(time(late, 108) == Approx(2));
+}
+
+TEST_CASE("session state: of several givers the newest command holds, repeats change nothing") {
+  // Oracle: the order of source times.
+  SessionState launcher, person;
+  const auto start = give(launcher, SessionCommand::kStart, 100);
+  person.apply(start);
+  const auto pause = give(person, SessionCommand::kPause, 104);
+  SessionState module;
+  module.apply(pause);
+  module.apply(start);  // the launcher repeats itself, not yet knowing
+  CHECK(module.phase() == SessionPhase::kPaused);
+  CHECK(time(module, 110) == Approx(4));
+  module.apply(pause);
+  CHECK(time(module, 120) == Approx(4));
+}
+
+TEST_CASE("session state: a start that lies ahead gives no negative time") {
+  // Oracle: definition.
+  SessionState state;
+  SessionControl start;
+  start.header.source_time_ns = kSecond;
+  start.start_time_ns = 5 * kSecond;
+  state.apply(start);
+  CHECK(state.time(4 * kSecond) == 0);
+  CHECK(state.time(6 * kSecond) == Approx(1));
+}

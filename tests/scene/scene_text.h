@@ -1,0 +1,167 @@
+// Scenes as texts, with the files they name, for tests of the reader.
+#pragma once
+
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "modules/core/error.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::scene::test {
+
+/// A folder of its own that is removed in the end.
+class Folder {
+ public:
+  Folder() {
+    static int count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("palpate_scene_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// While it lives, files are opened with the rights of a user who owns none of them: the
+/// superuser may read everything.
+class AsNobody {
+ public:
+  AsNobody() : user_(geteuid()) {
+    if (user_ == 0) REQUIRE(seteuid(65534) == 0);
+  }
+  ~AsNobody() {
+    if (user_ == 0 && seteuid(0) != 0) std::abort();
+  }
+  AsNobody(const AsNobody&) = delete;
+  AsNobody& operator=(const AsNobody&) = delete;
+
+ private:
+  uid_t user_;
+};
+
+/// A folder with the files that the scenes below name. Their contents are not read here.
+class SceneFolder : public Folder {
+ public:
+  SceneFolder() {
+    write("organ.ply", "an organ");
+    write("tool.stl", "a tool");
+    write("press.csv", "t,x,y,z,qx,qy,qz,qw\n");
+  }
+  Scene parse(const std::string& text) const { return parse_scene(text, path() / "scene.yaml"); }
+
+  /// The refusal of a text, with this folder's name left out.
+  std::string refusal(const std::string& text) const {
+    try {
+      parse(text);
+    } catch (const InputError& error) {
+      std::string message = error.what();
+      const std::string folder = path().string() + "/";
+      for (auto at = message.find(folder); at != std::string::npos; at = message.find(folder)) {
+        message.erase(at, folder.size());
+      }
+      return message;
+    }
+    return "accepted";
+  }
+};
+
+inline const std::string kMinimalScene = R"(palpate_scene: 1
+organs:
+  - mesh: {file: organ.ply}
+probes:
+  - shape: {sphere: {}}
+    device: {topic: {start_m: [0, 0, 0.1]}}
+)";
+
+/// Every key there is, none at its default. The tests count on the line numbers.
+inline const std::string kFullScene = R"(palpate_scene: 1
+name: full
+organs:
+  - name: stomach
+    mesh: {file: organ.ply, unit: mm, nodes: 550}
+    position_m: [0.1, 0.2, 0.3]
+    rotation_xyzw: [0, 0, 0.6, 0.8]
+    tissue:
+      youngs_modulus_pa: 20e3
+      wall_thickness_m: 0.004
+      density_kg_per_m3: 1000
+      damping_ratio: 0.2
+      drag_per_s: 3
+    springs:
+      bending_ratio: 0.4
+      inner_ratio: 0.7
+      virtual_nodes: 5
+    preserve_volume: false
+    fixed:
+      - sphere: {center_m: [0.01, 0.02, 0.03], radius_m: 0.04}
+      - box:
+          min_m: [-1, -2, -3]
+          max_m: [1, 2, 3]
+  - name: liver
+    mesh: {file: organ.ply}
+probes:
+  - name: tip
+    shape: {sphere: {radius_m: 0.007}}
+    friction: 0.3
+    device:
+      scripted:
+        start_m: [0, 0, 0.2]
+        rotation_xyzw: [1, 0, 0, 0]
+        moves:
+          - {to_m: [0, 0, 0.1], duration_s: 2.5}
+          - {wait_s: 0.5}
+  - name: rod
+    shape: {capsule: {radius_m: 0.003, length_m: 0.2}}
+    device:
+      trajectory:
+        file: press.csv
+        position_m: [0.4, 0.5, 0.6]
+        rotation_xyzw: [0, 1, 0, 0]
+        loop: true
+  - name: hand
+    shape: {box: {size_m: [0.01, 0.02, 0.03]}}
+    device: {topic: {start_m: [0, 0, 0.3], rotation_xyzw: [0, 0, 1, 0]}}
+  - name: table
+    shape: {plane: {}}
+    device: {topic: {start_m: [0, 0, -0.3]}}
+  - name: tool
+    shape: {mesh: {file: tool.stl, unit: cm, nodes: 100}}
+    device: {topic: {start_m: [0, 0, 0.4]}}
+gravity_m_per_s2: [0, 0, -9.81]
+duration_s: 20
+rates: {haptics_hz: 2000, collision_hz: 500, deformation_hz: 400, visualizer_hz: 60}
+haptics:
+  max_force_n: 5
+  max_force_rate_n_per_s: 300
+  device_damping_n_s_per_m: 0.4
+  stale_after_s: 0.06
+  fade_time_s: 0.07
+camera: {position_m: [0, -1, 0], target_m: [0, 0, 0.1]}
+)";
+
+/// kFullScene with one place changed; a text that is not there exactly once is a broken test.
+inline std::string changed(const std::string& from, const std::string& to,
+                           std::string text = kFullScene) {
+  const auto at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  REQUIRE(text.find(from, at + 1) == std::string::npos);
+  return text.replace(at, from.size(), to);
+}
+
+}  // namespace palpate::scene::test

@@ -1,0 +1,198 @@
+// `palpate run` as a person uses it.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/system/running_session.h"
+
+using namespace palpate;
+using namespace palpate::testing;
+using Catch::Contains;
+
+namespace {
+
+/// A running `palpate run` and all it has said.
+class Launched {
+ public:
+  Launched(const BallScene& scene, std::vector<std::string> more,
+           const bus::BusOptions& options = own_bus_options())
+      : options_(options) {
+    std::vector<std::string> arguments{
+        "run",      scene.file().string(),          "--headless", "--session", options_.session,
+        "--domain", std::to_string(options_.domain)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    child_ = std::make_unique<launcher::ChildProcess>(
+        std::filesystem::path(PALPATE_BIN_DIR) / "palpate", arguments);
+  }
+
+  bool wait_for_text(const std::string& text) {
+    return wait_until([&] {
+      listen();
+      return said_.find(text) != std::string::npos;
+    });
+  }
+  /// Exit code; −1 if it does not end or is killed.
+  int wait_for_end() {
+    wait_until([&] {
+      listen();
+      return child_->ended().has_value();
+    });
+    listen();
+    if (!child_->ended() || !WIFEXITED(*child_->ended())) return -1;
+    return WEXITSTATUS(*child_->ended());
+  }
+  /// Processes whose command line names this session, by their program.
+  std::map<std::string, pid_t> processes() const {
+    std::map<std::string, pid_t> found;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+      std::ifstream stream(entry.path() / "cmdline", std::ios::binary);
+      const std::string line{std::istreambuf_iterator<char>(stream), {}};
+      if (line.find(options_.session + '\0') == std::string::npos) continue;
+      const std::string program = std::filesystem::path(line.substr(0, line.find('\0'))).filename();
+      found[program] = std::stoi(entry.path().filename().string());
+    }
+    return found;
+  }
+  launcher::ChildProcess& child() { return *child_; }
+  const bus::BusOptions& options() const { return options_; }
+  const std::string& said() const { return said_; }
+
+ private:
+  void listen() {
+    for (const auto& line : child_->take_lines()) said_ += line + "\n";
+  }
+
+  bus::BusOptions options_;
+  std::unique_ptr<launcher::ChildProcess> child_;
+  std::string said_;
+};
+
+std::set<std::string> shared_memory_files() {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm")) {
+    const std::string name = entry.path().filename();
+    if (name.find("fast") != std::string::npos) names.insert(name);
+  }
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("launcher: runs for its duration, reports each second, sums up and records") {
+  // Oracle: what it says and writes.
+  const BallScene scene(
+      "scripted: {start_m: [0, 0, 0.07], moves: [{to_m: [0, 0, 0.05], duration_s: 1}]}");
+  const auto summary = scene.folder() / "summary.txt";
+  const auto recording = scene.folder() / "run.mcap";
+  Launched run(
+      scene, {"--duration", "2.2", "--summary", summary.string(), "--record", recording.string()});
+  CHECK(run.wait_for_end() == 0);
+  INFO(run.said());
+  CHECK_THAT(run.said(), Contains("1.0 s  real time") && Contains("V/V0 ball 1.0000") &&
+                             Contains("haptics 1000 Hz") && Contains("scene press: 2.2 s"));
+  std::stringstream text;
+  text << std::ifstream(summary).rdbuf();
+  CHECK_THAT(text.str(), Contains("% on time") && Contains("organ ball") &&
+                             Contains("probe finger") && Contains("real-time factor"));
+  CHECK_THAT(text.str(), !Contains("force at most 0.000 N"));
+  CHECK(std::filesystem::file_size(recording) > 100'000);
+  CHECK(run.processes().empty());
+}
+
+TEST_CASE("launcher: Ctrl-C leaves no process and nothing in shared memory") {
+  // Oracle: the process table and /dev/shm.
+  const auto before = shared_memory_files();
+  const BallScene scene;
+  Launched run(scene, {});
+  REQUIRE(run.wait_for_text("1.0 s  real time"));
+  REQUIRE(run.processes().size() == 4);
+  run.child().signal(SIGINT);
+  CHECK(run.wait_for_end() == 0);
+  CHECK(run.processes().empty());
+  CHECK(shared_memory_files() == before);
+}
+
+TEST_CASE("launcher: a launcher that is killed leaves no process") {
+  // Oracle: the process table.
+  const BallScene scene;
+  Launched run(scene, {});
+  REQUIRE(run.wait_for_text("1.0 s  real time"));
+  run.child().signal(SIGKILL);
+  CHECK(wait_until([&] { return run.processes().empty(); }));
+}
+
+TEST_CASE("launcher: a module that dies is named, the rest goes on, it can be started again") {
+  // Oracle: what it says; the exit code tells of the failure.
+  const BallScene scene;
+  Launched run(scene, {});
+  REQUIRE(run.wait_for_text("1.0 s  real time"));
+  kill(run.processes().at("palpate-collision"), SIGKILL);
+  REQUIRE(run.wait_for_text("palpate: collision ended: killed by signal 9 (Killed)"));
+  REQUIRE(run.wait_for_text("the rest goes on; to start it again: "));
+  // as a person would, with the line that was printed
+  const auto begin = run.said().find("to start it again: ") + 19;
+  std::istringstream words(run.said().substr(begin, run.said().find('\n', begin) - begin));
+  std::vector<std::string> command;
+  for (std::string word; words >> word;) command.push_back(word);
+  launcher::ChildProcess again(command[0], {command.begin() + 1, command.end()});
+  CHECK(wait_until([&] { return run.processes().count("palpate-collision") == 1; }));
+  REQUIRE(run.wait_for_text("3.0 s  real time"));
+  CHECK(run.processes().size() == 4);
+  run.child().signal(SIGTERM);
+  CHECK(run.wait_for_end() == 1);
+  CHECK_THAT(run.said(), Contains("FAILED: collision: killed by signal 9 (Killed)"));
+  CHECK(wait_until([&] { return again.ended().has_value(); }));  // the session's stop reaches it
+}
+
+TEST_CASE("launcher: a second one with --only joins the session and leaves it running") {
+  // Oracle: what both say; the process table.
+  const BallScene scene;
+  Launched first(scene, {"--only", "deformation,haptics"});
+  REQUIRE(first.wait_for_text("1.0 s  real time"));
+  Launched second(scene, {"--only", "collision"}, first.options());
+  REQUIRE(second.wait_for_text("joining the session that already runs"));
+  REQUIRE(second.processes().size() == 5);
+  second.child().signal(SIGINT);
+  CHECK(second.wait_for_end() == 0);
+  REQUIRE(first.wait_for_text("3.0 s  real time"));
+  CHECK(first.processes().size() == 3);
+  first.child().signal(SIGINT);
+  CHECK(first.wait_for_end() == 0);
+}
+
+TEST_CASE("launcher: a module that refuses its input ends the start with exit code 2") {
+  // Oracle: the exit codes. Only haptics reads the recording that the scene names.
+  BallScene scene("topic: {}");
+  std::ofstream(scene.folder() / "motion.csv") << "t, x, y, z\n0, 0, 0, 1\n";
+  scene.set_device("trajectory: {file: motion.csv}");
+  Launched run(scene, {});
+  CHECK(run.wait_for_end() == 2);
+  CHECK_THAT(run.said(), Contains("palpate: haptics ended: exit code 2") && Contains("motion.csv"));
+  CHECK(run.processes().empty());
+}
+
+TEST_CASE("launcher: a recording can be replayed as the input of a new run") {
+  // Oracle: the finger of the second run presses as that of the first did.
+  const BallScene scene(
+      "scripted: {start_m: [0, 0, 0.07], moves: [{to_m: [0, 0, 0.05], duration_s: 1}]}");
+  const auto recording = scene.folder() / "run.mcap";
+  Launched first(scene, {"--duration", "1.5", "--record", recording.string()});
+  REQUIRE(first.wait_for_end() == 0);
+  const BallScene idle;  // its own device leaves the finger above the ball
+  launcher::ChildProcess again(
+      std::filesystem::path(PALPATE_BIN_DIR) / "palpate",
+      {"replay", recording.string(), idle.file().string(), "--headless", "--duration", "1.5"});
+  std::string said;
+  const auto listen = [&] {
+    for (const auto& line : again.take_lines()) said += line + "\n";
+  };
+  REQUIRE(wait_until([&] {
+    listen();
+    return again.ended().has_value();
+  }));
+  listen();
+  INFO(said);
+  CHECK_THAT(said, Contains("probe finger") && !Contains("force at most 0.000 N"));
+}

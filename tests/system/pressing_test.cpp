@@ -1,0 +1,103 @@
+// A finger presses a ball: through four topics and three processes, and back into the hand.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/system/running_session.h"
+
+using namespace palpate;
+using namespace palpate::testing;
+
+namespace {
+
+/// Largest distance of a node from where it was [m].
+double largest_motion(const std::vector<float>& now, const std::vector<float>& then) {
+  double largest = 0;
+  for (std::size_t i = 0; i < std::min(now.size(), then.size()); ++i) {
+    largest = std::max(largest, std::abs(double(now[i]) - double(then[i])));
+  }
+  return largest;
+}
+
+/// Force of a contact model at a probe position, without its friction cone.
+Vec3 force_at(const ContactModel& model, const Vec3& position) {
+  return model.force + model.stiffness * (model.anchor - position);
+}
+
+}  // namespace
+
+TEST_CASE("pressing: the tissue yields, keeps its volume, and the finger feels it") {
+  // Oracle: invariants. Nothing moves before the touch; then the force points out of the tissue
+  // and the nodes under the finger go at least as deep as it is in.
+  const BallScene scene;
+  RunningSession session(scene);
+  REQUIRE(session.start());
+  REQUIRE(session.wait([](const Heard& heard) {
+    return !heard.nodes.positions.empty() && heard.force.header.sequence > 100;
+  }));
+  const auto rest = session.heard().nodes.positions;
+  CHECK(session.heard().force.force.norm() == 0);
+
+  REQUIRE(session.press(0.05));
+  const Heard& heard = session.heard();
+  CHECK(heard.force.force.z() > 0.9 * heard.force.force.norm());
+  REQUIRE(session.wait([&](const Heard& h) {
+    return largest_motion(h.nodes.positions, rest) >
+           kBallRadius + kFingerRadius - kFingerPressing - 0.002;
+  }));
+  CHECK(std::abs(heard.nodes.volume / heard.nodes.target_volume - 1) < 1e-4);
+  CHECK(session.wait([](const Heard& h) { return h.nodes.pressure > 0; }));  // once calm
+
+  session.move_finger(kFingerStart);  // and lets go
+  CHECK(session.wait([](const Heard& h) { return h.force.force.norm() == 0; }));
+  CHECK(
+      session.wait([&](const Heard& h) { return largest_motion(h.nodes.positions, rest) < 1e-3; }));
+}
+
+TEST_CASE("pressing: at rest the rendered force is the tissue's, within 1 %") {
+  // Oracle: action = reaction. The contact model is what deformation computed for the tissue; the
+  // haptic force is what the hand gets.
+  const BallScene scene;
+  RunningSession session(scene);
+  REQUIRE(session.start());
+  REQUIRE(session.press(0.05));
+  double worst = 1;
+  const bool agreed = session.wait([&](const Heard& heard) {
+    const bool at_rest = heard.nodes.kinetic_energy < 1e-9 &&
+                         std::abs(heard.probe.pose.position.z() - kFingerPressing) < 1e-5;
+    const Vec3 reaction = force_at(heard.model, heard.probe.pose.position);
+    worst = (heard.force.force - reaction).norm() / reaction.norm();
+    return at_rest && heard.model.touching && worst < 0.01;
+  });
+  INFO("difference " << worst << ", haptic " << session.heard().force.force.transpose()
+                     << ", model " << session.heard().model.force.transpose() << ", kinetic "
+                     << session.heard().nodes.kinetic_energy << ", limits "
+                     << session.heard().force.limits);
+  CHECK(agreed);
+}
+
+TEST_CASE("pressing: pause holds everything, reset brings the ball back to rest at time zero") {
+  // Oracle: definition.
+  const BallScene scene;
+  RunningSession session(scene);
+  REQUIRE(session.start());
+  REQUIRE(session.press(0.05));
+  session.command(SessionCommand::kPause);
+  REQUIRE(session.wait([](const Heard& heard) {
+    return heard.modules.at("deformation").state == ModuleState::kPaused;
+  }));
+  const auto held = session.heard().nodes;
+  REQUIRE(session.wait(
+      [&](const Heard& heard) { return heard.nodes.header.sequence > held.header.sequence + 50; }));
+  CHECK(session.heard().nodes.header.sim_time_ns == held.header.sim_time_ns);
+  CHECK(session.heard().nodes.positions == held.positions);
+
+  session.move_finger(kFingerStart);
+  session.command(SessionCommand::kReset);
+  REQUIRE(session.wait([&](const Heard& heard) {
+    return heard.nodes.generation > held.generation && heard.nodes.header.sim_time_ns == 0;
+  }));
+  session.command(SessionCommand::kStart);
+  CHECK(session.wait([](const Heard& heard) { return heard.nodes.header.sim_time_ns > 0; }));
+  CHECK(session.heard().nodes.header.sim_time_ns < held.header.sim_time_ns + 1'000'000'000);
+}

@@ -1,0 +1,135 @@
+// The real processes of a scene, with a test in the launcher's place.
+#pragma once
+
+#include <csignal>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "modules/bus/bus.h"
+#include "modules/launcher/child_process.h"
+#include "modules/runtime/clock.h"
+#include "modules/runtime/session.h"
+#include "modules/scene/scene_reader.h"
+#include "tests/launcher/ball_scene.h"
+#include "tests/runtime/waiting.h"
+
+namespace palpate::testing {
+
+/// The newest of all that a session says.
+struct Heard {
+  NodePositions nodes;
+  ContactModel model;
+  HapticForce force;
+  ProbeState probe;
+  Contacts contacts;
+  std::map<std::string, ModuleStatus> modules;
+};
+
+class RunningSession {
+ public:
+  explicit RunningSession(const BallScene& scene)
+      : scene_file_(scene.file()),
+        scene_(scene::load_scene(scene.file())),
+        session_(bus_, scene::scene_digest(scene_)),
+        conductor_(bus_) {}
+
+  void start_module(const std::string& name) {
+    children_[name] = std::make_unique<launcher::ChildProcess>(
+        std::filesystem::path(PALPATE_BIN_DIR) / ("palpate-" + name),
+        std::vector<std::string>{scene_file_.string(), "--session", options_.session, "--domain",
+                                 std::to_string(options_.domain)});
+  }
+
+  /// All three, ready, and the session started. False after the deadline.
+  bool start() {
+    for (const char* name : {"deformation", "collision", "haptics"}) start_module(name);
+    const bool ready = wait([&](const Heard& heard) {
+      return heard.modules.size() == 3 &&
+             heard.modules.at("haptics").state >= ModuleState::kReady &&
+             heard.modules.at("collision").state >= ModuleState::kReady &&
+             heard.modules.at("deformation").state >= ModuleState::kReady;
+    });
+    command(SessionCommand::kStart);
+    return ready && wait([&](const Heard& heard) {
+             return heard.modules.at("deformation").state >= ModuleState::kRunning;
+           });
+  }
+
+  void command(SessionCommand wanted) {
+    session_.poll();
+    conductor_.command(session_.state(), wanted);
+  }
+
+  /// Moves the finger to a height; said again until heard().
+  void move_finger(double height) { wanted_height_ = height; }
+
+  /// Listens until the condition holds; false after the deadline.
+  template <class Condition>
+  bool wait(const Condition& condition, double deadline = kDeadline) {
+    return wait_until(
+        [&] {
+          listen();
+          return condition(heard_);
+        },
+        deadline);
+  }
+
+  /// Presses and waits until the finger feels at least this much [N].
+  bool press(double force) {
+    move_finger(kFingerPressing);
+    return wait([&](const Heard& heard) { return heard.force.force.norm() > force; });
+  }
+
+  void kill(const std::string& name) {
+    children_.at(name)->signal(SIGKILL);
+    wait_until([&] { return children_.at(name)->ended().has_value(); });
+  }
+
+  launcher::ChildProcess& child(const std::string& name) { return *children_.at(name); }
+  const Heard& heard() const { return heard_; }
+  const bus::BusOptions& options() const { return options_; }
+  const scene::Scene& scene() const { return scene_; }
+
+ private:
+  void listen() {
+    session_.poll();
+    if (wanted_height_ != 0) {
+      ProbeState input;
+      input.pose.position = Vec3(0, 0, wanted_height_);
+      inputs_.write(input);
+    }
+    while (nodes_.take(heard_.nodes)) {
+    }
+    while (models_.take(heard_.model)) {
+    }
+    while (forces_.take(heard_.force)) {
+    }
+    while (probes_.take(heard_.probe)) {
+    }
+    while (contacts_.take(heard_.contacts)) {
+    }
+    ModuleStatus status;
+    while (statuses_.take(status)) heard_.modules[status.module] = status;
+  }
+
+  std::filesystem::path scene_file_;
+  scene::Scene scene_;
+  bus::BusOptions options_ = own_bus_options();
+  bus::Bus bus_{options_};
+  runtime::Session session_;
+  runtime::SessionConductor conductor_;
+  bus::Writer<ProbeState> inputs_ = bus_.writer(bus::kProbeInput);
+  bus::Reader<NodePositions> nodes_ = bus_.reader(bus::kNodePositions);
+  bus::Reader<ContactModel> models_ = bus_.reader(bus::kContactModel);
+  bus::Reader<HapticForce> forces_ = bus_.reader(bus::kHapticForce);
+  bus::Reader<ProbeState> probes_ = bus_.reader(bus::kProbeState);
+  bus::Reader<Contacts> contacts_ = bus_.reader(bus::kContacts);
+  bus::Reader<ModuleStatus> statuses_ = bus_.reader(bus::kModuleStatus);
+  Heard heard_;
+  double wanted_height_ = 0;
+  std::map<std::string, std::unique_ptr<launcher::ChildProcess>> children_;
+};
+
+}  // namespace palpate::testing

@@ -1,0 +1,189 @@
+#include "visualizer/overlay.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/geometry/primitives.h"
+#include "tests/visualizer/fake_session.h"
+
+using namespace palpate;
+using namespace palpate::visualizer;
+using visualizer::testing::positions_of;
+using visualizer::testing::topology_of;
+using visualizer::testing::two_probe_scene;
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+/// A session in full swing, with an error, long numbers and five processes.
+SceneView busy_view() {
+  SceneView view(two_probe_scene());
+  const auto topology = topology_of(geometry::make_ball(0.05, 2));
+  view.receive(topology);
+  for (int i = 0; i <= 200; ++i) {
+    auto positions = positions_of(topology, 12 + 0.1 * i);
+    positions.volume *= 1 - 1.234e-5 * i;
+    positions.pressure = -12345.6 * i / 200.0;
+    view.receive(positions, 10 * kSecond);
+    HapticForce force;
+    force.header.sim_time_ns = positions.header.sim_time_ns;
+    force.force = Vec3(0.02 * i, 0, 0);
+    for (force.probe = 0; force.probe < 2; ++force.probe) view.receive(force);
+  }
+  for (const char* name : {"deformation", "collision", "haptics", "visualizer", "launcher"}) {
+    ModuleStatus status;
+    status.module = name;
+    status.state = ModuleState::kDegraded;
+    status.rate_hz = 1000;
+    status.overruns = 12345;
+    status.real_time_factor = 0.98;
+    status.last_error = "contact model older than stale_after_s: force fades to zero";
+    status.inputs = {{"contacts", 0.1234, 0, 0, 0}};
+    view.receive(status, 10 * kSecond);
+  }
+  ProbeState probe;
+  view.receive(probe);
+  view.refresh();
+  return view;
+}
+
+Overlay overlay_of(const SceneView& view, const Interaction& interaction, int width, int height,
+                   std::int64_t now_ns) {
+  return make_overlay(view, make_draw_list(view, interaction.options), interaction,
+                      make_layout(width, height), now_ns);
+}
+
+/// Where a text lies, by the mean advance of DejaVu Sans: 0.6 of the size, bold 0.68.
+Box2 extent(const TextItem& text) {
+  const double width = (text.bold ? 0.68 : 0.6) * text.size * double(text.text.size());
+  const double left = text.align == Align::kLeft     ? text.x
+                      : text.align == Align::kCenter ? text.x - 0.5 * width
+                                                     : text.x - width;
+  return {left, text.y - 0.4 * text.size, width, 0.8 * text.size};
+}
+
+bool overlap(const Box2& a, const Box2& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.top() && b.y < a.top();
+}
+
+bool has_text(const Overlay& overlay, const std::string& part) {
+  for (const TextItem& item : overlay.texts) {
+    if (item.text.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("overlay: no two texts overlap and none leaves the picture", "[visualizer]") {
+  // Oracle: brute force over all pairs, at the sizes a window is likely to have. The arrow's label
+  // may lie anywhere in the 3-D part and is left out.
+  const SceneView view = busy_view();
+  for (const auto& [width, height] : {std::pair{1280, 720}, std::pair{1920, 1080}}) {
+    Interaction interaction({0.01, 0.036});
+    const Overlay overlay = overlay_of(view, interaction, width, height, 10 * kSecond);
+    const Box2 picture{0, 0, double(width), double(height)};
+    for (std::size_t i = 0; i < overlay.texts.size(); ++i) {
+      const TextItem& text = overlay.texts[i];
+      if (text.text.empty() || text.text.ends_with(" N")) continue;
+      const Box2 a = extent(text);
+      INFO("'" << text.text << "' at " << a.x << ", " << a.y);
+      CHECK(picture.contains(a.x, a.y));
+      CHECK(picture.contains(a.right(), a.top()));
+      for (std::size_t j = 0; j < i; ++j) {
+        const TextItem& other = overlay.texts[j];
+        if (other.text.empty() || other.text.ends_with(" N")) continue;
+        INFO("and '" << other.text << "'");
+        CHECK_FALSE(overlap(a, extent(other)));
+      }
+    }
+  }
+}
+
+TEST_CASE("overlay: title, time, units of every scale are there", "[visualizer]") {
+  // Oracle: the list of what a reader of the picture needs.
+  const SceneView view = busy_view();
+  Interaction interaction({0.01, 0.036});
+  const Overlay overlay = overlay_of(view, interaction, 1280, 720, 10 * kSecond);
+  for (const char* text :
+       {"made_up", "t = 32.00 s", "real time x 0.98", "principal strain [%]",
+        "1 N = ", "pressure [Pa]", "force [N]", "volume error", "time [s]", "h: keys"}) {
+    INFO(text);
+    CHECK(has_text(overlay, text));
+  }
+  CHECK_FALSE(has_text(overlay, "no new organ shape"));
+  interaction.options.coloring = Coloring::kDisplacement;
+  CHECK(has_text(overlay_of(view, interaction, 1280, 720, 10 * kSecond), "displacement [mm]"));
+}
+
+TEST_CASE("overlay: a lost deformation is marked with the age of the shape",
+          "[visualizer][fault]") {
+  // Oracle: the stated rule.
+  const SceneView view = busy_view();
+  const Interaction interaction({0.01, 0.036});
+  CHECK(has_text(overlay_of(view, interaction, 1280, 720, 14 * kSecond),
+                 "no new organ shape for 4.0 s"));
+}
+
+TEST_CASE("overlay: a pause is told and is not taken for a loss", "[visualizer]") {
+  // Oracle: the stated rule.
+  SceneView view = busy_view();
+  SessionControl pause;
+  pause.header.source_time_ns = 5;
+  pause.command = SessionCommand::kPause;
+  view.receive(pause);
+  const Interaction interaction({0.01, 0.036});
+  const Overlay overlay = overlay_of(view, interaction, 1280, 720, 20 * kSecond);
+  CHECK(has_text(overlay, "paused"));
+  CHECK_FALSE(has_text(overlay, "no new organ shape"));
+}
+
+TEST_CASE("overlay: before the surface comes it says what it waits for", "[visualizer]") {
+  // Oracle: the scene's organ name.
+  const SceneView view(two_probe_scene());
+  const Interaction interaction({0.01, 0.036});
+  CHECK(has_text(overlay_of(view, interaction, 1280, 720, kSecond),
+                 "Waiting for the surface of organ 'ball'"));
+}
+
+TEST_CASE("overlay: help lists every key that does something", "[visualizer]") {
+  // Oracle: the keys Interaction knows.
+  Overlay overlay;
+  add_help({0, 0, 920, 720}, overlay);
+  for (const char* key : {"h", "c", "1 2 3", "space", "r", "s", "q"}) {
+    const auto found = std::find_if(overlay.texts.begin(), overlay.texts.end(),
+                                    [&](const TextItem& text) { return text.text == key; });
+    INFO(key);
+    CHECK(found != overlay.texts.end());
+  }
+}
+
+TEST_CASE("overlay: an arrow's label is beside its tip", "[visualizer][analytic]") {
+  // Oracle: projection.
+  const Camera camera = frontal_camera(Vec3::Zero(), 0.1, 900, 700);
+  DrawList list;
+  list.arrows.push_back({Vec3::Zero(), Vec3(0.05, 0, 0), 0.001, {}, "1.00 N"});
+  list.arrows.push_back({Vec3::Zero(), Vec3(-0.05, 0, 0), 0.001, {}, "2.00 N"});
+  Overlay overlay;
+  add_arrow_labels(list, camera, overlay);
+  REQUIRE(overlay.texts.size() == 2);
+  const double right = project(camera, Vec3(0.05, 0, 0))->x;
+  CHECK(overlay.texts[0].x == Approx(right + 16));
+  CHECK(overlay.texts[0].align == Align::kLeft);
+  CHECK(overlay.texts[1].align == Align::kRight);
+}
+
+TEST_CASE("layout: the parts fill the window and do not overlap", "[visualizer][analytic]") {
+  // Oracle: areas add up.
+  for (const auto& [width, height] :
+       {std::pair{1280, 720}, std::pair{640, 480}, std::pair{2560, 1440}}) {
+    const Layout layout = make_layout(width, height);
+    double area =
+        layout.scene.width * layout.scene.height + layout.table.width * layout.table.height;
+    for (const Box2& plot : layout.plots) area += plot.width * plot.height;
+    CHECK(area == Approx(double(width) * height));
+    CHECK(layout.scene.right() == layout.table.x);
+    CHECK(layout.plots[2].y == Approx(layout.table.top()));
+    CHECK(layout.plots[0].top() == Approx(height));
+  }
+}

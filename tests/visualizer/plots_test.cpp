@@ -1,0 +1,115 @@
+#include "visualizer/plots.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "modules/geometry/primitives.h"
+#include "tests/visualizer/fake_session.h"
+
+using namespace palpate;
+using namespace palpate::visualizer;
+
+namespace {
+
+const PolylineItem* curve_of(const Overlay& overlay, const Rgb& color) {
+  for (const PolylineItem& line : overlay.lines) {
+    if (line.color == color) return &line;
+  }
+  return nullptr;
+}
+
+bool has_text(const Overlay& overlay, const std::string& text) {
+  for (const TextItem& item : overlay.texts) {
+    if (item.text == text) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("plot axis: round, holds the data and zero, two to six steps", "[visualizer]") {
+  // Oracle: properties, over many ranges.
+  for (double size = 1e-9; size < 1e6; size *= 1.7) {
+    for (const auto& [low, high] :
+         {std::pair{0.0, 1.0}, std::pair{-1.0, 0.0}, std::pair{-0.3, 1.0}, std::pair{0.9, 1.0}}) {
+      const Axis axis = round_axis(low * size, high * size, 1e-12);
+      CHECK(axis.low <= low * size + 1e-9 * size);
+      CHECK(axis.high >= high * size - 1e-9 * size);
+      CHECK(axis.low <= 0);
+      CHECK(axis.high >= 0);
+      const double steps = (axis.high - axis.low) / axis.step;
+      CHECK(steps == Approx(std::round(steps)));
+      CHECK(steps > 1.5);
+      CHECK(steps < 6.5);
+    }
+  }
+}
+
+TEST_CASE("plot axis: has a height even for a constant zero", "[visualizer]") {
+  // Oracle: the stated rule.
+  const Axis axis = round_axis(0, 0, 1);
+  CHECK(axis.high - axis.low >= 0.5);
+  CHECK(std::isfinite(axis.step));
+}
+
+TEST_CASE("plot: a straight line in time is a straight line in the picture",
+          "[visualizer][analytic]") {
+  // Oracle: linear mapping: equal steps in, equal steps out, within the plot's box.
+  History history;
+  for (int i = 0; i <= 100; ++i) history.push(0.1 * i, 0.02 * i);
+  const Rgb color{1, 2, 3};
+  Overlay overlay;
+  const Box2 box{100, 50, 340, 180};
+  add_plot("force [N]", {{&history, color, 1}}, 10, box, 0.1, overlay);
+  const PolylineItem* curve = curve_of(overlay, color);
+  REQUIRE(curve != nullptr);
+  REQUIRE(curve->points.size() == 2 * 101);
+  const float dx = curve->points[2] - curve->points[0], dy = curve->points[3] - curve->points[1];
+  CHECK(dx > 0);
+  CHECK(dy > 0);
+  for (std::size_t i = 2; i < curve->points.size(); i += 2) {
+    CHECK(curve->points[i] - curve->points[i - 2] == Approx(dx).margin(1e-3));
+    CHECK(curve->points[i + 1] - curve->points[i - 1] == Approx(dy).margin(1e-3));
+    CHECK(box.contains(curve->points[i], curve->points[i + 1]));
+  }
+  CHECK(has_text(overlay, "force [N]"));
+  CHECK(has_text(overlay, "time [s]"));
+  CHECK(has_text(overlay, "2"));  // newest value, and the axis' top
+}
+
+TEST_CASE("plot: what is older than the span is not drawn", "[visualizer]") {
+  // Oracle: count of samples within the span.
+  History history;
+  for (int i = 0; i <= 300; ++i) history.push(0.1 * i, 1);
+  Overlay overlay;
+  const Rgb color{1, 2, 3};
+  add_plot("x", {{&history, color, 1}}, 30, {0, 0, 340, 180}, 1, overlay);
+  const std::size_t points = curve_of(overlay, color)->points.size() / 2;
+  CHECK(points >= 100);  // rounding may lose the one at the edge
+  CHECK(points <= 101);
+}
+
+TEST_CASE("volume plot: the unit follows the size of the error", "[visualizer]") {
+  // Oracle: 2e-5 = 20 ppm, 0.03 = 3 %, 4e-9 = 4 ppb.
+  const auto unit_at = [](double error) {
+    SceneView view(visualizer::testing::two_probe_scene());
+    const auto topology = visualizer::testing::topology_of(geometry::make_ball(0.05, 1));
+    view.receive(topology);
+    for (const double time : {0.0, 1.0}) {
+      auto positions = visualizer::testing::positions_of(topology, time);
+      positions.volume = positions.target_volume * (1 + error);
+      view.receive(positions, 1);
+    }
+    Overlay overlay;
+    add_plots(view, make_layout(1280, 720).plots, overlay);
+    std::string title;
+    for (const TextItem& text : overlay.texts) {
+      if (text.text.starts_with("volume error")) title = text.text;
+    }
+    return title;
+  };
+  CHECK(unit_at(2e-5) == "volume error [ppm]");
+  CHECK(unit_at(-0.03) == "volume error [%]");
+  CHECK(unit_at(4e-9) == "volume error [ppb]");
+  CHECK(unit_at(0) == "volume error [ppb]");
+}

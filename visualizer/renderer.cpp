@@ -1,0 +1,257 @@
+#include "visualizer/renderer.h"
+
+#include <vtkAutoInit.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCamera.h>
+#include <vtkLight.h>
+#include <vtkNew.h>
+#include <vtkPNGWriter.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkWindowToImageFilter.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "visualizer/overlay_actor.h"
+#include "visualizer/scene_actors.h"
+
+VTK_MODULE_INIT(vtkRenderingOpenGL2)
+VTK_MODULE_INIT(vtkRenderingContextOpenGL2)
+VTK_MODULE_INIT(vtkRenderingFreeType)
+VTK_MODULE_INIT(vtkInteractionStyle)
+
+namespace palpate::visualizer {
+namespace {
+
+// Background, from bottom to top, of the whole window.
+constexpr double kBottom[3] = {0.055, 0.07, 0.095};
+constexpr double kTop[3] = {0.17, 0.205, 0.26};
+
+/// Key light from the upper left, warm; weak cool fill from the right; rim light from behind.
+void light(vtkRenderer& layer) {
+  struct Lamp {
+    std::array<double, 3> from;  // in the camera's frame: right, up, towards the eye
+    std::array<double, 3> color;
+    double intensity;
+  };
+  constexpr std::array<Lamp, 3> kLamps{{{{-0.7, 0.9, 0.9}, {1.0, 0.97, 0.92}, 0.92},
+                                        {{0.9, -0.25, 0.7}, {0.86, 0.92, 1.0}, 0.34},
+                                        {{0.55, 0.7, -0.8}, {0.9, 0.95, 1.0}, 0.55}}};
+  layer.AutomaticLightCreationOff();
+  for (const Lamp& lamp : kLamps) {
+    vtkNew<vtkLight> made;
+    made->SetLightTypeToCameraLight();
+    made->SetPosition(lamp.from[0], lamp.from[1], lamp.from[2]);
+    made->SetFocalPoint(0, 0, 0);
+    made->SetColor(lamp.color.data());
+    made->SetIntensity(lamp.intensity);
+    layer.AddLight(made);
+  }
+}
+
+MouseButton button_of(unsigned long event) {
+  switch (event) {
+    case vtkCommand::LeftButtonPressEvent:
+    case vtkCommand::LeftButtonReleaseEvent:
+      return MouseButton::kLeft;
+    case vtkCommand::MiddleButtonPressEvent:
+    case vtkCommand::MiddleButtonReleaseEvent:
+      return MouseButton::kMiddle;
+    case vtkCommand::RightButtonPressEvent:
+    case vtkCommand::RightButtonReleaseEvent:
+      return MouseButton::kRight;
+    default:
+      return MouseButton::kNone;
+  }
+}
+
+InputEvent translate(vtkRenderWindowInteractor& source, unsigned long event) {
+  InputEvent out;
+  out.x = source.GetEventPosition()[0];
+  out.y = source.GetEventPosition()[1];
+  out.shift = source.GetShiftKey() != 0;
+  out.control = source.GetControlKey() != 0;
+  out.button = button_of(event);
+  switch (event) {
+    case vtkCommand::LeftButtonPressEvent:
+    case vtkCommand::MiddleButtonPressEvent:
+    case vtkCommand::RightButtonPressEvent:
+      out.kind = InputEvent::Kind::kPress;
+      break;
+    case vtkCommand::LeftButtonReleaseEvent:
+    case vtkCommand::MiddleButtonReleaseEvent:
+    case vtkCommand::RightButtonReleaseEvent:
+      out.kind = InputEvent::Kind::kRelease;
+      break;
+    case vtkCommand::MouseWheelForwardEvent:
+    case vtkCommand::MouseWheelBackwardEvent:
+      out.kind = InputEvent::Kind::kWheel;
+      out.wheel_steps = event == vtkCommand::MouseWheelForwardEvent ? 1 : -1;
+      break;
+    case vtkCommand::KeyPressEvent:
+      out.kind = InputEvent::Kind::kKey;
+      out.key = source.GetKeySym() != nullptr ? source.GetKeySym() : "";
+      break;
+    case vtkCommand::ExitEvent:
+      out.kind = InputEvent::Kind::kClose;
+      break;
+    default:
+      break;
+  }
+  return out;
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  // Layers: background and solids; then what is seen through them; then the flat part.
+  vtkNew<vtkRenderWindow> window;
+  vtkNew<vtkRenderer> backdrop, solids, see_through, flat;
+  vtkSmartPointer<vtkRenderWindowInteractor> interactor;  // none without a window
+  vtkNew<vtkCallbackCommand> listener;
+  std::unique_ptr<SceneActors> actors;
+  std::unique_ptr<OverlayActor> overlay;
+  std::vector<InputEvent> events;
+
+  void set_up_window(const RendererOptions& options);
+  void set_up_layers();
+  void listen();
+  void aim(const Camera& camera);
+};
+
+void Renderer::Impl::set_up_window(const RendererOptions& options) {
+  window->SetSize(options.width, options.height);
+  window->SetWindowName(options.title.c_str());
+  window->SetMultiSamples(0);  // FXAA smooths edges at a fraction of the cost
+  window->SetNumberOfLayers(4);
+  if (!options.window) {
+    window->SetShowWindow(false);
+    window->SetUseOffScreenBuffers(true);
+  }
+}
+
+void Renderer::Impl::set_up_layers() {
+  backdrop->SetLayer(0);
+  backdrop->SetInteractive(false);
+  backdrop->GradientBackgroundOn();
+  backdrop->SetBackground(kBottom);
+  backdrop->SetBackground2(kTop);
+  solids->SetLayer(1);
+  solids->UseFXAAOn();
+  see_through->SetLayer(2);
+  flat->SetLayer(3);
+  flat->SetInteractive(false);
+  see_through->SetActiveCamera(solids->GetActiveCamera());
+  light(*solids);
+  light(*see_through);
+  for (vtkRenderer* layer : {backdrop.Get(), solids.Get(), see_through.Get(), flat.Get()}) {
+    window->AddRenderer(layer);
+  }
+}
+
+void Renderer::Impl::listen() {
+  interactor = vtkSmartPointer<vtkRenderWindowInteractor>::New();
+  listener->SetClientData(this);
+  listener->SetCallback([](vtkObject* source, unsigned long event, void* self, void*) {
+    auto* interactor_source = vtkRenderWindowInteractor::SafeDownCast(source);
+    static_cast<Impl*>(self)->events.push_back(translate(*interactor_source, event));
+  });
+  for (const auto event :
+       {vtkCommand::LeftButtonPressEvent, vtkCommand::LeftButtonReleaseEvent,
+        vtkCommand::MiddleButtonPressEvent, vtkCommand::MiddleButtonReleaseEvent,
+        vtkCommand::RightButtonPressEvent, vtkCommand::RightButtonReleaseEvent,
+        vtkCommand::MouseMoveEvent, vtkCommand::MouseWheelForwardEvent,
+        vtkCommand::MouseWheelBackwardEvent, vtkCommand::KeyPressEvent, vtkCommand::ExitEvent}) {
+    interactor->AddObserver(event, listener);
+  }
+  interactor->SetInteractorStyle(nullptr);  // the camera is ours
+  interactor->SetRenderWindow(window);
+  interactor->Initialize();
+}
+
+void Renderer::Impl::aim(const Camera& camera) {
+  vtkCamera* to = solids->GetActiveCamera();
+  const auto& p = camera.position;
+  const auto& t = camera.target;
+  to->SetPosition(p.x(), p.y(), p.z());
+  to->SetFocalPoint(t.x(), t.y(), t.z());
+  to->SetViewUp(camera.up.x(), camera.up.y(), camera.up.z());
+  to->SetViewAngle(camera.view_angle * 180 / std::numbers::pi);
+  const double fraction = std::min(1.0, double(camera.width) / window->GetSize()[0]);
+  solids->SetViewport(0, 0, fraction, 1);
+  see_through->SetViewport(0, 0, fraction, 1);
+  solids->ResetCameraClippingRange();
+  const double range[2] = {0.05 * (p - t).norm(), 20 * (p - t).norm()};
+  double solid_range[2];
+  to->GetClippingRange(solid_range);
+  // The see-through layer may hold more than the solids (a probe far away).
+  to->SetClippingRange(std::min(solid_range[0], std::max(range[0], 0.2 * solid_range[0])),
+                       std::max(solid_range[1], range[1]));
+}
+
+Renderer::Renderer(const RendererOptions& options,
+                   std::vector<geometry::TriangleSurface> probe_surfaces)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->set_up_window(options);
+  impl_->set_up_layers();
+  impl_->actors =
+      std::make_unique<SceneActors>(*impl_->solids, *impl_->see_through, std::move(probe_surfaces));
+  impl_->overlay = std::make_unique<OverlayActor>(*impl_->flat);
+  if (options.window) impl_->listen();
+}
+
+Renderer::~Renderer() {
+  if (impl_->interactor) impl_->interactor->RemoveObserver(impl_->listener);
+  impl_->window->Finalize();
+}
+
+void Renderer::draw(const DrawList& list, const Overlay& overlay, const Camera& camera) {
+  impl_->actors->update(list);
+  impl_->overlay->update(overlay);
+  impl_->aim(camera);
+  impl_->window->Render();
+}
+
+int Renderer::width() const { return impl_->window->GetSize()[0]; }
+int Renderer::height() const { return impl_->window->GetSize()[1]; }
+
+std::vector<InputEvent> Renderer::take_events() {
+  if (impl_->interactor) impl_->interactor->ProcessEvents();
+  return std::exchange(impl_->events, {});
+}
+
+void Renderer::write_png(const std::filesystem::path& file) {
+  vtkNew<vtkWindowToImageFilter> grab;
+  grab->SetInput(impl_->window);
+  grab->ReadFrontBufferOff();
+  grab->ShouldRerenderOff();
+  grab->Update();
+  const std::filesystem::path part = file.string() + ".part";
+  if (!std::ofstream(part)) throw std::runtime_error("cannot write picture " + file.string());
+  vtkNew<vtkPNGWriter> writer;
+  writer->SetInputConnection(grab->GetOutputPort());
+  writer->SetFileName(part.c_str());
+  writer->SetCompressionLevel(4);
+  writer->Write();
+  std::error_code error;
+  if (writer->GetErrorCode() == 0) std::filesystem::rename(part, file, error);
+  if (writer->GetErrorCode() != 0 || error) {
+    throw std::runtime_error("cannot write picture " + file.string());
+  }
+}
+
+std::vector<std::uint8_t> Renderer::pixels() {
+  vtkNew<vtkUnsignedCharArray> data;
+  impl_->window->GetPixelData(0, 0, width() - 1, height() - 1, /*front=*/0, data);
+  return {data->GetPointer(0), data->GetPointer(0) + data->GetNumberOfValues()};
+}
+
+}  // namespace palpate::visualizer

@@ -1,0 +1,301 @@
+#include "visualizer/scene_actors.h"
+
+#include <vtkActor.h>
+#include <vtkCellArray.h>
+#include <vtkFloatArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkPolyDataNormals.h>
+#include <vtkProperty.h>
+#include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace palpate::visualizer {
+namespace {
+
+constexpr double kSharpEdge = 40;  // degrees: sharper edges of a probe are not smoothed
+
+void set_color(vtkActor& actor, const Rgb& rgb) {
+  actor.GetProperty()->SetColor(rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+}
+
+template <class Cells>
+void set_cells(vtkCellArray& out, const Cells& cells) {
+  out.Reset();
+  for (const auto& cell : cells) {
+    out.InsertNextCell(static_cast<vtkIdType>(cell.size()));
+    for (const auto i : cell) out.InsertCellPoint(i);
+  }
+  out.Modified();
+}
+
+/// Copies 3-component values into an array that keeps its memory.
+template <class Array, class Value>
+void copy_triples(Array& array, std::span<const Value> values) {
+  array.SetNumberOfTuples(static_cast<vtkIdType>(values.size() / 3));
+  std::copy(values.begin(), values.end(), array.GetPointer(0));
+  array.Modified();
+}
+
+void set_surface(vtkPolyData& data, const geometry::TriangleSurface& surface) {
+  vtkNew<vtkPoints> points;
+  for (const Vec3& p : surface.nodes) points->InsertNextPoint(p.data());
+  vtkNew<vtkCellArray> cells;
+  set_cells(*cells, surface.triangles);
+  data.SetPoints(points);
+  data.SetPolys(cells);
+}
+
+/// A mesh with its mapper and actor.
+struct Part {
+  vtkNew<vtkPolyData> data;
+  vtkNew<vtkPolyDataMapper> mapper;
+  vtkNew<vtkActor> actor;
+
+  explicit Part(vtkRenderer& layer) {
+    mapper->SetInputData(data);
+    actor->SetMapper(mapper);
+    layer.AddActor(actor);
+  }
+};
+
+/// An organ and its springs, which share the organ's points.
+struct OrganPart {
+  std::uint64_t shape_version = 0, positions_version = 0;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> coordinates, normals;
+  vtkNew<vtkUnsignedCharArray> colors;
+  Part surface;
+  std::array<std::unique_ptr<Part>, 3> springs;
+  std::array<std::uint64_t, 3> spring_versions{};
+
+  explicit OrganPart(vtkRenderer& layer) : surface(layer) {
+    coordinates->SetNumberOfComponents(3);
+    normals->SetNumberOfComponents(3);
+    colors->SetNumberOfComponents(3);
+    points->SetData(coordinates);
+    normals->SetName("Normals");
+    surface.data->SetPoints(points);
+    surface.data->GetPointData()->SetNormals(normals);
+    surface.data->GetPointData()->SetScalars(colors);
+    // Lines on the surface stay in front of it.
+    surface.mapper->SetResolveCoincidentTopologyToPolygonOffset();
+    surface.mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(1, 1);
+    vtkProperty* look = surface.actor->GetProperty();
+    look->SetInterpolationToPhong();
+    look->SetAmbient(0.12);
+    look->SetDiffuse(0.9);
+    look->SetSpecular(0.28);
+    look->SetSpecularPower(28);
+  }
+
+  void update(const SurfaceItem& item) {
+    if (shape_version != item.shape_version) {
+      vtkNew<vtkCellArray> cells;
+      set_cells(*cells, item.triangles);
+      surface.data->SetPolys(cells);
+      shape_version = item.shape_version;
+    }
+    if (positions_version != item.positions_version) {
+      copy_triples(*coordinates, item.positions);
+      copy_triples(*normals, item.normals);
+      points->Modified();
+      positions_version = item.positions_version;
+    }
+    copy_triples(*colors, std::span<const std::uint8_t>(item.colors));
+    surface.data->Modified();
+    surface.actor->GetProperty()->SetOpacity(item.opacity);
+    surface.actor->GetProperty()->SetBackfaceCulling(item.opacity < 1);
+  }
+
+  void update(const SpringItem& item, vtkRenderer& layer) {
+    const auto family = static_cast<std::size_t>(item.family);
+    auto& part = springs[family];
+    if (!part) {
+      part = std::make_unique<Part>(layer);
+      part->data->SetPoints(points);
+      part->actor->GetProperty()->LightingOff();
+      part->actor->GetProperty()->SetLineWidth(item.family == SpringFamily::kInner ? 1.2f : 1.0f);
+      part->actor->GetProperty()->SetOpacity(0.7);
+      set_color(*part->actor, item.color);
+    }
+    if (spring_versions[family] != shape_version) {
+      vtkNew<vtkCellArray> cells;
+      set_cells(*cells, item.ends);
+      part->data->SetLines(cells);
+      spring_versions[family] = shape_version;
+    }
+    part->data->Modified();
+    part->actor->VisibilityOn();
+  }
+};
+
+/// A probe among the solids, and its ghost where tissue hides it.
+struct BodyPart {
+  Part solid, ghost;
+  vtkNew<vtkMatrix4x4> placement;
+
+  BodyPart(vtkRenderer& solids, vtkRenderer& see_through, const geometry::TriangleSurface& surface)
+      : solid(solids), ghost(see_through) {
+    vtkNew<vtkPolyData> plain;
+    set_surface(*plain, surface);
+    vtkNew<vtkPolyDataNormals> smooth;
+    smooth->SetInputData(plain);
+    smooth->SetFeatureAngle(kSharpEdge);
+    smooth->Update();
+    for (Part* part : {&solid, &ghost}) {
+      part->data->ShallowCopy(smooth->GetOutput());
+      part->actor->SetUserMatrix(placement);
+      part->actor->VisibilityOff();
+      part->actor->GetProperty()->SetSpecular(0.5);
+      part->actor->GetProperty()->SetSpecularPower(40);
+    }
+    ghost.actor->GetProperty()->BackfaceCullingOn();
+  }
+
+  void update(const BodyItem& item) {
+    const Mat3 rotation = item.scale * item.pose.rotation.toRotationMatrix();
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        placement->SetElement(row, column, rotation(row, column));
+      }
+      placement->SetElement(row, 3, item.pose.position[row]);
+    }
+    for (Part* part : {&solid, &ghost}) {
+      set_color(*part->actor, item.color);
+      part->actor->VisibilityOn();
+    }
+    solid.actor->GetProperty()->SetOpacity(item.opacity);
+    ghost.actor->GetProperty()->SetOpacity(0.3 * item.opacity);
+  }
+};
+
+/// Contacts, virtual nodes and arrows: few, made anew for each frame.
+struct Marks {
+  Part lines;
+  std::vector<std::unique_ptr<Part>> points, arrows;
+
+  explicit Marks(vtkRenderer& layer) : lines(layer) {
+    lines.actor->GetProperty()->LightingOff();
+    lines.actor->GetProperty()->SetLineWidth(1.5f);
+  }
+
+  static Part& part(std::vector<std::unique_ptr<Part>>& parts, std::size_t i, vtkRenderer& layer) {
+    if (i == parts.size()) parts.push_back(std::make_unique<Part>(layer));
+    parts[i]->actor->VisibilityOn();
+    return *parts[i];
+  }
+  static void hide_from(const std::vector<std::unique_ptr<Part>>& parts, std::size_t first) {
+    for (std::size_t i = first; i < parts.size(); ++i) parts[i]->actor->VisibilityOff();
+  }
+
+  void update_points(const std::vector<PointItem>& items, vtkRenderer& layer);
+  void update_lines(const std::vector<LineItem>& items);
+  void update_arrows(const std::vector<ArrowItem>& items, vtkRenderer& layer);
+};
+
+void Marks::update_points(const std::vector<PointItem>& items, vtkRenderer& layer) {
+  std::map<double, std::vector<const PointItem*>> by_size;  // one actor has one size
+  for (const PointItem& item : items) by_size[item.size].push_back(&item);
+  std::size_t count = 0;
+  for (const auto& [size, group] : by_size) {
+    Part& drawn = part(points, count++, layer);
+    vtkNew<vtkPoints> positions;
+    vtkNew<vtkCellArray> cells;
+    vtkNew<vtkUnsignedCharArray> colors;
+    colors->SetNumberOfComponents(3);
+    for (const PointItem* item : group) {
+      const vtkIdType id = positions->InsertNextPoint(item->position.data());
+      cells->InsertNextCell(1, &id);
+      colors->InsertNextTypedTuple(item->color.data());
+    }
+    drawn.data->SetPoints(positions);
+    drawn.data->SetVerts(cells);
+    drawn.data->GetPointData()->SetScalars(colors);
+    drawn.actor->GetProperty()->SetPointSize(static_cast<float>(size));
+    drawn.actor->GetProperty()->RenderPointsAsSpheresOn();
+  }
+  hide_from(points, count);
+}
+
+void Marks::update_lines(const std::vector<LineItem>& items) {
+  lines.actor->SetVisibility(!items.empty());
+  vtkNew<vtkPoints> positions;
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkUnsignedCharArray> colors;
+  colors->SetNumberOfComponents(3);
+  for (const LineItem& item : items) {
+    const std::array<vtkIdType, 2> ends{positions->InsertNextPoint(item.from.data()),
+                                        positions->InsertNextPoint(item.to.data())};
+    cells->InsertNextCell(2, ends.data());
+    for (int end = 0; end < 2; ++end) colors->InsertNextTypedTuple(item.color.data());
+  }
+  lines.data->SetPoints(positions);
+  lines.data->SetLines(cells);
+  lines.data->GetPointData()->SetScalars(colors);
+}
+
+void Marks::update_arrows(const std::vector<ArrowItem>& items, vtkRenderer& layer) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    Part& drawn = part(arrows, i, layer);
+    geometry::TriangleSurface solid;
+    append_arrow(items[i], solid);
+    set_surface(*drawn.data, solid);
+    drawn.actor->GetProperty()->SetAmbient(0.35);
+    set_color(*drawn.actor, items[i].color);
+  }
+  hide_from(arrows, items.size());
+}
+
+}  // namespace
+
+struct SceneActors::Impl {
+  vtkRenderer& solids;
+  vtkRenderer& see_through;
+  std::map<std::size_t, std::unique_ptr<OrganPart>> organs;
+  std::vector<std::unique_ptr<BodyPart>> bodies;
+  Marks marks;
+
+  Impl(vtkRenderer& s, vtkRenderer& t) : solids(s), see_through(t), marks(t) {}
+};
+
+SceneActors::SceneActors(vtkRenderer& solids, vtkRenderer& see_through,
+                         std::vector<geometry::TriangleSurface> probe_surfaces)
+    : impl_(std::make_unique<Impl>(solids, see_through)) {
+  for (const auto& surface : probe_surfaces) {
+    impl_->bodies.push_back(std::make_unique<BodyPart>(solids, see_through, surface));
+  }
+}
+
+SceneActors::~SceneActors() = default;
+
+void SceneActors::update(const DrawList& list) {
+  for (const auto& [index, organ] : impl_->organs) {
+    for (const auto& part : organ->springs) {
+      if (part) part->actor->VisibilityOff();
+    }
+  }
+  for (const SurfaceItem& item : list.surfaces) {
+    auto& organ = impl_->organs[item.organ];
+    if (!organ) organ = std::make_unique<OrganPart>(impl_->solids);
+    organ->update(item);
+  }
+  for (const SpringItem& item : list.springs) {
+    impl_->organs.at(item.organ)->update(item, impl_->solids);
+  }
+  for (const BodyItem& item : list.bodies) impl_->bodies.at(item.probe)->update(item);
+  impl_->marks.update_points(list.points, impl_->see_through);
+  impl_->marks.update_lines(list.lines);
+  impl_->marks.update_arrows(list.arrows, impl_->see_through);
+}
+
+}  // namespace palpate::visualizer

@@ -1,0 +1,116 @@
+#include "visualizer/status_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "modules/core/units.h"
+
+namespace palpate::visualizer {
+namespace {
+
+constexpr double kFirstRow = 20, kRowHeight = 18;
+
+struct Columns {
+  double name, state, rate, overruns, age;  ///< right ends but for name and state
+};
+
+std::string age_text(const ModuleStatus& status) {
+  double newest = std::numeric_limits<double>::infinity();
+  for (const auto& input : status.inputs) newest = std::min(newest, input.age);
+  if (!std::isfinite(newest)) return "-";
+  return newest < 10 ? text_of("%.0f ms", 1000 * newest) : text_of("%.0f s", newest);
+}
+
+Rgb color_of(ModuleState state) {
+  switch (state) {
+    case ModuleState::kRunning:
+      return palette::kGood;
+    case ModuleState::kDegraded:
+      return palette::kWarning;
+    case ModuleState::kFault:
+      return palette::kBad;
+    default:
+      return palette::kQuiet;
+  }
+}
+
+/// The text broken at a space into at most two lines that fit the table; the rest is cut.
+std::array<std::string, 2> two_lines(const std::string& text) {
+  constexpr std::size_t kLetters = 50;
+  if (text.size() <= kLetters) return {text, ""};
+  const std::size_t space = text.rfind(' ', kLetters);
+  const std::size_t end = space == std::string::npos ? kLetters : space;
+  std::string second = text.substr(text[end] == ' ' ? end + 1 : end);
+  if (second.size() > kLetters) second = second.substr(0, kLetters - 3) + "...";
+  return {text.substr(0, end), second};
+}
+
+void add_row(const ModuleView& module, const Columns& columns, double y, std::int64_t now_ns,
+             Overlay& out) {
+  const ModuleStatus& status = module.status;
+  const double silent = seconds_from_ns(now_ns - module.received_ns);
+  const bool stopped = status.state == ModuleState::kStopped;
+  const bool lost = silent > kLostAfter && !stopped;
+  const Rgb numbers = lost || stopped ? palette::kQuiet : palette::kText;
+  out.texts.push_back({columns.name, y, status.module, 12, numbers});
+  out.texts.push_back({columns.state, y,
+                       lost ? text_of("lost %.0f s", silent) : name_of(status.state), 12,
+                       lost ? palette::kBad : color_of(status.state)});
+  out.texts.push_back(
+      {columns.rate, y, text_of("%.0f", status.rate_hz), 12, numbers, Align::kRight});
+  out.texts.push_back(
+      {columns.overruns, y, std::to_string(status.overruns), 12, numbers, Align::kRight});
+  out.texts.push_back({columns.age, y, age_text(status), 12, numbers, Align::kRight});
+}
+
+}  // namespace
+
+std::string name_of(ModuleState state) {
+  switch (state) {
+    case ModuleState::kStarting:
+      return "starting";
+    case ModuleState::kReady:
+      return "ready";
+    case ModuleState::kRunning:
+      return "running";
+    case ModuleState::kPaused:
+      return "paused";
+    case ModuleState::kDegraded:
+      return "degraded";
+    case ModuleState::kFault:
+      return "fault";
+    case ModuleState::kStopped:
+      return "stopped";
+  }
+  return "?";
+}
+
+void add_status_table(const SceneView& view, const Box2& box, std::int64_t now_ns, Overlay& out) {
+  const Columns columns{box.x + 16, box.x + 112, box.x + 230, box.x + 268, box.right() - 20};
+  double y = box.top() - kFirstRow;
+  out.texts.push_back({columns.name, y, "process", 12, palette::kQuiet});
+  out.texts.push_back({columns.state, y, "state", 12, palette::kQuiet});
+  out.texts.push_back({columns.rate, y, "rate [Hz]", 12, palette::kQuiet, Align::kRight});
+  out.texts.push_back({columns.overruns, y, "late", 12, palette::kQuiet, Align::kRight});
+  out.texts.push_back({columns.age, y, "input age", 12, palette::kQuiet, Align::kRight});
+  out.lines.push_back({{float(columns.name), float(y - 10), float(columns.age), float(y - 10)},
+                       palette::kFrame,
+                       1,
+                       1});
+  std::string error;
+  for (const auto& [name, module] : view.modules()) {
+    y -= kRowHeight;
+    if (y < box.y + 44) break;  // what is below belongs to the error
+    add_row(module, columns, y - 4, now_ns, out);
+    if (!module.status.last_error.empty()) error = name + ": " + module.status.last_error;
+  }
+  double line_y = box.y + 31;
+  for (const std::string& line : two_lines(error)) {
+    out.texts.push_back({columns.name, line_y, line, 11, palette::kWarning});
+    line_y -= 15;
+  }
+}
+
+}  // namespace palpate::visualizer
