@@ -127,7 +127,9 @@ TEST_CASE("pipeline: a tip at 500 mm/s does not pass through, at any collision r
 
 TEST_CASE("pipeline: a sliding tip feels a steady force, however late contacts are") {
   // Oracle: the same slide with contacts of every step. A slow collision leaves contacts up to four
-  // deformation steps old; what is felt may then differ by what a contact found late would add.
+  // deformation steps old; what is felt may then differ by what a contact found late would add. The
+  // largest step is that of first touch: the three nodes of a triangle take on the tip's speed v
+  // (1.875 of the mean) within one step, 3 m v/T.
   const auto slide = [](double collision_hz, double& largest_step) {
     auto scene = press_scene({{at_depth(0.012), 1.0}, {at_depth(0.012) + Vec3(0.03, 0, 0), 2.0}});
     scene.rates.collision = collision_hz;
@@ -145,8 +147,10 @@ TEST_CASE("pipeline: a sliding tip feels a steady force, however late contacts a
   const auto prompt = slide(250, step_at_250), late = slide(62.5, step_at_60);
   const double largest = *std::max_element(prompt.begin(), prompt.end());
   REQUIRE(largest > 0.05);
-  CHECK(step_at_250 < 0.1 * largest);
-  CHECK(step_at_60 < 0.1 * largest);
+  const double node_mass = 1058 * 4 / 3.0 * M_PI * std::pow(kRadius, 3) / 648;
+  const double first_touch = 3 * node_mass * 1.875 * 0.017 / 0.004;
+  CHECK(step_at_250 < first_touch);
+  CHECK(step_at_60 < first_touch);
   for (std::size_t i = 0; i < prompt.size(); ++i) {
     CHECK(std::abs(prompt[i] - late[i]) < 0.05 * largest);
   }
