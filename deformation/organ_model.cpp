@@ -28,17 +28,23 @@ std::vector<double> stiffness_sums(const SpringNetwork& network) {
   return sums;
 }
 
+/// Part of the mass that moves with the axis: the contents around it.
+constexpr double kAxialShare = 0.1;
+
 std::vector<double> node_masses(const SpringNetwork& network, const std::vector<double>& stiffness,
                                 double total_mass) {
   const std::size_t surface_count = network.surface_node_count;
+  const auto first_virtual = stiffness.begin() + static_cast<long>(surface_count);
   const double area = std::accumulate(network.node_areas.begin(), network.node_areas.end(), 0.0);
-  const double surface_stiffness =
-      std::accumulate(stiffness.begin(), stiffness.begin() + static_cast<long>(surface_count), 0.0);
+  const double surface_stiffness = std::accumulate(stiffness.begin(), first_virtual, 0.0);
+  const double axial_stiffness = std::accumulate(first_virtual, stiffness.end(), 0.0);
 
   std::vector<double> masses(network.rest_positions.size());
   for (std::size_t i = 0; i < masses.size(); ++i) {
-    masses[i] = i < surface_count ? total_mass * network.node_areas[i] / area
-                                  : total_mass * stiffness[i] / surface_stiffness;
+    masses[i] = i < surface_count
+                    ? total_mass * network.node_areas[i] / area
+                    : total_mass * stiffness[i] *
+                          std::max(kAxialShare / axial_stiffness, 1 / surface_stiffness);
   }
   const double scale = total_mass / std::accumulate(masses.begin(), masses.end(), 0.0);
   for (double& mass : masses) mass *= scale;

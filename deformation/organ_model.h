@@ -37,8 +37,9 @@ struct OrganState {
 };
 
 /// The organ's total mass is density × enclosed volume (filled organ), spread over the surface
-/// nodes by area. A virtual node gets as much mass per spring stiffness as the mean surface node,
-/// so that it never limits the step; the sum is then scaled back to the total.
+/// nodes by area. A tenth as much goes to the virtual nodes by their springs' stiffness (contents
+/// that move with the axis), and at least so much that none has more stiffness per mass than the
+/// mean surface node; the sum is scaled back to the total. So virtual nodes never limit the step.
 /// Spring damping is ζ of each spring's own critical damping, c = 2 ζ √(k m_a m_b/(m_a+m_b)).
 /// @param rest_surface  closed, oriented outward, in W [m]
 /// @throws InputError naming the organ if every node is fixed or the volume is not positive

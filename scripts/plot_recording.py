@@ -56,6 +56,8 @@ def tables(folder, topic):
 
 def draw(axes, times, values, label):
     """A curve of at most MOST_POINTS; of each stretch the largest magnitude is kept."""
+    if all(math.isnan(value) for value in values):
+        return
     stretch = max(1, math.ceil(len(times) / MOST_POINTS))
     kept = [
         max(range(i, min(i + stretch, len(times))), key=lambda k: abs(values[k]))

@@ -4,6 +4,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkLight.h>
+#include <vtkFXAAOptions.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkRenderWindow.h>
@@ -145,7 +146,10 @@ void Renderer::Impl::set_up_layers() {
   backdrop->SetBackground(kBottom);
   backdrop->SetBackground2(kTop);
   solids->SetLayer(1);
-  solids->UseFXAAOn();
+  if(!getenv("NOFXAA")) {solids->UseFXAAOn();}
+ if(getenv("T1")) solids->GetFXAAOptions()->SetUseHighQualityEndpoints(false);
+if(getenv("T2")) solids->GetFXAAOptions()->SetEndpointSearchIterations(atoi(getenv("T2")));
+if(getenv("T3")) solids->GetFXAAOptions()->SetSubpixelBlendLimit(0);
   see_through->SetLayer(2);
   flat->SetLayer(3);
   flat->SetInteractive(false);

@@ -17,8 +17,10 @@ class StatusReporter {
  public:
   StatusReporter(bus::Bus& bus, std::string module, double nominal_rate_hz, bool realtime_priority);
 
-  /// An input to report on. `statistics` outlives the reporter; at most kMaxInputs.
+  /// An input to report on, until forget_inputs(); at most kMaxInputs.
   void watch(std::string_view topic, const bus::ReaderStatistics& statistics);
+  /// Keeps the inputs' last numbers: the readers are about to go, or gone.
+  void forget_inputs() { inputs_.clear(); }
 
   /// @param error  shown until another state or error is set; cut at kMaxErrorBytes
   void set_state(ModuleState state, std::string_view error = {});

@@ -117,12 +117,12 @@ TEST_CASE("core contacts: the point of a sharp probe has no radius") {
   const Core corner{3, Vec3::Zero(), Vec3::Zero(), 0};
   CoreContacts cores;
   const auto above =
-      find(cores, StepScene(box_at({0.1, 0.2, -1.05}, {2, 2, 2}), Vec3::Zero()), corner);
+      find(cores, StepScene(box_at({0.1, 0.6, -1.05}, {2, 2, 2}), Vec3::Zero()), corner);
   REQUIRE(above.size() == 1);
   CHECK(above[0].gap == Approx(0.05).margin(1e-12));
   CHECK(above[0].point == Vec3::Zero());
   const auto pierced =
-      find(cores, StepScene(box_at({0.1, 0.2, -0.9}, {2, 2, 2}), {0, 0, 0.15}), corner);
+      find(cores, StepScene(box_at({0.1, 0.6, -0.9}, {2, 2, 2}), {0, 0, 0.15}), corner);
   REQUIRE(pierced.size() == 1);
   CHECK(pierced[0].gap == Approx(-0.1).margin(1e-12));
   CHECK((pierced[0].normal - Vec3::UnitZ()).norm() < 1e-12);
