@@ -46,7 +46,7 @@ class RootSearch {
       }
     }
     reach_ = separation + kRounding * largest;
-    tolerance_ = kImpactTolerance * extent;
+    tolerance_ = std::max(kImpactTolerance * extent, separation);
     set_slopes();
   }
 

@@ -29,7 +29,8 @@ struct Impact {
 /// Corners at one time: point, a, b, c or a₀, a₁, b₀, b₁.
 using FourPoints = std::array<Vec3, 4>;
 
-/// @param separation  features count as meeting when closer than this along every axis [m], ≥ 0
+/// @param separation  features that come closer than this along every axis count as meeting; those
+///        closer than twice that may [m], ≥ 0
 std::optional<Impact> point_triangle_impact(const FourPoints& start, const FourPoints& end,
                                             double separation = 0);
 std::optional<Impact> edge_edge_impact(const FourPoints& start, const FourPoints& end,

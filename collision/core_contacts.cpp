@@ -37,16 +37,27 @@ struct Candidate {
   }
 };
 
-/// Did the core go from the front of the triangle through it?
+Vec3 at_weights(const TriangleCorners& triangle, const Vec3& weights) {
+  return weights[0] * triangle[0] + weights[1] * triangle[1] + weights[2] * triangle[2];
+}
+
+double height_over(const TriangleCorners& triangle, const Vec3& p) {
+  return unit_normal(triangle).dot(p - triangle[0]);
+}
+
+/// Did the core go from the front of the triangle through it? What counts is the point of the core
+/// that met it: another part of a segment may be anywhere.
 std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
-                                       const SweptTriangle& triangle,
-                                       const SegmentAndTriangle& pair_end, double side_end) {
+                                       const SweptTriangle& triangle, double distance_end) {
   const double separation = step.motion.chord_error();
-  if (side_end > 0 || pair_end.distance > triangle.travel + separation) return {};
-  const Vec3 normal_start = unit_normal(triangle.start);
-  const SegmentAndTriangle pair_start = closest(core, triangle.start);
-  if (!(normal_start.dot(pair_start.on_segment - triangle.start[0]) > 0)) return {};
-  return first_crossing(core, triangle, separation);
+  if (distance_end > triangle.travel + separation) return {};
+  if (core.is_point() && !(height_over(triangle.end, core.a) <= 0)) return {};
+  if (core.is_point() && !(height_over(triangle.start, core.a) > 0)) return {};
+  const auto crossing = first_crossing(core, triangle, separation);
+  if (!crossing || core.is_point()) return crossing;
+  const bool is_inward = height_over(triangle.start, crossing->on_core) > 0 &&
+                         height_over(triangle.end, crossing->on_core) <= 0;
+  return is_inward ? crossing : std::nullopt;
 }
 
 /// Core in front of the triangle at the end.
@@ -78,8 +89,7 @@ void append_graze(const OrganStep& step, const Core& core, const Candidate& cand
   contact.normal = apart / nearest.pair.distance;
   contact.weights = nearest.pair.on_triangle.weights;
   contact.point = nearest.pair.on_segment - core.radius * contact.normal;
-  Vec3 tissue = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) tissue += contact.weights[k] * triangle.end[k];
+  const Vec3 tissue = at_weights(triangle.end, contact.weights);
   contact.gap = contact.normal.dot(contact.point - tissue);
   if (contact.gap <= step.margin) append_contact(contact, triangle.nodes, found);
 }
@@ -122,8 +132,7 @@ void append_crossed(const OrganStep& step, const Core& core, const Candidate& ca
   contact.weights = candidate.crossing->weights;
   contact.normal = candidate.triangle.normal_end;
   contact.point = candidate.crossing->on_core - core.radius * contact.normal;
-  Vec3 tissue = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) tissue += contact.weights[k] * candidate.triangle.end[k];
+  const Vec3 tissue = at_weights(candidate.triangle.end, contact.weights);
   contact.gap = contact.normal.dot(contact.point - tissue);
   append_contact(contact, candidate.triangle.nodes, found);
 }
@@ -170,11 +179,11 @@ std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, 
   std::vector<std::uint32_t> behind;
   for (const Candidate& c : candidates) {
     if (!c.on_wall) continue;
-    if (c.side > 0) {
+    if (c.side > 0 && !c.crossing) {
       if (c.gap(core) <= step.margin) append_front(step, core, c, found);
       continue;
     }
-    bool is_behind = append_behind(step, core, c, depth_limit, &c == nearest, found);
+    bool is_behind = c.side <= 0 && append_behind(step, core, c, depth_limit, &c == nearest, found);
     if (!is_behind && c.crossing) {
       append_crossed(step, core, c, found);
       is_behind = true;
@@ -237,7 +246,7 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
     c.side = side(triangle, c.pair);
     c.remembered = std::any_of(before.begin(), before.end(),
                                [&](const Behind& b) { return b.triangle == triangle.index; });
-    c.crossing = crossed_inward(step, core, triangle, c.pair, c.side);
+    c.crossing = crossed_inward(step, core, triangle, c.pair.distance);
     if (c.crossing) depth_limit = std::max(depth_limit, step.depth_limit);
     is_behind = is_behind || c.crossing;
     near.push_back(c);

@@ -137,8 +137,8 @@ void EdgeContacts::find_pair(const OrganStep& step, const SharpMesh& probe, cons
   const SegmentPair at = end.closest();
   const double distance = (at.on_first - at.on_second).norm();
   const double travel = std::max((end.b0 - start.b0).norm(), (end.b1 - start.b1).norm());
-  const double separation = step.motion.chord_error() + kDirectionless;
-  const bool may_cross = distance <= travel + separation;
+  const double separation = step.motion.chord_error();
+  const bool may_cross = distance <= travel + separation + kDirectionless;
   const Crossed* crossed = remembered(step.organ_index, pair);
   if (distance > step.margin && !may_cross && crossed == nullptr) return;
   start.outward = step.edge_normal_start(pair.second);

@@ -115,8 +115,10 @@ void add_plot(const std::string& title, const std::vector<Curve>& curves, double
   for (const Curve& curve : curves) {
     add_curve(curve, axis, area, since, out);
     if (curve.history->empty()) continue;
-    out.texts.push_back({x, title_y, text_of("%.4g", curve.factor * curve.history->newest().value),
-                         13, curve.color, Align::kRight, true});
+    const double grain = 1e-3 * axis.step;  // digits that the plot cannot show are not written
+    const double newest = grain * std::round(curve.factor * curve.history->newest().value / grain);
+    out.texts.push_back({x, title_y, text_of("%.4g", newest == 0 ? 0.0 : newest), 13, curve.color,
+                         Align::kRight, true});
     x -= 62;
   }
 }

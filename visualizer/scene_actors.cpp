@@ -175,7 +175,7 @@ struct BodyPart {
       part->actor->VisibilityOn();
     }
     solid.actor->GetProperty()->SetOpacity(item.opacity);
-    ghost.actor->GetProperty()->SetOpacity(getenv("OPQ")?1.0:0.3 * item.opacity);
+    ghost.actor->GetProperty()->SetOpacity(0.3 * item.opacity);
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "modules/core/error.h"
@@ -179,19 +178,6 @@ void show(runtime::Module& module, Stage& stage, const VisualizerOptions& option
 }
 
 }  // namespace
-
-runtime::ModuleProgram visualizer_program(VisualizerOptions& options) {
-  return {"visualizer", "Shows a session: organ, probes, forces, plots and every process.",
-          [&options](CLI::App& app) {
-            app.add_flag("--headless", options.headless, "Draw without a window (needs Xvfb)");
-            app.add_option("--frames", options.frames, "Folder for a PNG sequence");
-            app.add_option("--frame-interval-s", options.frame_interval,
-                           "Simulated seconds between two pictures of the sequence")
-                ->check(CLI::Range(0.001, 3600.0))
-                ->capture_default_str();
-            app.add_option("--screenshot", options.screenshot, "PNG of the last picture");
-          }};
-}
 
 void run_visualizer(const runtime::ModuleOptions& common, const VisualizerOptions& options) {
   const scene::Scene scene = scene::load_scene(common.scene);

@@ -14,8 +14,6 @@ struct VisualizerOptions {
   std::filesystem::path screenshot;  ///< --screenshot FILE: the last picture; empty = none
 };
 
-runtime::ModuleProgram visualizer_program(VisualizerOptions& options);
-
 /// Shows the session until it stops, a signal comes or the window is closed. Nothing that other
 /// processes do or fail to do ends it.
 /// @throws InputError for a scene or folder that cannot be used; std::runtime_error without any

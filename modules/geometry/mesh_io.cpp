@@ -4,10 +4,13 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/geometry/ply_bytes.h"
 #include "modules/geometry/weld.h"
 
 namespace palpate::geometry {
@@ -22,6 +25,14 @@ void check_file(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, error)) refuse(file, "no such mesh file");
   if (!std::filesystem::is_regular_file(file, error)) refuse(file, "is not a file");
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "is empty");
+}
+
+const aiScene* import(Assimp::Importer& importer, const std::filesystem::path& file) {
+  if (file.extension() != ".ply") return importer.ReadFile(file.string(), 0);
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  protect_first_data_byte(bytes);
+  return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "ply");
 }
 
 /// assimp leaves bad indices to its post-processing, which would read past the end.
@@ -80,7 +91,7 @@ TriangleSurface read_surface(const std::filesystem::path& file, std::string_view
   const double scale = metres_per_unit(unit);
   check_file(file);
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  const aiScene* scene = import(importer, file);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     refuse(file, std::string("is not a surface mesh this program reads (") +
                      importer.GetErrorString() +

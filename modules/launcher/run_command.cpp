@@ -20,6 +20,8 @@ namespace palpate::launcher {
 namespace {
 
 constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
+/// A session that already runs has been heard by then: twice the longest discovery measured.
+constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
 constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
 
 SceneDescription describe(const scene::Scene& scene, const std::string& digest) {
@@ -78,12 +80,14 @@ class Run {
   /// False if the session cannot start.
   bool wait_until_ready() {
     const auto expected = modules_.reporting_modules();
-    std::int64_t line_ns = runtime::monotonic_now_ns() + kWaitingLineEveryNs;
+    const std::int64_t begin_ns = runtime::monotonic_now_ns();
+    const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : kDiscoveryNs);
+    std::int64_t line_ns = begin_ns + kWaitingLineEveryNs;
     while (next_cycle()) {
       const auto waiting = monitor_.not_ready(expected);
-      if (waiting.empty()) return true;
+      if (waiting.empty() && loop_.woke_ns() >= earliest_ns) return true;
       if (exit_code_ != kExitDone) return false;
-      if (loop_.woke_ns() < line_ns) continue;
+      if (waiting.empty() || loop_.woke_ns() < line_ns) continue;
       line_ns += kWaitingLineEveryNs;
       log_ << "palpate: waiting for " << joined(waiting) << std::endl;
     }

@@ -62,7 +62,7 @@ TEST_CASE("dead deformation: started again it joins, and is pressed where the fi
   CHECK(session.heard().modules.at("deformation").state >= ModuleState::kRunning);
 }
 
-TEST_CASE("dead collision: contacts are dropped, the force ends; started again it joins") {
+TEST_CASE("dead collision: contacts are dropped, the force ends, and started again it joins") {
   // Oracle: kInputStaleAfter, then the tissue lets go and the model says so.
   const BallScene scene;
   RunningSession session(scene);

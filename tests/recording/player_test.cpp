@@ -138,7 +138,7 @@ TEST_CASE("player: before the start and while paused the newest pose of a time h
   CHECK(lines[2] == "0.25,3,0,0,0,0,0,1");
 }
 
-TEST_CASE("player: after a reset only the last stretch counts; torn and invalid are told") {
+TEST_CASE("player: after a reset only the last stretch counts, torn and invalid are told") {
   // Oracle: rows and warnings by hand.
   TempFolder folder;
   const auto name = folder / "a.mcap";

@@ -131,7 +131,7 @@ TEST_CASE("recorder: the scene is noted once, and again when another is loaded")
   CHECK(file.statistics().message_count == 3);
 }
 
-TEST_CASE("recorder: a full disk and a bad session are reported; the latter leaves no file") {
+TEST_CASE("recorder: a full disk and a bad session are reported, and the latter leaves no file") {
   // Oracle: the kernel's device that is always full; the rules of bus::BusOptions.
   CHECK_THROWS_WITH(Recorder(own_options(), "/dev/full"),
                     "/dev/full: cannot write: No space left on device");

@@ -89,6 +89,16 @@ TEST_CASE("plot: what is older than the span is not drawn", "[visualizer]") {
   CHECK(points <= 101);
 }
 
+TEST_CASE("plot: a newest value too small to see is written as zero", "[visualizer]") {
+  // Oracle: the stated rule: a thousandth of a grid step.
+  History history;
+  history.push(0, 2);
+  history.push(1, 1e-7);
+  Overlay overlay;
+  add_plot("x", {{&history, {1, 2, 3}, 1}}, 10, {0, 0, 340, 180}, 1, overlay);
+  CHECK(overlay.texts.back().text == "0");
+}
+
 TEST_CASE("volume plot: the unit follows the size of the error", "[visualizer]") {
   // Oracle: 2e-5 = 20 ppm, 0.03 = 3 %, 4e-9 = 4 ppb.
   const auto unit_at = [](double error) {
