@@ -1,5 +1,7 @@
 #include "deformation/spring_forces.h"
 
+#include <cmath>
+
 namespace palpate::deformation {
 
 void add_spring_forces(const OrganModel& model, const OrganState& state,
@@ -8,12 +10,13 @@ void add_spring_forces(const OrganModel& model, const OrganState& state,
   for (std::size_t s = 0; s < springs.size(); ++s) {
     const Spring& spring = springs[s];
     const Vec3 along = state.positions[spring.node_b] - state.positions[spring.node_a];
-    const double length = along.norm();
+    const double length = std::sqrt(along.squaredNorm());
     if (length == 0) continue;
+    const double inverse_length = 1 / length;
     const Vec3 closing = state.velocities[spring.node_b] - state.velocities[spring.node_a];
     const double tension = spring.stiffness * (length - spring.rest_length) +
-                           model.spring_damping[s] * closing.dot(along) / length;
-    const Vec3 force = (tension / length) * along;
+                           model.spring_damping[s] * (closing.dot(along) * inverse_length);
+    const Vec3 force = (tension * inverse_length) * along;
     forces[spring.node_a] += force;
     forces[spring.node_b] -= force;
   }

@@ -6,7 +6,7 @@ namespace palpate::deformation {
 
 void evaluate_volume(const OrganModel& model, const std::vector<Vec3>& positions,
                      VolumeGradient& out) {
-  const Vec3 origin = positions[0];
+  const Vec3& origin = positions[0];
   double six_volumes = 0;
   out.gradient.assign(model.surface_node_count(), Vec3::Zero());
   for (const auto& [i, j, k] : model.triangles) {

@@ -38,6 +38,7 @@ struct ProbeLoop {
 std::vector<std::vector<geometry::Triangle>> triangles_of(
     const std::vector<geometry::TriangleSurface>& surfaces) {
   std::vector<std::vector<geometry::Triangle>> triangles;
+  triangles.reserve(surfaces.size());
   for (const auto& surface : surfaces) triangles.push_back(surface.triangles);
   return triangles;
 }
