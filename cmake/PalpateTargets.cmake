@@ -36,8 +36,6 @@ function(palpate_library name)
                         PRIVATE ${ARG_PRIVATE_DEPENDS} palpate_warnings)
 endfunction()
 
-add_custom_target(programs COMMENT "Everything but the tests")
-
 # palpate_program(FILE_NAME SOURCES … DEPENDS …): an executable in build/…/bin
 function(palpate_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
@@ -45,7 +43,6 @@ function(palpate_program name)
   add_executable(${target}_program ${ARG_SOURCES})
   set_target_properties(${target}_program PROPERTIES OUTPUT_NAME ${name})
   target_link_libraries(${target}_program PRIVATE ${ARG_DEPENDS} palpate_warnings)
-  add_dependencies(programs ${target}_program)
 endfunction()
 
 # palpate_tests(NAME SOURCES … DEPENDS … [LABELS …] [TIMEOUT seconds] [SERIAL])

@@ -5,7 +5,7 @@
       volume error, pressure, force on each probe, rates and input ages over session time, from
       the files that `palpate inspect RECORDING --csv CSV_FOLDER` writes
   plot_recording.py strip FRAMES_FOLDER OUT.png [--count N]
-      N frames (frame_<seconds>.png, as the visualizer writes them) side by side, evenly spaced
+      N frames (frame_<seconds>.png, as the visualizer writes them), evenly spaced, three in a row
 """
 
 import argparse
@@ -26,6 +26,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 FRAME_NAME = re.compile(r"frame_(\d+(?:\.\d+)?)\.png$")
 SMALLEST_ERROR = 1e-16  # rounding of a relative volume: what a logarithmic axis can show of zero
 SELDOM_WRITTEN = {"scene", "surface", "session_control"}  # old by nature: their age says nothing
+MOST_COLUMNS = 3  # of a picture strip: more would be too small to read
 MOST_POINTS = 4000  # per curve: more cannot be seen
 
 
@@ -165,19 +166,22 @@ def strip(folder, out, count):
     chosen = evenly_spaced(frames, count)
     images = [plt.imread(file) for _, file in chosen]
     height, width = images[0].shape[:2]
-    inches = 3.0
+    inches = 4.0
+    columns = min(len(chosen), MOST_COLUMNS)
+    rows = math.ceil(len(chosen) / columns)
     figure, panels = plt.subplots(
-        1,
-        len(chosen),
+        rows,
+        columns,
         squeeze=False,
-        figsize=(inches * len(chosen), inches * height / width + 0.3),
-        dpi=150,
-        gridspec_kw={"wspace": 0.02},
+        figsize=(inches * columns, (inches * height / width + 0.25) * rows),
+        dpi=120,
+        gridspec_kw={"wspace": 0.02, "hspace": 0.1},
     )
-    for axes, (time, _), image in zip(panels[0], chosen, images):
-        axes.imshow(image)
-        axes.set_title(f"{time:.1f} s", fontsize=10)
+    for axes in panels.flat:
         axes.axis("off")
+    for axes, (time, _), image in zip(panels.flat, chosen, images):
+        axes.imshow(image)
+        axes.set_title(f"{time:.1f} s", fontsize=9, pad=3)
     figure.savefig(out, bbox_inches="tight", pad_inches=0.05)
 
 
