@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collision/core_contacts.h"
 #include "collision/edge_contacts.h"
@@ -29,7 +30,7 @@ using VertexPair = std::pair<std::uint32_t, std::size_t>;
 /// One probe and what it remembers of its last step.
 class ProbeSearch {
  public:
-  explicit ProbeSearch(const ProbeGeometry& geometry) : model_(geometry) {}
+  explicit ProbeSearch(ProbeGeometry geometry) : model_(std::move(geometry)) {}
 
   void reset() {
     cores_.reset();
@@ -173,7 +174,7 @@ ContactFinder::ContactFinder(std::vector<std::vector<geometry::Triangle>> organ_
                              std::vector<ProbeGeometry> probes)
     : impl_(std::make_unique<Impl>()) {
   for (auto& triangles : organ_triangles) impl_->organs.emplace_back(std::move(triangles));
-  for (const ProbeGeometry& probe : probes) impl_->probes.emplace_back(probe);
+  for (ProbeGeometry& probe : probes) impl_->probes.emplace_back(std::move(probe));
 }
 
 ContactFinder::~ContactFinder() = default;

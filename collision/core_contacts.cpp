@@ -13,14 +13,14 @@ constexpr double kDirectionless = 1e-9;
 /// A triangle belongs to the wall a core is behind if its normal is within 78° of the wall's.
 constexpr double kSameWall = 0.2;
 
-double side(const SweptTriangle& triangle, const SegmentAndTriangle& pair) {
+double side(const SweptTriangle& triangle, const geometry::SegmentAndTriangle& pair) {
   return triangle.normal_end.dot(pair.on_segment - triangle.end[0]);
 }
 
 struct Candidate {
   const SweptTriangle& triangle;
-  SegmentAndTriangle pair;  ///< at the end
-  double side = 0;          ///< of the core at the end, > 0 in front [m]
+  geometry::SegmentAndTriangle pair;  ///< at the end
+  double side = 0;                    ///< of the core at the end, > 0 in front [m]
   std::optional<Crossing> crossing;
   bool remembered = false;
   bool on_wall = false;  ///< connected with what the core is behind of
@@ -37,12 +37,12 @@ struct Candidate {
   }
 };
 
-Vec3 at_weights(const TriangleCorners& triangle, const Vec3& weights) {
+Vec3 at_weights(const geometry::TriangleCorners& triangle, const Vec3& weights) {
   return weights[0] * triangle[0] + weights[1] * triangle[1] + weights[2] * triangle[2];
 }
 
-double height_over(const TriangleCorners& triangle, const Vec3& p) {
-  return unit_normal(triangle).dot(p - triangle[0]);
+double height_over(const geometry::TriangleCorners& triangle, const Vec3& p) {
+  return geometry::unit_normal(triangle).dot(p - triangle[0]);
 }
 
 /// Did the core go from the front of the triangle through it? What counts is the point of the core
@@ -53,18 +53,19 @@ std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
   if (distance_end > triangle.travel + separation) return {};
   if (core.is_point() && !(height_over(triangle.end, core.a) <= 0)) return {};
   if (core.is_point() && !(height_over(triangle.start, core.a) > 0)) return {};
-  const auto crossing = first_crossing(core, triangle, separation);
+  auto crossing = first_crossing(core, triangle, separation);
   if (!crossing || core.is_point()) return crossing;
   const bool is_inward = height_over(triangle.start, crossing->on_core) > 0 &&
                          height_over(triangle.end, crossing->on_core) <= 0;
-  return is_inward ? crossing : std::nullopt;
+  if (!is_inward) crossing.reset();
+  return crossing;
 }
 
 /// Core in front of the triangle at the end.
 void append_front(const OrganStep& step, const Core& core, const Candidate& candidate,
                   std::vector<FoundContact>& found) {
   FoundContact contact = candidate.contact(step, core);
-  const SegmentAndTriangle& pair = candidate.pair;
+  const geometry::SegmentAndTriangle& pair = candidate.pair;
   contact.normal = pair.distance > kDirectionless
                        ? Vec3((pair.on_segment - pair.on_triangle.point) / pair.distance)
                        : candidate.triangle.normal_end;
@@ -84,7 +85,7 @@ void append_graze(const OrganStep& step, const Core& core, const Candidate& cand
   const ClosestApproach nearest = closest_approach(core, triangle, touch);
   if (nearest.pair.distance >= core.radius || nearest.pair.distance < kDirectionless) return;
   const Vec3 apart = nearest.pair.on_segment - nearest.pair.on_triangle.point;
-  if (apart.dot(unit_normal(triangle.at(nearest.time))) <= 0) return;
+  if (apart.dot(geometry::unit_normal(triangle.at(nearest.time))) <= 0) return;
   FoundContact contact = candidate.contact(step, core);
   contact.normal = apart / nearest.pair.distance;
   contact.weights = nearest.pair.on_triangle.weights;
@@ -109,7 +110,7 @@ double reach_below(const Core& core, const Vec3& nearest, const Vec3& q, const V
 bool append_behind(const OrganStep& step, const Core& core, const Candidate& candidate,
                    double depth_limit, bool nearest_of_wall, std::vector<FoundContact>& found) {
   const SweptTriangle& triangle = candidate.triangle;
-  const SegmentAndTriangle& pair = candidate.pair;
+  const geometry::SegmentAndTriangle& pair = candidate.pair;
   FoundContact contact = candidate.contact(step, core);
   contact.normal = triangle.normal_end;
   contact.gap = reach_below(core, pair.on_segment, pair.on_triangle.point, contact.normal);

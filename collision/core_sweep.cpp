@@ -30,9 +30,9 @@ void cross_with_point(const Vec3& p, const SweptTriangle& t, double separation,
 
 }  // namespace
 
-SegmentAndTriangle closest(const Core& core, const TriangleCorners& triangle) {
-  if (!core.is_point()) return closest_of_segment_and_triangle(core.a, core.b, triangle);
-  const PointOnTriangle on_triangle = closest_on_triangle(core.a, triangle);
+geometry::SegmentAndTriangle closest(const Core& core, const geometry::TriangleCorners& triangle) {
+  if (!core.is_point()) return geometry::closest_of_segment_and_triangle(core.a, core.b, triangle);
+  const geometry::PointOnTriangle on_triangle = geometry::closest_on_triangle(core.a, triangle);
   return {core.a, on_triangle, (core.a - on_triangle.point).norm()};
 }
 

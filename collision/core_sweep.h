@@ -17,7 +17,7 @@ struct Core {
 };
 
 /// Closest points of core and triangle at one time.
-SegmentAndTriangle closest(const Core& core, const TriangleCorners& triangle);
+geometry::SegmentAndTriangle closest(const Core& core, const geometry::TriangleCorners& triangle);
 
 /// Lower bound, up to a millionth of the radius, of the first time core and triangle are closer
 /// than the radius; 1 if they are not. Conservative advancement: no corner moves further than
@@ -27,7 +27,7 @@ double time_of_touch(const Core& core, const SweptTriangle& triangle);
 /// Where core and triangle are closest within [from, 1].
 struct ClosestApproach {
   double time = 0;
-  SegmentAndTriangle pair;
+  geometry::SegmentAndTriangle pair;
 };
 ClosestApproach closest_approach(const Core& core, const SweptTriangle& triangle, double from);
 

@@ -20,7 +20,7 @@ struct Edges {
   Vec3 b0, b1;  ///< organ's
   Vec3 outward;
 
-  SegmentPair closest() const { return closest_of_segments(a0, a1, b0, b1); }
+  geometry::SegmentPair closest() const { return geometry::closest_of_segments(a0, a1, b0, b1); }
   /// Unit common perpendicular on the organ's outer side; zero if parallel.
   Vec3 perpendicular() const {
     const Vec3 normal = (a1 - a0).cross(b1 - b0);
@@ -35,7 +35,7 @@ bool opposes(const SharpEdge& sharp, const Vec3& normal) {
   return normal.dot(sharp.face_normals[0] + sharp.face_normals[1]) < 0;
 }
 
-bool is_inside(const SegmentPair& pair) {
+bool is_inside(const geometry::SegmentPair& pair) {
   return std::min({pair.s, pair.t, 1 - pair.s, 1 - pair.t}) > kInside;
 }
 
@@ -68,7 +68,7 @@ bool is_ridge(const OrganStep& step, const EdgePair& pair, const Edges& edges, c
 }
 
 bool in_front(const OrganStep& step, const SharpEdge& sharp, const EdgePair& pair,
-              const Edges& edges, const SegmentPair& at) {
+              const Edges& edges, const geometry::SegmentPair& at) {
   const Vec3 apart = at.on_first - at.on_second;
   if (apart.norm() < kDirectionless || apart.dot(edges.outward) <= 0) return false;
   for (const Vec3& into : sharp.into_face) {
@@ -134,7 +134,7 @@ void EdgeContacts::find_pair(const OrganStep& step, const SharpMesh& probe, cons
                              std::vector<FoundContact>& found) {
   Edges start = edges_at_start(step, probe, pair), end = edges_at_end(step, probe, pair);
   const SharpEdge& sharp = probe.edges()[pair.first];
-  const SegmentPair at = end.closest();
+  const geometry::SegmentPair at = end.closest();
   const double distance = (at.on_first - at.on_second).norm();
   const double travel = std::max((end.b0 - start.b0).norm(), (end.b1 - start.b1).norm());
   const double separation = step.motion.chord_error();

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
-#include "collision/closest_points.h"
 #include "collision/continuous_collision.h"
+#include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
 namespace {
@@ -14,7 +15,8 @@ constexpr std::uint32_t kFlatEdge = 0xffffffff;
 constexpr double kFlat = 0.9999;      // cosine between faces: below 0.8°
 constexpr double kOnSurface = 1e-12;  // [m]
 
-TriangleCorners corners_of(const geometry::TriangleSurface& mesh, std::uint32_t triangle) {
+geometry::TriangleCorners corners_of(const geometry::TriangleSurface& mesh,
+                                     std::uint32_t triangle) {
   const geometry::Triangle& t = mesh.triangles[triangle];
   return {mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]]};
 }
@@ -46,7 +48,7 @@ class MeshSolid final : public ProbeSolid {
     std::optional<SolidPoint> best;
     for (const std::uint32_t t : near) {
       if (mesh_.face_normal(t) == Vec3::Zero()) continue;
-      const PointOnTriangle closest = closest_on_triangle(x, corners(t));
+      const geometry::PointOnTriangle closest = geometry::closest_on_triangle(x, corners(t));
       const double distance = (x - closest.point).norm();
       if (distance > (best ? std::abs(best->distance) : within)) continue;
       if (best && distance == std::abs(best->distance)) continue;
@@ -68,7 +70,7 @@ class MeshSolid final : public ProbeSolid {
     std::optional<SolidEntry> first;
     for (const std::uint32_t t : near) {
       const Vec3& normal = mesh_.face_normal(t);
-      const TriangleCorners c = corners(t);
+      const geometry::TriangleCorners c = corners(t);
       if (normal.dot(start - c[0]) <= 0 || normal.dot(end - start) >= 0) continue;
       const auto impact =
           point_triangle_impact({start, c[0], c[1], c[2]}, {end, c[0], c[1], c[2]}, separation);
@@ -87,12 +89,13 @@ class MeshSolid final : public ProbeSolid {
     mesh_.triangles_near(box, near);
     return std::any_of(near.begin(), near.end(), [&](std::uint32_t t) {
       return mesh_.face_normal(t) != Vec3::Zero() &&
-             closest_of_segment_and_triangle(x, end, corners(t)).distance < kImpactTolerance;
+             geometry::closest_of_segment_and_triangle(x, end, corners(t)).distance <
+                 kImpactTolerance;
     });
   }
 
  private:
-  TriangleCorners corners(std::uint32_t t) const {
+  geometry::TriangleCorners corners(std::uint32_t t) const {
     const geometry::Triangle& nodes = mesh_.triangles()[t];
     return {mesh_.vertices()[nodes[0]], mesh_.vertices()[nodes[1]], mesh_.vertices()[nodes[2]]};
   }
@@ -103,8 +106,8 @@ class MeshSolid final : public ProbeSolid {
 
 }  // namespace
 
-SharpMesh::SharpMesh(const geometry::TriangleSurface& mesh)
-    : mesh_(mesh), bvh_(mesh.nodes, mesh.triangles) {
+SharpMesh::SharpMesh(geometry::TriangleSurface mesh)
+    : mesh_(std::move(mesh)), bvh_(mesh_.nodes, mesh_.triangles) {
   build_normals();
   build_edges();
 }
@@ -112,8 +115,8 @@ SharpMesh::SharpMesh(const geometry::TriangleSurface& mesh)
 void SharpMesh::build_normals() {
   vertex_normals_.assign(mesh_.nodes.size(), Vec3::Zero());
   for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const TriangleCorners c = corners_of(mesh_, t);
-    face_normals_.push_back(unit_normal(c));
+    const geometry::TriangleCorners c = corners_of(mesh_, t);
+    face_normals_.push_back(geometry::unit_normal(c));
     for (int k = 0; k < 3; ++k) {
       const double angle = angle_between(c[(k + 1) % 3] - c[k], c[(k + 2) % 3] - c[k]);
       vertex_normals_[mesh_.triangles[t][k]] += angle * face_normals_.back();

@@ -19,7 +19,7 @@ struct SharpEdge {
 class SharpMesh {
  public:
   /// @param mesh  closed, outward; degenerate triangles take no part
-  explicit SharpMesh(const geometry::TriangleSurface& mesh);
+  explicit SharpMesh(geometry::TriangleSurface mesh);
 
   const std::vector<Vec3>& vertices() const { return mesh_.nodes; }
   const std::vector<geometry::Triangle>& triangles() const { return mesh_.triangles; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "modules/core/error.h"
@@ -36,7 +37,6 @@ void OrganSurface::build_edges() {
     std::array<std::uint32_t, 2> nodes;
     std::uint32_t triangle;
     std::uint32_t corner;
-    auto operator<=>(const Side&) const = default;
   };
   std::vector<Side> sides;
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
@@ -45,7 +45,9 @@ void OrganSurface::build_edges() {
       sides.push_back({{a, b}, t, k});
     }
   }
-  std::sort(sides.begin(), sides.end());
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.nodes, a.triangle, a.corner) < std::tie(b.nodes, b.triangle, b.corner);
+  });
   edges_of_triangle_.resize(triangles_.size());
   for (const Side& side : sides) {
     if (edges_.empty() || edges_.back().nodes != side.nodes) {

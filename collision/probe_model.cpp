@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "modules/geometry/primitives.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 struct Builder {
   ProbeModel& model;
-  const geometry::TriangleSurface& mesh;
+  geometry::TriangleSurface& mesh;
 
   void operator()(const scene::SphereShape& sphere) const {
     model.cores = {Core{0, Vec3::Zero(), Vec3::Zero(), sphere.radius}};
@@ -38,10 +39,10 @@ struct Builder {
     model.depth_believed = std::numeric_limits<double>::infinity();
   }
   void operator()(const scene::MeshShape&) const {
-    model.sharp = std::make_unique<SharpMesh>(mesh);
+    model.sharp = std::make_unique<SharpMesh>(std::move(mesh));
     model.solid = make_mesh_solid(*model.sharp);
     model.bounds = model.sharp->bounds();
-    for (const Vec3& x : mesh.nodes) model.reach = std::max(model.reach, x.norm());
+    for (const Vec3& x : model.sharp->vertices()) model.reach = std::max(model.reach, x.norm());
     set_depth();
   }
 
@@ -56,8 +57,6 @@ struct Builder {
 
 }  // namespace
 
-ProbeModel::ProbeModel(const ProbeGeometry& probe) {
-  std::visit(Builder{*this, probe.mesh}, probe.shape);
-}
+ProbeModel::ProbeModel(ProbeGeometry probe) { std::visit(Builder{*this, probe.mesh}, probe.shape); }
 
 }  // namespace palpate::collision

@@ -12,7 +12,7 @@
 namespace palpate::collision {
 
 struct ProbeModel {
-  explicit ProbeModel(const ProbeGeometry& probe);
+  explicit ProbeModel(ProbeGeometry probe);
 
   std::vector<Core> cores;            ///< sphere; capsule: its axis and both ends
   std::unique_ptr<SharpMesh> sharp;   ///< box, mesh: corners and edges

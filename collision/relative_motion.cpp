@@ -46,8 +46,8 @@ Bounds RelativeMotion::swept(const Bounds& box_P) const {
   return result;
 }
 
-TriangleCorners SweptTriangle::at(double t) const {
-  TriangleCorners corners;
+geometry::TriangleCorners SweptTriangle::at(double t) const {
+  geometry::TriangleCorners corners;
   for (int k = 0; k < 3; ++k) corners[k] = start[k] + t * (end[k] - start[k]);
   return corners;
 }
@@ -71,7 +71,7 @@ bool OrganStep::sweep(std::uint32_t triangle, SweptTriangle& result) const {
     squared = std::max(squared, (result.end[k] - result.start[k]).squaredNorm());
   }
   result.travel = std::sqrt(squared) * (1 + kRounding) + kRounding;
-  result.normal_end = unit_normal(result.end);
+  result.normal_end = geometry::unit_normal(result.end);
   return result.normal_end != Vec3::Zero();
 }
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "collision/closest_points.h"
 #include "collision/contact_finder.h"
 #include "collision/organ_surface.h"
+#include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
 
@@ -42,11 +42,11 @@ class RelativeMotion {
 struct SweptTriangle {
   std::uint32_t index = 0;
   geometry::Triangle nodes{};
-  TriangleCorners start, end;
+  geometry::TriangleCorners start, end;
   Vec3 normal_end = Vec3::Zero();  ///< unit, outward
   double travel = 0;               ///< largest way of a corner, rounded up [m]
 
-  TriangleCorners at(double t) const;
+  geometry::TriangleCorners at(double t) const;
   Bounds bounds() const;
 };
 

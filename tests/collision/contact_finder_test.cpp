@@ -21,10 +21,11 @@ std::map<std::array<double, 3>, double> brute_force(const geometry::TriangleSurf
                                                     double margin) {
   std::map<std::array<double, 3>, double> gaps;
   for (const auto& t : organ.triangles) {
-    const TriangleCorners corners{organ.nodes[t[0]], organ.nodes[t[1]], organ.nodes[t[2]]};
-    const PointOnTriangle closest = closest_on_triangle(center, corners);
+    const geometry::TriangleCorners corners{organ.nodes[t[0]], organ.nodes[t[1]],
+                                            organ.nodes[t[2]]};
+    const geometry::PointOnTriangle closest = geometry::closest_on_triangle(center, corners);
     const double gap = (center - closest.point).norm() - radius;
-    if (gap > margin || unit_normal(corners).dot(center - corners[0]) <= 0) continue;
+    if (gap > margin || geometry::unit_normal(corners).dot(center - corners[0]) <= 0) continue;
     // Rounded, so that a place found over two triangles is one.
     std::array<double, 3> place;
     for (int k = 0; k < 3; ++k) place[k] = std::round(closest.point[k] * 1e9);

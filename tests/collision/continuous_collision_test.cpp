@@ -118,9 +118,9 @@ TEST_CASE("continuous collision: agrees with exact segment and triangle for a mo
   // known in closed form. Ways that pass within 1e-6 may be called either way.
   RandomShapes random(6);
   for (int trial = 0; trial < 1000; ++trial) {
-    const TriangleCorners t = random.triangle(1);
+    const geometry::TriangleCorners t = random.triangle(1);
     const Vec3 from = random.point(1.5), to = random.point(1.5);
-    const double apart = closest_of_segment_and_triangle(from, to, t).distance;
+    const double apart = geometry::closest_of_segment_and_triangle(from, to, t).distance;
     const auto impact = point_triangle_impact({from, t[0], t[1], t[2]}, {to, t[0], t[1], t[2]});
     if (apart == 0) CHECK(impact);
     if (apart > 1e-6) CHECK_FALSE(impact);

@@ -7,19 +7,19 @@
 namespace palpate::collision {
 namespace {
 
-SweptTriangle moving(const TriangleCorners& start, const TriangleCorners& end) {
+SweptTriangle moving(const geometry::TriangleCorners& start, const geometry::TriangleCorners& end) {
   SweptTriangle triangle;
   triangle.start = start;
   triangle.end = end;
-  triangle.normal_end = unit_normal(end);
+  triangle.normal_end = geometry::unit_normal(end);
   for (int k = 0; k < 3; ++k)
     triangle.travel = std::max(triangle.travel, (end[k] - start[k]).norm());
   return triangle;
 }
 
 SweptTriangle random_sweep(RandomShapes& random, double deform) {
-  const TriangleCorners start = random.triangle(1);
-  TriangleCorners end;
+  const geometry::TriangleCorners start = random.triangle(1);
+  geometry::TriangleCorners end;
   const Vec3 way = random.point(1.5);
   for (int k = 0; k < 3; ++k) end[k] = start[k] + way + random.point(deform);
   return moving(start, end);
@@ -56,14 +56,14 @@ TEST_CASE("time of touch: never after the first touch, and close before it") {
 
 TEST_CASE("time of touch: a sphere falling on a floor") {
   // Oracle: analytic.
-  const TriangleCorners start{Vec3(-9, -9, -3), Vec3(9, -9, -3), Vec3(0, 9, -3)};
-  TriangleCorners end = start;
+  const geometry::TriangleCorners start{Vec3(-9, -9, -3), Vec3(9, -9, -3), Vec3(0, 9, -3)};
+  geometry::TriangleCorners end = start;
   for (Vec3& x : end) x[2] = 1;
   const Core sphere{0, Vec3::Zero(), Vec3::Zero(), 0.5};
   CHECK(time_of_touch(sphere, moving(start, end)) == Approx(2.5 / 4).margin(1e-6));
   CHECK(time_of_touch(sphere, moving(start, start)) == 1);
   CHECK(time_of_touch(sphere, moving(end, end)) == 1);
-  const TriangleCorners overlapping{Vec3(-9, -9, 0), Vec3(9, -9, 0), Vec3(0, 9, 0)};
+  const geometry::TriangleCorners overlapping{Vec3(-9, -9, 0), Vec3(9, -9, 0), Vec3(0, 9, 0)};
   CHECK(time_of_touch(sphere, moving(overlapping, start)) == 0);
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("first crossing: no crossing of a sampled core is missed") {
     CHECK(crossing->weights.sum() == Approx(1));
     CHECK(crossing->weights.minCoeff() >= -1e-12);
     Vec3 met = Vec3::Zero();
-    const TriangleCorners at = triangle.at(crossing->time);
+    const geometry::TriangleCorners at = triangle.at(crossing->time);
     for (int k = 0; k < 3; ++k) met += crossing->weights[k] * at[k];
     CHECK((met - crossing->on_core).norm() < 1e-6);
   }

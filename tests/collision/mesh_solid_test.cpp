@@ -47,8 +47,8 @@ TEST_CASE("mesh solid: the sign is right next to sharp edges and corners") {
         nodes[trial % 4] + along * (nodes[(trial + 1) % 4] - nodes[trial % 4]) + random.point(0.1);
     double planes = -1e9;
     for (const auto& t : tetrahedron.triangles) {
-      const TriangleCorners c{nodes[t[0]], nodes[t[1]], nodes[t[2]]};
-      planes = std::max(planes, unit_normal(c).dot(x - c[0]));
+      const geometry::TriangleCorners c{nodes[t[0]], nodes[t[1]], nodes[t[2]]};
+      planes = std::max(planes, geometry::unit_normal(c).dot(x - c[0]));
     }
     const auto near = solid->nearest(x, 1);
     REQUIRE(near);

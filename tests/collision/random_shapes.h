@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "collision/closest_points.h"
+#include "modules/geometry/closest_points.h"
 #include "modules/geometry/primitives.h"
 
 namespace palpate::collision {
@@ -27,7 +27,9 @@ class RandomShapes {
     }
   }
   Quat rotation() { return Quat(Eigen::AngleAxisd(number(0, 3), direction())); }
-  TriangleCorners triangle(double extent) { return {point(extent), point(extent), point(extent)}; }
+  geometry::TriangleCorners triangle(double extent) {
+    return {point(extent), point(extent), point(extent)};
+  }
 
   /// A ball with smooth dents and bulges of up to a tenth of its radius.
   geometry::TriangleSurface deformed_ball(double radius, int levels) {

@@ -1,11 +1,13 @@
-#include "collision/closest_points.h"
+#include "modules/geometry/closest_points.h"
 
 #include <catch2/catch.hpp>
 
 #include "tests/collision/random_shapes.h"
 
-namespace palpate::collision {
+namespace palpate::geometry {
 namespace {
+
+using collision::RandomShapes;
 
 constexpr int kSamples = 60;  // per direction
 
@@ -114,4 +116,4 @@ TEST_CASE("unit normal: outward for counter-clockwise corners, zero for what has
   CHECK(unit_normal({Vec3(NAN, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}) == Vec3::Zero());
 }
 
-}  // namespace palpate::collision
+}  // namespace palpate::geometry
