@@ -44,8 +44,8 @@ struct ProbeState {
 
 /// One place where a probe touches, or within this step may touch, an organ.
 struct Contact {
-  std::uint32_t organ = 0;     ///< index in the scene's list
-  std::uint32_t triangle = 0;  ///< index in the organ's surface
+  std::uint32_t organ = 0;             ///< index in the scene's list
+  std::uint32_t triangle = 0;          ///< index in the organ's surface
   Vec3 barycentric = Vec3::Zero();     ///< weights of the triangle's nodes, ≥ 0, sum 1
   Vec3 point_on_probe = Vec3::Zero();  ///< nearest point of the probe's surface, in W [m]
   Vec3 normal = Vec3::UnitZ();         ///< unit, from tissue to probe, in W
@@ -56,10 +56,10 @@ struct Contact {
 /// Contacts of one probe, found with the probe at `probe_pose`.
 struct Contacts {
   Header header;
-  std::uint32_t probe = 0;  ///< (key)
-  Pose probe_pose;          ///< X_WP for which point_on_probe and normal hold
+  std::uint32_t probe = 0;                    ///< (key)
+  Pose probe_pose;                            ///< X_WP for which point_on_probe and normal hold
   std::uint64_t node_positions_sequence = 0;  ///< the surface they were found on
-  bool truncated = false;   ///< more than kMaxContactsPerProbe were found; the deepest are kept
+  bool truncated = false;  ///< more than kMaxContactsPerProbe were found; the deepest are kept
   std::vector<Contact> contacts;  ///< sorted by (organ, triangle)
 };
 
@@ -68,15 +68,15 @@ struct Contacts {
 /// friction cone. Not valid further than `validity_radius` from the anchor.
 struct ContactModel {
   Header header;
-  std::uint32_t probe = 0;              ///< (key)
-  bool touching = false;                ///< false: the tissue gives no force near the anchor
-  Vec3 anchor = Vec3::Zero();           ///< probe origin at which `force` was computed, in W [m]
-  Vec3 force = Vec3::Zero();            ///< on the probe, in W [N]
-  Vec3 torque = Vec3::Zero();           ///< on the probe about its origin, in W [N·m]
-  Mat3 stiffness = Mat3::Zero();        ///< −∂force/∂x, symmetric, positive semidefinite [N/m]
-  Vec3 normal = Vec3::UnitZ();          ///< unit, from tissue to probe, in W
+  std::uint32_t probe = 0;        ///< (key)
+  bool touching = false;          ///< false: the tissue gives no force near the anchor
+  Vec3 anchor = Vec3::Zero();     ///< probe origin at which `force` was computed, in W [m]
+  Vec3 force = Vec3::Zero();      ///< on the probe, in W [N]
+  Vec3 torque = Vec3::Zero();     ///< on the probe about its origin, in W [N·m]
+  Mat3 stiffness = Mat3::Zero();  ///< −∂force/∂x, symmetric, positive semidefinite [N/m]
+  Vec3 normal = Vec3::UnitZ();    ///< unit, from tissue to probe, in W
   double friction_coefficient = 0;
-  double validity_radius = 0;           ///< [m]
+  double validity_radius = 0;  ///< [m]
 };
 
 /// Deformed nodes of one organ: surface nodes first, then virtual nodes.
@@ -101,12 +101,12 @@ struct SurfaceTopology {
     SpringFamily family = SpringFamily::kStructural;
   };
   Header header;
-  std::uint32_t organ = 0;         ///< (key)
-  std::uint32_t generation = 0;    ///< counts restarts and resets of the organ
+  std::uint32_t organ = 0;       ///< (key)
+  std::uint32_t generation = 0;  ///< counts restarts and resets of the organ
   std::string name;
   std::uint32_t surface_node_count = 0;
-  std::vector<float> rest_positions;                     ///< (node_count × 3) in W [m]
-  std::vector<std::array<std::uint32_t, 3>> triangles;   ///< outward orientation
+  std::vector<float> rest_positions;                    ///< (node_count × 3) in W [m]
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward orientation
   std::vector<std::uint32_t> fixed_nodes;
   std::vector<Spring> springs;
 };
@@ -125,12 +125,12 @@ enum ForceLimit : std::uint32_t {
 /// Force commanded to the device.
 struct HapticForce {
   Header header;
-  std::uint32_t probe = 0;     ///< (key)
-  Vec3 force = Vec3::Zero();   ///< on the probe, in W [N]
-  Vec3 torque = Vec3::Zero();  ///< on the probe about its origin, in W [N·m]
+  std::uint32_t probe = 0;                  ///< (key)
+  Vec3 force = Vec3::Zero();                ///< on the probe, in W [N]
+  Vec3 torque = Vec3::Zero();               ///< on the probe about its origin, in W [N·m]
   std::uint32_t limits = kForceNotLimited;  ///< ForceLimit bits
-  double passivity_energy = 0;  ///< energy observed at the probe port, negative = generated [J]
-  double contact_model_age = 0; ///< at the tick; infinity before the first [s]
+  double passivity_energy = 0;   ///< energy observed at the probe port, negative = generated [J]
+  double contact_model_age = 0;  ///< at the tick; infinity before the first [s]
 };
 
 enum class ModuleState : std::uint8_t {
@@ -147,16 +147,16 @@ enum class ModuleState : std::uint8_t {
 struct ModuleStatus {
   struct Input {
     std::string topic;
-    double age = 0;             ///< of the newest sample; infinity before the first [s]
+    double age = 0;  ///< of the newest sample; infinity before the first [s]
     std::uint64_t received = 0;
-    std::uint64_t dropped = 0;  ///< gaps in the writers' sequence numbers
-    std::uint64_t rejected = 0; ///< samples refused by the codec
+    std::uint64_t dropped = 0;   ///< gaps in the writers' sequence numbers
+    std::uint64_t rejected = 0;  ///< samples refused by the codec
   };
   Header header;
   std::string module;  ///< "deformation", "collision", … (key)
   ModuleState state = ModuleState::kStarting;
   std::int64_t process_id = 0;
-  double rate_hz = 0;           ///< cycles per wall second since the last status
+  double rate_hz = 0;  ///< cycles per wall second since the last status
   double nominal_rate_hz = 0;
   std::uint64_t cycles = 0;     ///< since start
   std::uint64_t overruns = 0;   ///< cycles that missed their period, since start
@@ -164,8 +164,8 @@ struct ModuleStatus {
   double busy_fraction = 0;     ///< of the period spent working, mean since the last status
   double real_time_factor = 0;  ///< simulated per wall time, 0 where it has no meaning
   bool realtime_priority = false;
-  std::string last_error;       ///< empty if none
-  std::vector<Input> inputs;    ///< at most kMaxInputs
+  std::string last_error;     ///< empty if none
+  std::vector<Input> inputs;  ///< at most kMaxInputs
 };
 
 /// The resolved scene, for late joiners and recordings.

@@ -1,4 +1,5 @@
-// Vocabulary types shared by every layer. SI units; frame W (world, right-handed, z up) unless said.
+// Vocabulary types shared by every layer. SI units; frame W (world, right-handed, z up) unless
+// said.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +13,8 @@ using Quat = Eigen::Quaterniond;
 
 /// Pose X_WB of a body B in the world.
 struct Pose {
-  Vec3 position = Vec3::Zero();         ///< p_WB [m]
-  Quat rotation = Quat::Identity();     ///< unit quaternion R_WB
+  Vec3 position = Vec3::Zero();      ///< p_WB [m]
+  Quat rotation = Quat::Identity();  ///< unit quaternion R_WB
 
   Vec3 to_world(const Vec3& p_B) const { return position + rotation * p_B; }
   Vec3 to_body(const Vec3& p_W) const { return rotation.conjugate() * (p_W - position); }

@@ -34,7 +34,8 @@ class Module {
 
   bus::Bus& bus() { return bus_; }
 
-  /// An input whose age and losses the status reports. The reader lives until the last next_cycle().
+  /// An input whose age and losses the status reports. The reader lives until the last
+  /// next_cycle().
   template <class Message>
   void watch(const bus::TopicOf<Message>& topic, const bus::Reader<Message>& reader) {
     status_.watch(topic.name, reader.statistics());
