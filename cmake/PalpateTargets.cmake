@@ -57,7 +57,8 @@ function(palpate_tests name)
   target_link_libraries(${name}_tests PRIVATE ${ARG_DEPENDS} Catch2::Catch2WithMain palpate_warnings)
   target_compile_definitions(${name}_tests PRIVATE
     PALPATE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PALPATE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
-  set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  # A test without its data says "SKIPPED: …" and returns; ctest then counts it as skipped, not passed.
+  set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_REGULAR_EXPRESSION "SKIPPED:")
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
   endif()

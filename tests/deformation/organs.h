@@ -9,7 +9,7 @@
 
 namespace palpate::deformation::testing {
 
-/// Ball of 5 cm, E 10 kPa, wall 3 mm: the case of the volume error table in docs/numerics.md.
+/// Ball of 5 cm radius, E 10 kPa, wall 3 mm.
 inline scene::Organ ball_organ() {
   scene::Organ organ;
   organ.name = "ball";
