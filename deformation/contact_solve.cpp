@@ -23,11 +23,14 @@ struct PreparedRow {
 class Solver {
  public:
   Solver(const OrganModel& model, const VolumeRow* volume, double h, std::span<ContactRow> rows,
-         std::vector<Vec3>& velocities)
+         std::vector<Vec3>& velocities, StartImpulses start)
       : model_(model), volume_(volume), rows_(rows), velocities_(velocities) {
     prepared_.resize(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) prepare(rows[r], h, prepared_[r]);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t r = 0; start == StartImpulses::kToApply && r < rows.size(); ++r) {
+      // Start values are only a guess, but must lie in the cone of this row.
+      rows[r].tangential_impulse -= rows[r].normal * rows[r].normal.dot(rows[r].tangential_impulse);
+      clamp_to_cone(rows[r]);
       add_impulse(r, rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal);
     }
     if (volume_ != nullptr) {
@@ -63,7 +66,7 @@ class Solver {
   }
 
  private:
-  void prepare(ContactRow& row, double h, PreparedRow& prepared) {
+  void prepare(const ContactRow& row, double h, PreparedRow& prepared) {
     for (int k = 0; k < 3; ++k) {
       const double b_over_m = row.weights[k] * model_.inverse_masses[row.nodes[k]];
       prepared.inverse_mass += row.weights[k] * b_over_m;
@@ -78,9 +81,6 @@ class Solver {
     prepared.normal_inverse_mass =
         std::max(prepared.inverse_mass - reduction, kLeastMobility * prepared.inverse_mass);
     prepared.allowed_approach = std::max(row.gap / h, -kMaxSeparationSpeed);
-    // Start values are only a guess, but must lie in the cone of this row.
-    row.tangential_impulse -= row.normal * row.normal.dot(row.tangential_impulse);
-    clamp_to_cone(row);
   }
 
   static void clamp_to_cone(ContactRow& row) {
@@ -140,14 +140,14 @@ class Solver {
 
 ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const VolumeRow* volume,
                                              double h, std::span<ContactRow> rows,
-                                             std::vector<Vec3>& velocities) {
+                                             std::vector<Vec3>& velocities, StartImpulses start) {
   ContactSolveReport report;
   if (volume != nullptr &&
       !(volume->at.denominator > kVanishedDenominator * model.rest_denominator)) {
     volume = nullptr;
     report.volume_skipped = true;
   }
-  Solver solver(model, volume, h, rows, velocities);
+  Solver solver(model, volume, h, rows, velocities, start);
   if (!rows.empty()) {
     do {
       ++report.sweeps;

@@ -49,10 +49,14 @@ struct ContactSolveReport {
 /// tissue away; the remaining depth follows in the next steps.
 inline constexpr double kMaxSeparationSpeed = 1.0;
 
+/// Whether the impulses the rows bring are already in the velocities.
+enum class StartImpulses { kToApply, kApplied };
+
 /// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.
 /// Sweeps end when no contact velocity changes by more than 1e-9 m/s, or after 60.
 ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const VolumeRow* volume,
                                              double h, std::span<ContactRow> rows,
-                                             std::vector<Vec3>& velocities);
+                                             std::vector<Vec3>& velocities,
+                                             StartImpulses start = StartImpulses::kToApply);
 
 }  // namespace palpate::deformation

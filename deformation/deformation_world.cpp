@@ -4,17 +4,15 @@
 #include <cmath>
 #include <sstream>
 
-#include "deformation/organ_model.h"
+#include "deformation/organ_dynamics.h"
 #include "deformation/probe_contacts.h"
 #include "deformation/spring_forces.h"
-#include "deformation/symplectic_euler.h"
+#include "deformation/target_volume.h"
 #include "modules/core/error.h"
 
 namespace palpate::deformation {
 namespace {
 
-/// Of the bound; Gershgorin is on the safe side, the volume constraint takes a few per cent.
-constexpr double kStepSafety = 0.9;
 constexpr double kLeastStep = 1e-6;      // [s]
 constexpr double kMaxNodeSpeed = 100.0;  // [m/s]; nothing soft moves faster and means it
 /// The contact model is believed within this part of the mean edge: the touched nodes stay the
@@ -22,12 +20,12 @@ constexpr double kMaxNodeSpeed = 100.0;  // [m/s]; nothing soft moves faster and
 constexpr double kValidityOfEdge = 0.5;
 
 struct SimulatedOrgan {
-  OrganModel model;
+  std::unique_ptr<const OrganModel> model;
+  std::unique_ptr<OrganDynamics> dynamics;
+  TargetVolume target_volume{{}};
   OrganState state, last_good;
   SurfaceTopology topology;
-  StepBuffers buffers;
   std::vector<ContactRow> rows;
-  double stable_step = 0;
   double mean_edge = 0;
 };
 
@@ -68,15 +66,17 @@ bool is_sound(const OrganState& state) {
 SimulatedOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
                           const geometry::TriangleSurface& surface) {
   SimulatedOrgan simulated;
-  simulated.model = build_organ_model(organ, gravity, surface);
-  simulated.state = simulated.last_good = rest_state(simulated.model);
-  simulated.topology = make_topology(organ, index, simulated.model);
-  simulated.stable_step = kStepSafety * stable_step_bound(simulated.model);
-  simulated.mean_edge = mean_structural_length(simulated.model.network);
-  if (simulated.stable_step < kLeastStep) {
+  simulated.model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, surface));
+  const OrganModel& model = *simulated.model;
+  simulated.dynamics = make_dynamics(organ, model);
+  simulated.target_volume = TargetVolume(organ.filling);
+  simulated.state = simulated.last_good = rest_state(model);
+  simulated.topology = make_topology(organ, index, model);
+  simulated.mean_edge = mean_structural_length(model.network);
+  if (simulated.dynamics->largest_step() < kLeastStep) {
     std::ostringstream message;
-    message << "organ '" << organ.name << "': its largest stable step is " << simulated.stable_step
-            << " s, less than " << kLeastStep
+    message << "organ '" << organ.name << "': its largest stable step is "
+            << simulated.dynamics->largest_step() << " s, less than " << kLeastStep
             << " s; soften the tissue or even out the mesh ('nodes')";
     throw InputError(message.str());
   }
@@ -93,7 +93,7 @@ struct DeformationWorld::Impl {
 
   bool names_our_triangle(const Contact& contact) const {
     return contact.organ < organs.size() &&
-           contact.triangle < organs[contact.organ].model.triangles.size();
+           contact.triangle < organs[contact.organ].model->triangles.size();
   }
 
   /// One organ through one advance, all probes moving along.
@@ -104,11 +104,12 @@ struct DeformationWorld::Impl {
       const double fraction = static_cast<double>(step) / substeps;
       organ.rows.clear();
       for (auto& probe : probes) {
-        probe.append_rows(index, organ.model, organ.state, h, fraction, organ.rows);
+        probe.append_rows(index, *organ.model, organ.state, h, fraction, organ.rows);
       }
-      const auto solved =
-          symplectic_euler_step(organ.model, h, organ.rows, organ.state, organ.buffers);
-      report.volume_skipped |= solved.volume_skipped;
+      organ.state.target_volume =
+          organ.model->rest_volume * organ.target_volume.follow(time + fraction * period, h);
+      const StepReport stepped = organ.dynamics->step(h, organ.rows, organ.state);
+      report.volume_skipped |= stepped.volume_skipped;
       std::size_t first = 0;
       for (auto& probe : probes)
         first += probe.take_rows(index, fraction, organ.rows.data() + first);
@@ -119,7 +120,7 @@ struct DeformationWorld::Impl {
   /// Keeps a sound state; puts an unsound one back, at rest, to where it last was sound.
   static void finish(SimulatedOrgan& organ, AdvanceReport& report) {
     if (is_sound(organ.state)) {
-      organ.state.volume = geometry::enclosed_volume(organ.state.positions, organ.model.triangles);
+      organ.state.volume = geometry::enclosed_volume(organ.state.positions, organ.model->triangles);
       organ.last_good = organ.state;
       return;
     }
@@ -133,7 +134,7 @@ struct DeformationWorld::Impl {
     double limit = 0;
     for (const CarriedContact& contact : probe.contacts()) {
       if (contact.normal_impulse <= 0) continue;
-      const OrganModel& model = organs[contact.organ].model;
+      const OrganModel& model = *organs[contact.organ].model;
       for (int k = 0; k < 3; ++k) {
         limit += contact.weights[k] * model.node_stiffness[model.triangles[contact.triangle][k]];
       }
@@ -190,7 +191,8 @@ AdvanceReport DeformationWorld::advance(double period) {
 
 void DeformationWorld::reset() {
   for (auto& organ : impl_->organs) {
-    organ.state = organ.last_good = rest_state(organ.model);
+    organ.state = organ.last_good = rest_state(*organ.model);
+    organ.target_volume.reset();
     ++organ.topology.generation;
   }
   for (auto& probe : impl_->probes) probe.reset();
@@ -200,11 +202,11 @@ void DeformationWorld::reset() {
 double DeformationWorld::time() const { return impl_->time; }
 
 double DeformationWorld::stable_step(std::size_t organ) const {
-  return impl_->organs.at(organ).stable_step;
+  return impl_->organs.at(organ).dynamics->largest_step();
 }
 
 int DeformationWorld::substeps(std::size_t organ, double period) const {
-  return static_cast<int>(std::ceil(period / stable_step(organ)));
+  return std::max(1, static_cast<int>(std::ceil(period / stable_step(organ))));
 }
 
 void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositions& out) const {
@@ -214,10 +216,10 @@ void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositio
   out.volume = organ.state.volume;
   out.target_volume = organ.state.target_volume;
   out.pressure = organ.state.pressure;
-  out.kinetic_energy = kinetic_energy(organ.model, organ.state.velocities);
-  out.elastic_energy = elastic_energy(organ.model, organ.state.positions);
-  out.positions.resize(3 * organ.model.node_count());
-  for (std::size_t i = 0; i < organ.model.node_count(); ++i) {
+  out.kinetic_energy = kinetic_energy(*organ.model, organ.state.velocities);
+  out.elastic_energy = elastic_energy(*organ.model, organ.state.positions);
+  out.positions.resize(3 * organ.model->node_count());
+  for (std::size_t i = 0; i < organ.model->node_count(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       out.positions[3 * i + static_cast<std::size_t>(axis)] =
           static_cast<float>(organ.state.positions[i][axis]);

@@ -99,7 +99,8 @@ OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
   model.spring_damping = axial_damping(model.network, model.masses, organ.tissue.damping_ratio);
   model.gravity = gravity;
   model.drag = organ.tissue.drag;
-  model.preserve_volume = organ.preserve_volume;
+  model.preserve_volume = organ.model == scene::Model::kImplicitVolume;
+  model.volume_corrections = static_cast<int>(organ.volume_corrections);
 
   VolumeGradient at_rest;
   evaluate_volume(model, model.network.rest_positions, at_rest);

@@ -20,7 +20,8 @@ struct OrganModel {
   std::vector<std::uint32_t> fixed_nodes;
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
   double drag = 0;              ///< [1/s]
-  bool preserve_volume = true;
+  bool preserve_volume = true;  ///< by the implicit constraint
+  int volume_corrections = 0;   ///< Newton corrections per step
   double rest_volume = 0;       ///< V₀ [m³]
   double rest_denominator = 0;  ///< gᵀM⁻¹g at rest [m⁴/kg]
 

@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "deformation/contact_solve.h"
-#include "deformation/organ_model.h"
+#include "deformation/organ_dynamics.h"
 
 namespace palpate::deformation {
 
@@ -13,12 +12,35 @@ namespace palpate::deformation {
 struct StepBuffers {
   std::vector<Vec3> forces;
   VolumeGradient volume;
+  std::vector<Vec3> velocities;
 };
+
+/// v̂ = v + h M⁻¹F of springs, damping, drag and gravity, into state.velocities; fixed nodes rest.
+void apply_forces(const OrganModel& model, double h, OrganState& state, std::vector<Vec3>& forces);
+
+/// Newton: solves the volume constraint anew at the step's end, linearised there, and moves the
+/// end accordingly. The impulses of contacts and volume go on from what they are, so the pressure
+/// is that of all of them together.
+/// @param report  of the step so far; its impulse is added to
+void correct_volume(const OrganModel& model, double h, std::span<ContactRow> rows,
+                    OrganState& state, StepBuffers& buffers, ContactSolveReport& report);
 
 /// Advances the state by h [s]. Stable for h below stable_step_bound(). Contact rows must hold
 /// their gaps at the current positions.
 ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
                                          std::span<ContactRow> rows, OrganState& state,
                                          StepBuffers& buffers);
+
+class SymplecticEuler : public OrganDynamics {
+ public:
+  explicit SymplecticEuler(const OrganModel& model);
+  double largest_step() const override { return largest_step_; }
+  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+
+ private:
+  const OrganModel& model_;
+  double largest_step_;
+  StepBuffers buffers_;
+};
 
 }  // namespace palpate::deformation

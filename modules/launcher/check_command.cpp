@@ -12,6 +12,7 @@
 #include "modules/runtime/clock.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
+#include "modules/scene/schema.h"
 
 namespace palpate::launcher {
 namespace {
@@ -27,11 +28,11 @@ std::string organ_text(const scene::Organ& organ, const geometry::TriangleSurfac
   std::string text = fmt::format(
       "organ {}: {} surface nodes + {} virtual nodes, {} fixed; {} triangles\n"
       "  springs: {} structural, {} bending, {} inner\n"
-      "  volume {:.1f} cm3, mass {:.3f} kg, volume {}\n",
+      "  volume {:.1f} cm3, mass {:.3f} kg, model {}\n",
       organ.name, topology.surface_node_count,
       topology.rest_positions.size() / 3 - topology.surface_node_count, topology.fixed_nodes.size(),
       topology.triangles.size(), springs[0], springs[1], springs[2], 1e6 * volume,
-      organ.tissue.density * volume, organ.preserve_volume ? "preserved" : "not preserved");
+      organ.tissue.density * volume, scene::word_of(organ.model));
   text += fmt::format("  stable step {:.1f} us: {} sub-steps of {:.1f} us in a period\n",
                       1e6 * world.stable_step(index), substeps, 1e6 * period / substeps);
   return text;

@@ -38,6 +38,12 @@ class ObjectReader {
   void field(const char* key, Quat& field, const About&) {
     if (const auto value = find(key)) field = rotation_from(*value);
   }
+  template <Enumeration Enum>
+  void field(const char* key, Enum& field, const About&) {
+    if (const auto value = find(key)) {
+      field = static_cast<Enum>(word_from(*value, Words<Enum>::texts));
+    }
+  }
   template <class T>
   void field(const char* key, std::optional<T>& optional, const About& about) {
     optional.reset();

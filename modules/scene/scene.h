@@ -45,14 +45,45 @@ struct BoxRegion {
 };
 using Region = std::variant<SphereRegion, BoxRegion>;  ///< keys `sphere`, `box`
 
+/// How an organ's contents are modelled: its own method and those it is compared with.
+enum class Model {
+  kImplicitVolume,     ///< springs and the one implicit volume constraint
+  kMassSpring,         ///< springs alone
+  kPenalty,            ///< pressure proportional to the volume error
+  kBaumgarte,          ///< the constraint on accelerations, stabilised
+  kPromayon,           ///< projection along the volume gradient
+  kPostStabilisation,  ///< the constraint on velocities, positions projected afterwards
+  kBourguignonCani,    ///< springs to the barycentre
+  kZordan,             ///< volumes of pyramids over each triangle
+  kElementVolume,      ///< one volume constraint per element
+  kChainMail           ///< kinematic, 3D ChainMail
+};
+
+enum class Integrator { kAutomatic, kSymplecticEuler, kBackwardEuler };
+
+/// The volume V* asked for, over the rest volume: a curve (1 without points) plus breathing.
+struct Filling {
+  struct Point {
+    double time = 0;   ///< `at_s`, simulated [0 … 1e6]; rising
+    double ratio = 1;  ///< `volume_ratio` [0.2 … 5]
+  };
+  std::vector<Point> points;       ///< `points`, minimum-jerk between them, held outside
+  double breathing_amplitude = 0;  ///< `breathing_amplitude`: added a sin 2π f t [0 … 0.5]
+  double breathing_rate = 0.3;     ///< `breathing_hz`, f [0.01 … 5]
+  double max_rate = 0.5;           ///< `max_rate_per_s`: |dV*/dt| / V₀ at most [0.001 … 10]
+};
+
 struct Organ {
   std::string name;  ///< unique
   Mesh mesh;
   Pose pose;  ///< `position_m`, `rotation_xyzw`; applied to the mesh
   Tissue tissue;
   Springs springs;
-  bool preserve_volume = true;  ///< `preserve_volume`: the implicit volume constraint on or off
-  std::vector<Region> fixed;    ///< `fixed`
+  Model model = Model::kImplicitVolume;            ///< `model`
+  std::size_t volume_corrections = 0;              ///< `volume_corrections`, Newton [0 … 5]
+  Integrator integrator = Integrator::kAutomatic;  ///< `integrator`
+  Filling filling;                                 ///< `filling`
+  std::vector<Region> fixed;                       ///< `fixed`
 };
 
 struct SphereShape {

@@ -3,14 +3,17 @@
 // describe(visitor, object) names each key of an object together with the field that holds it.
 // Visitors walk it: ObjectReader (YAML → Scene), YamlWriter (Scene → YAML), SchemaTable (the table
 // in docs/scene.md) and KeyList (which keys an object may have). A visitor offers
-//   field(key, field, about)       a value, an object, or a list of objects
+//   field(key, field, about)       a value, an object, a list of objects, or one of some Words
 //   option<T>(key, variant, about) one alternative of a variant; exactly one key is given
 //   require(holds, rule)           a rule across fields of the object
 //   unique_names(key, list)        the rule that no two entries of a list share a name
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "modules/core/messages.h"
 #include "modules/scene/scene.h"
@@ -20,6 +23,26 @@ namespace palpate::scene {
 /// Version of the file format, the value of the first key.
 inline constexpr std::size_t kSceneFormat = 1;
 inline constexpr const char* kFormatKey = "palpate_scene";
+
+/// The words for the values of an enumeration, in its order.
+template <class Enum>
+struct Words;
+template <>
+struct Words<Model> {
+  static constexpr std::array texts{
+      "implicit_volume",    "mass_spring",      "penalty", "baumgarte",      "promayon",
+      "post_stabilisation", "bourguignon_cani", "zordan",  "element_volume", "chainmail"};
+};
+template <>
+struct Words<Integrator> {
+  static constexpr std::array texts{"automatic", "symplectic_euler", "backward_euler"};
+};
+template <class Enum>
+const char* word_of(Enum value) {
+  return Words<Enum>::texts[static_cast<std::size_t>(value)];
+}
+template <class T>
+concept Enumeration = std::is_enum_v<T>;
 
 /// What is known of a key beside its type.
 struct About {
@@ -113,14 +136,39 @@ void describe(V& v, Region& region) {
 }
 
 template <class V>
+void describe(V& v, Filling::Point& point) {
+  v.field("at_s", point.time, ranged("s", 0, 1e6, "simulated time").needed());
+  v.field("volume_ratio", point.ratio, ranged("", 0.2, 5, "volume over rest volume").needed());
+}
+
+template <class V>
+void describe(V& v, Filling& filling) {
+  v.field("points", filling.points,
+          plain("smooth between them, held before the first and after the last"));
+  v.field("breathing_amplitude", filling.breathing_amplitude,
+          ranged("", 0, 0.5, "a in a sin(2π f t), added to the volume ratio"));
+  v.field("breathing_hz", filling.breathing_rate, ranged("Hz", 0.01, 5, "f"));
+  v.field("max_rate_per_s", filling.max_rate,
+          ranged("1/s", 1e-3, 10, "fastest change of the volume ratio, whatever is asked"));
+  v.require(std::adjacent_find(filling.points.begin(), filling.points.end(),
+                               [](const auto& a, const auto& b) { return b.time <= a.time; }) ==
+                filling.points.end(),
+            "at_s must rise from point to point");
+}
+
+template <class V>
 void describe(V& v, Organ& organ) {
   v.field("name", organ.name, plain("unique among organs").otherwise("`organ_` and its index"));
   v.field("mesh", organ.mesh, plain("closed surface").needed());
   describe_pose(v, organ.pose, "where the mesh's origin is in W", "unit quaternion, of the mesh");
   v.field("tissue", organ.tissue, plain("what it is made of"));
   v.field("springs", organ.springs, plain("spring families without a continuum meaning"));
-  v.field("preserve_volume", organ.preserve_volume,
-          plain("the implicit volume constraint; false = plain mass-spring"));
+  v.field("model", organ.model, plain("how its contents are modelled"));
+  v.field("volume_corrections", organ.volume_corrections,
+          ranged("", 0, 5, "Newton corrections of the volume in each step, of implicit_volume"));
+  v.field("integrator", organ.integrator,
+          plain("of implicit_volume; automatic = what costs less here"));
+  v.field("filling", organ.filling, plain("the volume asked for, over the rest volume"));
   v.field("fixed", organ.fixed, plain("regions of W whose nodes do not move"));
 }
 

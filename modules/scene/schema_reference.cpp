@@ -38,6 +38,15 @@ class SchemaTable {
   void field(const char* key, Quat& value, const About& about) {
     row(key, "[x, y, z, w]", about, list_text(value));
   }
+  template <Enumeration Enum>
+  void field(const char* key, Enum& value, const About& about) {
+    std::string words;
+    for (const char* word : Words<Enum>::texts) {
+      words += words.empty() ? "" : ", ";
+      words += word;
+    }
+    row(key, words, about, word_of(value));
+  }
   template <class T>
   void field(const char* key, std::optional<T>&, const About& about) {
     T value{};

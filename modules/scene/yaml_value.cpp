@@ -136,6 +136,16 @@ std::string text_from(const YamlValue& value, const About& about) {
   return text;
 }
 
+std::size_t word_from(const YamlValue& value, std::span<const char* const> words) {
+  std::string allowed;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (value.node.IsScalar() && value.node.Scalar() == words[i]) return i;
+    allowed += allowed.empty() ? "" : ", ";
+    allowed += words[i];
+  }
+  value.refuse("must be one of: " + allowed);
+}
+
 Vec3 vector_from(const YamlValue& value, const About& about) {
   if (!value.node.IsSequence() || value.node.size() != 3) {
     value.refuse("must be a list of 3 numbers [x, y, z]");

@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "modules/scene/schema.h"
@@ -39,6 +40,8 @@ std::size_t count_from(const YamlValue& value, const About& about);
 bool flag_from(const YamlValue& value);
 /// 1 … 255 bytes without control characters; with about.is_length_unit, a unit of length.
 std::string text_from(const YamlValue& value, const About& about);
+/// The index of one of `words`.
+std::size_t word_from(const YamlValue& value, std::span<const char* const> words);
 Vec3 vector_from(const YamlValue& value, const About& about);
 /// Unit within 1e-3, then normalised.
 Quat rotation_from(const YamlValue& value);

@@ -32,6 +32,10 @@ class YamlWriter {
   }
   void field(const char* key, Vec3& value, const About&) { line(key, list_text(value)); }
   void field(const char* key, Quat& value, const About&) { line(key, list_text(value)); }
+  template <Enumeration Enum>
+  void field(const char* key, Enum& value, const About&) {
+    line(key, word_of(value));
+  }
   template <class T>
   void field(const char* key, std::optional<T>& value, const About& about) {
     if (value) field(key, *value, about);

@@ -130,7 +130,7 @@ double excursion(const OrganModel& model, double h, int steps) {
 TEST_CASE("stable step: plain springs hold just below 2/ω_max and blow up just above it") {
   // Oracle: dense eigenvalues; ±3 % around 2/ω_max (4000 steps grow by e^(√…) only beyond that).
   auto organ = ball_organ();
-  organ.preserve_volume = false;
+  organ.model = scene::Model::kMassSpring;
   organ.tissue.damping_ratio = 0;
   organ.tissue.drag = 0;
   const auto model = ball_model(2, organ);

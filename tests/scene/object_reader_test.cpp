@@ -27,13 +27,13 @@ TEST_CASE("object reader: an unknown key is refused with the nearest and all all
         "scene.yaml:5: key 'organs[0].mesh.units' is not known; did you mean 'unit'? Allowed: "
         "file, unit, nodes");
   CHECK(refusal("rates: {", "rate: {") ==
-        "scene.yaml:56: key 'rate' is not known; did you mean 'rates'? Allowed: palpate_scene, "
+        "scene.yaml:65: key 'rate' is not known; did you mean 'rates'? Allowed: palpate_scene, "
         "name, organs, probes, gravity_m_per_s2, duration_s, rates, haptics, camera");
   CHECK(refusal("capsule: {", "cylinder: {") ==
-        "scene.yaml:38: key 'probes[1].shape.cylinder' is not known. "
+        "scene.yaml:47: key 'probes[1].shape.cylinder' is not known. "
         "Allowed: sphere, capsule, box, plane, mesh");
   CHECK(refusal("plane: {}", "plane: {z_m: 0}") ==
-        "scene.yaml:49: key 'probes[3].shape.plane.z_m' is not known. None is allowed here");
+        "scene.yaml:58: key 'probes[3].shape.plane.z_m' is not known. None is allowed here");
   CHECK(refusal("name: full", "<<: {name: full}").substr(0, 45) ==
         "scene.yaml:2: key '<<' is not known. Allowed:");
 }
@@ -60,54 +60,54 @@ TEST_CASE("object reader: every required key is missed") {
   CHECK(folder.refusal("palpate_scene: 1\norgans: []\n") ==
         "scene.yaml:1: key 'probes' is missing");
   CHECK(refusal("  - name: liver\n    mesh: {file: organ.ply}\n", "  - name: liver\n") ==
-        "scene.yaml:24: key 'organs[1].mesh' is missing");
+        "scene.yaml:33: key 'organs[1].mesh' is missing");
   CHECK(refusal("{file: tool.stl, unit: cm, nodes: 100}", "{unit: cm}") ==
-        "scene.yaml:52: key 'probes[4].shape.mesh.file' is missing");
+        "scene.yaml:61: key 'probes[4].shape.mesh.file' is missing");
   CHECK(refusal("    shape: {plane: {}}\n", "") ==
-        "scene.yaml:48: key 'probes[3].shape' is missing");
+        "scene.yaml:57: key 'probes[3].shape' is missing");
   CHECK(refusal("    device: {topic: {start_m: [0, 0, 0.4]}}\n", "") ==
-        "scene.yaml:51: key 'probes[4].device' is missing");
+        "scene.yaml:60: key 'probes[4].device' is missing");
   CHECK(refusal("{start_m: [0, 0, 0.4]}", "{}") ==
-        "scene.yaml:53: key 'probes[4].device.topic.start_m' is missing");
+        "scene.yaml:62: key 'probes[4].device.topic.start_m' is missing");
   CHECK(refusal("        start_m: [0, 0, 0.2]\n", "") ==
-        "scene.yaml:31: key 'probes[0].device.scripted.start_m' is missing");
+        "scene.yaml:40: key 'probes[0].device.scripted.start_m' is missing");
   CHECK(refusal("        file: press.csv\n", "") ==
-        "scene.yaml:40: key 'probes[1].device.trajectory.file' is missing");
+        "scene.yaml:49: key 'probes[1].device.trajectory.file' is missing");
   CHECK(refusal("center_m: [0.01, 0.02, 0.03], ", "") ==
-        "scene.yaml:20: key 'organs[0].fixed[0].sphere.center_m' is missing");
+        "scene.yaml:29: key 'organs[0].fixed[0].sphere.center_m' is missing");
   CHECK(refusal("          max_m: [1, 2, 3]\n", "") ==
-        "scene.yaml:21: key 'organs[0].fixed[1].box.max_m' is missing");
+        "scene.yaml:30: key 'organs[0].fixed[1].box.max_m' is missing");
   CHECK(refusal("          min_m: [-1, -2, -3]\n", "") ==
-        "scene.yaml:21: key 'organs[0].fixed[1].box.min_m' is missing");
+        "scene.yaml:30: key 'organs[0].fixed[1].box.min_m' is missing");
 }
 
 TEST_CASE("object reader: where keys must be, nothing else is taken") {
   // Oracle: the messages promised.
   CHECK(refusal("{plane: {}}", "plane") ==
-        "scene.yaml:49: key 'probes[3].shape' = 'plane': must hold keys, out of: sphere, capsule, "
+        "scene.yaml:58: key 'probes[3].shape' = 'plane': must hold keys, out of: sphere, capsule, "
         "box, plane, mesh");
   CHECK(refusal("plane: {}", "plane: 1") ==
-        "scene.yaml:49: key 'probes[3].shape.plane' = '1': must be {}");
+        "scene.yaml:58: key 'probes[3].shape.plane' = '1': must be {}");
   CHECK(refusal("{file: tool.stl, unit: cm, nodes: 100}", "tool.stl") ==
-        "scene.yaml:52: key 'probes[4].shape.mesh' = 'tool.stl': must hold keys, out of: file, "
+        "scene.yaml:61: key 'probes[4].shape.mesh' = 'tool.stl': must hold keys, out of: file, "
         "unit, nodes");
   CHECK(refusal("{position_m: [0, -1, 0], target_m: [0, 0, 0.1]}", "") ==
-        "scene.yaml:63: key 'camera' = 'null': must hold keys, out of: position_m, target_m");
+        "scene.yaml:72: key 'camera' = 'null': must hold keys, out of: position_m, target_m");
 }
 
 TEST_CASE("object reader: a choice is exactly one key") {
   // Oracle: none, and two, of each kind of choice.
   CHECK(refusal("{plane: {}}", "{}") ==
-        "scene.yaml:49: key 'probes[3].shape' = '{}': must hold exactly one of: sphere, capsule, "
+        "scene.yaml:58: key 'probes[3].shape' = '{}': must hold exactly one of: sphere, capsule, "
         "box, plane, mesh");
   CHECK(refusal("{plane: {}}", "{plane: {}, sphere: {}}") ==
-        "scene.yaml:49: key 'probes[3].shape' = '{…}': must hold exactly one of: sphere, capsule, "
+        "scene.yaml:58: key 'probes[3].shape' = '{…}': must hold exactly one of: sphere, capsule, "
         "box, plane, mesh");
   CHECK(refusal("{topic: {start_m: [0, 0, 0.4]}}", "{}") ==
-        "scene.yaml:53: key 'probes[4].device' = '{}': must hold exactly one of: scripted, "
+        "scene.yaml:62: key 'probes[4].device' = '{}': must hold exactly one of: scripted, "
         "trajectory, topic");
   CHECK(refusal("- sphere: {center_m: [0.01, 0.02, 0.03], radius_m: 0.04}", "- {}") ==
-        "scene.yaml:20: key 'organs[0].fixed[0]' = '{}': must hold exactly one of: sphere, box");
+        "scene.yaml:29: key 'organs[0].fixed[0]' = '{}': must hold exactly one of: sphere, box");
 }
 
 TEST_CASE("object reader: lists are lists, and those that are needed are not empty") {
@@ -121,10 +121,10 @@ TEST_CASE("object reader: lists are lists, and those that are needed are not emp
         "scene.yaml:4: key 'probes' = '[]': must have at least one entry");
   CHECK(refusal("          - {to_m: [0, 0, 0.1], duration_s: 2.5}\n          - {wait_s: 0.5}\n",
                 "          []\n") ==
-        "scene.yaml:34: key 'probes[0].device.scripted.moves' = '[]': must have at least one "
+        "scene.yaml:43: key 'probes[0].device.scripted.moves' = '[]': must have at least one "
         "entry");
   CHECK(refusal("- {wait_s: 0.5}", "- 0.5") ==
-        "scene.yaml:36: key 'probes[0].device.scripted.moves[1]' = '0.5': must hold keys, out of: "
+        "scene.yaml:45: key 'probes[0].device.scripted.moves[1]' = '0.5': must hold keys, out of: "
         "to_m, duration_s, wait_s");
   CHECK(folder.refusal(changed("{file: organ.ply}\n", "{file: organ.ply}\n    fixed: []\n",
                                kMinimalScene)) == "accepted");
@@ -133,10 +133,10 @@ TEST_CASE("object reader: lists are lists, and those that are needed are not emp
 TEST_CASE("object reader: names are unique among organs and among probes") {
   // Oracle: the second of two equal names is the one refused, also if a default makes it equal.
   CHECK(refusal("name: liver", "name: stomach") ==
-        "scene.yaml:24: key 'organs[1].name' = 'stomach': must be unique, but is the name of "
+        "scene.yaml:33: key 'organs[1].name' = 'stomach': must be unique, but is the name of "
         "organs[0] too");
   CHECK(refusal("name: hand", "name: tip") ==
-        "scene.yaml:45: key 'probes[2].name' = 'tip': must be unique, but is the name of "
+        "scene.yaml:54: key 'probes[2].name' = 'tip': must be unique, but is the name of "
         "probes[0] too");
   CHECK(refusal("  - name: liver\n    mesh", "  - mesh").substr(0, 8) == "accepted");
   CHECK(refusal("  - name: stomach\n    mesh: {file: organ.ply, unit: mm, nodes: 550}",

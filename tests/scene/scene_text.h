@@ -107,7 +107,16 @@ organs:
       bending_ratio: 0.4
       inner_ratio: 0.7
       virtual_nodes: 5
-    preserve_volume: false
+    model: mass_spring
+    volume_corrections: 2
+    integrator: backward_euler
+    filling:
+      points:
+        - {at_s: 0, volume_ratio: 1}
+        - {at_s: 5, volume_ratio: 1.25}
+      breathing_amplitude: 0.1
+      breathing_hz: 0.4
+      max_rate_per_s: 0.7
     fixed:
       - sphere: {center_m: [0.01, 0.02, 0.03], radius_m: 0.04}
       - box:

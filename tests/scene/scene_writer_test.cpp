@@ -44,7 +44,17 @@ void check_same(const Organ& a, const Organ& b) {
   CHECK(a.springs.bending_ratio == b.springs.bending_ratio);
   CHECK(a.springs.inner_ratio == b.springs.inner_ratio);
   CHECK(a.springs.virtual_nodes == b.springs.virtual_nodes);
-  CHECK(a.preserve_volume == b.preserve_volume);
+  CHECK(a.model == b.model);
+  CHECK(a.volume_corrections == b.volume_corrections);
+  CHECK(a.integrator == b.integrator);
+  REQUIRE(a.filling.points.size() == b.filling.points.size());
+  for (std::size_t i = 0; i < a.filling.points.size(); ++i) {
+    CHECK(a.filling.points[i].time == b.filling.points[i].time);
+    CHECK(a.filling.points[i].ratio == b.filling.points[i].ratio);
+  }
+  CHECK(a.filling.breathing_amplitude == b.filling.breathing_amplitude);
+  CHECK(a.filling.breathing_rate == b.filling.breathing_rate);
+  CHECK(a.filling.max_rate == b.filling.max_rate);
   REQUIRE(a.fixed.size() == b.fixed.size());
   for (std::size_t i = 0; i < a.fixed.size(); ++i) check_same(a.fixed[i], b.fixed[i]);
 }
@@ -185,7 +195,7 @@ TEST_CASE("digest: differs with every number and with every byte of every file")
   add(kFullScene);
   add(changed("20e3", "20000.000001"));
   add(changed("unit: mm", "unit: cm"));
-  add(changed("preserve_volume: false", "preserve_volume: true"));
+  add(changed("model: mass_spring", "model: penalty"));
   add(changed("plane: {}", "sphere: {}"));
   add(changed("wait_s: 0.5", "wait_s: 0.51"));
   add(changed("visualizer_hz: 60", "visualizer_hz: 61"));

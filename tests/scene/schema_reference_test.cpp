@@ -63,7 +63,8 @@ TEST_CASE("schema reference: a row has type, unit, range, default and meaning") 
   for (const std::string row :
        {"| `youngs_modulus_pa` | number | Pa | 100 … 1e+07 | `10000` | stiffness of the wall |\n",
         "| `virtual_nodes` | whole number |  | 0 … 64 | `6` | ",
-        "| `preserve_volume` | true or false |  |  | `true` | ",
+        "| `loop` | true or false |  |  | `false` | ",
+        "| `integrator` | automatic, symplectic_euler, backward_euler |  |  | `automatic` | ",
         "| `organs` | list |  |  | required | ", "| `file` | file |  |  | required | ",
         "| `size_m` | [x, y, z] | m | 1e-04 … 2 | `[0.02, 0.02, 0.02]` | "}) {
     INFO(row);

@@ -44,7 +44,7 @@ TEST_CASE("schema: inner springs need virtual nodes to hang on") {
 TEST_CASE("schema: a box has a lowest and a highest corner") {
   // Oracle: the rule of the box's table, broken in each axis and by a flat box.
   const std::string message =
-      "scene.yaml:21: key 'organs[0].fixed[1].box' = '{…}': min_m must be below max_m in each of "
+      "scene.yaml:30: key 'organs[0].fixed[1].box' = '{…}': min_m must be below max_m in each of "
       "x, y, z";
   for (const std::string max : {"[-1.5, 2, 3]", "[1, -2.5, 3]", "[1, 2, -3.5]", "[1, 2, -3]"}) {
     INFO(max);
@@ -55,7 +55,7 @@ TEST_CASE("schema: a box has a lowest and a highest corner") {
 TEST_CASE("schema: a move either goes somewhere in a time, or waits") {
   // Oracle: every wrong subset of the three keys.
   const std::string message =
-      "scene.yaml:36: key 'probes[0].device.scripted.moves[1]' = '{…}': must hold either to_m and "
+      "scene.yaml:45: key 'probes[0].device.scripted.moves[1]' = '{…}': must hold either to_m and "
       "duration_s, or wait_s alone";
   for (const std::string move :
        {"{to_m: [0, 0, 0]}", "{duration_s: 1}", "{to_m: [0, 0, 0], wait_s: 1}",
@@ -64,14 +64,33 @@ TEST_CASE("schema: a move either goes somewhere in a time, or waits") {
     CHECK(refusal("{wait_s: 0.5}", move) == message);
   }
   CHECK(refusal("{wait_s: 0.5}", "{}") ==
-        "scene.yaml:36: key 'probes[0].device.scripted.moves[1]' = '{}': must hold either to_m "
+        "scene.yaml:45: key 'probes[0].device.scripted.moves[1]' = '{}': must hold either to_m "
         "and duration_s, or wait_s alone");
+}
+
+TEST_CASE("schema: a filling's points rise in time") {
+  // Oracle: the rule, word by word.
+  const SceneFolder folder;
+  CHECK(folder.refusal(changed("{at_s: 5,", "{at_s: 0,")) ==
+        "scene.yaml:21: key 'organs[0].filling' = '{…}': at_s must rise from point to point");
+}
+
+TEST_CASE("schema: an unknown model or integrator is refused with all there are") {
+  // Oracle: the words, written out again.
+  const SceneFolder folder;
+  CHECK(folder.refusal(changed("model: mass_spring", "model: tetrahedra")) ==
+        "scene.yaml:18: key 'organs[0].model' = 'tetrahedra': must be one of: implicit_volume, "
+        "mass_spring, penalty, baumgarte, promayon, post_stabilisation, bourguignon_cani, zordan, "
+        "element_volume, chainmail");
+  CHECK(folder.refusal(changed("backward_euler", "euler")) ==
+        "scene.yaml:20: key 'organs[0].integrator' = 'euler': must be one of: automatic, "
+        "symplectic_euler, backward_euler");
 }
 
 TEST_CASE("schema: the camera does not look at itself") {
   // Oracle: the rule of the camera's table.
   CHECK(refusal("target_m: [0, 0, 0.1]", "target_m: [0, -1, 0]") ==
-        "scene.yaml:63: key 'camera' = '{…}': position_m and target_m must differ");
+        "scene.yaml:72: key 'camera' = '{…}': position_m and target_m must differ");
   CHECK(refusal("position_m: [0, -1, 0], ", "") == "accepted");
 }
 

@@ -76,24 +76,28 @@ TEST_CASE("yaml value: every number has its range, whose ends belong to it") {
       {"15", "bending_ratio: 0.4", "-0.1", "0", "10", "10.1", "0 and 10"},
       {"16", "inner_ratio: 0.7", "-0.1", "0", "100", "101", "0 and 100"},
       {"17", "virtual_nodes: 5", "-1", "1", "64", "65", "0 and 64"},
-      {"20", "radius_m: 0.04", "9e-5", "1e-4", "10", "11", "1e-04 and 10 m"},
-      {"28", "radius_m: 0.007", "9e-5", "1e-4", "0.5", "0.6", "1e-04 and 0.5 m"},
-      {"29", "friction: 0.3", "-0.1", "0", "2", "2.1", "0 and 2"},
-      {"35", "duration_s: 2.5", "0", "1e-3", "3600", "3601", "0.001 and 3600 s"},
-      {"36", "wait_s: 0.5", "0", "1e-3", "3600", "3601", "0.001 and 3600 s"},
-      {"38", "radius_m: 0.003", "9e-5", "1e-4", "0.5", "0.6", "1e-04 and 0.5 m"},
-      {"38", "length_m: 0.2", "9e-5", "1e-4", "2", "2.1", "1e-04 and 2 m"},
+      {"29", "radius_m: 0.04", "9e-5", "1e-4", "10", "11", "1e-04 and 10 m"},
+      {"37", "radius_m: 0.007", "9e-5", "1e-4", "0.5", "0.6", "1e-04 and 0.5 m"},
+      {"38", "friction: 0.3", "-0.1", "0", "2", "2.1", "0 and 2"},
+      {"44", "duration_s: 2.5", "0", "1e-3", "3600", "3601", "0.001 and 3600 s"},
+      {"45", "wait_s: 0.5", "0", "1e-3", "3600", "3601", "0.001 and 3600 s"},
+      {"47", "radius_m: 0.003", "9e-5", "1e-4", "0.5", "0.6", "1e-04 and 0.5 m"},
+      {"47", "length_m: 0.2", "9e-5", "1e-4", "2", "2.1", "1e-04 and 2 m"},
       {"5", "nodes: 550", "-1", "0", "200000", "200001", "0 and 2e+05"},
-      {"55", "duration_s: 20", "-1", "0", "1e6", "1.1e6", "0 and 1e+06 s"},
-      {"56", "haptics_hz: 2000", "499", "500", "4000", "4001", "500 and 4000 Hz"},
-      {"56", "collision_hz: 500", "9", "10", "2000", "2001", "10 and 2000 Hz"},
-      {"56", "deformation_hz: 400", "9", "10", "2000", "2001", "10 and 2000 Hz"},
-      {"56", "visualizer_hz: 60", "0.9", "1", "120", "121", "1 and 120 Hz"},
-      {"58", "max_force_n: 5", "0", "0.1", "100", "101", "0.1 and 100 N"},
-      {"59", "max_force_rate_n_per_s: 300", "0", "1", "1e5", "1.1e5", "1 and 1e+05 N/s"},
-      {"60", "device_damping_n_s_per_m: 0.4", "-1", "0", "50", "51", "0 and 50 N·s/m"},
-      {"61", "stale_after_s: 0.06", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
-      {"62", "fade_time_s: 0.07", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"}};
+      {"64", "duration_s: 20", "-1", "0", "1e6", "1.1e6", "0 and 1e+06 s"},
+      {"65", "haptics_hz: 2000", "499", "500", "4000", "4001", "500 and 4000 Hz"},
+      {"65", "collision_hz: 500", "9", "10", "2000", "2001", "10 and 2000 Hz"},
+      {"65", "deformation_hz: 400", "9", "10", "2000", "2001", "10 and 2000 Hz"},
+      {"65", "visualizer_hz: 60", "0.9", "1", "120", "121", "1 and 120 Hz"},
+      {"67", "max_force_n: 5", "0", "0.1", "100", "101", "0.1 and 100 N"},
+      {"68", "max_force_rate_n_per_s: 300", "0", "1", "1e5", "1.1e5", "1 and 1e+05 N/s"},
+      {"69", "device_damping_n_s_per_m: 0.4", "-1", "0", "50", "51", "0 and 50 N·s/m"},
+      {"70", "stale_after_s: 0.06", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
+      {"71", "fade_time_s: 0.07", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
+      {"19", "volume_corrections: 2", "-1", "0", "5", "6", "0 and 5"},
+      {"25", "breathing_amplitude: 0.1", "-0.1", "0", "0.5", "0.6", "0 and 0.5"},
+      {"26", "breathing_hz: 0.4", "0", "0.01", "5", "6", "0.01 and 5 Hz"},
+      {"27", "max_rate_per_s: 0.7", "0", "0.001", "10", "11", "0.001 and 10 1/s"}};
   const SceneFolder folder;
   for (const auto& range : ranges) {
     const std::string key = range.place.substr(0, range.place.find(' '));
@@ -128,7 +132,7 @@ TEST_CASE("yaml value: true and false are spelt so") {
     const SceneFolder folder;
     INFO(text);
     CHECK_THAT(folder.refusal(changed("loop: true", "loop: " + text)),
-               Catch::StartsWith("scene.yaml:44: key 'probes[1].device.trajectory.loop' = '") &&
+               Catch::StartsWith("scene.yaml:53: key 'probes[1].device.trajectory.loop' = '") &&
                    Catch::EndsWith("': must be true or false"));
   }
 }
@@ -151,10 +155,10 @@ TEST_CASE("yaml value: points are lists of three numbers within a hundred metres
          {place, "position_m: [0, 0, 101]",
           key + "'[0, 0, 101]': each number must be between -100 and 100 m"},
          {"[0.01, 0.02, 0.03]}}", "[0.01, 0, 0.03]}}",
-          "46: key 'probes[2].shape.box.size_m' = '[0.01, 0, 0.03]': each number must be between "
+          "55: key 'probes[2].shape.box.size_m' = '[0.01, 0, 0.03]': each number must be between "
           "1e-04 and 2 m"},
          {"[0, 0, -9.81]", "[0, 0, -981]",
-          "54: key 'gravity_m_per_s2' = '[0, 0, -981]': each number must be between -100 and 100 "
+          "63: key 'gravity_m_per_s2' = '[0, 0, -981]': each number must be between -100 and 100 "
           "m/s²"}});
 }
 
@@ -208,17 +212,17 @@ TEST_CASE("yaml value: a name is a short text in one line") {
 TEST_CASE("yaml value: a file must be there, be a file and be readable") {
   // Oracle: the file system.
   check({{"tool.stl", "none.stl",
-          "52: key 'probes[4].shape.mesh.file' = 'none.stl': no such file: none.stl"},
-         {"tool.stl", "''", "52: key 'probes[4].shape.mesh.file' = '': must name a file"},
+          "61: key 'probes[4].shape.mesh.file' = 'none.stl': no such file: none.stl"},
+         {"tool.stl", "''", "61: key 'probes[4].shape.mesh.file' = '': must name a file"},
          {"tool.stl", "[tool.stl]",
-          "52: key 'probes[4].shape.mesh.file' = '[tool.stl]': must name a file"},
+          "61: key 'probes[4].shape.mesh.file' = '[tool.stl]': must name a file"},
          {"press.csv", "missing/press.csv",
-          "41: key 'probes[1].device.trajectory.file' = 'missing/press.csv': no such file: "
+          "50: key 'probes[1].device.trajectory.file' = 'missing/press.csv': no such file: "
           "missing/press.csv"}});
   const SceneFolder folder;
   folder.write("folder/inside", "");
   CHECK(folder.refusal(changed("tool.stl", "folder")) ==
-        "scene.yaml:52: key 'probes[4].shape.mesh.file' = 'folder': must be a file, this is a "
+        "scene.yaml:61: key 'probes[4].shape.mesh.file' = 'folder': must be a file, this is a "
         "folder or device: folder");
 }
 
@@ -228,5 +232,5 @@ TEST_CASE("yaml value: a file without permission is refused") {
   std::filesystem::permissions(folder.path() / "tool.stl", std::filesystem::perms::none);
   const AsNobody nobody;
   CHECK(folder.refusal(kFullScene) ==
-        "scene.yaml:52: key 'probes[4].shape.mesh.file' = 'tool.stl': cannot be read: tool.stl");
+        "scene.yaml:61: key 'probes[4].shape.mesh.file' = 'tool.stl': cannot be read: tool.stl");
 }
