@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "modules/geometry/primitives.h"
+#include "modules/scene/scene_reader.h"
 
 namespace palpate::pipeline {
 namespace {
@@ -154,6 +155,26 @@ TEST_CASE("pipeline: a sliding tip feels a steady force, however late contacts a
   for (std::size_t i = 0; i < prompt.size(); ++i) {
     CHECK(std::abs(prompt[i] - late[i]) < 0.05 * largest);
   }
+}
+
+TEST_CASE("pipeline: an insufflated stomach follows its curve and swells against the finger") {
+  // Oracle: the scene's own curve, met to 1e-5; the force on a resting finger grows with filling.
+  auto pipeline =
+      load_pipeline(scene::load_scene(PALPATE_SOURCE_DIR "/scenes/stomach_insufflated.yaml"));
+  double worst = 0, empty_force = 0, full_force = 0, fullest = 0;
+  const double rest_volume = pipeline.node_positions(0).target_volume;
+  while (pipeline.time() < 10) {
+    pipeline.run_until(pipeline.time() + 0.1);
+    const NodePositions& nodes = pipeline.node_positions(0);
+    worst = std::max(worst, std::abs(nodes.volume / nodes.target_volume - 1));
+    fullest = std::max(fullest, nodes.volume / rest_volume);
+    const double force = pipeline.haptic_force(0).force.norm();
+    if (pipeline.time() > 2 && pipeline.time() < 3) empty_force = std::max(empty_force, force);
+    if (pipeline.time() > 8) full_force = std::max(full_force, force);
+  }
+  CHECK(worst <= 1e-5);
+  CHECK(fullest == Approx(1.27).epsilon(0.005));  // 1.25 and 2 % of breathing
+  CHECK(full_force > 3 * empty_force);
 }
 
 TEST_CASE("pipeline: every module runs at its own rate") {

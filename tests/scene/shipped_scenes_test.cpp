@@ -117,7 +117,8 @@ TEST_CASE("shipped scenes: are the ones promised, and every one loads") {
     CHECK(scene.duration > 0);
     CHECK(parse_scene(resolved_text(scene), scene.file).organs.size() == scene.organs.size());
   }
-  CHECK(found == std::set<std::string>{"ball_squeeze", "liver_probe", "own_mesh", "stomach_probe",
+  CHECK(found == std::set<std::string>{"ball_squeeze", "liver_probe", "own_mesh",
+                                       "stomach_insufflated", "stomach_probe",
                                        "stomach_probe_refined"});
 }
 
