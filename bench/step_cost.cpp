@@ -1,83 +1,229 @@
-// What one deformation step costs, and which part of it the volume constraint takes.
+// What one deformation step costs: the plain code and the spring kernel with each instruction set,
+// from 550 to 200,000 nodes.
 //
-//   palpate-bench-step-cost SCENE…
-//
-// For the first organ of each scene: the same step with the constraint on and off, in turn, so
-// that a machine whose speed drifts slows both. Prints medians over the pairs.
+// All variants of a size take turns of some steps, so that a machine whose speed drifts slows all.
+// Times are first quartiles over the rounds: other programs on the machine only ever add. The
+// streaming bound is the time in which the same core merely reads all arrays of a step and writes
+// its results.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <vector>
+#include <functional>
+#include <numeric>
 
+#include "bench/report/measures.h"
+#include "deformation/spring_kernel.h"
 #include "deformation/symplectic_euler.h"
 #include "modules/core/error.h"
+#include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/node_order.h"
+#include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
 
 namespace {
 
 using namespace palpate;
+using deformation::InstructionSet;
 
-constexpr int kPairs = 31;
+constexpr std::size_t kMostResampled = 20'000;  // nodes; resampling to more takes minutes
+constexpr double kTurn = 1e-3;                  // [s], at least
+constexpr int kLeastSteps = 8;    // of a turn, so that its arrays are where they are in a session
+constexpr double kSeconds = 5.0;  // per size, about
 
-/// Wall seconds of one step, mean over `steps` steps of a gently swinging organ.
-double seconds_per_step(const deformation::OrganModel& model, double h, int steps) {
+/// Every triangle into four.
+geometry::TriangleSurface halve_edges(const geometry::TriangleSurface& surface) {
+  geometry::TriangleSurface fine{surface.nodes, {}};
+  const auto edges = geometry::edges_of(surface.triangles);
+  for (const auto& [a, b] : edges) {
+    fine.nodes.push_back((surface.nodes[a] + surface.nodes[b]) / 2);
+  }
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
+    const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
+    return static_cast<std::uint32_t>(surface.nodes.size() +
+                                      static_cast<std::size_t>(found - edges.begin()));
+  };
+  for (const auto& [a, b, c] : surface.triangles) {
+    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    for (const geometry::Triangle& t :
+         {geometry::Triangle{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}) {
+      fine.triangles.push_back(t);
+    }
+  }
+  return fine;
+}
+
+geometry::TriangleSurface surface_of(const geometry::TriangleSurface& organ, std::size_t nodes) {
+  int halvings = 0;
+  for (; nodes > kMostResampled; nodes /= 4) ++halvings;
+  auto surface = geometry::resample_surface(organ, nodes);
+  for (int k = 0; k < halvings; ++k) surface = halve_edges(surface);
+  if (halvings > 0) geometry::order_nodes_by_neighbourhood(surface);
+  return surface;
+}
+
+deformation::OrganState swinging(const deformation::OrganModel& model) {
   auto state = deformation::rest_state(model);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     const Vec3& p = state.positions[i];
     if (model.inverse_masses[i] > 0) state.velocities[i] = Vec3(p.z(), 0, p.x());
   }
-  deformation::StepBuffers buffers;
-  deformation::symplectic_euler_step(model, h, {}, state, buffers);
+  return state;
+}
+
+/// One way to do a step, measured again and again.
+struct Variant {
+  std::string name;
+  std::function<void()> step;
+  std::vector<double> seconds;  ///< per step, by round
+};
+
+double seconds_per_step(const Variant& variant, int steps) {
+  variant.step();
   const auto start = std::chrono::steady_clock::now();
-  for (int s = 0; s < steps; ++s) {
-    deformation::symplectic_euler_step(model, h, {}, state, buffers);
-  }
+  for (int s = 0; s < steps; ++s) variant.step();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   return elapsed.count() / steps;
 }
 
-double median(std::vector<double> values) {
+double first_quartile(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
+  return values[values.size() / 4];
 }
 
-void measure(const char* file) {
-  const auto scene = scene::load_scene(file);
-  const auto surface = scene::load_organ(scene.organs[0]);
-  auto model = deformation::build_organ_model(scene.organs[0], scene.gravity, surface);
+double ratio(const Variant& over, const Variant& under) {
+  return first_quartile(over.seconds) / first_quartile(under.seconds);
+}
+
+Variant plain_variant(const deformation::OrganModel& model, double h) {
+  auto state = std::make_shared<deformation::OrganState>(swinging(model));
+  auto buffers = std::make_shared<deformation::StepBuffers>();
+  return {"plain",
+          [&model, h, state, buffers] {
+            deformation::symplectic_euler_step(model, h, {}, *state, *buffers);
+          },
+          {}};
+}
+
+Variant kernel_variant(const std::string& name, const deformation::OrganModel& model, double h,
+                       InstructionSet set, ChunkRunner* runner) {
+  auto state = std::make_shared<deformation::OrganState>(swinging(model));
+  auto free = std::make_shared<deformation::FreeStep>();
+  auto kernel = std::make_shared<deformation::SpringKernel>(model, runner, set);
+  return {name,
+          [&model, h, state, free, kernel] {
+            kernel->free_step(h, *state, *free);
+            double impulse = 0;
+            if (model.preserve_volume) {
+              const double rate = (free->volume.volume - state->target_volume) / h;
+              impulse = (rate + free->volume_velocity) / free->volume.denominator;
+            }
+            kernel->finish_step(h, impulse, *free, *state);
+          },
+          {}};
+}
+
+/// Numbers a step must read and write at least, 8 bytes each.
+struct Traffic {
+  std::size_t read = 0, written = 0;
+};
+
+Traffic traffic_of(const deformation::OrganModel& model) {
+  const deformation::SpringKernelLayout layout(model);
+  const auto view = layout.view();
+  const auto& last = view.slices[view.slice_count - 1];
+  const std::size_t rows = view.slice_count * deformation::kernel::kLanes;
+  const std::size_t half_springs = (last.first_slot + last.slots) * deformation::kernel::kLanes;
+  const std::size_t coordinates = 3 * model.node_count();
+  // neighbour (half a number) and rest length; inner spring, masses; x and v; then x, v⁺
+  return {half_springs * 3 / 2 + rows * 7 + 2 * coordinates, 2 * coordinates};
+}
+
+Variant streaming_variant(const Traffic& traffic) {
+  auto input = std::make_shared<std::vector<std::uint64_t>>(traffic.read, 1);
+  auto output = std::make_shared<std::vector<std::uint64_t>>(traffic.written, 0);
+  return {"streaming bound",
+          [input, output] {
+            const auto sum = std::accumulate(input->begin(), input->end(), std::uint64_t{0});
+            std::fill(output->begin(), output->end(), sum);
+          },
+          {}};
+}
+
+void print(const Variant& variant, const Variant& plain, std::size_t springs) {
+  const double seconds = first_quartile(variant.seconds);
+  std::printf("  %-22s %11.2f %9.3f %9.2f\n", variant.name.c_str(), seconds * 1e6,
+              seconds * 1e9 / static_cast<double>(springs), ratio(plain, variant));
+}
+
+void measure(const scene::Organ& organ, const Vec3& gravity,
+             const geometry::TriangleSurface& surface) {
+  const auto model = deformation::build_organ_model(organ, gravity, surface);
+  auto without = model;
+  without.preserve_volume = false;
   const double h = 0.9 * deformation::stable_step_bound(model);
-  const int steps = std::max(2, static_cast<int>(200'000 / model.node_count()));
-  std::vector<double> with, share;
-  for (int pair = 0; pair < kPairs; ++pair) {
-    model.preserve_volume = true;
-    const double on = seconds_per_step(model, h, steps);
-    model.preserve_volume = false;
-    const double off = seconds_per_step(model, h, steps);
-    with.push_back(on);
-    share.push_back(1 - off / on);
+  const auto sets = deformation::available_instruction_sets();
+  runtime::WorkerTeam team(2);
+
+  std::vector<Variant> variants{plain_variant(model, h), streaming_variant(traffic_of(model))};
+  for (const InstructionSet set : sets) {
+    variants.push_back(kernel_variant(deformation::name_of(set), model, h, set, nullptr));
   }
-  const double step = median(with);
-  std::printf("%-10s %7zu %9zu %10.1f %9.2f %11.1f %13.2f\n", scene.organs[0].name.c_str(),
-              model.surface_node_count(), model.network.springs.size(), step * 1e6,
-              step * 1e9 / static_cast<double>(model.network.springs.size()), 100 * median(share),
-              h / step);
+  variants.push_back(kernel_variant("the last, no volume", without, h, sets.back(), nullptr));
+  variants.push_back(kernel_variant("the last, two threads", model, h, sets.back(), &team));
+
+  const double plain_step = seconds_per_step(variants[0], 1);
+  const int steps = std::max(kLeastSteps, static_cast<int>(kTurn / plain_step));
+  const double round_seconds = (steps + 1) * plain_step * static_cast<double>(variants.size());
+  const int rounds = std::clamp(static_cast<int>(kSeconds / round_seconds), 5, 400);
+  for (int round = 0; round < rounds; ++round) {
+    for (Variant& v : variants) v.seconds.push_back(seconds_per_step(v, steps));
+  }
+
+  const std::size_t springs = model.network.springs.size();
+  std::printf("%zu nodes, %zu springs\n", model.surface_node_count(), springs);
+  std::printf("  %-22s %11s %9s %9s\n", "", "us/step", "ns/spring", "speed-up");
+  for (const Variant& v : variants) print(v, variants[0], springs);
+  const Variant& best = variants[1 + sets.size()];
+  const Variant &no_volume = variants[2 + sets.size()], &two = variants[3 + sets.size()];
+  std::printf(
+      "  volume constraint %.1f %% of the step; two threads %.2f times one; "
+      "%.1f times the streaming bound\n",
+      100 * (1 - ratio(no_volume, best)), ratio(best, two), ratio(best, variants[1]));
+}
+
+int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {
+  const auto scene = scene::load_scene(scene_file);
+  const scene::Organ& organ = scene.organs[0];
+  const auto surface = scene::load_organ(organ);
+  std::printf("%s; organ '%s'\n", bench::machine_name().c_str(), organ.name.c_str());
+  for (const std::size_t nodes : sizes) measure(organ, scene.gravity, surface_of(surface, nodes));
+  return kExitDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: palpate-bench-step-cost SCENE…\n");
-    return kExitBadInput;
-  }
-  std::printf("%-10s %7s %9s %10s %9s %11s %13s\n", "organ", "nodes", "springs", "us/step",
-              "ns/spring", "volume [%]", "sim s/wall s");
+  CLI::App app("What one deformation step costs, by mesh size and instruction set.",
+               "palpate-bench-step-cost");
+  std::string scene = PALPATE_SOURCE_DIR "/scenes/stomach_probe_refined.yaml";
+  std::vector<std::size_t> sizes{550, 5'000, 19'362, 200'000};
+  app.add_option("--scene", scene, "Scene whose first organ is measured")->capture_default_str();
+  app.add_option("--nodes", sizes,
+                 "Mesh sizes; above 20,000 made by halving the edges of a "
+                 "fourth of the nodes as often as needed")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{4}, std::size_t{1'000'000}))
+      ->capture_default_str();
   try {
-    for (int i = 1; i < argc; ++i) measure(argv[i]);
+    app.parse(argc, argv);
+    return run(scene, sizes);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    std::fprintf(stderr, "palpate-bench-step-cost: %s\n", error.what());
     return kExitBadInput;
   }
-  return kExitDone;
 }

@@ -59,4 +59,19 @@ ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const Volu
                                              std::vector<Vec3>& velocities,
                                              StartImpulses start = StartImpulses::kToApply);
 
+/// The same for a caller that knows g·v̂ and itself takes the volume's impulse: turns v̂ into w.
+/// @param volume_velocity  g·v̂ [m³/s]
+ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volume,
+                                  double volume_velocity, double h, std::span<ContactRow> rows,
+                                  std::vector<Vec3>& velocities);
+
+/// solve_contacts_and_volume() where a node answers an impulse not by M⁻¹ but by its mobility, as
+/// in implicit steps.
+/// @param mobilities  symmetric, positive; zero for fixed nodes [1/kg]  (node_count)
+/// @param volume      with gᵀWg of these mobilities W as denominator, not vanished; or null
+ContactSolveReport solve_contacts_and_volume(std::span<const Mat3> mobilities,
+                                             const VolumeRow* volume, double h,
+                                             std::span<ContactRow> rows,
+                                             std::vector<Vec3>& velocities, StartImpulses start);
+
 }  // namespace palpate::deformation

@@ -7,6 +7,7 @@
 #include "deformation/organ_dynamics.h"
 #include "deformation/probe_contacts.h"
 #include "deformation/spring_forces.h"
+#include "deformation/spring_kernel.h"
 #include "deformation/target_volume.h"
 #include "modules/core/error.h"
 
@@ -22,6 +23,8 @@ constexpr double kValidityOfEdge = 0.5;
 struct SimulatedOrgan {
   std::unique_ptr<const OrganModel> model;
   std::unique_ptr<OrganDynamics> dynamics;
+  std::unique_ptr<SpringKernel> kernel;  ///< for the energy of what is published
+  IntegratorChoice integrator;
   TargetVolume target_volume{{}};
   OrganState state, last_good;
   SurfaceTopology topology;
@@ -64,11 +67,13 @@ bool is_sound(const OrganState& state) {
 }
 
 SimulatedOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
-                          const geometry::TriangleSurface& surface) {
+                          double period, const geometry::TriangleSurface& surface) {
   SimulatedOrgan simulated;
   simulated.model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, surface));
   const OrganModel& model = *simulated.model;
-  simulated.dynamics = make_dynamics(organ, model);
+  simulated.dynamics = make_dynamics(organ, model, period);
+  simulated.kernel = std::make_unique<SpringKernel>(model);
+  simulated.integrator = choose_integrator(organ, model, period);
   simulated.target_volume = TargetVolume(organ.filling);
   simulated.state = simulated.last_good = rest_state(model);
   simulated.topology = make_topology(organ, index, model);
@@ -148,7 +153,8 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_surfaces.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_surfaces.size(); ++i) {
-    impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity, rest_surfaces[i]));
+    impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
+                                       1 / scene.rates.deformation, rest_surfaces[i]));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }
@@ -205,6 +211,10 @@ double DeformationWorld::stable_step(std::size_t organ) const {
   return impl_->organs.at(organ).dynamics->largest_step();
 }
 
+const IntegratorChoice& DeformationWorld::integrator(std::size_t organ) const {
+  return impl_->organs.at(organ).integrator;
+}
+
 int DeformationWorld::substeps(std::size_t organ, double period) const {
   return std::max(1, static_cast<int>(std::ceil(period / stable_step(organ))));
 }
@@ -217,7 +227,7 @@ void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositio
   out.target_volume = organ.state.target_volume;
   out.pressure = organ.state.pressure;
   out.kinetic_energy = kinetic_energy(*organ.model, organ.state.velocities);
-  out.elastic_energy = elastic_energy(*organ.model, organ.state.positions);
+  out.elastic_energy = organ.kernel->elastic_energy(organ.state.positions);
   out.positions.resize(3 * organ.model->node_count());
   for (std::size_t i = 0; i < organ.model->node_count(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {

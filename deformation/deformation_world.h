@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "deformation/organ_dynamics.h"
 #include "modules/core/messages.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/scene/scene.h"
@@ -47,6 +48,7 @@ class DeformationWorld {
   double time() const;                          ///< simulated [s]
   double stable_step(std::size_t organ) const;  ///< largest sub-step the organ is given [s]
   int substeps(std::size_t organ, double period) const;
+  const IntegratorChoice& integrator(std::size_t organ) const;
 
   /// Positions, volume, pressure and energies after the last advance(). Headers are the caller's.
   void write_node_positions(std::size_t organ, NodePositions& out) const;

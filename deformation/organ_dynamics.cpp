@@ -1,17 +1,94 @@
 #include "deformation/organ_dynamics.h"
 
+#include <cmath>
+
+#include "deformation/backward_euler.h"
+#include "deformation/neighbours/baumgarte.h"
+#include "deformation/neighbours/bourguignon_cani.h"
+#include "deformation/neighbours/chainmail.h"
+#include "deformation/neighbours/element_volume.h"
+#include "deformation/neighbours/penalty.h"
+#include "deformation/neighbours/post_stabilisation.h"
+#include "deformation/neighbours/promayon.h"
+#include "deformation/neighbours/zordan.h"
 #include "deformation/symplectic_euler.h"
 #include "modules/core/error.h"
+#include "modules/scene/schema.h"
 
 namespace palpate::deformation {
+namespace {
 
-std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model) {
+/// Backward Euler damps and lags; it must save more than this factor.
+constexpr double kWorthwhile = 2;
+
+/// What a neighbour method asks of the scene beyond the implicit constraint.
+void check_neighbour(const scene::Organ& organ, const OrganModel& model) {
+  const std::string start = "organ '" + organ.name + "': model " + scene::word_of(organ.model);
+  if (organ.integrator == scene::Integrator::kBackwardEuler) {
+    throw InputError(start +
+                     " has steps of its own; integrator must be automatic or symplectic_euler");
+  }
+  const bool pyramids =
+      organ.model == scene::Model::kZordan || organ.model == scene::Model::kElementVolume;
+  if (pyramids && model.node_count() == model.surface_node_count()) {
+    throw InputError(start +
+                     " needs virtual nodes as apexes of its pyramids; springs: virtual_nodes must "
+                     "be at least 1 and inner_ratio above 0");
+  }
+}
+
+std::unique_ptr<OrganDynamics> make_neighbour(const scene::Organ& organ, const OrganModel& model) {
+  check_neighbour(organ, model);
+  switch (organ.model) {
+    case scene::Model::kPenalty:
+      return std::make_unique<Penalty>(model);
+    case scene::Model::kBaumgarte:
+      return std::make_unique<Baumgarte>(model);
+    case scene::Model::kPromayon:
+      return std::make_unique<Promayon>(model);
+    case scene::Model::kPostStabilisation:
+      return std::make_unique<PostStabilisation>(model);
+    case scene::Model::kBourguignonCani:
+      return std::make_unique<BourguignonCani>(model);
+    case scene::Model::kZordan:
+      return std::make_unique<Zordan>(model);
+    case scene::Model::kElementVolume:
+      return std::make_unique<ElementVolume>(model);
+    default:
+      PALPATE_DEMAND(organ.model == scene::Model::kChainMail);
+      return std::make_unique<ChainMail>(model);
+  }
+}
+
+}  // namespace
+
+IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,
+                                   double period) {
+  IntegratorChoice choice;
+  choice.symplectic_passes = std::ceil(period / SymplecticEuler(model).largest_step()) / period;
+  choice.backward_passes = std::ceil(period / BackwardEuler::kLargestStep) / period *
+                           BackwardEuler::passes(BackwardEuler::kIterations);
+  const bool own_steps =
+      organ.model != scene::Model::kImplicitVolume && organ.model != scene::Model::kMassSpring;
+  if (organ.integrator != scene::Integrator::kAutomatic) {
+    choice.integrator = organ.integrator;
+  } else if (!own_steps && choice.symplectic_passes > kWorthwhile * choice.backward_passes) {
+    choice.integrator = scene::Integrator::kBackwardEuler;
+  }
+  return choice;
+}
+
+std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
+                                             double period) {
   switch (organ.model) {
     case scene::Model::kImplicitVolume:
     case scene::Model::kMassSpring:
+      if (choose_integrator(organ, model, period).integrator == scene::Integrator::kBackwardEuler) {
+        return std::make_unique<BackwardEuler>(model);
+      }
       return std::make_unique<SymplecticEuler>(model);
     default:
-      throw InputError("organ '" + organ.name + "': this model is not available yet");
+      return make_neighbour(organ, model);
   }
 }
 

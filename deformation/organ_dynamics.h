@@ -28,9 +28,24 @@ class OrganDynamics {
   virtual StepReport step(double h, std::span<ContactRow> rows, OrganState& state) = 0;
 };
 
-/// What `organ` asks for. Automatic: what is cheaper for this model.
-/// @param model  outlives the dynamics
+/// How an organ's springs are stepped, and what that was decided by.
+struct IntegratorChoice {
+  scene::Integrator integrator = scene::Integrator::kSymplecticEuler;  ///< not kAutomatic
+  /// Passes over all springs per simulated second that each would need.
+  double symplectic_passes = 0, backward_passes = 0;
+};
+
+/// What `organ` asks for. Automatic is backward Euler where symplectic Euler needs more than twice
+/// the passes over the springs, else symplectic Euler, which neither damps nor lags.
+/// @param period  of an advance, which is divided into equal steps [s]
+IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,
+                                   double period);
+
+/// The organ's model with the integrator chosen.
+/// @param model   outlives the dynamics
+/// @param period  of an advance [s]
 /// @throws InputError if the integrator does not go with the organ's model
-std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model);
+std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
+                                             double period);
 
 }  // namespace palpate::deformation

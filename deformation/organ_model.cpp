@@ -54,13 +54,24 @@ std::vector<double> node_masses(const SpringNetwork& network, const std::vector<
 /// Axial damping coefficients c of all springs [N·s/m].
 std::vector<double> axial_damping(const SpringNetwork& network, const std::vector<double>& masses,
                                   double damping_ratio) {
+  const auto first_virtual = masses.begin() + static_cast<long>(network.surface_node_count);
+  const double mean_mass = std::accumulate(masses.begin(), first_virtual, 0.0) /
+                           static_cast<double>(network.surface_node_count);
   std::vector<double> damping(network.springs.size());
   for (std::size_t s = 0; s < damping.size(); ++s) {
     const Spring& spring = network.springs[s];
     const double m_a = masses[spring.node_a], m_b = masses[spring.node_b];
-    damping[s] = 2 * damping_ratio * std::sqrt(spring.stiffness * m_a * m_b / (m_a + m_b));
+    const double reduced_mass =
+        network.family(s) == SpringFamily::kInner ? m_a * m_b / (m_a + m_b) : mean_mass / 2;
+    damping[s] = 2 * damping_ratio * std::sqrt(spring.stiffness * reduced_mass);
   }
   return damping;
+}
+
+/// The others use springs alone at the step's start.
+bool wants_volume(scene::Model model) {
+  return model == scene::Model::kImplicitVolume || model == scene::Model::kPenalty ||
+         model == scene::Model::kBaumgarte || model == scene::Model::kPostStabilisation;
 }
 
 void fix_nodes(const scene::Organ& organ, OrganModel& model) {
@@ -99,7 +110,7 @@ OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
   model.spring_damping = axial_damping(model.network, model.masses, organ.tissue.damping_ratio);
   model.gravity = gravity;
   model.drag = organ.tissue.drag;
-  model.preserve_volume = organ.model == scene::Model::kImplicitVolume;
+  model.preserve_volume = wants_volume(organ.model);
   model.volume_corrections = static_cast<int>(organ.volume_corrections);
 
   VolumeGradient at_rest;

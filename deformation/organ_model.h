@@ -20,7 +20,7 @@ struct OrganModel {
   std::vector<std::uint32_t> fixed_nodes;
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
   double drag = 0;              ///< [1/s]
-  bool preserve_volume = true;  ///< by the implicit constraint
+  bool preserve_volume = true;  ///< V and its gradient are wanted at each step's start
   int volume_corrections = 0;   ///< Newton corrections per step
   double rest_volume = 0;       ///< V₀ [m³]
   double rest_denominator = 0;  ///< gᵀM⁻¹g at rest [m⁴/kg]
@@ -41,7 +41,9 @@ struct OrganState {
 /// nodes by area. A tenth as much goes to the virtual nodes by their springs' stiffness (contents
 /// that move with the axis), and at least so much that none has more stiffness per mass than the
 /// mean surface node; the sum is scaled back to the total. So virtual nodes never limit the step.
-/// Spring damping is ζ of each spring's own critical damping, c = 2 ζ √(k m_a m_b/(m_a+m_b)).
+/// Spring damping is ζ of the spring's own critical damping, c = 2 ζ √(k m_a m_b/(m_a+m_b)); edge
+/// and bending springs take the mean surface node for both ends, so that the springs of a family
+/// differ in length only (spring_kernel.h).
 /// @param rest_surface  closed, oriented outward, in W [m]
 /// @throws InputError naming the organ if every node is fixed or the volume is not positive
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,

@@ -51,12 +51,17 @@ std::size_t nearest(const std::vector<Vec3>& points, std::size_t first, const Ve
   return best;
 }
 
+/// E t of the springs [N/m].
+double membrane_stiffness(const scene::Tissue& tissue) {
+  return kMembraneFactor * tissue.youngs_modulus * tissue.wall_thickness;
+}
+
 /// Each edge: (√3/4) E t per adjacent triangle, that is twice on a closed surface.
 void add_membrane_springs(const geometry::TriangleSurface& surface, const scene::Tissue& tissue,
                           double bending_ratio, SpringNetwork& network) {
   const auto edges = geometry::edges_of(surface.triangles);
-  const double membrane = tissue.youngs_modulus * tissue.wall_thickness;  // E t [N/m]
-  const double structural = 2 * (std::sqrt(3.0) / 4) * membrane / (1 + 7 * bending_ratio);
+  const double structural =
+      2 * (std::sqrt(3.0) / 4) * membrane_stiffness(tissue) / (1 + 7 * bending_ratio);
   const auto add = [&](const NodePair& pair, double stiffness) {
     const double length = (surface.nodes[pair[0]] - surface.nodes[pair[1]]).norm();
     network.springs.push_back({pair[0], pair[1], length, stiffness});
@@ -81,8 +86,7 @@ void add_inner_springs(const scene::Tissue& tissue, double inner_ratio, SpringNe
   }
   network.inner_count = surface_count;
   const double radius = length_sum / static_cast<double>(surface_count);
-  const double per_area =
-      inner_ratio * tissue.youngs_modulus * tissue.wall_thickness / (radius * radius);
+  const double per_area = inner_ratio * membrane_stiffness(tissue) / (radius * radius);
   for (std::size_t i = 0; i < surface_count; ++i) {
     network.springs[network.springs.size() - surface_count + i].stiffness =
         per_area * network.node_areas[i];

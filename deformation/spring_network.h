@@ -14,6 +14,12 @@
 // 3·(2L)² + 3·(√3 L)² = 21 L² of bending. With k_bending = r k_structural, dividing both by
 // 1 + 7 r keeps the membrane's E t whatever r.
 //
+// Tissue is not that membrane: its ν is ½, and it softens as it is stretched thin. Against an
+// incompressible neo-Hookean wall the springs are too soft under small stretch in both directions
+// (4/3), too stiff under large stretch (0.84 at 20 % along one direction). One number stands for
+// the mean of what a squeezed organ does: every E t here is kMembraneFactor times that of the
+// scene, fitted to a hollow ball of finite elements (docs/calibration.md).
+//
 // Inner springs are a foundation under the membrane. Its natural unit is E t / R² per area (R =
 // mean inner spring length), so k_i = inner_ratio · E t / R² · (area of node i): independent of
 // mesh size.
@@ -26,6 +32,9 @@
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
+
+/// E t of the springs over that of the tissue; palpate-calibrate fits it.
+inline constexpr double kMembraneFactor = 0.93;
 
 struct Spring {
   std::uint32_t node_a = 0, node_b = 0;
@@ -48,6 +57,7 @@ struct SpringNetwork {
 /// none.
 std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, std::size_t count);
 
+/// Every stiffness is proportional to kMembraneFactor · E t.
 /// @param surface  closed, at rest [m]
 SpringNetwork build_spring_network(const geometry::TriangleSurface& surface,
                                    const scene::Tissue& tissue, const scene::Springs& springs);

@@ -68,11 +68,29 @@ ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
   return report;
 }
 
-SymplecticEuler::SymplecticEuler(const OrganModel& model)
-    : model_(model), largest_step_(kStepSafety * stable_step_bound(model)) {}
+SymplecticEuler::SymplecticEuler(const OrganModel& model, ChunkRunner* runner)
+    : model_(model),
+      largest_step_(kStepSafety * stable_step_bound(model)),
+      kernel_(model, runner) {}
 
 StepReport SymplecticEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  return {symplectic_euler_step(model_, h, rows, state, buffers_).volume_skipped};
+  // 1. unconstrained velocities, volume and its gradient at the old positions
+  kernel_.free_step(h, state, free_);
+  const VolumeRow volume{free_.volume, (free_.volume.volume - state.target_volume) / h};
+
+  // 2. contact impulses and the one volume multiplier
+  auto report = solve_contacts(model_, model_.preserve_volume ? &volume : nullptr,
+                               free_.volume_velocity, h, rows, free_.velocities);
+
+  // 3. velocities at the end of the step, positions
+  kernel_.finish_step(h, report.volume_impulse, free_, state);
+
+  // 4. what the linearisation left
+  for (int k = 0; model_.preserve_volume && k < model_.volume_corrections; ++k) {
+    correct_volume(model_, h, rows, state, buffers_, report);
+  }
+  state.pressure = -report.volume_impulse / h;
+  return {report.volume_skipped};
 }
 
 }  // namespace palpate::deformation

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deformation/organ_dynamics.h"
+#include "deformation/spring_kernel.h"
 
 namespace palpate::deformation {
 
@@ -26,21 +27,24 @@ void correct_volume(const OrganModel& model, double h, std::span<ContactRow> row
                     OrganState& state, StepBuffers& buffers, ContactSolveReport& report);
 
 /// Advances the state by h [s]. Stable for h below stable_step_bound(). Contact rows must hold
-/// their gaps at the current positions.
+/// their gaps at the current positions. The plain code: SymplecticEuler does the same faster.
 ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
                                          std::span<ContactRow> rows, OrganState& state,
                                          StepBuffers& buffers);
 
 class SymplecticEuler : public OrganDynamics {
  public:
-  explicit SymplecticEuler(const OrganModel& model);
+  /// @param runner  outlives this; none: the calling thread alone
+  explicit SymplecticEuler(const OrganModel& model, ChunkRunner* runner = nullptr);
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
 
  private:
   const OrganModel& model_;
   double largest_step_;
-  StepBuffers buffers_;
+  SpringKernel kernel_;
+  FreeStep free_;
+  StepBuffers buffers_;  ///< of corrections
 };
 
 }  // namespace palpate::deformation

@@ -7,6 +7,7 @@
 
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_command.h"
+#include "modules/launcher/chart_command.h"
 #include "modules/launcher/check_command.h"
 #include "modules/launcher/replay_command.h"
 #include "modules/launcher/run_command.h"
@@ -94,6 +95,18 @@ void add_mesh(CLI::App& app, geometry::MeshCommandOptions& options, Job& job) {
       [&] { job = [&] { return geometry::run_mesh_command(options, std::cout, std::cerr); }; });
 }
 
+/// What follows WHAT belongs to its program, --help too.
+void add_chart(CLI::App& app, Job& job) {
+  auto* command = app.add_subcommand("chart", "Measure and draw: chart WHAT [OPTIONS]");
+  std::string names;
+  for (const auto& name : chart_names()) names += " " + name;
+  command->footer("WHAT:" + names + "\n`palpate chart WHAT --help` lists its options.");
+  command->prefix_command();
+  command->final_callback([&job, command] {
+    job = [words = command->remaining()]() -> int { chart_command(words, own_program_folder()); };
+  });
+}
+
 int report_failure(const Job& job) {
   try {
     return job();
@@ -124,6 +137,7 @@ int palpate_command(int argc, char** argv) {
   add_inspect(app, inspect, job);
   add_check(app, scene, measure_for, job);
   add_mesh(app, mesh, job);
+  add_chart(app, job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

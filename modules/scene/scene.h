@@ -29,9 +29,11 @@ struct Tissue {
 };
 
 /// The spring families that have no continuum meaning of their own; 0 leaves a family out.
+/// Defaults: a hollow, filled organ (docs/calibration.md); a solid one wants inner_ratio 10 and a
+/// wall of 0.16 of its radius.
 struct Springs {
   double bending_ratio = 0.1;  ///< `bending_ratio`: stiffness over a structural spring's [0 … 10]
-  double inner_ratio = 0.5;    ///< `inner_ratio`: stiffness per area over E t / R² [0 … 100]
+  double inner_ratio = 0.05;   ///< `inner_ratio`: stiffness per area over E t / R² [0 … 100]
   std::size_t virtual_nodes = 6;  ///< `virtual_nodes` on the dominant axis [0 … 64]; 0 = no inner
 };
 
@@ -162,6 +164,7 @@ struct Scene {
   Vec3 gravity = Vec3::Zero();  ///< `gravity_m_per_s2`; the rest shape is free of it
   double duration = 0;          ///< `duration_s`: 0 = until stopped [0 … 1e6]
   Rates rates;
+  std::size_t deformation_threads = 1;  ///< `deformation_threads` [1 … 16]
   Haptics haptics;
   Camera camera;
 };

@@ -313,6 +313,8 @@ void describe(V& v, Scene& scene) {
           ranged("m/s²", -100, 100, "acceleration; the rest shape is free of it"));
   v.field("duration_s", scene.duration, ranged("s", 0, 1e6, "of a run; 0 = until stopped"));
   v.field("rates", scene.rates, plain("cycles per second of each process"));
+  v.field("deformation_threads", scene.deformation_threads,
+          ranged("", 1, 16, "cores of deformation; more than one only helps large meshes"));
   v.field("haptics", scene.haptics, plain("limits of the force given to the hand"));
   v.field("camera", scene.camera, plain("of the visualizer"));
 }

@@ -16,6 +16,8 @@ scene::Tissue tissue() {
   return tissue;
 }
 
+constexpr double kMembrane = kMembraneFactor * 10e3 * 3e-3;  // E t of the springs [N/m]
+
 scene::Springs springs(double bending, double inner, std::size_t virtual_nodes) {
   return {bending, inner, virtual_nodes};
 }
@@ -44,7 +46,7 @@ TEST_CASE("spring network: an edge of a regular tetrahedron has twice (√3/4) E
   REQUIRE(network.structural_count == 6);
   REQUIRE(network.springs.size() == 6);
   for (const Spring& spring : network.springs) {
-    CHECK(spring.stiffness == Approx(2 * std::sqrt(3.0) / 4 * 10e3 * 3e-3).epsilon(1e-12));
+    CHECK(spring.stiffness == Approx(2 * std::sqrt(3.0) / 4 * kMembrane).epsilon(1e-12));
     CHECK(spring.rest_length == Approx(0.1).epsilon(1e-12));
   }
 }
@@ -57,9 +59,57 @@ TEST_CASE("spring network: an inflated sphere stores the membrane's energy for a
   const auto network = build_spring_network(ball, tissue(), springs(ratio, 0, 0));
   const double strain = 1e-3;
   const double area = geometry::surface_area(ball.nodes, ball.triangles);
-  const double expected = 10e3 * 3e-3 * strain * strain / (1 - 1.0 / 3) * area;
+  const double expected = kMembrane * strain * strain / (1 - 1.0 / 3) * area;
   CHECK(radial_energy(network, strain, 0, network.springs.size()) ==
         Approx(expected).epsilon(0.03));
+}
+
+/// A flat regular lattice of edge length `edge`, 2 n + 1 by 2 n + 1 nodes, rolled without stretch
+/// onto a cylinder of this curvature about the y-axis.
+std::vector<Vec3> rolled_lattice(int n, double edge, double curvature) {
+  std::vector<Vec3> nodes;
+  for (int row = -n; row <= n; ++row) {
+    for (int column = -n; column <= n; ++column) {
+      const double along = edge * (column + 0.5 * row), across = edge * std::sqrt(0.75) * row;
+      nodes.emplace_back(std::sin(curvature * along) / curvature, across,
+                         std::cos(curvature * along) / curvature);
+    }
+  }
+  return nodes;
+}
+
+TEST_CASE("spring network: bending springs give a wall next to no bending stiffness") {
+  // Oracle: analytic. A chord of surface length s at angle φ to the bent direction changes its
+  // length by κ δκ s³ cos⁴φ/12, so D = E t κ² L⁴/144 · (S₁ + r S₂)/(1 + 7 r) with Σ (s/L)⁶ cos⁸φ of
+  // the three springs: S₁ = 1.0078 of edges, S₂ = 64·1.0078 + 27·0.6328 of bending springs. 2 %:
+  // higher orders. A wall's D is E t³/9: the springs' is below a tenth of it and falls with L⁴.
+  const int n = 6;
+  const double edge = 4e-3, curvature = 20, change = 0.01, ratio = GENERATE(0.0, 0.1, 1.0);
+  const auto width = static_cast<std::uint32_t>(2 * n + 1);
+  geometry::TriangleSurface sheet;
+  sheet.nodes = rolled_lattice(n, edge, curvature);
+  for (std::uint32_t row = 0; row + 1 < width; ++row) {
+    for (std::uint32_t column = 0; column + 1 < width; ++column) {
+      const std::uint32_t i = row * width + column;
+      sheet.triangles.push_back({i, i + 1, i + width});
+      sheet.triangles.push_back({i + 1, i + width + 1, i + width});
+    }
+  }
+  const auto network = build_spring_network(sheet, tissue(), springs(ratio, 0, 0));
+  const auto bent = rolled_lattice(n, edge, curvature + change);
+  const std::uint32_t middle = static_cast<std::uint32_t>(n) * width + n;
+  double energy = 0;  // of one node: half of each of its springs
+  for (const Spring& spring : network.springs) {
+    if (spring.node_a != middle && spring.node_b != middle) continue;
+    const double stretch = (bent[spring.node_a] - bent[spring.node_b]).norm() - spring.rest_length;
+    energy += 0.25 * spring.stiffness * stretch * stretch;
+  }
+  const double node_area = std::sqrt(0.75) * edge * edge;
+  const double stiffness = 2 * energy / (node_area * change * change);
+  const double sums = (1.0078 + ratio * (64 * 1.0078 + 27 * 0.6328)) / (1 + 7 * ratio);
+  CHECK(stiffness ==
+        Approx(kMembrane * std::pow(curvature * edge * edge, 2) / 144 * sums).epsilon(0.02));
+  CHECK(stiffness < 0.1 * 10e3 * std::pow(3e-3, 3) / 9);
 }
 
 TEST_CASE("spring network: bending springs join exactly the nodes two edges apart") {

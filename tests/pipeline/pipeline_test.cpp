@@ -20,6 +20,7 @@ scene::Scene press_scene(std::vector<scene::ScriptedDevice::Move> moves, double 
   organ.name = "ball";
   organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
   organ.tissue.drag = 10;
+  organ.springs.inner_ratio = 0.6;  // so that a tip meets a force worth comparing
   scene.organs.push_back(organ);
   scene::ScriptedDevice device;
   device.start = Vec3(0, 0, kRadius + kTip + 0.005);

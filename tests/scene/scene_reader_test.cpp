@@ -45,6 +45,7 @@ TEST_CASE("scene reader: a minimal scene is one mesh, one shape and one device")
   CHECK(scene.rates.deformation == 250);
   CHECK(scene.rates.visualizer == 30);
   CHECK(scene.haptics.max_force == 3.3);
+  CHECK(scene.deformation_threads == 1);
   CHECK_FALSE(scene.camera.position);
   CHECK_FALSE(scene.camera.target);
 }
@@ -136,6 +137,7 @@ TEST_CASE("scene reader: every key of the scene itself arrives in its field") {
   CHECK(scene.haptics.device_damping == 0.4);
   CHECK(scene.haptics.stale_after == 0.06);
   CHECK(scene.haptics.fade_time == 0.07);
+  CHECK(scene.deformation_threads == 3);
   REQUIRE(scene.camera.position);
   CHECK(*scene.camera.position == Vec3(0, -1, 0));
   REQUIRE(scene.camera.target);

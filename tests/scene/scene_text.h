@@ -162,6 +162,7 @@ haptics:
   stale_after_s: 0.06
   fade_time_s: 0.07
 camera: {position_m: [0, -1, 0], target_m: [0, 0, 0.1]}
+deformation_threads: 3
 )";
 
 /// kFullScene with one place changed; a text that is not there exactly once is a broken test.

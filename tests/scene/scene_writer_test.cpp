@@ -117,6 +117,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.haptics.device_damping == b.haptics.device_damping);
   CHECK(a.haptics.stale_after == b.haptics.stale_after);
   CHECK(a.haptics.fade_time == b.haptics.fade_time);
+  CHECK(a.deformation_threads == b.deformation_threads);
   CHECK(a.camera.position == b.camera.position);
   CHECK(a.camera.target == b.camera.target);
 }

@@ -97,6 +97,7 @@ TEST_CASE("yaml value: every number has its range, whose ends belong to it") {
       {"19", "volume_corrections: 2", "-1", "0", "5", "6", "0 and 5"},
       {"25", "breathing_amplitude: 0.1", "-0.1", "0", "0.5", "0.6", "0 and 0.5"},
       {"26", "breathing_hz: 0.4", "0", "0.01", "5", "6", "0.01 and 5 Hz"},
+      {"73", "deformation_threads: 3", "0", "1", "16", "17", "1 and 16"},
       {"27", "max_rate_per_s: 0.7", "0", "0.001", "10", "11", "0.001 and 10 1/s"}};
   const SceneFolder folder;
   for (const auto& range : ranges) {

@@ -1,0 +1,30 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "bench/bullet/bullet_command.h"
+#include "modules/core/error.h"
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  CLI::App app("A ball squeezed between two plates by Bullet's soft body and by ours, in one run.",
+               "palpate-bench-bullet");
+  bench::BulletOptions options;
+  app.add_option("-o,--out", options.out, "Folder for bullet.csv");
+  app.add_option("--nodes", options.nodes, "Sizes of the ball")
+      ->delimiter(',')
+      ->check(CLI::Range(162, 50000))
+      ->capture_default_str();
+  app.add_flag("--quick", options.quick, "Few settings, each timed once");
+  try {
+    app.parse(argc, argv);
+    return bench::run_bullet(options, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  } catch (const InputError& error) {
+    std::cerr << "palpate-bench-bullet: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "palpate-bench-bullet: " << error.what() << '\n';
+    return kExitFailed;
+  }
+}

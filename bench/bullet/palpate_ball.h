@@ -1,0 +1,51 @@
+// The squeezed ball by our own solvers.
+#pragma once
+
+#include "bench/bullet/squeezed_ball.h"
+#include "deformation/organ_dynamics.h"
+#include "haptics/device.h"
+#include "modules/pipeline/pipeline.h"
+
+namespace palpate::bench {
+
+/// Deformation and contacts: every node near a plate gets a contact row. In equal sub-steps as
+/// large as the integrator takes.
+class PalpateBall : public Squeezer {
+ public:
+  /// @param ball         outlives this
+  /// @param corrections  Newton corrections of the volume per step
+  PalpateBall(const Ball& ball, scene::Integrator integrator, int corrections);
+
+  void step(double height) override;
+  double volume() const override;
+  int substeps() const { return substeps_; }
+  double pressure() const { return state_.pressure; }  ///< [Pa]
+
+ private:
+  void find_contacts(double height, double speed);
+  void keep_impulses();
+
+  const Ball& ball_;
+  deformation::OrganModel model_;
+  std::unique_ptr<deformation::OrganDynamics> dynamics_;
+  deformation::OrganState state_;
+  std::vector<std::array<std::uint32_t, 3>> corners_;  ///< per node, itself first
+  std::vector<deformation::ContactRow> rows_;
+  std::vector<double> impulses_;  ///< of the last sub-step, per node [N·s]
+  double height_ = kBallRadius;
+  int substeps_ = 1;
+};
+
+/// The whole in-process pipeline as a scene runs it: devices, collision on any shape, contact model
+/// and haptic force, once per step.
+class PipelineBall : public Squeezer {
+ public:
+  PipelineBall(const Ball& ball, const Squeeze& squeeze);
+  void step(double height) override;
+  double volume() const override;
+
+ private:
+  pipeline::Pipeline pipeline_;
+};
+
+}  // namespace palpate::bench

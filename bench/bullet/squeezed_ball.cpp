@@ -1,0 +1,81 @@
+#include "bench/bullet/squeezed_ball.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/node_order.h"
+#include "modules/geometry/primitives.h"
+
+namespace palpate::bench {
+
+namespace {
+
+/// Processor time of this thread [s]: what other programs take of the core does not count.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+/// Minimum jerk from 0 to 1.
+double smooth(double t) { return t * t * t * (10 + t * (6 * t - 15)); }
+
+geometry::TriangleSurface sphere(std::size_t nodes) {
+  int levels = 0;
+  while (10 * (std::size_t{1} << (2 * levels)) + 2 < nodes && levels < 5) ++levels;
+  auto surface = geometry::make_ball(kBallRadius, levels);
+  return surface.nodes.size() == nodes ? surface : geometry::resample_surface(surface, nodes);
+}
+
+}  // namespace
+
+Ball make_bench_ball(std::size_t nodes) {
+  Ball ball;
+  ball.organ.name = "ball";
+  ball.organ.tissue = {.youngs_modulus = 10e3, .wall_thickness = 3e-3, .density = 1000};
+  ball.surface = sphere(nodes);
+  geometry::order_nodes_by_neighbourhood(ball.surface);
+  ball.model = deformation::build_organ_model(ball.organ, Vec3::Zero(), ball.surface);
+  return ball;
+}
+
+const char* Outcome::verdict() const {
+  constexpr double kBlownUp = 2, kSwinging = 0.05;  // of V₀
+  if (!finite || peak > kBlownUp) return "blew up";
+  return swing > kSwinging ? "swings" : "stable";
+}
+
+bool Outcome::stable() const { return std::string("stable") == verdict(); }
+
+Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void()>& keep_going) {
+  const double rest_volume = squeezer.volume();
+  const int steps = squeeze.closing_steps + squeeze.holding_steps;
+  const int held_from = steps - squeeze.holding_steps / 5;
+  Outcome outcome;
+  double lowest = 1, highest = 1;
+  double spent = 0;
+  for (int k = 1; k <= steps && outcome.finite; ++k) {
+    keep_going();
+    const double closed = smooth(std::min(1.0, double(k) / squeeze.closing_steps));
+    const double begin = thread_seconds();
+    squeezer.step(kBallRadius * (1 - squeeze.compression * closed));
+    spent += thread_seconds() - begin;
+
+    const double ratio = squeezer.volume() / rest_volume;
+    outcome.finite = std::isfinite(ratio);
+    outcome.peak = std::max(outcome.peak, std::abs(ratio - 1));
+    if (k <= held_from) continue;
+    if (k == held_from + 1) lowest = highest = ratio;
+    lowest = std::min(lowest, ratio);
+    highest = std::max(highest, ratio);
+  }
+  outcome.held = std::max(std::abs(lowest - 1), std::abs(highest - 1));
+  outcome.swing = highest - lowest;
+  outcome.us_per_step = 1e6 * spent / steps;
+  return outcome;
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,60 @@
+// A ball squeezed to half its width between two plates: the task both solvers get.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "deformation/organ_model.h"
+#include "modules/geometry/triangle_surface.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::bench {
+
+inline constexpr double kBallRadius = 0.05;  ///< [m]
+
+/// What is squeezed. Both solvers get the springs, masses and triangles of `model`.
+struct Ball {
+  scene::Organ organ;
+  geometry::TriangleSurface surface;
+  deformation::OrganModel model;
+};
+
+/// R 5 cm, E 10 kPa, wall 3 mm, drag 2/s, nothing fixed.
+/// @param nodes  162, 642, 2,562 …: an icosphere; else one resampled to as many
+Ball make_bench_ball(std::size_t nodes);
+
+/// A solver with the ball and the plates at ±height.
+class Squeezer {
+ public:
+  virtual ~Squeezer() = default;
+  /// Moves the plates to ±`height` at the step's end and advances by kStep.
+  virtual void step(double height) = 0;
+  /// Of the surface now, computed in double precision whatever the solver uses [m³].
+  virtual double volume() const = 0;
+};
+
+inline constexpr double kStep = 2e-3;  ///< h [s]
+
+/// How the ball is squeezed: plates close with minimum jerk, as a scene's devices move, then stay.
+struct Squeeze {
+  double compression = 0.5;  ///< of the ball's width, at the end
+  int closing_steps = 500;
+  int holding_steps = 500;
+};
+
+struct Outcome {
+  double us_per_step = 0;  ///< processor time, mean over the run, without volume()
+  double peak = 0;         ///< largest |V−V₀|/V₀
+  double held = 0;         ///< largest over the last fifth of the holding time
+  double swing = 0;        ///< highest less lowest V/V₀ of that time
+  bool finite = true;
+  /// "stable", "swings" (the held volume by more than a twentieth) or "blew up".
+  const char* verdict() const;
+  bool stable() const;
+};
+
+/// Runs the squeeze from rest. @param keep_going  asked at each step; may throw to end the run
+Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void()>& keep_going);
+
+}  // namespace palpate::bench

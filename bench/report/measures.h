@@ -1,0 +1,22 @@
+// What every measurement needs to speak of itself.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::bench {
+
+/// printf-style text of one number.
+std::string text_of(const char* format, double value);
+
+/// The middle value; the upper one of the two middle ones. @param values  not empty
+double median(std::vector<double> values);
+
+/// Processor and number of cores of this machine, in words.
+std::string machine_name();
+
+/// Makes the folder of --out. @throws InputError if it cannot be made
+void make_out_folder(const std::filesystem::path& folder);
+
+}  // namespace palpate::bench

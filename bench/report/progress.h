@@ -1,0 +1,32 @@
+// How far a long job is, and whether it is to stop.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace palpate::bench {
+
+/// Thrown out of a job that was asked to stop.
+struct Stopped {};
+inline constexpr int kExitStopped = 130;  ///< exit code of it: Ctrl-C as shells count it
+
+class Progress {
+ public:
+  /// @param stop  true as soon as somebody wants the job to end
+  Progress(std::ostream& log, std::function<bool()> stop);
+
+  void begin(const std::string& job);
+  /// Prints "job: done of total unit", at most every two seconds.
+  /// @throws Stopped if the job is to stop
+  void at(double done, double total, const char* unit);
+
+ private:
+  std::ostream& log_;
+  std::function<bool()> stop_;
+  std::string job_;
+  std::chrono::steady_clock::time_point next_line_;
+};
+
+}  // namespace palpate::bench

@@ -1,0 +1,181 @@
+#include "deformation/backward_euler.h"
+
+#include <Eigen/LU>
+
+namespace palpate::deformation {
+namespace {
+
+/// Iterations end when what they could still change is below this [m/s], as a mean weighted by D.
+constexpr double kVelocityTolerance = 1e-7;
+
+/// a += scale · b
+void add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += scale * b[i];
+}
+
+}  // namespace
+
+BackwardEuler::BackwardEuler(const OrganModel& model, int iterations)
+    : model_(model), max_iterations_(iterations), springs_(model), kernel_(model) {
+  for (const double mass : model.masses) total_mass_ += mass;
+  for (auto* buffer : {&change_, &residual_, &trial_}) {
+    buffer->assign(model.node_count(), Vec3::Zero());
+  }
+  for (auto* buffer : {&inner_change_, &inner_residual_, &projected_, &direction_, &product_}) {
+    buffer->assign(model.node_count(), Vec4f::Zero());
+  }
+  mobilities_.assign(model.node_count(), Mat3::Zero());
+}
+
+StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
+  StepReport report;
+  // 1. springs, volume and forces after free flight
+  linearise_springs(h, state);
+  report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
+
+  // 2. which contacts close, which slide
+  volume_impulse_ = 0;
+  solve_impulses(h, rows, state, StartImpulses::kToApply);
+
+  // 3. springs, with those contacts and the volume held
+  update_residual(rows);
+  relax_springs(rows);
+
+  // 4. what opened, closed or began to slide meanwhile
+  solve_impulses(h, rows, state, StartImpulses::kApplied);
+  keep_momentum(h, rows, state);
+
+  // 5. the new state, and what the linearisation of the volume left
+  add(1, change_, state.velocities);
+  add(h, state.velocities, state.positions);
+  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
+  state.pressure = -volume_impulse_ / h;
+  return report;
+}
+
+void BackwardEuler::linearise_springs(double h, const OrganState& state) {
+  flight_.positions = state.positions;
+  flight_.velocities = state.velocities;
+  add(h, state.velocities, flight_.positions);
+  kernel_.free_step(h, flight_, free_);
+  springs_.linearise(flight_.positions, h);
+  for (std::size_t i = 0; i < model_.node_count(); ++i) {
+    change_[i].setZero();
+    residual_[i].setZero();
+    if (model_.inverse_masses[i] == 0) continue;
+    residual_[i] = model_.masses[i] * (free_.velocities[i] - state.velocities[i]);
+    mobilities_[i] = 0.5 * springs_.diagonal()[i].inverse();
+  }
+}
+
+bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradient& volume,
+                                     const std::vector<Vec3>& velocities) {
+  volume_row_.reset();
+  if (!model_.preserve_volume) return true;
+  if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
+  double rate = (volume.volume - target_volume) / h;
+  volume.denominator = 0;  // of these mobilities from here on
+  for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
+    rate -= volume.gradient[i].dot(velocities[i]);
+    volume.denominator += volume.gradient[i].dot(mobilities_[i] * volume.gradient[i]);
+  }
+  volume_row_.emplace(VolumeRow{volume, rate});
+  return true;
+}
+
+void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
+                                   StartImpulses start) {
+  for (std::size_t i = 0; i < trial_.size(); ++i) {
+    trial_[i] = state.velocities[i] + change_[i] + mobilities_[i] * residual_[i];
+  }
+  volume_impulse_ += solve_contacts_and_volume(mobilities_, volume_row_ ? &*volume_row_ : nullptr,
+                                               h, rows, trial_, start)
+                         .volume_impulse;
+  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+}
+
+void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
+  for (std::size_t i = 0; i < change_.size(); ++i) direction_[i] = wide(change_[i]);
+  springs_.apply(direction_, product_);
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    residual_[i] -= product_[i].head<3>().cast<double>();
+  }
+  for (const ContactRow& row : rows) {
+    const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
+    for (int k = 0; k < 3; ++k) residual_[row.nodes[k]] += row.weights[k] * impulse;
+  }
+  if (!volume_row_) return;
+  const auto& gradient = volume_row_->at.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) residual_[i] -= volume_impulse_ * gradient[i];
+}
+
+void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
+  using Gradient = std::span<const Vec3>;
+  projection_.prepare(mobilities_, volume_row_ ? Gradient(volume_row_->at.gradient) : Gradient(),
+                      rows);
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    inner_residual_[i] = wide(residual_[i]);
+    inner_change_[i].setZero();
+  }
+  conjugate_gradients();
+  projection_.take_impulses(rows, volume_impulse_, inner_residual_);
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    change_[i] += inner_change_[i].head<3>().cast<double>();
+    residual_[i] = inner_residual_[i].head<3>().cast<double>();
+  }
+}
+
+void BackwardEuler::conjugate_gradients() {
+  const double negligible = total_mass_ * kVelocityTolerance * kVelocityTolerance;
+  projection_.project(inner_residual_, projected_);
+  direction_ = projected_;
+  double descent = dot(inner_residual_, projected_);
+  // Stops after max_iterations_, or when nothing worth the name is left to gain.
+  for (iterations_used_ = 0; iterations_used_ < max_iterations_ && descent > negligible;
+       ++iterations_used_) {
+    springs_.apply(direction_, product_);
+    const double step = descent / dot(direction_, product_);
+    add(step, direction_, inner_change_);
+    add(-step, product_, inner_residual_);
+    projection_.project(inner_residual_, projected_);
+    const double last = descent;
+    descent = dot(inner_residual_, projected_);
+    const auto kept = static_cast<float>(descent / last);
+    for (std::size_t i = 0; i < direction_.size(); ++i) {
+      direction_[i] = projected_[i] + kept * direction_[i];
+    }
+  }
+}
+
+/// Truncated iterations leave a little of the total momentum undone. An organ that nothing holds
+/// can be given it: a common velocity strains no spring and changes no volume.
+void BackwardEuler::keep_momentum(double h, std::span<const ContactRow> rows,
+                                  const OrganState& state) {
+  if (!model_.fixed_nodes.empty()) return;
+  for (const ContactRow& row : rows) {
+    if (row.normal_impulse > 0) return;
+  }
+  const double mass_factor = 1 + h * model_.drag;
+  Vec3 missing = Vec3::Zero();
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    missing += model_.masses[i] * (h * (model_.gravity - model_.drag * state.velocities[i]) -
+                                   mass_factor * change_[i]);
+  }
+  const Vec3 shift = missing / (mass_factor * total_mass_);
+  for (Vec3& change : change_) change += shift;
+}
+
+void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganState& state) {
+  evaluate_volume(model_, state.positions, free_.volume);
+  if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
+  trial_ = state.velocities;
+  volume_impulse_ += solve_contacts_and_volume(mobilities_, &*volume_row_, h, rows, trial_,
+                                               StartImpulses::kApplied)
+                         .volume_impulse;
+  for (std::size_t i = 0; i < trial_.size(); ++i) {
+    state.positions[i] += h * (trial_[i] - state.velocities[i]);
+  }
+  state.velocities = trial_;
+}
+
+}  // namespace palpate::deformation

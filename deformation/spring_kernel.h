@@ -1,0 +1,69 @@
+// The forces of all springs and the volume constraint's gradient in one pass over the nodes, fast.
+//
+// The plain code is spring_forces.h and volume_constraint.h; this agrees with it to rounding. Each
+// node gathers its springs from its neighbours, eight nodes side by side (spring_kernel_arrays.h).
+// While its one-ring passes, the volume gradient needs but a cross product: with d_j = x_j − x_i,
+//   g_i = ∂V/∂x_i = (1/6) Σ_ring d_j × d_j+1        V = ⅓ Σ (x_i − x₀)·g_i
+// The same bits come from every instruction set and any number of threads.
+// docs/decisions/0005-spring-kernel.md says why it looks as it does.
+#pragma once
+
+#include <vector>
+
+#include "deformation/organ_model.h"
+#include "deformation/spring_kernel_layout.h"
+#include "deformation/volume_constraint.h"
+#include "modules/core/parallel.h"
+
+namespace palpate::deformation {
+
+enum class InstructionSet { kPortable, kAvx2, kAvx512 };
+
+const char* name_of(InstructionSet set);
+/// Those this CPU has, from the slowest on.
+std::vector<InstructionSet> available_instruction_sets();
+
+/// What the volume constraint's division needs of a step.
+struct FreeStep {
+  VolumeGradient volume;         ///< V, g and gᵀM⁻¹g at the step's start
+  double volume_velocity = 0;    ///< g·v̂ [m³/s]
+  std::vector<Vec3> velocities;  ///< v̂ = v + h (M⁻¹F + gravity − drag v), 0 where fixed [m/s]
+};
+
+class SpringKernel {
+ public:
+  /// @param model   outlives the kernel
+  /// @param runner  outlives the kernel; none: the calling thread alone
+  explicit SpringKernel(const OrganModel& model, ChunkRunner* runner = nullptr,
+                        InstructionSet set = available_instruction_sets().back());
+
+  /// The step of h [s] without the volume's multiplier, and what the multiplier needs. Allocates
+  /// at the first call only.
+  void free_step(double h, const OrganState& state, FreeStep& out);
+
+  /// v⁺ = v̂ − M⁻¹g σ and x⁺ = x + h v⁺, taking v̂ out of `step`.
+  /// @param volume_impulse  σ [Pa·s]
+  void finish_step(double h, double volume_impulse, FreeStep& step, OrganState& state);
+
+  double elastic_energy(const std::vector<Vec3>& positions);  ///< Σ ½k(l−l₀)² [J]
+
+ private:
+  struct PaddedNodes {
+    const double *surface, *virtual_nodes;
+  };
+
+  void run(std::size_t count, ChunkBody body);
+  PaddedNodes padded(const std::vector<Vec3>& nodes, std::vector<Vec3>& copy) const;
+  kernel::Step make_step(double h, const OrganState& state, FreeStep& out);
+  void finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const;
+
+  const OrganModel& model_;
+  ChunkRunner* runner_;
+  const kernel::Functions& functions_;
+  SpringKernelLayout layout_;
+  std::vector<Vec3> padded_positions_, padded_velocities_;
+  std::vector<double> virtual_forces_;
+  std::vector<kernel::ChunkSums> sums_;
+};
+
+}  // namespace palpate::deformation

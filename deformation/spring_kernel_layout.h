@@ -1,0 +1,45 @@
+// Builds the arrays of spring_kernel_arrays.h from an organ model.
+#pragma once
+
+#include <vector>
+
+#include "deformation/organ_model.h"
+#include "deformation/spring_kernel_arrays.h"
+
+namespace palpate::deformation {
+
+/// Neighbours of each node counter-clockwise as seen from outside, from the lowest on.
+/// @param triangles  closed, oriented, one fan per node
+std::vector<std::vector<std::uint32_t>> ordered_one_rings(
+    const std::vector<geometry::Triangle>& triangles, std::size_t node_count);
+
+class SpringKernelLayout {
+ public:
+  explicit SpringKernelLayout(const OrganModel& model);
+
+  /// Valid as long as this lives and stays where it is.
+  kernel::Layout view() const;
+
+ private:
+  struct Neighbour {
+    std::uint32_t node = 0;
+    double rest_length = 0;
+  };
+  using Rows = std::vector<std::vector<Neighbour>>;
+
+  static Rows structural_rows(const OrganModel& model);
+  static Rows bending_rows(const OrganModel& model);
+  void add_slice(std::size_t first_row, const Rows& structural, const Rows& bending);
+  void add_row_values(const OrganModel& model, const Rows& structural);
+  void add_inner_springs(const OrganModel& model);
+  void add_links(std::size_t slice);
+
+  kernel::Layout scalars_;
+  std::vector<kernel::Slice> slices_;
+  std::vector<kernel::Link> links_;
+  std::vector<std::uint32_t> neighbours_, row_nodes_, inner_nodes_;
+  std::vector<double> rest_lengths_, ring_sizes_, inverse_masses_;
+  std::vector<double> inner_rest_lengths_, inner_stiffnesses_, inner_dampings_;
+};
+
+}  // namespace palpate::deformation

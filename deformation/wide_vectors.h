@@ -1,0 +1,38 @@
+// Vectors over nodes in float, four to a node so that a node fills a register: for the inner
+// iterations of implicit steps.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "modules/core/types.h"
+
+namespace palpate::deformation {
+
+/// x, y, z and a zero.
+using Vec4f = Eigen::Vector4f;
+
+inline Vec4f wide(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
+}
+
+/// a·b over the nodes of a. Summed in float over a few nodes at a time, in double over those.
+inline double dot(const std::vector<Vec4f>& a, const std::vector<Vec4f>& b) {
+  constexpr std::size_t kBlock = 32;
+  double sum = 0;
+  for (std::size_t first = 0; first < a.size(); first += kBlock) {
+    Vec4f block = Vec4f::Zero();
+    const std::size_t end = std::min(first + kBlock, a.size());
+    for (std::size_t i = first; i < end; ++i) block += a[i].cwiseProduct(b[i]);
+    sum += block.sum();
+  }
+  return sum;
+}
+
+/// a += scale · b
+inline void add(double scale, const std::vector<Vec4f>& b, std::vector<Vec4f>& a) {
+  const auto factor = static_cast<float>(scale);
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * b[i];
+}
+
+}  // namespace palpate::deformation

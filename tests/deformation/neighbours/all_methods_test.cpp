@@ -1,0 +1,124 @@
+// What holds for every neighbour method, made as a scene makes it.
+#include "method_checks.h"
+#include "modules/core/error.h"
+#include "modules/scene/schema.h"
+
+namespace palpate::deformation {
+namespace {
+
+using scene::Model;
+
+constexpr double kStep = 1e-3;
+
+std::vector<Model> all_models() {
+  std::vector<Model> models;
+  for (std::size_t i = 0; i < scene::Words<Model>::texts.size(); ++i) {
+    models.push_back(static_cast<Model>(i));
+  }
+  return models;
+}
+
+Vec3 momentum(const OrganModel& model, const OrganState& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    sum += model.masses[i] * state.velocities[i];
+  }
+  return sum;
+}
+
+Vec3 angular_momentum(const OrganModel& model, const OrganState& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    sum += model.masses[i] * state.positions[i].cross(state.velocities[i]);
+  }
+  return sum;
+}
+
+TEST_CASE("neighbours: every model of the scene can be stepped, with its own largest step") {
+  // Oracle: none stays far below or above what the springs allow, and a scene has no more models.
+  for (const Model method : all_models()) {
+    INFO(scene::word_of(method));
+    const auto organ = testing::ball_organ_with(method);
+    const auto model = testing::ball_model(2, organ);
+    const auto dynamics = make_dynamics(organ, model, kStep);
+    CHECK(dynamics->largest_step() > 0.1 * stable_step_bound(model));
+    CHECK(dynamics->largest_step() < stable_step_bound(model));
+    OrganState state = rest_state(model);
+    CHECK_FALSE(dynamics->step(kStep, {}, state).volume_skipped);
+    CHECK(testing::volume_of(model, state) == Approx(model.rest_volume).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("neighbours: a free organ keeps its momentum") {
+  // Oracle: no outer force. All but ChainMail have momentum; those that project positions keep the
+  // linear one only (their headers say so).
+  for (const Model method : all_models()) {
+    if (method == Model::kChainMail) continue;
+    INFO(scene::word_of(method));
+    const auto organ = testing::undamped_ball_with(method);
+    const auto model = testing::ball_model(1, organ);
+    const auto dynamics = make_dynamics(organ, model, kStep);
+    OrganState state = testing::shaken_state(model, 1e-3, 0.1);
+    const Vec3 linear = momentum(model, state), angular = angular_momentum(model, state);
+    for (int s = 0; s < 200; ++s) dynamics->step(kStep, {}, state);
+    const double scale = model.masses[0] * static_cast<double>(model.node_count()) * 0.1;
+    CHECK((momentum(model, state) - linear).norm() < 1e-12 * scale);
+    const bool projects = method == Model::kPromayon || method == Model::kPostStabilisation;
+    if (projects) continue;
+    CHECK((angular_momentum(model, state) - angular).norm() < 1e-12 * scale * testing::kBallRadius);
+  }
+}
+
+TEST_CASE("neighbours: fixed nodes never move") {
+  // Oracle: invariant.
+  for (const Model method : all_models()) {
+    INFO(scene::word_of(method));
+    auto organ = testing::ball_organ_with(method);
+    organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, 0.05), 0.03});
+    const auto model = testing::ball_model(2, organ);
+    const auto dynamics = make_dynamics(organ, model, kStep);
+    OrganState state = testing::shaken_state(model, 1e-3, 0.1);
+    for (int s = 0; s < 50; ++s) dynamics->step(kStep, {}, state);
+    for (const auto node : model.fixed_nodes) {
+      CHECK(state.positions[node] == model.network.rest_positions[node]);
+    }
+  }
+}
+
+TEST_CASE("neighbours: a flattened ball stays finite") {
+  // Oracle: invariant. All nodes in one plane: volume 0 and gᵀM⁻¹g small or none.
+  for (const Model method : all_models()) {
+    INFO(scene::word_of(method));
+    const auto organ = testing::ball_organ_with(method);
+    const auto model = testing::ball_model(2, organ);
+    const auto dynamics = make_dynamics(organ, model, kStep);
+    for (const Vec3& keep : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0)}) {
+      OrganState state = rest_state(model);
+      for (Vec3& x : state.positions) x = x.cwiseProduct(keep);
+      for (int s = 0; s < 20; ++s) dynamics->step(kStep, {}, state);
+      for (const Vec3& x : state.positions) REQUIRE(x.allFinite());
+      for (const Vec3& v : state.velocities) REQUIRE(v.allFinite());
+      CHECK(std::isfinite(state.pressure));
+    }
+  }
+}
+
+TEST_CASE("neighbours: what does not go together is refused by name") {
+  // Oracle: the schema's words in the message.
+  auto organ = testing::ball_organ_with(Model::kZordan);
+  organ.springs.virtual_nodes = 0;
+  const auto hollow = testing::ball_model(1, organ);
+  CHECK_THROWS_WITH(make_dynamics(organ, hollow, kStep),
+                    Catch::Contains("organ 'ball'") && Catch::Contains("model zordan") &&
+                        Catch::Contains("virtual_nodes must be at least 1"));
+  organ.model = Model::kElementVolume;
+  CHECK_THROWS_AS(make_dynamics(organ, hollow, kStep), InputError);
+  organ.model = Model::kPenalty;
+  CHECK_NOTHROW(make_dynamics(organ, hollow, kStep));
+  organ.integrator = scene::Integrator::kBackwardEuler;
+  CHECK_THROWS_WITH(make_dynamics(organ, hollow, kStep),
+                    Catch::Contains("model penalty") && Catch::Contains("integrator must be"));
+}
+
+}  // namespace
+}  // namespace palpate::deformation

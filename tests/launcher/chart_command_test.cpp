@@ -1,0 +1,79 @@
+// `palpate chart` finds the program of a measurement and becomes it.
+#include "modules/launcher/chart_command.h"
+
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+
+#include "modules/core/error.h"
+#include "modules/launcher/child_process.h"
+#include "tests/runtime/waiting.h"
+
+using namespace palpate;
+using Catch::Contains;
+
+namespace {
+
+const std::filesystem::path kPrograms = PALPATE_BIN_DIR;
+
+struct Outcome {
+  int code = -1;
+  std::string said;
+};
+
+Outcome type(const std::vector<std::string>& arguments) {
+  launcher::ChildProcess child(kPrograms / "palpate", arguments);
+  Outcome outcome;
+  const auto listen = [&] {
+    for (const auto& line : child.take_lines()) outcome.said += line + "\n";
+  };
+  testing::wait_until([&] {
+    listen();
+    return child.ended().has_value();
+  });
+  listen();
+  if (child.ended() && WIFEXITED(*child.ended())) outcome.code = WEXITSTATUS(*child.ended());
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("chart command: the program is in the launcher's folder and named after the chart") {
+  // Oracle: the naming rule of the benchmark programs.
+  CHECK(launcher::chart_program("paper", kPrograms) == kPrograms / "palpate-bench-paper");
+}
+
+TEST_CASE("chart command: what cannot be charted is refused with what can") {
+  // Oracle: the message text.
+  CHECK_THROWS_WITH(launcher::chart_program("weather", kPrograms),
+                    "chart 'weather': must be one of paper, neighbours");
+  CHECK_THROWS_AS(launcher::chart_program("paper", "/nowhere"), InputError);
+  CHECK_THROWS_WITH(launcher::chart_program("paper", "/nowhere"),
+                    "chart paper: /nowhere/palpate-bench-paper is missing; build it");
+}
+
+TEST_CASE("chart command: a program that cannot be started is named") {
+  // Oracle: the message text, for a file that is no program.
+  const auto folder = std::filesystem::temp_directory_path() / "palpate_chart_test";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "palpate-bench-paper") << "not a program";
+  CHECK_THROWS_WITH(launcher::chart_command({"paper"}, folder),
+                    Contains("cannot start") && Contains("palpate-bench-paper"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("chart command: typed, it passes options on and the exit code back") {
+  // Oracle: the programs' own help and the exit codes of core/error.h.
+  const auto help = type({"chart", "paper", "--help"});
+  CHECK(help.code == kExitDone);
+  CHECK_THAT(help.said, Contains("palpate-bench-paper") && Contains("--quick"));
+  const auto own_help = type({"chart", "--help"});
+  CHECK(own_help.code == kExitDone);
+  for (const auto& name : launcher::chart_names()) CHECK_THAT(own_help.said, Contains(name));
+  CHECK(type({"chart", "paper", "--only", "5"}).code == kExitBadInput);
+  const auto unknown = type({"chart", "weather"});
+  CHECK(unknown.code == kExitBadInput);
+  CHECK_THAT(unknown.said, Contains("must be one of paper, neighbours"));
+  CHECK(type({"chart"}).code == kExitBadInput);
+}

@@ -1,0 +1,63 @@
+#include "modules/runtime/worker_team.h"
+
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <set>
+#include <thread>
+#include <vector>
+
+namespace palpate::runtime {
+namespace {
+
+TEST_CASE("worker team: each chunk is done once, in every run") {
+  // Oracle: counting, for more and fewer chunks than threads, many runs in a row.
+  for (const std::size_t threads : {1u, 2u, 3u, 5u}) {
+    WorkerTeam team(threads);
+    CHECK(team.size() == threads);
+    for (int run = 0; run < 2000; ++run) {
+      const std::size_t count = static_cast<std::size_t>(run) % 9;
+      std::vector<std::atomic<int>> done(count);
+      team.run(count, [&](std::size_t chunk) { ++done[chunk]; });
+      for (const auto& times : done) REQUIRE(times == 1);
+    }
+  }
+}
+
+TEST_CASE("worker team: what the chunks wrote is seen after the run") {
+  // Oracle: a sum over plain memory; the thread sanitizer has its own opinion of this test.
+  WorkerTeam team(3);
+  std::vector<long> part(64);
+  long total = 0;
+  for (long run = 1; run <= 500; ++run) {
+    team.run(part.size(), [&](std::size_t chunk) { part[chunk] = run; });
+    for (const long value : part) total += value;
+  }
+  CHECK(total == 64L * 500 * 501 / 2);
+}
+
+TEST_CASE("worker team: a sleeping team wakes") {
+  // Oracle: the run returns only when all chunks are done; 20 ms is far beyond the spinning.
+  WorkerTeam team(2);
+  for (int run = 0; run < 5; ++run) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::atomic<int> done{0};
+    team.run(10, [&](std::size_t) { ++done; });
+    CHECK(done == 10);
+  }
+}
+
+TEST_CASE("worker team: more than one thread takes part where there is enough to do") {
+  // Oracle: thread ids; a chunk waits until another thread has begun one, so it cannot be missed.
+  WorkerTeam team(2);
+  std::atomic<int> begun{0};
+  std::vector<std::thread::id> ids(2);
+  team.run(2, [&](std::size_t chunk) {
+    ids[chunk] = std::this_thread::get_id();
+    ++begun;
+    while (begun < 2) std::this_thread::yield();
+  });
+  CHECK(ids[0] != ids[1]);
+}
+
+}  // namespace
+}  // namespace palpate::runtime
