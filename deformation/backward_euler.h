@@ -27,7 +27,7 @@
 #include "deformation/constraint_projection.h"
 #include "deformation/organ_dynamics.h"
 #include "deformation/spring_kernel.h"
-#include "deformation/spring_linearization.h"
+#include "deformation/spring_product.h"
 
 namespace palpate::deformation {
 
@@ -68,7 +68,7 @@ class BackwardEuler : public OrganDynamics {
   const OrganModel& model_;
   int max_iterations_, iterations_used_ = 0;
   double total_mass_ = 0;
-  SpringLinearization springs_;
+  SpringProduct springs_;
   ConstraintProjection projection_;
   SpringKernel kernel_;
   OrganState flight_;                    ///< x̃, v

@@ -11,6 +11,8 @@ namespace {
 constexpr double kLeastMobility = 1e-3;
 constexpr double kVelocityTolerance = 1e-9;  // [m/s]
 constexpr int kMaxSweeps = 60;
+constexpr int kNewtonSweeps = 10;
+constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly all of the surface
 
 /// Nodes answer impulses by their mass.
 class MassMobility {
@@ -56,11 +58,20 @@ class BlockMobility {
   std::span<const Mat3> mobilities_;
 };
 
+/// The node a row acts on, or -1 if it acts on more than one.
+int only_node(const ContactRow& row) {
+  for (int k = 0; k < 3; ++k) {
+    if (row.weights[k] == 1 && row.weights.cwiseAbs().sum() == 1) return k;
+  }
+  return -1;
+}
+
 /// A row with what Gauss–Seidel needs at every visit.
 struct PreparedRow {
-  double normal_mobility = 0;           ///< Σ b² W along n with σ eliminated [1/kg]
+  double normal_mobility = 0;           ///< Σ b² W along n with σ held or eliminated [1/kg]
   double tangential_mobility = 0;       ///< Σ b² W across n, the most of it [1/kg]
   Vec3 volume_coupling = Vec3::Zero();  ///< Σ b W g [m²/kg]
+  double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
   double allowed_approach = 0;          ///< gap/h, or minus the separation speed [m/s]
 };
 
@@ -74,6 +85,8 @@ class Solver {
         rows_(rows),
         velocities_(velocities),
         volume_velocity_(volume_velocity) {
+    sigma_is_held_ = std::all_of(rows.begin(), rows.end(),
+                                 [](const ContactRow& row) { return only_node(row) >= 0; });
     prepared_.resize(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) prepare(rows[r], h, prepared_[r]);
     for (std::size_t r = 0; start == StartImpulses::kToApply && r < rows.size(); ++r) {
@@ -82,6 +95,7 @@ class Solver {
       clamp_to_cone(rows[r]);
       add_impulse(r, rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal);
     }
+    sigma_ = volume_impulse();
   }
 
   /// One visit of every contact; the largest change of a contact velocity [m/s].
@@ -90,11 +104,14 @@ class Solver {
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       if (prepared_[r].tangential_mobility == 0) continue;  // all nodes fixed
       change = std::max(change, relax_normal(r));
-      change = std::max(change, relax_friction(r));
+      if (rows_[r].friction > 0) change = std::max(change, relax_friction(r));
     }
-    return change;
+    ++sweeps_;
+    return volume_ != nullptr && sigma_is_held_ ? std::max(change, refresh_sigma()) : change;
   }
 
+  int sweeps() const { return sweeps_; }
+  /// σ that meets the volume exactly, whatever the contacts' impulses are.
   double volume_impulse() const {
     return volume_ == nullptr ? 0 : (volume_->rate + volume_velocity_) / volume_->at.denominator;
   }
@@ -102,17 +119,21 @@ class Solver {
  private:
   void prepare(const ContactRow& row, double h, PreparedRow& prepared) {
     const auto [along, across] = mobility_.along_and_across(row);
-    double reduction = 0;
     if (volume_ != nullptr) {
       for (int k = 0; k < 3; ++k) {
+        if (row.weights[k] == 0) continue;
         const std::uint32_t node = row.nodes[k];
         prepared.volume_coupling +=
             mobility_.answer(node, row.weights[k], volume_->at.gradient[node]);
       }
       const double coupling = row.normal.dot(prepared.volume_coupling);
-      reduction = coupling * coupling / volume_->at.denominator;
+      prepared.volume_share = along > 0 ? coupling * coupling / along : 0;
     }
-    prepared.normal_mobility = std::max(along - reduction, kLeastMobility * along);
+    prepared.normal_mobility = along;
+    if (volume_ != nullptr && !sigma_is_held_) {
+      prepared.normal_mobility *=
+          std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
+    }
     prepared.tangential_mobility = across;
     prepared.allowed_approach = std::max(row.gap / h, -kMaxSeparationSpeed);
   }
@@ -123,25 +144,47 @@ class Solver {
     if (norm > limit) row.tangential_impulse *= norm > 0 ? limit / norm : 0;
   }
 
+  /// Newton on the volume's one equation, F(σ) = rate + g·w(σ) − gᵀWg σ, piecewise linear in σ
+  /// while every row is solved for it: closed rows take their share of the slope. After some
+  /// steps the full slope, which is safe and slow. @returns the largest change of a velocity [m/s]
+  double refresh_sigma() {
+    const double denominator = volume_->at.denominator;
+    double slope = denominator, coupling = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      if (rows_[r].normal_impulse <= 0) continue;
+      if (sweeps_ <= kNewtonSweeps) slope -= prepared_[r].volume_share;
+      coupling = std::max(coupling, prepared_[r].volume_coupling.squaredNorm());
+    }
+    slope = std::max(slope, kLeastSlope * denominator);
+    const double change = (volume_->rate + volume_velocity_ - denominator * sigma_) / slope;
+    sigma_ += change;
+    return std::abs(change) * std::sqrt(coupling);
+  }
+
   /// Velocity of the tissue relative to the probe at a contact, σ included [m/s].
   Vec3 relative_velocity(std::size_t r) const {
     const ContactRow& row = rows_[r];
     Vec3 velocity = -row.probe_velocity;
-    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * velocities_[row.nodes[k]];
-    return velocity - volume_impulse() * prepared_[r].volume_coupling;
+    for (int k = 0; k < 3; ++k) {
+      if (row.weights[k] != 0) velocity += row.weights[k] * velocities_[row.nodes[k]];
+    }
+    return velocity - sigma_ * prepared_[r].volume_coupling;
   }
 
   void add_impulse(std::size_t r, const Vec3& impulse) {
     const ContactRow& row = rows_[r];
     for (int k = 0; k < 3; ++k) {
+      if (row.weights[k] == 0) continue;
       velocities_[row.nodes[k]] += mobility_.answer(row.nodes[k], row.weights[k], impulse);
     }
     volume_velocity_ += prepared_[r].volume_coupling.dot(impulse);
+    if (!sigma_is_held_) sigma_ = volume_impulse();
   }
 
   double relax_normal(std::size_t r) {
     ContactRow& row = rows_[r];
     const double separation = prepared_[r].allowed_approach - row.normal.dot(relative_velocity(r));
+    if (row.normal_impulse == 0 && separation >= 0) return 0;
     const double wanted = row.normal_impulse - separation / prepared_[r].normal_mobility;
     const double change = std::max(0.0, wanted) - row.normal_impulse;
     row.normal_impulse += change;
@@ -151,7 +194,7 @@ class Solver {
 
   double relax_friction(std::size_t r) {
     ContactRow& row = rows_[r];
-    if (row.friction == 0) return 0;
+    if (row.normal_impulse == 0 && row.tangential_impulse.isZero(0)) return 0;
     const Vec3 velocity = relative_velocity(r);
     const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
     const Vec3 before = row.tangential_impulse;
@@ -168,6 +211,11 @@ class Solver {
   std::vector<Vec3>& velocities_;
   std::vector<PreparedRow> prepared_;
   double volume_velocity_;  ///< g·w [m³/s]; every impulse updates it
+  /// Whether σ stays as it is during a sweep. Rows that act on one node each are independent but
+  /// for σ: then Newton on σ needs a few sweeps where elimination, which couples all, needs many.
+  bool sigma_is_held_ = false;
+  double sigma_ = 0;  ///< [Pa·s]
+  int sweeps_ = 0;
 };
 
 /// Leaves w in `velocities`.
@@ -179,9 +227,9 @@ ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, doub
   ContactSolveReport report;
   Solver solver(mobility, volume, volume_velocity, h, rows, velocities, start);
   if (!rows.empty()) {
-    do {
-      ++report.sweeps;
-    } while (solver.sweep() > kVelocityTolerance && report.sweeps < kMaxSweeps);
+    while (solver.sweep() > kVelocityTolerance && solver.sweeps() < kMaxSweeps) {
+    }
+    report.sweeps = solver.sweeps();
   }
   report.volume_impulse = solver.volume_impulse();
   return report;

@@ -6,9 +6,10 @@
 // contact impulses, the node velocities are v⁺ = w − M⁻¹g σ and
 //     σ(w) = ((Φ + h Φ_t)/h + g·w) / (gᵀM⁻¹g)                            (volume_constraint.h)
 //     non-penetration:  n·(v_c − Σ b_k v⁺_k) ≥ −gap/h                    (n from tissue to probe)
-// σ is eliminated exactly (a rank-one update of each contact's inverse mass), and projected
-// Gauss–Seidel runs on the contacts alone. So the linearised volume holds after every sweep,
-// however few; sweeps only sharpen the contact impulses.
+// Projected Gauss–Seidel runs on the contacts alone, with σ eliminated exactly (a rank-one update
+// of each contact's inverse mass); or, where each contact acts on one node, with σ held during a
+// sweep and found by Newton between sweeps. σ is taken last, from the impulses there are: so the
+// linearised volume holds however few sweeps were made; they only sharpen the contact impulses.
 #pragma once
 
 #include <array>

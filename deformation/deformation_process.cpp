@@ -9,16 +9,17 @@
 #include "modules/runtime/cycle_budget.h"
 #include "modules/runtime/module.h"
 #include "modules/runtime/silence_watch.h"
+#include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::deformation {
 namespace {
 
-DeformationWorld load_world(const scene::Scene& scene) {
+DeformationWorld load_world(const scene::Scene& scene, ChunkRunner& runner) {
   std::vector<geometry::TriangleSurface> surfaces;
   for (const auto& organ : scene.organs) surfaces.push_back(scene::load_organ(organ));
-  return DeformationWorld(scene, std::move(surfaces));
+  return DeformationWorld(scene, std::move(surfaces), &runner);
 }
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
@@ -151,7 +152,9 @@ runtime::ModuleProgram deformation_program() {
 
 void run_deformation(const runtime::ModuleOptions& options) {
   const scene::Scene scene = scene::load_scene(options.scene);
-  DeformationWorld world = load_world(scene);
+  // Before the module asks for real-time priority: helpers must not keep others from a core.
+  runtime::WorkerTeam team(scene.deformation_threads);
+  DeformationWorld world = load_world(scene, team);
   runtime::Module module(options, scene, "deformation", scene.rates.deformation,
                          runtime::Priority::kPreferred);
   ProbeInputs inputs(module, world.probe_count());

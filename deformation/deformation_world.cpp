@@ -67,12 +67,13 @@ bool is_sound(const OrganState& state) {
 }
 
 SimulatedOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
-                          double period, const geometry::TriangleSurface& surface) {
+                          double period, const geometry::TriangleSurface& surface,
+                          ChunkRunner* runner) {
   SimulatedOrgan simulated;
   simulated.model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, surface));
   const OrganModel& model = *simulated.model;
-  simulated.dynamics = make_dynamics(organ, model, period);
-  simulated.kernel = std::make_unique<SpringKernel>(model);
+  simulated.dynamics = make_dynamics(organ, model, period, runner);
+  simulated.kernel = std::make_unique<SpringKernel>(model, runner);
   simulated.integrator = choose_integrator(organ, model, period);
   simulated.target_volume = TargetVolume(organ.filling);
   simulated.state = simulated.last_good = rest_state(model);
@@ -149,12 +150,13 @@ struct DeformationWorld::Impl {
 };
 
 DeformationWorld::DeformationWorld(const scene::Scene& scene,
-                                   std::vector<geometry::TriangleSurface> rest_surfaces)
+                                   std::vector<geometry::TriangleSurface> rest_surfaces,
+                                   ChunkRunner* runner)
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_surfaces.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_surfaces.size(); ++i) {
     impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
-                                       1 / scene.rates.deformation, rest_surfaces[i]));
+                                       1 / scene.rates.deformation, rest_surfaces[i], runner));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }

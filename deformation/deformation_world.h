@@ -24,7 +24,9 @@ class DeformationWorld {
   /// @param rest_surfaces  one per organ of the scene, closed, outward, in W [m]
   /// @throws InputError naming the organ if it cannot be simulated (all nodes fixed, stable step
   ///         below 1 µs, …)
-  DeformationWorld(const scene::Scene& scene, std::vector<geometry::TriangleSurface> rest_surfaces);
+  /// @param runner  outlives the world; none: the calling thread alone. The bits are the same
+  DeformationWorld(const scene::Scene& scene, std::vector<geometry::TriangleSurface> rest_surfaces,
+                   ChunkRunner* runner = nullptr);
   ~DeformationWorld();
   DeformationWorld(DeformationWorld&&) noexcept;
 

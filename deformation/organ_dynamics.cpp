@@ -65,7 +65,7 @@ std::unique_ptr<OrganDynamics> make_neighbour(const scene::Organ& organ, const O
 IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,
                                    double period) {
   IntegratorChoice choice;
-  choice.symplectic_passes = std::ceil(period / SymplecticEuler(model).largest_step()) / period;
+  choice.symplectic_passes = std::ceil(period / SymplecticEuler::largest_step(model)) / period;
   choice.backward_passes = std::ceil(period / BackwardEuler::kLargestStep) / period *
                            BackwardEuler::passes(BackwardEuler::kIterations);
   const bool own_steps =
@@ -79,14 +79,14 @@ IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& 
 }
 
 std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
-                                             double period) {
+                                             double period, ChunkRunner* runner) {
   switch (organ.model) {
     case scene::Model::kImplicitVolume:
     case scene::Model::kMassSpring:
       if (choose_integrator(organ, model, period).integrator == scene::Integrator::kBackwardEuler) {
         return std::make_unique<BackwardEuler>(model);
       }
-      return std::make_unique<SymplecticEuler>(model);
+      return std::make_unique<SymplecticEuler>(model, runner);
     default:
       return make_neighbour(organ, model);
   }

@@ -6,6 +6,7 @@
 
 #include "deformation/contact_solve.h"
 #include "deformation/organ_model.h"
+#include "modules/core/parallel.h"
 
 namespace palpate::deformation {
 
@@ -44,8 +45,9 @@ IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& 
 /// The organ's model with the integrator chosen.
 /// @param model   outlives the dynamics
 /// @param period  of an advance [s]
+/// @param runner  outlives the dynamics; none: the calling thread alone. The bits are the same
 /// @throws InputError if the integrator does not go with the organ's model
 std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
-                                             double period);
+                                             double period, ChunkRunner* runner = nullptr);
 
 }  // namespace palpate::deformation

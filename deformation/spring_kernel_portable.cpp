@@ -8,13 +8,11 @@ namespace {
 struct Portable {
   static constexpr std::size_t kWidth = 2;
   using Pack = double __attribute__((vector_size(16)));
+  using Unaligned = double __attribute__((vector_size(16), aligned(8), may_alias));
 
   static Pack broadcast(double value) { return Pack{value, value}; }
-  static Pack load(const double* from) { return Pack{from[0], from[1]}; }
-  static void store(double* to, const Pack& pack) {
-    to[0] = pack[0];
-    to[1] = pack[1];
-  }
+  static Pack load(const double* from) { return *reinterpret_cast<const Unaligned*>(from); }
+  static void store(double* to, const Pack& pack) { *reinterpret_cast<Unaligned*>(to) = pack; }
 
   static Pack fma(const Pack& a, const Pack& b, const Pack& c) { return a * b + c; }
   static Pack fnma(const Pack& a, const Pack& b, const Pack& c) { return c - a * b; }
@@ -40,7 +38,7 @@ struct Portable {
   }
 
   static Pack keep_below(const Pack& values, const Pack& a, const Pack& b) {
-    return Pack{a[0] < b[0] ? values[0] : 0, a[1] < b[1] ? values[1] : 0};
+    return a < b ? values : Pack{};
   }
 };
 

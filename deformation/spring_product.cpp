@@ -1,6 +1,5 @@
 #include "deformation/spring_product.h"
 
-#include <algorithm>
 #include <array>
 
 #include "modules/core/error.h"
@@ -46,7 +45,6 @@ SpringProduct::SpringProduct(const OrganModel& model, ChunkRunner* runner, Instr
   scalars_.slices_per_chunk = layout.slices_per_chunk;
   scalars_.chunk_count = layout.chunk_count;
   scalars_.slices = layout.slices;
-  scalars_.links = layout.links;
   scalars_.structural_stiffness = static_cast<float>(layout.structural_stiffness);
   scalars_.bending_stiffness = static_cast<float>(layout.bending_stiffness);
   scalars_.structural_damping =
@@ -75,6 +73,10 @@ void SpringProduct::add_rows(const kernel::Layout& layout) {
   masses_.resize(rows + layout.virtual_node_count);
   if (layout.virtual_node_count == 0) return;
   const auto first_virtual = static_cast<std::uint32_t>(layout.surface_node_count);
+  for (std::size_t i = 0; i < last.first_link + last.link_count; ++i) {
+    links_.push_back({layout.links[i].virtual_node, {}});
+    std::copy_n(layout.links[i].weights, kLanes, links_.back().weights);
+  }
   for (std::size_t i = 0; i < rows; ++i) {
     inner_nodes_.push_back(first_virtual + layout.inner_nodes[i] / 3);
   }
@@ -87,6 +89,7 @@ void SpringProduct::add_rows(const kernel::Layout& layout) {
 
 kernel::ProductLayout SpringProduct::view() const {
   kernel::ProductLayout layout = scalars_;
+  layout.links = links_.data();
   layout.neighbours = neighbours_.data();
   layout.rest_lengths = rest_lengths_.data();
   layout.row_nodes = row_nodes_.data();

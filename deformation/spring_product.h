@@ -46,6 +46,7 @@ class SpringProduct {
   SpringKernelLayout layout_;
   kernel::ProductLayout scalars_;
   std::vector<std::uint32_t> neighbours_, row_nodes_, inner_nodes_;
+  std::vector<kernel::ProductLink> links_;
   std::vector<float> rest_lengths_, ring_sizes_;
   std::vector<float> inner_rest_lengths_, inner_stiffnesses_, inner_dampings_;
   float h_ = 0;

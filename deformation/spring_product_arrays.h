@@ -11,12 +11,18 @@ namespace palpate::deformation::kernel {
 /// across.
 inline constexpr std::size_t kBlockNumbers = 7;
 
+/// Link in float.
+struct ProductLink {
+  std::uint32_t virtual_node = 0;
+  float weights[kLanes] = {};
+};
+
 /// Constant per organ.
 struct ProductLayout {
   std::size_t surface_node_count = 0, virtual_node_count = 0;
   std::size_t slices_per_chunk = 0, chunk_count = 0, slice_count = 0;
   const Slice* slices = nullptr;                          ///< (slice_count)
-  const Link* links = nullptr;                            ///< of the slices
+  const ProductLink* links = nullptr;                     ///< of the slices
   const std::uint32_t* neighbours = nullptr;              ///< nodes  (slots × kLanes)
   const float* rest_lengths = nullptr;                    ///< l₀ [m]  (slots × kLanes)
   const std::uint32_t* row_nodes = nullptr;               ///< (row_count)

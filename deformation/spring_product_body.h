@@ -72,12 +72,6 @@ struct Product {
     return {(step * (damping + h_k) - across) * inverse_square, across};
   }
 
-  static Pack load_weights(const double* weights) {
-    float lanes[kWidth];
-    for (std::size_t k = 0; k < kWidth; ++k) lanes[k] = static_cast<float>(weights[k]);
-    return Set::load(lanes);
-  }
-
   static void linearise_part(const ProductLayout& layout, const Couplings& couplings,
                              std::size_t index, std::size_t lane, float* blocks,
                              float* virtual_blocks) {
@@ -116,9 +110,9 @@ struct Product {
       Block inner;
       inner.add(d, c.along, c.across);
       for (std::uint32_t k = 0; k < slice.link_count; ++k) {
-        const Link& link = layout.links[slice.first_link + k];
+        const ProductLink& link = layout.links[slice.first_link + k];
         inner.add_weighted_to(virtual_blocks + kBlockNumbers * kLanes * link.virtual_node + lane,
-                              load_weights(link.weights + lane));
+                              Set::load(link.weights + lane));
       }
     }
     block.store(blocks + kBlockNumbers * kLanes * index + lane);
@@ -153,8 +147,8 @@ struct Product {
                                  Set::load(couplings.inner_across + first));
       sum = {sum.x + inner.x, sum.y + inner.y, sum.z + inner.z};
       for (std::uint32_t k = 0; k < slice.link_count; ++k) {
-        const Link& link = layout.links[slice.first_link + k];
-        const Pack weight = load_weights(link.weights + lane);
+        const ProductLink& link = layout.links[slice.first_link + k];
+        const Pack weight = Set::load(link.weights + lane);
         float* const to = virtual_sums + 3 * kLanes * link.virtual_node + lane;
         Set::store(to, Set::fma(weight, inner.x, Set::load(to)));
         Set::store(to + kLanes, Set::fma(weight, inner.y, Set::load(to + kLanes)));

@@ -7,33 +7,32 @@ namespace {
 struct PortableFloat {
   static constexpr std::size_t kWidth = 4;
   using Pack = float __attribute__((vector_size(16)));
+  using Unaligned = float __attribute__((vector_size(16), aligned(4), may_alias));
 
   static Pack broadcast(float value) { return Pack{value, value, value, value}; }
-  static Pack load(const float* from) { return Pack{from[0], from[1], from[2], from[3]}; }
-  static void store(float* to, const Pack& pack) {
-    for (int lane = 0; lane < 4; ++lane) to[lane] = pack[lane];
-  }
+  static Pack load(const float* from) { return *reinterpret_cast<const Unaligned*>(from); }
+  static void store(float* to, const Pack& pack) { *reinterpret_cast<Unaligned*>(to) = pack; }
   static Pack fma(const Pack& a, const Pack& b, const Pack& c) { return a * b + c; }
   static Pack fnma(const Pack& a, const Pack& b, const Pack& c) { return c - a * b; }
   static Pack root(const Pack& x) {
     return Pack{__builtin_sqrtf(x[0]), __builtin_sqrtf(x[1]), __builtin_sqrtf(x[2]),
                 __builtin_sqrtf(x[3])};
   }
-  static Pack absolute(const Pack& x) {
-    return Pack{__builtin_fabsf(x[0]), __builtin_fabsf(x[1]), __builtin_fabsf(x[2]),
-                __builtin_fabsf(x[3])};
-  }
+  static Pack absolute(const Pack& x) { return x < 0 ? -x : x; }
   static Pack keep_below(const Pack& values, const Pack& a, const Pack& b) {
-    Pack kept{};
-    for (int lane = 0; lane < 4; ++lane) kept[lane] = a[lane] < b[lane] ? values[lane] : 0;
-    return kept;
+    return a < b ? values : Pack{};
   }
 
   static Vector3<PortableFloat> load_nodes(const float* base, const std::uint32_t* i) {
-    const float *a = base + 4ul * i[0], *b = base + 4ul * i[1];
-    const float *c = base + 4ul * i[2], *d = base + 4ul * i[3];
-    return {Pack{a[0], b[0], c[0], d[0]}, Pack{a[1], b[1], c[1], d[1]},
-            Pack{a[2], b[2], c[2], d[2]}};
+    const Pack a = load(base + 4ul * i[0]), b = load(base + 4ul * i[1]);
+    const Pack c = load(base + 4ul * i[2]), d = load(base + 4ul * i[3]);
+    const Pack xy_ab = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+    const Pack xy_cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+    const Pack z_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+    const Pack z_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    return {__builtin_shufflevector(xy_ab, xy_cd, 0, 1, 4, 5),
+            __builtin_shufflevector(xy_ab, xy_cd, 2, 3, 6, 7),
+            __builtin_shufflevector(z_ab, z_cd, 0, 1, 4, 5)};
   }
   static void store_nodes(float* base, const Vector3<PortableFloat>& n) {
     for (int lane = 0; lane < 4; ++lane, base += 4) {

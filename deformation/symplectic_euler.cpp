@@ -69,9 +69,11 @@ ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
 }
 
 SymplecticEuler::SymplecticEuler(const OrganModel& model, ChunkRunner* runner)
-    : model_(model),
-      largest_step_(kStepSafety * stable_step_bound(model)),
-      kernel_(model, runner) {}
+    : model_(model), largest_step_(largest_step(model)), kernel_(model, runner) {}
+
+double SymplecticEuler::largest_step(const OrganModel& model) {
+  return kStepSafety * stable_step_bound(model);
+}
 
 StepReport SymplecticEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
   // 1. unconstrained velocities, volume and its gradient at the old positions

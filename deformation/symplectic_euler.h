@@ -36,6 +36,7 @@ class SymplecticEuler : public OrganDynamics {
  public:
   /// @param runner  outlives this; none: the calling thread alone
   explicit SymplecticEuler(const OrganModel& model, ChunkRunner* runner = nullptr);
+  static double largest_step(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
 

@@ -13,6 +13,7 @@
 #include "modules/core/units.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/runtime/clock.h"
+#include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
@@ -118,7 +119,8 @@ int check_command(const std::filesystem::path& file, double measure_for, std::os
   out << scene::resolved_text(scene) << '\n';
   std::vector<geometry::TriangleSurface> surfaces;
   for (const auto& organ : scene.organs) surfaces.push_back(scene::load_organ(organ));
-  deformation::DeformationWorld world(scene, surfaces);
+  runtime::WorkerTeam team(scene.deformation_threads);
+  deformation::DeformationWorld world(scene, surfaces, &team);
   const double period = 1 / scene.rates.deformation;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     out << organ_text(scene.organs[i], surfaces[i], world, i, period);
