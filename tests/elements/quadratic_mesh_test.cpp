@@ -1,0 +1,49 @@
+#include "deformation/elements/quadratic_mesh.h"
+
+#include <catch2/catch.hpp>
+
+#include "solids.h"
+
+namespace palpate::elements {
+namespace {
+
+TEST_CASE("quadratic mesh: every edge has one node in its middle, on faces too") {
+  // Oracle: the definition, element by element; corners + edges of a 1-cube Kuhn block: 8 + 19.
+  const auto mesh = make_quadratic(testing::block(Vec3::Ones(), 1, 1, 1));
+  CHECK(mesh.corner_count == 8);
+  CHECK(mesh.nodes.size() == 8 + 19);
+  for (const auto& element : mesh.elements) {
+    for (int e = 0; e < 6; ++e) {
+      const auto& [a, b] = kTetrahedronEdges[e];
+      const Vec3 middle = (mesh.nodes[element[a]] + mesh.nodes[element[b]]) / 2;
+      CHECK((mesh.nodes[element[4 + e]] - middle).norm() == 0);
+    }
+  }
+  REQUIRE(mesh.faces.size() == 12);
+  for (const auto& face : mesh.faces) {
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 middle =
+          (mesh.nodes[mesh.face_node(face, k)] + mesh.nodes[mesh.face_node(face, (k + 1) % 3)]) / 2;
+      CHECK((mesh.nodes[mesh.face_node(face, 3 + k)] - middle).norm() == 0);
+    }
+  }
+}
+
+TEST_CASE("quadratic mesh: curving moves edge nodes of faces on the sphere only") {
+  // Oracle: a tetrahedron with one face on the unit sphere, worked by hand.
+  TetMesh corner{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, {{0, 1, 2, 3}}};
+  auto mesh = make_quadratic(corner);
+  const auto straight = mesh.nodes;
+  curve_onto_sphere(mesh, Vec3::Zero(), 1);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    if (mesh.nodes[i] == straight[i]) continue;
+    ++moved;
+    CHECK(mesh.nodes[i].norm() == Approx(1));
+    CHECK(straight[i].norm() == Approx(std::sqrt(0.5)));
+  }
+  CHECK(moved == 3);
+}
+
+}  // namespace
+}  // namespace palpate::elements
