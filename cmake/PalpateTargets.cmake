@@ -45,7 +45,7 @@ function(palpate_program name)
   target_link_libraries(${target}_program PRIVATE ${ARG_DEPENDS} palpate_warnings)
 endfunction()
 
-# palpate_tests(NAME SOURCES … DEPENDS … [LABELS …] [TIMEOUT seconds] [SERIAL])
+# palpate_tests(NAME SOURCES … DEPENDS … [LABELS …, else unit] [TIMEOUT seconds] [SERIAL])
 # One Catch2 program, each case one ctest test. SERIAL: cases that start real processes or load
 # both cores do not run beside each other.
 function(palpate_tests name)
@@ -57,6 +57,9 @@ function(palpate_tests name)
   target_link_libraries(${name}_tests PRIVATE ${ARG_DEPENDS} Catch2::Catch2WithMain palpate_warnings)
   target_compile_definitions(${name}_tests PRIVATE
     PALPATE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PALPATE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
   # A test without its data says "SKIPPED: …" and returns; ctest then counts it as skipped, not passed.
   set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_REGULAR_EXPRESSION "SKIPPED:")
   if(ARG_SERIAL)

@@ -31,6 +31,7 @@ class BallScene {
                             "  - name: ball\n"
                             "    mesh: {file: ball.ply}\n"
                             "    tissue: {youngs_modulus_pa: 20e3, drag_per_s: 20}\n"
+                            "    springs: {inner_ratio: 0.5}\n"
                             "    fixed: [{box: {min_m: [-1, -1, -1], max_m: [1, 1, -0.03]}}]\n"
                             "probes:\n"
                             "  - name: finger\n"

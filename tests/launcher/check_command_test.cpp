@@ -65,6 +65,6 @@ TEST_CASE("check: a bad scene is refused with its place") {
   const BallScene scene("topic: {start_m: [0, 0, 0.09]}", "wrong_key: 1\n");
   std::ostringstream out;
   CHECK_THROWS_WITH(launcher::check_command(scene.file(), 0.05, out),
-                    Contains(scene.file().string() + ":11:") && Contains("wrong_key"));
+                    Contains(scene.file().string() + ":12:") && Contains("wrong_key"));
   CHECK(out.str().empty());
 }

@@ -62,7 +62,7 @@ TEST_CASE("command line: a bad scene is refused by every program with file and l
   // Oracle: the message and exit code 2.
   const BallScene scene("topic: {start_m: [0, 0, 0.09]}", "wrong_key: 1\n");
   const std::string file = scene.file().string();
-  const std::string place = file + ":11: key 'wrong_key'";
+  const std::string place = file + ":12: key 'wrong_key'";
   for (const char* module : {"palpate-haptics", "palpate-collision", "palpate-deformation"}) {
     const auto outcome = type(module, {file});
     CHECK(outcome.code == kExitBadInput);
