@@ -20,7 +20,8 @@ if(PALPATE_SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# Contraction off: the same bits whatever instruction set the optimizer picks.
+# Contraction off: the same bits whatever instruction set the optimizer picks. Where the spring kernel
+# fuses multiply and add, it says so (docs/decisions/0005).
 add_library(palpate_warnings INTERFACE)
 target_compile_options(palpate_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align -Woverloaded-virtual -Werror

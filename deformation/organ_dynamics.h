@@ -15,7 +15,7 @@ struct StepReport {
   bool volume_skipped = false;  ///< gᵀM⁻¹g vanished: the volume was not corrected
 };
 
-/// Keeps its buffers between steps, so that a step does not allocate.
+/// Keeps its large buffers between steps; only a solve for contacts takes memory for their number.
 class OrganDynamics {
  public:
   virtual ~OrganDynamics() = default;

@@ -4,7 +4,8 @@
 // node gathers its springs from its neighbours, eight nodes side by side (spring_kernel_arrays.h).
 // While its one-ring passes, the volume gradient needs but a cross product: with d_j = x_j − x_i,
 //   g_i = ∂V/∂x_i = (1/6) Σ_ring d_j × d_j+1        V = ⅓ Σ (x_i − x₀)·g_i
-// The same bits come from every instruction set and any number of threads.
+// Any number of threads gives the same bits, and so do AVX2 and AVX-512. The portable code, for
+// CPUs that do not fuse multiply and add, rounds its products and differs in the last digits.
 // docs/decisions/0005-spring-kernel.md says why it looks as it does.
 #pragma once
 
