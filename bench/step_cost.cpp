@@ -137,8 +137,9 @@ Traffic traffic_of(const deformation::OrganModel& model) {
   const std::size_t rows = view.slice_count * deformation::kernel::kLanes;
   const std::size_t half_springs = (last.first_slot + last.slots) * deformation::kernel::kLanes;
   const std::size_t coordinates = 3 * model.node_count();
-  // neighbour (half a number) and rest length; inner spring, masses; x and v; then x, v⁺
-  return {half_springs * 3 / 2 + rows * 7 + 2 * coordinates, 2 * coordinates};
+  // neighbour and rest length (half a number each); inner spring (two), ring (three), masses
+  // (three); x and v; then x, v⁺
+  return {half_springs + rows * 8 + 2 * coordinates, 2 * coordinates};
 }
 
 Variant streaming_variant(const Traffic& traffic) {
@@ -197,7 +198,7 @@ void measure(const scene::Organ& organ, const Vec3& gravity,
 int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {
   const auto scene = scene::load_scene(scene_file);
   const scene::Organ& organ = scene.organs[0];
-  const auto surface = scene::load_organ(organ);
+  const auto surface = scene::load_organ(organ).surface;
   std::printf("%s; organ '%s'\n", bench::machine_name().c_str(), organ.name.c_str());
   for (const std::size_t nodes : sizes) measure(organ, scene.gravity, surface_of(surface, nodes));
   return kExitDone;

@@ -21,7 +21,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, int iterations)
   for (auto* buffer : {&change_, &residual_, &trial_}) {
     buffer->assign(model.node_count(), Vec3::Zero());
   }
-  for (auto* buffer : {&inner_change_, &inner_residual_, &projected_, &direction_, &product_}) {
+  for (auto* buffer : {&inner_change_, &inner_residual_, &projected_, &product_}) {
     buffer->assign(model.node_count(), Vec4f::Zero());
   }
   mobilities_.assign(model.node_count(), Mat3::Zero());
@@ -95,8 +95,9 @@ void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const O
 }
 
 void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
-  for (std::size_t i = 0; i < change_.size(); ++i) direction_[i] = wide(change_[i]);
-  springs_.apply(direction_, product_);
+  auto& nodes = springs_.nodes();
+  for (std::size_t i = 0; i < change_.size(); ++i) nodes[i].vector = wide(change_[i]);
+  springs_.apply(product_);
   for (std::size_t i = 0; i < change_.size(); ++i) {
     residual_[i] -= product_[i].head<3>().cast<double>();
   }
@@ -127,23 +128,17 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
 
 void BackwardEuler::conjugate_gradients() {
   const double negligible = total_mass_ * kVelocityTolerance * kVelocityTolerance;
-  projection_.project(inner_residual_, projected_);
-  direction_ = projected_;
-  double descent = dot(inner_residual_, projected_);
+  auto& nodes = springs_.nodes();  // their vectors are the direction
+  double descent = projection_.project(inner_residual_, projected_);
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].vector = projected_[i];
   // Stops after max_iterations_, or when nothing worth the name is left to gain.
-  for (iterations_used_ = 0; iterations_used_ < max_iterations_ && descent > negligible;
-       ++iterations_used_) {
-    springs_.apply(direction_, product_);
-    const double step = descent / dot(direction_, product_);
-    add(step, direction_, inner_change_);
-    add(-step, product_, inner_residual_);
-    projection_.project(inner_residual_, projected_);
+  iterations_used_ = 0;
+  while (iterations_used_ < max_iterations_ && descent > negligible) {
+    const double step = descent / springs_.apply(product_);
     const double last = descent;
-    descent = dot(inner_residual_, projected_);
-    const auto kept = static_cast<float>(descent / last);
-    for (std::size_t i = 0; i < direction_.size(); ++i) {
-      direction_[i] = projected_[i] + kept * direction_[i];
-    }
+    descent =
+        projection_.descend(step, nodes, product_, inner_change_, inner_residual_, projected_);
+    if (++iterations_used_ < max_iterations_) projection_.turn(descent / last, projected_, nodes);
   }
 }
 

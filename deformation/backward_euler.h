@@ -45,6 +45,9 @@ class BackwardEuler : public OrganDynamics {
 
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
 
   /// Of the last step.
   int iterations_used() const { return iterations_used_; }
@@ -79,7 +82,7 @@ class BackwardEuler : public OrganDynamics {
   std::vector<Vec3> change_;             ///< Δv [m/s]
   std::vector<Vec3> residual_;           ///< r [N·s]
   std::vector<Vec3> trial_;
-  std::vector<Vec4f> inner_change_, inner_residual_, projected_, direction_, product_;
+  std::vector<Vec4f> inner_change_, inner_residual_, projected_, product_;
 };
 
 }  // namespace palpate::deformation

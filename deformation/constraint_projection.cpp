@@ -96,7 +96,7 @@ void ConstraintProjection::factor_contacts(std::span<const Mat3> mobilities) {
 }
 
 void ConstraintProjection::prepare_volume(std::span<const Vec3> gradient) {
-  gradient_.resize(gradient.size());
+  gradient_.assign(mobilities_.size(), Vec4f::Zero());
   volume_answer_.assign(mobilities_.size(), Vec4f::Zero());
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     gradient_[i] = wide(gradient[i]);
@@ -111,17 +111,60 @@ void ConstraintProjection::prepare_volume(std::span<const Vec3> gradient) {
   if (!(volume_mobility_ > kVanishedMobility * unhindered)) volume_mobility_ = 0;
 }
 
-void ConstraintProjection::project(const std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
+double ConstraintProjection::project(const std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
   for (std::size_t i = 0; i < r.size(); ++i) z[i] = answer(i, r[i]);
+  const double descent = hold_rows({dot(r, z), dot(gradient_, z)}, z);
+  add(-volume_mu_, volume_answer_, z);
+  return descent;
+}
+
+double ConstraintProjection::descend(double step, const AlignedVector<WideNode>& p,
+                                     const std::vector<Vec4f>& q, std::vector<Vec4f>& x,
+                                     std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
+  const auto factor = static_cast<float>(step);
+  Sums sums;
+  for (std::size_t first = 0; first < r.size(); first += kDotBlock) {
+    Vec4f r_z = Vec4f::Zero(), g_z = Vec4f::Zero();
+    const std::size_t end = std::min(first + kDotBlock, r.size());
+    for (std::size_t i = first; i < end; ++i) {
+      x[i] += factor * p[i].vector;
+      const Vec4f rest = r[i] - factor * q[i];
+      r[i] = rest;
+      const Vec4f velocity = answer(i, rest);
+      z[i] = velocity;
+      r_z += rest.cwiseProduct(velocity);
+      g_z += gradient_[i].cwiseProduct(velocity);
+    }
+    sums.r_z += static_cast<double>(r_z.sum());
+    sums.g_z += static_cast<double>(g_z.sum());
+  }
+  return hold_rows(sums, z);
+}
+
+/// With c = C W r:  μ_c = S⁻¹ c,  μ_v = (g·W r − shares·c) / mobility, and r·z is r·W r less what
+/// each row takes.
+double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& z) {
+  double r_z = sums.r_z, g_z = sums.g_z;
   if (!rows_.empty()) {
-    mu_ = factor_.solve(times_rows(z));
+    row_speeds_ = times_rows(z);
+    mu_ = factor_.solve(row_speeds_);
     subtract_rows(mu_, z);
+    r_z -= mu_.dot(row_speeds_);
+    if (volume_mobility_ > 0) g_z -= volume_shares_.dot(row_speeds_);
   }
   volume_mu_ = 0;
-  if (volume_mobility_ == 0) return;
-  volume_mu_ = dot(gradient_, z) / volume_mobility_;
-  add(-volume_mu_, volume_answer_, z);
+  if (volume_mobility_ == 0) return r_z;
+  volume_mu_ = g_z / volume_mobility_;
   if (!rows_.empty()) mu_ -= volume_mu_ * volume_shares_;
+  return r_z - volume_mu_ * g_z;
+}
+
+void ConstraintProjection::turn(double kept, const std::vector<Vec4f>& z,
+                                AlignedVector<WideNode>& p) const {
+  const auto factor = static_cast<float>(kept), mu = static_cast<float>(volume_mu_);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    p[i].vector = z[i] - mu * volume_answer_[i] + factor * p[i].vector;
+  }
 }
 
 void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double& volume_impulse,

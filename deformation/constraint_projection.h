@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "deformation/aligned_vector.h"
 #include "deformation/contact_solve.h"
 #include "deformation/wide_vectors.h"
 
@@ -33,9 +34,19 @@ class ConstraintProjection {
 
   /// @param r  [N·s]  (node_count)
   /// @param z  out [m/s]  (node_count)
-  void project(const std::vector<Vec4f>& r, std::vector<Vec4f>& z);
+  /// @returns r·z
+  double project(const std::vector<Vec4f>& r, std::vector<Vec4f>& z);
 
-  /// Subtracts from r the Bᵀμ of the last project(), and adds μ to the impulses.
+  /// A step of conjugate gradients in one pass: x += step p, r −= step q, and z of the new r but
+  /// for what the volume row takes from it. p are the nodes' vectors.
+  /// @returns r·z
+  double descend(double step, const AlignedVector<WideNode>& p, const std::vector<Vec4f>& q,
+                 std::vector<Vec4f>& x, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
+
+  /// p = z + kept p, with what the volume row takes from z.
+  void turn(double kept, const std::vector<Vec4f>& z, AlignedVector<WideNode>& p) const;
+
+  /// Subtracts from r the Bᵀμ of the last projection, and adds μ to the impulses.
   void take_impulses(std::span<ContactRow> contacts, double& volume_impulse,
                      std::vector<Vec4f>& r) const;
 
@@ -52,19 +63,25 @@ class ConstraintProjection {
   void collect_rows(std::span<const Mat3> mobilities, std::span<const ContactRow> contacts);
   void factor_contacts(std::span<const Mat3> mobilities);
   void prepare_volume(std::span<const Vec3> gradient);
+  /// Sums over the nodes of z = W r.
+  struct Sums {
+    double r_z = 0, g_z = 0;
+  };
+  /// Takes from z = W r what the contacts take, and finds μ. @returns r·z, the volume's part taken
+  double hold_rows(const Sums& sums, std::vector<Vec4f>& z);
   Vec4f answer(std::size_t node, const Vec4f& impulse) const;     ///< W impulse
   Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;  ///< C v
   /// z −= W Cᵀ μ
   void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& z) const;
 
   std::vector<std::array<Vec4f, 3>> mobilities_;  ///< W, by columns
-  std::vector<Vec4f> gradient_;                   ///< g; empty: no volume row
+  std::vector<Vec4f> gradient_;                   ///< g, zero beyond the surface (node_count)
   std::vector<Row> rows_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;  ///< of S
   std::vector<Vec4f> volume_answer_;  ///< W (g − Cᵀ S⁻¹ C W g), the velocity a pressure gives
   Eigen::VectorXd volume_shares_;     ///< S⁻¹ C W g: what of it the contacts take
   double volume_mobility_ = 0;        ///< g · volume_answer_; 0: no volume row
-  Eigen::VectorXd mu_;
+  Eigen::VectorXd mu_, row_speeds_;   ///< of the last projection; C W r
   double volume_mu_ = 0;
 };
 

@@ -71,8 +71,10 @@ struct PreparedRow {
   double normal_mobility = 0;           ///< Σ b² W along n with σ held or eliminated [1/kg]
   double tangential_mobility = 0;       ///< Σ b² W across n, the most of it [1/kg]
   Vec3 volume_coupling = Vec3::Zero();  ///< Σ b W g [m²/kg]
+  double normal_coupling = 0;           ///< n·Σ b W g
   double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
-  double allowed_approach = 0;          ///< gap/h, or minus the separation speed [m/s]
+  double allowed_approach = 0;          ///< n·v_c + gap/h, or less the separation speed [m/s]
+  int first_node = 0, last_node = 2;    ///< of the row's three, those it acts on
 };
 
 template <class Mobility>
@@ -93,7 +95,8 @@ class Solver {
       // Start values are only a guess, but must lie in the cone of this row.
       rows[r].tangential_impulse -= rows[r].normal * rows[r].normal.dot(rows[r].tangential_impulse);
       clamp_to_cone(rows[r]);
-      add_impulse(r, rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal);
+      const Vec3 impulse = rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal;
+      add_impulse(r, impulse, prepared_[r].volume_coupling.dot(impulse));
     }
     sigma_ = volume_impulse();
   }
@@ -119,6 +122,8 @@ class Solver {
  private:
   void prepare(const ContactRow& row, double h, PreparedRow& prepared) {
     const auto [along, across] = mobility_.along_and_across(row);
+    const int only = only_node(row);
+    if (only >= 0) prepared.first_node = prepared.last_node = only;
     if (volume_ != nullptr) {
       for (int k = 0; k < 3; ++k) {
         if (row.weights[k] == 0) continue;
@@ -127,6 +132,7 @@ class Solver {
             mobility_.answer(node, row.weights[k], volume_->at.gradient[node]);
       }
       const double coupling = row.normal.dot(prepared.volume_coupling);
+      prepared.normal_coupling = coupling;
       prepared.volume_share = along > 0 ? coupling * coupling / along : 0;
     }
     prepared.normal_mobility = along;
@@ -135,7 +141,8 @@ class Solver {
           std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
     }
     prepared.tangential_mobility = across;
-    prepared.allowed_approach = std::max(row.gap / h, -kMaxSeparationSpeed);
+    prepared.allowed_approach =
+        std::max(row.gap / h, -kMaxSeparationSpeed) + row.normal.dot(row.probe_velocity);
   }
 
   static void clamp_to_cone(ContactRow& row) {
@@ -161,47 +168,50 @@ class Solver {
     return std::abs(change) * std::sqrt(coupling);
   }
 
-  /// Velocity of the tissue relative to the probe at a contact, σ included [m/s].
-  Vec3 relative_velocity(std::size_t r) const {
+  /// Velocity of the tissue at a contact, without σ [m/s].
+  Vec3 tissue_velocity(std::size_t r) const {
     const ContactRow& row = rows_[r];
-    Vec3 velocity = -row.probe_velocity;
-    for (int k = 0; k < 3; ++k) {
-      if (row.weights[k] != 0) velocity += row.weights[k] * velocities_[row.nodes[k]];
+    Vec3 velocity = Vec3::Zero();
+    for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
+      velocity += row.weights[k] * velocities_[row.nodes[k]];
     }
-    return velocity - sigma_ * prepared_[r].volume_coupling;
+    return velocity;
   }
 
-  void add_impulse(std::size_t r, const Vec3& impulse) {
+  /// @param coupling  of the impulse with the volume
+  void add_impulse(std::size_t r, const Vec3& impulse, double coupling) {
     const ContactRow& row = rows_[r];
-    for (int k = 0; k < 3; ++k) {
-      if (row.weights[k] == 0) continue;
+    for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
       velocities_[row.nodes[k]] += mobility_.answer(row.nodes[k], row.weights[k], impulse);
     }
-    volume_velocity_ += prepared_[r].volume_coupling.dot(impulse);
+    volume_velocity_ += coupling;
     if (!sigma_is_held_) sigma_ = volume_impulse();
   }
 
   double relax_normal(std::size_t r) {
     ContactRow& row = rows_[r];
-    const double separation = prepared_[r].allowed_approach - row.normal.dot(relative_velocity(r));
+    const PreparedRow& prepared = prepared_[r];
+    const double separation = prepared.allowed_approach + sigma_ * prepared.normal_coupling -
+                              row.normal.dot(tissue_velocity(r));
     if (row.normal_impulse == 0 && separation >= 0) return 0;
-    const double wanted = row.normal_impulse - separation / prepared_[r].normal_mobility;
+    const double wanted = row.normal_impulse - separation / prepared.normal_mobility;
     const double change = std::max(0.0, wanted) - row.normal_impulse;
     row.normal_impulse += change;
-    add_impulse(r, -change * row.normal);
-    return std::abs(change) * prepared_[r].normal_mobility;
+    add_impulse(r, -change * row.normal, -change * prepared.normal_coupling);
+    return std::abs(change) * prepared.normal_mobility;
   }
 
   double relax_friction(std::size_t r) {
     ContactRow& row = rows_[r];
     if (row.normal_impulse == 0 && row.tangential_impulse.isZero(0)) return 0;
-    const Vec3 velocity = relative_velocity(r);
+    const Vec3 velocity =
+        tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
     const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
     const Vec3 before = row.tangential_impulse;
     row.tangential_impulse -= sliding / prepared_[r].tangential_mobility;
     clamp_to_cone(row);
     const Vec3 change = row.tangential_impulse - before;
-    add_impulse(r, change);
+    add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
     return change.norm() * prepared_[r].tangential_mobility;
   }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "deformation/deformation_world.h"
+#include "deformation/guard_log.h"
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/cycle_budget.h"
@@ -17,9 +18,9 @@ namespace palpate::deformation {
 namespace {
 
 DeformationWorld load_world(const scene::Scene& scene, ChunkRunner& runner) {
-  std::vector<geometry::TriangleSurface> surfaces;
-  for (const auto& organ : scene.organs) surfaces.push_back(scene::load_organ(organ));
-  return DeformationWorld(scene, std::move(surfaces), &runner);
+  std::vector<geometry::OrganShape> shapes;
+  for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
+  return DeformationWorld(scene, std::move(shapes), &runner);
 }
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
@@ -135,10 +136,9 @@ class Outputs {
   ContactModel model_;
 };
 
-const char* acting_guard(const AdvanceReport& report, double real_time_factor, bool silent_input) {
-  if (report.diverged) return "an organ diverged: its last good state was restored, at rest";
-  if (report.volume_skipped) return "an organ is too flat for its volume to be corrected";
-  if (report.probe_jumped) return "a probe jumped: its contacts were dropped";
+/// @param of_world  the world's own; comes first
+const char* acting_guard(const char* of_world, double real_time_factor, bool silent_input) {
+  if (*of_world != '\0') return of_world;
   if (silent_input) return "a probe or its contacts are stale: it touches nothing";
   if (real_time_factor < 0.95) return "slower than real time: see the real-time factor";
   return "";
@@ -160,6 +160,7 @@ void run_deformation(const runtime::ModuleOptions& options) {
   ProbeInputs inputs(module, world.probe_count());
   Outputs outputs(module.bus());
   SimulatedTime time;
+  GuardLog guards;
   runtime::CycleBudget budget(module.period(), least_advance(world));
   outputs.publish_surfaces(world);
   module.ready();
@@ -168,6 +169,7 @@ void run_deformation(const runtime::ModuleOptions& options) {
     if (module.take_reset()) {
       world.reset();
       time = {};
+      guards.reset();
       outputs.publish_surfaces(world);
     }
     inputs.bring(module.now_ns(), world);
@@ -176,7 +178,8 @@ void run_deformation(const runtime::ModuleOptions& options) {
       const AdvanceReport report = advance(world, budget);
       const double factor = time.factor(module.time(), world.time(), module.period());
       module.set_real_time_factor(factor);
-      module.set_guard(acting_guard(report, factor, inputs.any_silent(module.now_ns())));
+      module.set_guard(acting_guard(guards.describe(report, world.time()), factor,
+                                    inputs.any_silent(module.now_ns())));
     }
     outputs.publish(time.on_session_clock(world.time()), world);
   }

@@ -7,29 +7,23 @@
 #include "deformation/organ_dynamics.h"
 #include "deformation/probe_contacts.h"
 #include "deformation/spring_forces.h"
-#include "deformation/spring_kernel.h"
-#include "deformation/target_volume.h"
 #include "modules/core/error.h"
 
 namespace palpate::deformation {
 namespace {
 
-constexpr double kLeastStep = 1e-6;      // [s]
-constexpr double kMaxNodeSpeed = 100.0;  // [m/s]; nothing soft moves faster and means it
+constexpr double kLeastStep = 1e-6;  // [s]
 /// The contact model is believed within this part of the mean edge: the touched nodes stay the
 /// same.
 constexpr double kValidityOfEdge = 0.5;
 
-struct SimulatedOrgan {
-  std::unique_ptr<const OrganModel> model;
-  std::unique_ptr<OrganDynamics> dynamics;
-  std::unique_ptr<SpringKernel> kernel;  ///< for the energy of what is published
+struct WorldOrgan {
+  SimulatedOrgan simulated;
   IntegratorChoice integrator;
-  TargetVolume target_volume{{}};
-  OrganState state, last_good;
   SurfaceTopology topology;
   std::vector<ContactRow> rows;
   double mean_edge = 0;
+  bool replaced = false;  ///< its state, at the end of the last advance
 };
 
 SurfaceTopology make_topology(const scene::Organ& organ, std::uint32_t index,
@@ -53,86 +47,78 @@ SurfaceTopology make_topology(const scene::Organ& organ, std::uint32_t index,
   return topology;
 }
 
-double mean_structural_length(const SpringNetwork& network) {
+double mean_edge_length(const geometry::TriangleSurface& surface) {
+  const auto edges = geometry::edges_of(surface.triangles);
   double sum = 0;
-  for (std::size_t s = 0; s < network.structural_count; ++s) sum += network.springs[s].rest_length;
-  return sum / static_cast<double>(network.structural_count);
+  for (const auto& [a, b] : edges) sum += (surface.nodes[b] - surface.nodes[a]).norm();
+  return sum / static_cast<double>(edges.size());
 }
 
-bool is_sound(const OrganState& state) {
-  return std::isfinite(state.pressure) &&
-         std::all_of(state.velocities.begin(), state.velocities.end(), [](const Vec3& v) {
-           return v.squaredNorm() <= kMaxNodeSpeed * kMaxNodeSpeed;  // false for NaN
-         });
-}
-
-SimulatedOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
-                          double period, const geometry::TriangleSurface& surface,
-                          ChunkRunner* runner) {
-  SimulatedOrgan simulated;
-  simulated.model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, surface));
-  const OrganModel& model = *simulated.model;
-  simulated.dynamics = make_dynamics(organ, model, period, runner);
-  simulated.kernel = std::make_unique<SpringKernel>(model, runner);
-  simulated.integrator = choose_integrator(organ, model, period);
-  simulated.target_volume = TargetVolume(organ.filling);
-  simulated.state = simulated.last_good = rest_state(model);
-  simulated.topology = make_topology(organ, index, model);
-  simulated.mean_edge = mean_structural_length(model.network);
-  if (simulated.dynamics->largest_step() < kLeastStep) {
+WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
+                      double period, const geometry::OrganShape& shape, ChunkRunner* runner) {
+  auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
+  auto dynamics = make_dynamics(organ, *model, period, runner);
+  if (dynamics->largest_step() < kLeastStep) {
     std::ostringstream message;
     message << "organ '" << organ.name << "': its largest stable step is "
-            << simulated.dynamics->largest_step() << " s, less than " << kLeastStep
+            << dynamics->largest_step() << " s, less than " << kLeastStep
             << " s; soften the tissue or even out the mesh ('nodes')";
     throw InputError(message.str());
   }
-  return simulated;
+  const IntegratorChoice integrator = choose_integrator(organ, *model, period);
+  SurfaceTopology topology = make_topology(organ, index, *model);
+  return {SimulatedOrgan(organ, std::move(model), std::move(dynamics)),
+          integrator,
+          std::move(topology),
+          {},
+          mean_edge_length(shape.surface)};
 }
 
 }  // namespace
 
 struct DeformationWorld::Impl {
-  std::vector<SimulatedOrgan> organs;
+  std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
   Contacts accepted;  ///< buffer of set_contacts()
   double time = 0;
 
   bool names_our_triangle(const Contact& contact) const {
     return contact.organ < organs.size() &&
-           contact.triangle < organs[contact.organ].model->triangles.size();
+           contact.triangle < organs[contact.organ].simulated.model().triangles.size();
   }
 
   /// One organ through one advance, all probes moving along.
-  void advance_organ(std::uint32_t index, double period, int substeps, AdvanceReport& report) {
-    SimulatedOrgan& organ = organs[index];
+  void advance_organ(std::uint32_t index, double period, AdvanceReport& report) {
+    WorldOrgan& organ = organs[index];
+    const int substeps = organ.simulated.substeps(period);
     const double h = period / substeps;
     for (int step = 1; step <= substeps; ++step) {
       const double fraction = static_cast<double>(step) / substeps;
       organ.rows.clear();
+      const bool aloof = organ.simulated.aloof();
       for (auto& probe : probes) {
-        probe.append_rows(index, *organ.model, organ.state, h, fraction, organ.rows);
+        if (aloof) break;
+        probe.append_rows(index, organ.simulated.model(), organ.simulated.state(), h, fraction,
+                          organ.rows);
       }
-      organ.state.target_volume =
-          organ.model->rest_volume * organ.target_volume.follow(time + fraction * period, h);
-      const StepReport stepped = organ.dynamics->step(h, organ.rows, organ.state);
-      report.volume_skipped |= stepped.volume_skipped;
+      organ.simulated.step(time + fraction * period, h, organ.rows, report);
       std::size_t first = 0;
-      for (auto& probe : probes)
+      for (auto& probe : probes) {
+        if (aloof) break;
         first += probe.take_rows(index, fraction, organ.rows.data() + first);
+      }
     }
-    finish(organ, report);
+    organ.replaced = !organ.simulated.finish(period, report);
   }
 
-  /// Keeps a sound state; puts an unsound one back, at rest, to where it last was sound.
-  static void finish(SimulatedOrgan& organ, AdvanceReport& report) {
-    if (is_sound(organ.state)) {
-      organ.state.volume = geometry::enclosed_volume(organ.state.positions, organ.model->triangles);
-      organ.last_good = organ.state;
-      return;
+  /// Impulses that a state not believed gave are no force on anybody.
+  void drop_contacts(std::uint32_t organ) {
+    for (auto& probe : probes) {
+      const auto& contacts = probe.contacts();
+      const bool near = std::any_of(contacts.begin(), contacts.end(),
+                                    [&](const CarriedContact& c) { return c.organ == organ; });
+      if (near) probe.reset();
     }
-    report.diverged = true;
-    organ.state = organ.last_good;
-    std::fill(organ.state.velocities.begin(), organ.state.velocities.end(), Vec3::Zero());
   }
 
   /// No patch of tissue answers stiffer than its touched nodes with all their neighbours held.
@@ -140,7 +126,7 @@ struct DeformationWorld::Impl {
     double limit = 0;
     for (const CarriedContact& contact : probe.contacts()) {
       if (contact.normal_impulse <= 0) continue;
-      const OrganModel& model = *organs[contact.organ].model;
+      const OrganModel& model = organs[contact.organ].simulated.model();
       for (int k = 0; k < 3; ++k) {
         limit += contact.weights[k] * model.node_stiffness[model.triangles[contact.triangle][k]];
       }
@@ -150,13 +136,13 @@ struct DeformationWorld::Impl {
 };
 
 DeformationWorld::DeformationWorld(const scene::Scene& scene,
-                                   std::vector<geometry::TriangleSurface> rest_surfaces,
+                                   std::vector<geometry::OrganShape> rest_shapes,
                                    ChunkRunner* runner)
     : impl_(std::make_unique<Impl>()) {
-  PALPATE_DEMAND(rest_surfaces.size() == scene.organs.size());
-  for (std::uint32_t i = 0; i < rest_surfaces.size(); ++i) {
+  PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
+  for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
     impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
-                                       1 / scene.rates.deformation, rest_surfaces[i], runner));
+                                       1 / scene.rates.deformation, rest_shapes[i], runner));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }
@@ -190,17 +176,19 @@ AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
-    impl_->advance_organ(i, period, substeps(i, period), report);
+    impl_->advance_organ(i, period, report);
   }
   for (auto& probe : impl_->probes) probe.end(impl_->stiffness_limit(probe));
+  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
+    if (impl_->organs[i].replaced) impl_->drop_contacts(i);
+  }
   impl_->time += period;
   return report;
 }
 
 void DeformationWorld::reset() {
   for (auto& organ : impl_->organs) {
-    organ.state = organ.last_good = rest_state(*organ.model);
-    organ.target_volume.reset();
+    organ.simulated.reset();
     ++organ.topology.generation;
   }
   for (auto& probe : impl_->probes) probe.reset();
@@ -210,7 +198,7 @@ void DeformationWorld::reset() {
 double DeformationWorld::time() const { return impl_->time; }
 
 double DeformationWorld::stable_step(std::size_t organ) const {
-  return impl_->organs.at(organ).dynamics->largest_step();
+  return impl_->organs.at(organ).simulated.dynamics().largest_step();
 }
 
 const IntegratorChoice& DeformationWorld::integrator(std::size_t organ) const {
@@ -218,23 +206,25 @@ const IntegratorChoice& DeformationWorld::integrator(std::size_t organ) const {
 }
 
 int DeformationWorld::substeps(std::size_t organ, double period) const {
-  return std::max(1, static_cast<int>(std::ceil(period / stable_step(organ))));
+  return impl_->organs.at(organ).simulated.substeps(period);
 }
 
 void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositions& out) const {
-  const SimulatedOrgan& organ = impl_->organs.at(organ_index);
+  const WorldOrgan& organ = impl_->organs.at(organ_index);
+  const OrganModel& model = organ.simulated.model();
+  const OrganState& state = organ.simulated.state();
   out.organ = static_cast<std::uint32_t>(organ_index);
   out.generation = organ.topology.generation;
-  out.volume = organ.state.volume;
-  out.target_volume = organ.state.target_volume;
-  out.pressure = organ.state.pressure;
-  out.kinetic_energy = kinetic_energy(*organ.model, organ.state.velocities);
-  out.elastic_energy = organ.kernel->elastic_energy(organ.state.positions);
-  out.positions.resize(3 * organ.model->node_count());
-  for (std::size_t i = 0; i < organ.model->node_count(); ++i) {
+  out.volume = geometry::enclosed_volume(state.positions, model.triangles);
+  out.target_volume = std::max(state.target_volume, 0.0);
+  out.pressure = state.pressure;
+  out.kinetic_energy = kinetic_energy(model, state.velocities);
+  out.elastic_energy = organ.simulated.dynamics().elastic_energy(state);
+  out.positions.resize(3 * model.node_count());
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       out.positions[3 * i + static_cast<std::size_t>(axis)] =
-          static_cast<float>(organ.state.positions[i][axis]);
+          static_cast<float>(state.positions[i][axis]);
     }
   }
 }

@@ -6,26 +6,20 @@
 #include <vector>
 
 #include "deformation/organ_dynamics.h"
+#include "deformation/simulated_organ.h"
 #include "modules/core/messages.h"
-#include "modules/geometry/triangle_surface.h"
+#include "modules/geometry/organ_shape.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
 
-/// What an advance had to do beyond stepping. Never silent: the process publishes it.
-struct AdvanceReport {
-  bool diverged = false;  ///< an organ became not finite or too fast: last good state restored
-  bool volume_skipped = false;  ///< gᵀM⁻¹g vanished in some sub-step: volume not corrected there
-  bool probe_jumped = false;    ///< a probe moved faster than believed: its contacts were dropped
-};
-
 class DeformationWorld {
  public:
-  /// @param rest_surfaces  one per organ of the scene, closed, outward, in W [m]
+  /// @param rest_shapes  one per organ of the scene, closed, outward, in W [m]
   /// @throws InputError naming the organ if it cannot be simulated (all nodes fixed, stable step
   ///         below 1 µs, …)
   /// @param runner  outlives the world; none: the calling thread alone. The bits are the same
-  DeformationWorld(const scene::Scene& scene, std::vector<geometry::TriangleSurface> rest_surfaces,
+  DeformationWorld(const scene::Scene& scene, std::vector<geometry::OrganShape> rest_shapes,
                    ChunkRunner* runner = nullptr);
   ~DeformationWorld();
   DeformationWorld(DeformationWorld&&) noexcept;

@@ -11,6 +11,12 @@
 #include "deformation/neighbours/post_stabilisation.h"
 #include "deformation/neighbours/promayon.h"
 #include "deformation/neighbours/zordan.h"
+#include "deformation/solids/corotational.h"
+#include "deformation/solids/modal.h"
+#include "deformation/solids/nodal_pressure.h"
+#include "deformation/solids/quadratic_elements.h"
+#include "deformation/solids/xpbd_springs.h"
+#include "deformation/solids/xpbd_tetrahedra.h"
 #include "deformation/symplectic_euler.h"
 #include "modules/core/error.h"
 #include "modules/scene/schema.h"
@@ -21,17 +27,18 @@ namespace {
 /// Backward Euler damps and lags; it must save more than this factor.
 constexpr double kWorthwhile = 2;
 
+void check_integrator(const scene::Organ& organ) {
+  if (!has_own_steps(organ.model) || organ.integrator != scene::Integrator::kBackwardEuler) return;
+  throw InputError("organ '" + organ.name + "': model " + scene::word_of(organ.model) +
+                   " has steps of its own; integrator must be automatic or symplectic_euler");
+}
+
 /// What a neighbour method asks of the scene beyond the implicit constraint.
 void check_neighbour(const scene::Organ& organ, const OrganModel& model) {
-  const std::string start = "organ '" + organ.name + "': model " + scene::word_of(organ.model);
-  if (organ.integrator == scene::Integrator::kBackwardEuler) {
-    throw InputError(start +
-                     " has steps of its own; integrator must be automatic or symplectic_euler");
-  }
   const bool pyramids =
       organ.model == scene::Model::kZordan || organ.model == scene::Model::kElementVolume;
   if (pyramids && model.node_count() == model.surface_node_count()) {
-    throw InputError(start +
+    throw InputError("organ '" + organ.name + "': model " + scene::word_of(organ.model) +
                      " needs virtual nodes as apexes of its pyramids; springs: virtual_nodes must "
                      "be at least 1 and inner_ratio above 0");
   }
@@ -62,17 +69,20 @@ std::unique_ptr<OrganDynamics> make_neighbour(const scene::Organ& organ, const O
 
 }  // namespace
 
+bool has_own_steps(scene::Model model) {
+  return model != scene::Model::kImplicitVolume && model != scene::Model::kMassSpring;
+}
+
 IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,
                                    double period) {
   IntegratorChoice choice;
+  if (has_own_steps(organ.model)) return choice;
   choice.symplectic_passes = std::ceil(period / SymplecticEuler::largest_step(model)) / period;
   choice.backward_passes = std::ceil(period / BackwardEuler::kLargestStep) / period *
                            BackwardEuler::passes(BackwardEuler::kIterations);
-  const bool own_steps =
-      organ.model != scene::Model::kImplicitVolume && organ.model != scene::Model::kMassSpring;
   if (organ.integrator != scene::Integrator::kAutomatic) {
     choice.integrator = organ.integrator;
-  } else if (!own_steps && choice.symplectic_passes > kWorthwhile * choice.backward_passes) {
+  } else if (choice.symplectic_passes > kWorthwhile * choice.backward_passes) {
     choice.integrator = scene::Integrator::kBackwardEuler;
   }
   return choice;
@@ -80,6 +90,7 @@ IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& 
 
 std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
                                              double period, ChunkRunner* runner) {
+  check_integrator(organ);
   switch (organ.model) {
     case scene::Model::kImplicitVolume:
     case scene::Model::kMassSpring:
@@ -87,6 +98,20 @@ std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const Or
         return std::make_unique<BackwardEuler>(model);
       }
       return std::make_unique<SymplecticEuler>(model, runner);
+    case scene::Model::kCorotational:
+      return std::make_unique<ImplicitSolid>(model, std::make_unique<Corotational>(model),
+                                             Corotational::kIterations);
+    case scene::Model::kNodalPressure:
+      return std::make_unique<ImplicitSolid>(model, std::make_unique<NodalPressure>(model),
+                                             NodalPressure::kIterations);
+    case scene::Model::kXpbdSprings:
+      return std::make_unique<XpbdSprings>(model);
+    case scene::Model::kXpbdTetrahedra:
+      return std::make_unique<XpbdTetrahedra>(model);
+    case scene::Model::kQuadraticElements:
+      return std::make_unique<QuadraticElements>(model);
+    case scene::Model::kModal:
+      return std::make_unique<Modal>(model, organ.solid.modes, organ.tissue.damping_ratio);
     default:
       return make_neighbour(organ, model);
   }

@@ -27,6 +27,9 @@ class OrganDynamics {
   /// the step's end, and leaves the pressure of the contents. Contact rows hold their gaps at the
   /// step's start; they keep the impulses found.
   virtual StepReport step(double h, std::span<ContactRow> rows, OrganState& state) = 0;
+
+  /// Stored in springs or tissue [J].
+  virtual double elastic_energy(const OrganState& state) = 0;
 };
 
 /// How an organ's springs are stepped, and what that was decided by.
@@ -35,6 +38,9 @@ struct IntegratorChoice {
   /// Passes over all springs per simulated second that each would need.
   double symplectic_passes = 0, backward_passes = 0;
 };
+
+/// Whether a model steps by a method of its own, so that no integrator can be chosen.
+bool has_own_steps(scene::Model model);
 
 /// What `organ` asks for. Automatic is backward Euler where symplectic Euler needs more than twice
 /// the passes over the springs, else symplectic Euler, which neither damps nor lags.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "deformation/solid_model.h"
 #include "deformation/volume_constraint.h"
 #include "modules/core/error.h"
 
@@ -71,30 +72,35 @@ std::vector<double> axial_damping(const SpringNetwork& network, const std::vecto
 /// The others use springs alone at the step's start.
 bool wants_volume(scene::Model model) {
   return model == scene::Model::kImplicitVolume || model == scene::Model::kPenalty ||
-         model == scene::Model::kBaumgarte || model == scene::Model::kPostStabilisation;
+         model == scene::Model::kBaumgarte || model == scene::Model::kPostStabilisation ||
+         model == scene::Model::kXpbdSprings;
 }
 
-void fix_nodes(const scene::Organ& organ, OrganModel& model) {
+}  // namespace
+
+void fix_nodes(const scene::Organ& organ, std::size_t count, OrganModel& model) {
   const auto& positions = model.network.rest_positions;
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
+  std::size_t held = 0;  // of the surface
+  for (std::uint32_t i = 0; i < count; ++i) {
     const bool fixed = std::any_of(organ.fixed.begin(), organ.fixed.end(), [&](const auto& region) {
       return contains(region, positions[i]);
     });
     if (!fixed) continue;
     model.inverse_masses[i] = 0;
     model.fixed_nodes.push_back(i);
+    held += i < model.surface_node_count() ? 1 : 0;
   }
-  if (model.fixed_nodes.size() == model.surface_node_count()) {
+  if (held == model.surface_node_count()) {
     throw InputError("organ '" + organ.name + "': key 'fixed' holds every one of its " +
                      std::to_string(model.surface_node_count()) +
                      " nodes; leave some free to move");
   }
 }
 
-}  // namespace
-
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
-                             const geometry::TriangleSurface& rest_surface) {
+                             const geometry::OrganShape& rest_shape) {
+  if (rest_shape.is_solid()) return build_solid_model(organ, gravity, rest_shape);
+  const geometry::TriangleSurface& rest_surface = rest_shape.surface;
   OrganModel model;
   model.rest_volume = geometry::enclosed_volume(rest_surface.nodes, rest_surface.triangles);
   if (!(model.rest_volume > 0)) {
@@ -106,7 +112,7 @@ OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
   model.masses =
       node_masses(model.network, model.node_stiffness, organ.tissue.density * model.rest_volume);
   for (const double mass : model.masses) model.inverse_masses.push_back(1 / mass);
-  fix_nodes(organ, model);
+  fix_nodes(organ, model.surface_node_count(), model);
   model.spring_damping = axial_damping(model.network, model.masses, organ.tissue.damping_ratio);
   model.gravity = gravity;
   model.drag = organ.tissue.drag;

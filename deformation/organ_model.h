@@ -4,14 +4,24 @@
 #include <vector>
 
 #include "deformation/spring_network.h"
-#include "modules/geometry/triangle_surface.h"
+#include "modules/geometry/organ_shape.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
 
+/// What fills a solid organ, and its tissue; without tetrahedra the organ is a surface of springs.
+struct SolidElements {
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  std::vector<std::array<std::uint32_t, 6>> edge_nodes;  ///< as in geometry::OrganShape
+  double youngs_modulus = 0;                             ///< [Pa]
+  double poisson_ratio = 0;
+  double density = 0;  ///< [kg/m³]
+};
+
 /// Constant after construction.
 struct OrganModel {
-  SpringNetwork network;
+  SpringNetwork network;  ///< of a solid: no springs, its nodes inside as virtual nodes
+  SolidElements solid;
   std::vector<geometry::Triangle> triangles;
   std::vector<double> masses;          ///< [kg]  (node_count)
   std::vector<double> inverse_masses;  ///< [1/kg], 0 for fixed nodes  (node_count)
@@ -44,10 +54,14 @@ struct OrganState {
 /// Spring damping is ζ of the spring's own critical damping, c = 2 ζ √(k m_a m_b/(m_a+m_b)); edge
 /// and bending springs take the mean surface node for both ends, so that the springs of a family
 /// differ in length only (spring_kernel.h).
-/// @param rest_surface  closed, oriented outward, in W [m]
+/// @param rest_shape  closed, oriented outward, in W [m]; a solid one goes to solid_model.h
 /// @throws InputError naming the organ if every node is fixed or the volume is not positive
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
-                             const geometry::TriangleSurface& rest_surface);
+                             const geometry::OrganShape& rest_shape);
+
+/// Fixes the first `count` nodes where their rest positions lie in the organ's regions.
+/// @throws InputError naming the organ if no node of the surface is left free
+void fix_nodes(const scene::Organ& organ, std::size_t count, OrganModel& model);
 
 OrganState rest_state(const OrganModel& model);
 

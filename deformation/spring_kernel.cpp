@@ -17,18 +17,30 @@ const kernel::Functions& functions_of(InstructionSet set) {
   return kernel::portable_functions();
 }
 
-void repeat(const Vec3& from, double (&to)[3 * kernel::kLanes]) {
-  for (std::size_t i = 0; i < 3 * kernel::kLanes; ++i) to[i] = from[static_cast<int>(i % 3)];
+void repeat(const Vec3& from, double (&to)[3 * kernel::kRingLanes]) {
+  for (std::size_t i = 0; i < 3 * kernel::kRingLanes; ++i) to[i] = from[static_cast<int>(i % 3)];
 }
 
-const double* coordinates(const std::vector<Vec3>& nodes, std::size_t first = 0) {
-  return reinterpret_cast<const double*>(nodes.data() + first);
+const double* coordinates(const std::vector<Vec3>& nodes) {
+  return reinterpret_cast<const double*>(nodes.data());
 }
 
 double* coordinates(std::vector<Vec3>& nodes) { return reinterpret_cast<double*>(nodes.data()); }
 
 /// Numbers in which a chunk's force on a virtual node comes: x of all lanes, then y, then z.
 constexpr std::size_t kForces = 3 * kernel::kLanes;
+
+/// Floats are taken from a point amid the organ: the mean of some nodes spread over it.
+Vec3 packing_origin(const OrganModel& model, const std::vector<Vec3>& positions) {
+  constexpr std::size_t kSamples = 16;
+  const std::size_t stride = model.surface_node_count() / kSamples + 1;
+  Vec3 sum = Vec3::Zero();
+  double count = 0;
+  for (std::size_t i = 0; i < model.surface_node_count(); i += stride, ++count) {
+    sum += positions[i];
+  }
+  return sum / count;
+}
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
@@ -63,6 +75,7 @@ SpringKernel::SpringKernel(const OrganModel& model, ChunkRunner* runner, Instruc
   const kernel::Layout layout = layout_.view();
   virtual_forces_.resize(kForces * layout.virtual_node_count * layout.chunk_count);
   sums_.resize(layout.chunk_count);
+  nodes_.resize(kernel::kNodeFloats * model.node_count());
 }
 
 void SpringKernel::run(std::size_t count, ChunkBody body) {
@@ -70,17 +83,27 @@ void SpringKernel::run(std::size_t count, ChunkBody body) {
   (runner_ == nullptr ? serial : *runner_).run(count, body);
 }
 
-/// The kernel reads nodes four doubles at a time. Virtual nodes follow the surface nodes in memory
-/// and are copied with one more behind them; without any, that is done for the surface nodes.
-SpringKernel::PaddedNodes SpringKernel::padded(const std::vector<Vec3>& nodes,
-                                               std::vector<Vec3>& copy) const {
-  const std::size_t surface_count = model_.surface_node_count();
-  PALPATE_DEMAND(nodes.size() == model_.node_count());
-  const bool has_virtual_nodes = nodes.size() > surface_count;
-  const auto first = static_cast<std::ptrdiff_t>(has_virtual_nodes ? surface_count : 0);
-  copy.assign(nodes.begin() + first, nodes.end());
-  copy.push_back(Vec3::Zero());
-  return {coordinates(has_virtual_nodes ? nodes : copy), coordinates(copy)};
+void SpringKernel::pack(const std::vector<Vec3>& positions, const std::vector<Vec3>* velocities) {
+  const std::size_t count = model_.node_count();
+  PALPATE_DEMAND(positions.size() == count);
+  kernel::Packing packing;
+  packing.positions = coordinates(positions);
+  packing.velocities = velocities == nullptr ? nullptr : coordinates(*velocities);
+  Eigen::Map<Vec3>(packing.origin) = packing_origin(model_, positions);
+  packing.nodes = nodes_.data();
+  const std::size_t chunks = sums_.size(), share = (count + chunks - 1) / chunks;
+  run(chunks, [&](std::size_t chunk) {
+    functions_.pack(packing, std::min(chunk * share, count), std::min((chunk + 1) * share, count));
+  });
+}
+
+/// The kernel reads nodes four doubles at a time. Virtual nodes follow the surface nodes in memory;
+/// without any, a copy has one more node behind it.
+const double* SpringKernel::readable_beyond(const std::vector<Vec3>& positions) {
+  if (positions.size() > model_.surface_node_count()) return coordinates(positions);
+  padded_positions_ = positions;
+  padded_positions_.push_back(Vec3::Zero());
+  return coordinates(padded_positions_);
 }
 
 kernel::Step SpringKernel::make_step(double h, const OrganState& state, FreeStep& out) {
@@ -88,17 +111,14 @@ kernel::Step SpringKernel::make_step(double h, const OrganState& state, FreeStep
   if (out.volume.gradient.size() != model_.surface_node_count()) {
     out.volume.gradient.assign(model_.surface_node_count(), Vec3::Zero());
   }
-  const PaddedNodes positions = padded(state.positions, padded_positions_);
-  const PaddedNodes velocities = padded(state.velocities, padded_velocities_);
   kernel::Step step;
   step.h = h;
   step.drag = model_.drag;
   repeat(model_.gravity, step.gravity);
   repeat(state.positions[0], step.origin);
-  step.positions = positions.surface;
-  step.virtual_positions = positions.virtual_nodes;
-  step.velocities = velocities.surface;
-  step.virtual_velocities = velocities.virtual_nodes;
+  step.positions = readable_beyond(state.positions);
+  step.velocities = coordinates(state.velocities);
+  step.nodes = nodes_.data();
   step.new_velocities = coordinates(out.velocities);
   step.gradient = coordinates(out.volume.gradient);
   step.virtual_forces = virtual_forces_.data();
@@ -108,6 +128,7 @@ kernel::Step SpringKernel::make_step(double h, const OrganState& state, FreeStep
 
 void SpringKernel::free_step(double h, const OrganState& state, FreeStep& out) {
   const kernel::Layout layout = layout_.view();
+  pack(state.positions, &state.velocities);
   const kernel::Step step = make_step(h, state, out);
   const auto step_chunk =
       model_.preserve_volume ? functions_.step_chunk : functions_.step_chunk_without_volume;
@@ -131,8 +152,8 @@ void SpringKernel::finish_virtual_nodes(double h, const OrganState& state, FreeS
   for (std::size_t k = 0; k < virtual_count; ++k) {
     std::array<double, kForces> lanes{};
     for (std::size_t chunk = 0; chunk < sums_.size(); ++chunk) {
-      const double* const part = &virtual_forces_[kForces * (chunk * virtual_count + k)];
-      for (std::size_t i = 0; i < kForces; ++i) lanes[i] += part[i];
+      const float* const part = &virtual_forces_[kForces * (chunk * virtual_count + k)];
+      for (std::size_t i = 0; i < kForces; ++i) lanes[i] += static_cast<double>(part[i]);
     }
     Vec3 force = Vec3::Zero();
     for (std::size_t lane = 0; lane < kernel::kLanes; ++lane) {
@@ -167,10 +188,9 @@ void SpringKernel::finish_step(double h, double volume_impulse, FreeStep& step, 
 
 double SpringKernel::elastic_energy(const std::vector<Vec3>& positions) {
   const kernel::Layout layout = layout_.view();
-  const PaddedNodes nodes = padded(positions, padded_positions_);
+  pack(positions, nullptr);
   kernel::Step step;
-  step.positions = nodes.surface;
-  step.virtual_positions = nodes.virtual_nodes;
+  step.nodes = nodes_.data();
   run(layout.chunk_count, [&](std::size_t chunk) {
     sums_[chunk].volume = functions_.chunk_energy(layout, step, chunk);
   });

@@ -1,8 +1,10 @@
 // The forces of all springs and the volume constraint's gradient in one pass over the nodes, fast.
 //
-// The plain code is spring_forces.h and volume_constraint.h; this agrees with it to rounding. Each
-// node gathers its springs from its neighbours, eight nodes side by side (spring_kernel_arrays.h).
-// While its one-ring passes, the volume gradient needs but a cross product: with d_j = x_j − x_i,
+// The plain code is spring_forces.h and volume_constraint.h. Each node gathers its springs from its
+// neighbours in float, sixteen nodes side by side (spring_kernel_arrays.h): forces agree with the
+// plain ones to some 1e-7 of stiffness times position, both ends of a spring to the bit. State,
+// volume and sums are double; the volume gradient needs but a cross product per neighbour in the
+// one-ring: with d_j = x_j − x_i,
 //   g_i = ∂V/∂x_i = (1/6) Σ_ring d_j × d_j+1        V = ⅓ Σ (x_i − x₀)·g_i
 // Any number of threads gives the same bits, and so do AVX2 and AVX-512. The portable code, for
 // CPUs that do not fuse multiply and add, rounds its products and differs in the last digits.
@@ -11,6 +13,7 @@
 
 #include <vector>
 
+#include "deformation/aligned_vector.h"
 #include "deformation/organ_model.h"
 #include "deformation/spring_kernel_layout.h"
 #include "deformation/volume_constraint.h"
@@ -49,12 +52,9 @@ class SpringKernel {
   double elastic_energy(const std::vector<Vec3>& positions);  ///< Σ ½k(l−l₀)² [J]
 
  private:
-  struct PaddedNodes {
-    const double *surface, *virtual_nodes;
-  };
-
   void run(std::size_t count, ChunkBody body);
-  PaddedNodes padded(const std::vector<Vec3>& nodes, std::vector<Vec3>& copy) const;
+  void pack(const std::vector<Vec3>& positions, const std::vector<Vec3>* velocities);
+  const double* readable_beyond(const std::vector<Vec3>& positions);
   kernel::Step make_step(double h, const OrganState& state, FreeStep& out);
   void finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const;
 
@@ -62,8 +62,9 @@ class SpringKernel {
   ChunkRunner* runner_;
   const kernel::Functions& functions_;
   SpringKernelLayout layout_;
-  std::vector<Vec3> padded_positions_, padded_velocities_;
-  std::vector<double> virtual_forces_;
+  AlignedVector<float> nodes_;          ///< packed
+  std::vector<Vec3> padded_positions_;  ///< of an organ without virtual nodes, and one more
+  AlignedVector<float> virtual_forces_;
   std::vector<kernel::ChunkSums> sums_;
 };
 

@@ -8,9 +8,9 @@
 namespace palpate::deformation::kernel {
 namespace {
 
-inline constexpr std::size_t kSliceCoordinates = 3 * kLanes;
+inline constexpr std::size_t kSliceCoordinates = 3 * kRingLanes;
 
-/// By coordinate of a slice.
+/// By coordinate of a slice of rings.
 struct CoordinateSums {
   double volume[kSliceCoordinates] = {};
   double denominator[kSliceCoordinates] = {};

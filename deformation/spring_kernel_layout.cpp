@@ -9,7 +9,7 @@ namespace {
 
 /// Rows of a chunk: enough that starting one costs nothing, few enough that two threads share a
 /// small organ evenly. At most kMostChunks, so that sums over them stay short.
-constexpr std::size_t kLeastSlicesPerChunk = 16;
+constexpr std::size_t kLeastSlicesPerChunk = 8;
 constexpr std::size_t kMostChunks = 64;
 
 /// Stiffness and damping that all springs from `first` on have in common.
@@ -26,6 +26,10 @@ Alike common_values(const OrganModel& model, std::size_t first, std::size_t coun
     PALPATE_DEMAND(model.spring_damping[s] == damping);
   }
   return {stiffness, damping / stiffness};
+}
+
+std::uint32_t packed_offset(std::size_t node) {
+  return static_cast<std::uint32_t>(kernel::kNodeFloats * node);
 }
 
 }  // namespace
@@ -56,33 +60,10 @@ std::vector<std::vector<std::uint32_t>> ordered_one_rings(
   return rings;
 }
 
-SpringKernelLayout::Rows SpringKernelLayout::structural_rows(const OrganModel& model) {
-  const std::size_t node_count = model.surface_node_count();
-  Rows lengths(node_count);  // by neighbour
-  for (std::size_t s = 0; s < model.network.structural_count; ++s) {
-    const Spring& spring = model.network.springs[s];
-    lengths[spring.node_a].push_back({spring.node_b, spring.rest_length});
-    lengths[spring.node_b].push_back({spring.node_a, spring.rest_length});
-  }
-  const auto rings = ordered_one_rings(model.triangles, node_count);
-  Rows rows(node_count);
-  for (std::size_t node = 0; node < node_count; ++node) {
-    PALPATE_DEMAND(lengths[node].size() == rings[node].size());
-    for (const std::uint32_t neighbour : rings[node]) {
-      const auto found =
-          std::find_if(lengths[node].begin(), lengths[node].end(),
-                       [neighbour](const Neighbour& entry) { return entry.node == neighbour; });
-      PALPATE_DEMAND(found != lengths[node].end());
-      rows[node].push_back(*found);
-    }
-  }
-  return rows;
-}
-
-SpringKernelLayout::Rows SpringKernelLayout::bending_rows(const OrganModel& model) {
+SpringKernelLayout::Rows SpringKernelLayout::rows_of(const OrganModel& model, std::size_t first,
+                                                     std::size_t count) {
   Rows rows(model.surface_node_count());
-  const std::size_t first = model.network.structural_count;
-  for (std::size_t s = first; s < first + model.network.bending_count; ++s) {
+  for (std::size_t s = first; s < first + count; ++s) {
     const Spring& spring = model.network.springs[s];
     rows[spring.node_a].push_back({spring.node_b, spring.rest_length});
     rows[spring.node_b].push_back({spring.node_a, spring.rest_length});
@@ -103,27 +84,27 @@ SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
   const auto& network = model.network;
   const Alike structural = common_values(model, 0, network.structural_count);
   const Alike bending = common_values(model, network.structural_count, network.bending_count);
-  scalars_.structural_stiffness = structural.stiffness;
-  scalars_.structural_damping_time = structural.damping_time;
-  scalars_.bending_stiffness = bending.stiffness;
-  scalars_.bending_damping_time = bending.damping_time;
+  scalars_.structural_stiffness = static_cast<float>(structural.stiffness);
+  scalars_.structural_damping_time = static_cast<float>(structural.damping_time);
+  scalars_.bending_stiffness = static_cast<float>(bending.stiffness);
+  scalars_.bending_damping_time = static_cast<float>(bending.damping_time);
 
-  const Rows rings = structural_rows(model), second = bending_rows(model);
-  add_row_values(model, rings);
+  add_rows(model);
+  const Rows first = rows_of(model, 0, network.structural_count);
+  const Rows second = rows_of(model, network.structural_count, network.bending_count);
   for (std::size_t slice = 0; slice < scalars_.slice_count; ++slice) {
-    add_slice(slice * kernel::kLanes, rings, second);
+    add_slice(slice * kernel::kLanes, first, second);
   }
+  add_rings(ordered_one_rings(model.triangles, node_count));
   if (scalars_.virtual_node_count > 0) add_inner_springs(model);
 }
 
-void SpringKernelLayout::add_row_values(const OrganModel& model, const Rows& structural) {
+void SpringKernelLayout::add_rows(const OrganModel& model) {
   const std::size_t node_count = scalars_.surface_node_count;
   for (std::size_t row = 0; row < scalars_.slice_count * kernel::kLanes; ++row) {
-    const std::size_t node = std::min(row, node_count - 1);
-    row_nodes_.push_back(static_cast<std::uint32_t>(3 * node));
-    ring_sizes_.push_back(row < node_count ? static_cast<double>(structural[node].size()) : 0);
+    row_nodes_.push_back(packed_offset(std::min(row, node_count - 1)));
     inverse_masses_.insert(inverse_masses_.end(), 3,
-                           row < node_count ? model.inverse_masses[node] : 0);
+                           row < node_count ? model.inverse_masses[row] : 0);
   }
 }
 
@@ -131,35 +112,53 @@ void SpringKernelLayout::add_slice(std::size_t first_row, const Rows& structural
                                    const Rows& bending) {
   kernel::Slice slice;
   slice.first_slot = neighbours_.size() / kernel::kLanes;
-  std::size_t ring = 0, second = 0;
-  for (std::size_t row = first_row; row < first_row + kernel::kLanes; ++row) {
-    const std::size_t node = row_nodes_[row] / 3;
-    ring = std::max(ring, structural[node].size());
-    second = std::max(second, bending[node].size());
+  const std::size_t end = std::min(first_row + kernel::kLanes, scalars_.surface_node_count);
+  std::size_t first = 0, second = 0;
+  for (std::size_t row = first_row; row < end; ++row) {
+    first = std::max(first, structural[row].size());
+    second = std::max(second, bending[row].size());
   }
-  slice.ring_slots = static_cast<std::uint32_t>(ring);
-  slice.slots = static_cast<std::uint32_t>(ring + second);
+  slice.structural_slots = static_cast<std::uint32_t>(first);
+  slice.slots = static_cast<std::uint32_t>(first + second);
   slices_.push_back(slice);
-  for (std::size_t slot = 0; slot < ring + second; ++slot) {
+  for (std::size_t slot = 0; slot < first + second; ++slot) {
+    const Rows& rows = slot < first ? structural : bending;
+    const std::size_t k = slot < first ? slot : slot - first;
     for (std::size_t row = first_row; row < first_row + kernel::kLanes; ++row) {
-      const std::size_t node = row_nodes_[row] / 3;
-      Neighbour neighbour{row_nodes_[row] / 3, 0};  // itself: no length, no pull
-      if (row >= scalars_.surface_node_count) {
-        // a padding row pulls at nothing
-      } else if (slot < ring) {
-        neighbour = structural[node][slot < structural[node].size() ? slot : 0];
-      } else if (slot - ring < bending[node].size()) {
-        neighbour = bending[node][slot - ring];
+      const bool present = row < end && k < rows[row].size();
+      neighbours_.push_back(present ? packed_offset(rows[row][k].node) : row_nodes_[row]);
+      rest_lengths_.push_back(present ? static_cast<float>(rows[row][k].rest_length)
+                                      : kernel::kPaddingLength);
+    }
+  }
+}
+
+void SpringKernelLayout::add_rings(const std::vector<std::vector<std::uint32_t>>& rings) {
+  const auto slices = scalars_.slice_count * (kernel::kLanes / kernel::kRingLanes);
+  for (std::size_t slice = 0; slice < slices; ++slice) {
+    const auto of_row = [&](std::size_t lane) {
+      return std::min(slice * kernel::kRingLanes + lane, rings.size() - 1);
+    };
+    std::size_t longest = 0;
+    for (std::size_t lane = 0; lane < kernel::kRingLanes; ++lane) {
+      longest = std::max(longest, rings[of_row(lane)].size());
+    }
+    ring_slices_.push_back({static_cast<std::uint32_t>(ring_nodes_.size() / kernel::kRingLanes),
+                            static_cast<std::uint32_t>(1 + longest)});
+    for (std::size_t slot = 0; slot <= longest; ++slot) {
+      for (std::size_t lane = 0; lane < kernel::kRingLanes; ++lane) {
+        const auto& ring = rings[of_row(lane)];
+        const std::size_t node =
+            slot == 0 ? of_row(lane) : ring[slot <= ring.size() ? slot - 1 : 0];
+        ring_nodes_.push_back(static_cast<std::uint32_t>(3 * node));
       }
-      neighbours_.push_back(3 * neighbour.node);
-      rest_lengths_.push_back(neighbour.rest_length);
     }
   }
 }
 
 void SpringKernelLayout::add_inner_springs(const OrganModel& model) {
   const std::size_t rows = row_nodes_.size();
-  inner_nodes_.assign(rows, 0);
+  inner_nodes_.assign(rows, packed_offset(scalars_.surface_node_count));
   inner_rest_lengths_.assign(rows, 0);
   inner_stiffnesses_.assign(rows, 0);
   inner_dampings_.assign(rows, 0);
@@ -170,11 +169,10 @@ void SpringKernelLayout::add_inner_springs(const OrganModel& model) {
     const std::size_t row = spring.node_a;
     PALPATE_DEMAND(row < network.surface_node_count && spring.node_b >= network.surface_node_count);
     PALPATE_DEMAND(inner_stiffnesses_[row] == 0);  // one per node
-    inner_nodes_[row] =
-        3 * (spring.node_b - static_cast<std::uint32_t>(network.surface_node_count));
-    inner_rest_lengths_[row] = spring.rest_length;
-    inner_stiffnesses_[row] = spring.stiffness;
-    inner_dampings_[row] = model.spring_damping[s];
+    inner_nodes_[row] = packed_offset(spring.node_b);
+    inner_rest_lengths_[row] = static_cast<float>(spring.rest_length);
+    inner_stiffnesses_[row] = static_cast<float>(spring.stiffness);
+    inner_dampings_[row] = static_cast<float>(model.spring_damping[s]);
   }
   for (std::size_t slice = 0; slice < slices_.size(); ++slice) add_links(slice);
 }
@@ -182,7 +180,9 @@ void SpringKernelLayout::add_inner_springs(const OrganModel& model) {
 void SpringKernelLayout::add_links(std::size_t slice) {
   const std::size_t first = links_.size();
   for (std::size_t lane = 0; lane < kernel::kLanes; ++lane) {
-    const std::uint32_t node = inner_nodes_[slice * kernel::kLanes + lane] / 3;
+    const auto node = static_cast<std::uint32_t>(inner_nodes_[slice * kernel::kLanes + lane] /
+                                                     kernel::kNodeFloats -
+                                                 scalars_.surface_node_count);
     auto link = std::find_if(links_.begin() + static_cast<std::ptrdiff_t>(first), links_.end(),
                              [node](const kernel::Link& l) { return l.virtual_node == node; });
     if (link == links_.end()) link = links_.insert(link, kernel::Link{node});
@@ -198,7 +198,8 @@ kernel::Layout SpringKernelLayout::view() const {
   layout.neighbours = neighbours_.data();
   layout.rest_lengths = rest_lengths_.data();
   layout.row_nodes = row_nodes_.data();
-  layout.ring_sizes = ring_sizes_.data();
+  layout.ring_slices = ring_slices_.data();
+  layout.ring_nodes = ring_nodes_.data();
   layout.inverse_masses = inverse_masses_.data();
   layout.inner_nodes = inner_nodes_.data();
   layout.links = links_.data();

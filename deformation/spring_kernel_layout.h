@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "deformation/aligned_vector.h"
 #include "deformation/organ_model.h"
 #include "deformation/spring_kernel_arrays.h"
 
@@ -27,19 +28,22 @@ class SpringKernelLayout {
   };
   using Rows = std::vector<std::vector<Neighbour>>;
 
-  static Rows structural_rows(const OrganModel& model);
-  static Rows bending_rows(const OrganModel& model);
+  /// Neighbours by springs [first, first + count), seen from both ends.
+  static Rows rows_of(const OrganModel& model, std::size_t first, std::size_t count);
+  void add_rows(const OrganModel& model);
   void add_slice(std::size_t first_row, const Rows& structural, const Rows& bending);
-  void add_row_values(const OrganModel& model, const Rows& structural);
+  void add_rings(const std::vector<std::vector<std::uint32_t>>& rings);
   void add_inner_springs(const OrganModel& model);
   void add_links(std::size_t slice);
 
   kernel::Layout scalars_;
   std::vector<kernel::Slice> slices_;
   std::vector<kernel::Link> links_;
-  std::vector<std::uint32_t> neighbours_, row_nodes_, inner_nodes_;
-  std::vector<double> rest_lengths_, ring_sizes_, inverse_masses_;
-  std::vector<double> inner_rest_lengths_, inner_stiffnesses_, inner_dampings_;
+  std::vector<kernel::RingSlice> ring_slices_;
+  AlignedVector<std::uint32_t> neighbours_, row_nodes_, ring_nodes_, inner_nodes_;
+  AlignedVector<float> rest_lengths_;
+  AlignedVector<double> inverse_masses_;
+  AlignedVector<float> inner_rest_lengths_, inner_stiffnesses_, inner_dampings_;
 };
 
 }  // namespace palpate::deformation

@@ -10,6 +10,12 @@ struct Vector3 {
   typename Set::Pack x, y, z;
 };
 
+/// The two vectors of packed nodes.
+template <class Set>
+struct NodePairs {
+  Vector3<Set> first, second;
+};
+
 template <class Set>
 inline Vector3<Set> operator-(const Vector3<Set>& a, const Vector3<Set>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};

@@ -1,12 +1,14 @@
 // The matrix of an implicit step times a vector, fast: spring_linearization.h says what it is, and
-// is the plain code this agrees with to the rounding of floats.
+// is the plain code this agrees with to eight binary digits of a spring's two numbers, as they are
+// kept here (spring_product_arrays.h). The matrix stays symmetric and positive.
 //
-// Each node gathers from its neighbours, eight nodes side by side in the slices of the spring
+// Each node gathers from its neighbours, sixteen nodes side by side in the slices of the spring
 // kernel (spring_kernel_arrays.h). Any number of threads gives the same bits.
 #pragma once
 
 #include <vector>
 
+#include "deformation/aligned_vector.h"
 #include "deformation/organ_model.h"
 #include "deformation/spring_kernel.h"
 #include "deformation/spring_product_arrays.h"
@@ -19,7 +21,6 @@ class SpringProduct {
  public:
   /// @param model   outlives this
   /// @param runner  outlives this; none: the calling thread alone
-  /// @param set     kAvx512 stands for kAvx2, there is none of its own
   explicit SpringProduct(const OrganModel& model, ChunkRunner* runner = nullptr,
                          InstructionSet set = available_instruction_sets().back());
 
@@ -28,14 +29,15 @@ class SpringProduct {
 
   const std::vector<Mat3>& diagonal() const { return diagonal_; }  ///< D [kg]  (node_count)
 
+  /// Nodes as the product loads them; their vectors p [m/s] are for the caller to set. (node_count)
+  AlignedVector<WideNode>& nodes() { return nodes_; }
+
   /// out = A p. Rows of fixed nodes are like any other: leave p zero there and ignore them.
-  /// @param p    [m/s]  (node_count)
   /// @param out  [N·s]  (node_count)
-  void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out);
+  /// @returns p·A p
+  double apply(std::vector<Vec4f>& out);
 
  private:
-  void add_rows(const kernel::Layout& layout);
-  kernel::ProductLayout view() const;
   kernel::Couplings couplings();
   void run(ChunkBody body);
   void take_diagonal(double h);
@@ -44,18 +46,14 @@ class SpringProduct {
   ChunkRunner* runner_;
   const kernel::ProductFunctions& functions_;
   SpringKernelLayout layout_;
-  kernel::ProductLayout scalars_;
-  std::vector<std::uint32_t> neighbours_, row_nodes_, inner_nodes_;
-  std::vector<kernel::ProductLink> links_;
-  std::vector<float> rest_lengths_, ring_sizes_;
-  std::vector<float> inner_rest_lengths_, inner_stiffnesses_, inner_dampings_;
   float h_ = 0;
-  std::vector<Vec4f> positions_;  ///< from the first node, so that float has digits enough
-  std::vector<float> masses_;     ///< (1 + h·drag) M; of rows, then of virtual nodes
-  std::vector<float> along_, across_, inner_along_, inner_across_;
-  std::vector<float> blocks_;          ///< of the rows, by slice
-  std::vector<float> virtual_blocks_;  ///< by chunk and virtual node
-  std::vector<float> virtual_sums_;    ///< likewise
+  AlignedVector<WideNode> nodes_;  ///< positions from the first node
+  AlignedVector<float> masses_;    ///< (1 + h·drag) M; of rows, then of virtual nodes
+  AlignedVector<float> pairs_, inner_along_, inner_across_;
+  AlignedVector<float> blocks_;          ///< of the rows, by slice
+  AlignedVector<float> virtual_blocks_;  ///< by chunk and virtual node
+  AlignedVector<float> virtual_sums_;    ///< likewise
+  AlignedVector<float> dots_;            ///< of p and A p, by chunk and lane
   std::vector<Mat3> diagonal_;
 };
 

@@ -1,4 +1,5 @@
-// How the spring product sees an organ: the slices of spring_kernel_arrays.h, in float.
+// What the spring product keeps of an implicit step's matrix, beside the slices of
+// spring_kernel_arrays.h.
 //
 // Known to the files compiled for one instruction set each; free of inline library code like those.
 #pragma once
@@ -11,36 +12,14 @@ namespace palpate::deformation::kernel {
 /// across.
 inline constexpr std::size_t kBlockNumbers = 7;
 
-/// Link in float.
-struct ProductLink {
-  std::uint32_t virtual_node = 0;
-  float weights[kLanes] = {};
-};
-
-/// Constant per organ.
-struct ProductLayout {
-  std::size_t surface_node_count = 0, virtual_node_count = 0;
-  std::size_t slices_per_chunk = 0, chunk_count = 0, slice_count = 0;
-  const Slice* slices = nullptr;                          ///< (slice_count)
-  const ProductLink* links = nullptr;                     ///< of the slices
-  const std::uint32_t* neighbours = nullptr;              ///< nodes  (slots × kLanes)
-  const float* rest_lengths = nullptr;                    ///< l₀ [m]  (slots × kLanes)
-  const std::uint32_t* row_nodes = nullptr;               ///< (row_count)
-  const float* ring_sizes = nullptr;                      ///< (row_count)
-  float structural_stiffness = 0, bending_stiffness = 0;  ///< k [N/m]
-  float structural_damping = 0, bending_damping = 0;      ///< c [N·s/m]
-  // Inner springs, one per row, absent without virtual nodes.
-  const std::uint32_t* inner_nodes = nullptr;  ///< nodes
-  const float* inner_rest_lengths = nullptr;   ///< [m]
-  const float* inner_stiffnesses = nullptr;    ///< [N/m]
-  const float* inner_dampings = nullptr;       ///< [N·s/m]
-};
-
-/// h J = along d dᵀ + across I of every half-spring, and where nodes are. Nodes are four floats.
+/// h J = along d dᵀ + across I of every half-spring, and where nodes are.
 struct Couplings {
-  float h = 0;                                            ///< [s]
-  const float* positions = nullptr;                       ///< [m], from some node of the organ
-  float *along = nullptr, *across = nullptr;              ///< (slots × kLanes)
+  float h = 0;  ///< [s]
+  /// Positions [m], and vectors the matrix is to be applied to, packed.
+  const float* nodes = nullptr;
+  /// Both of a spring in the place of one float: the upper halves of their bits, rounded to eight
+  /// digits, `along` above `across`.  (slots × kLanes)
+  float* pairs = nullptr;
   float *inner_along = nullptr, *inner_across = nullptr;  ///< (row_count)
 };
 
@@ -48,17 +27,19 @@ struct Couplings {
 struct ProductFunctions {
   /// Fills the couplings and adds up the blocks of the rows (kBlockNumbers × kLanes per slice) and,
   /// zeroed here, of the virtual nodes (kBlockNumbers × kLanes each).
-  void (*linearise)(const ProductLayout&, const Couplings&, std::size_t chunk, float* blocks,
+  void (*linearise)(const Layout&, const Couplings&, std::size_t chunk, float* blocks,
                     float* virtual_blocks);
-  /// out = masses p + Σ h J (p − p_j) of the surface nodes; virtual_sums (3 × kLanes each), zeroed
-  /// here, get what the inner springs add to the virtual nodes.
-  void (*apply)(const ProductLayout&, const Couplings&, std::size_t chunk, const float* masses,
-                const float* p, float* out, float* virtual_sums);
+  /// out = masses p + Σ h J (p − p_j) of the surface nodes, four floats each; virtual_sums
+  /// (3 × kLanes each), zeroed here, get what the inner springs add to the virtual nodes; dots
+  /// (kLanes) get p·out of the rows.
+  void (*apply)(const Layout&, const Couplings&, std::size_t chunk, const float* masses, float* out,
+                float* virtual_sums, float* dots);
 };
 
 const ProductFunctions& portable_product_functions();
 #if defined(__x86_64__)
 const ProductFunctions& avx2_product_functions();
+const ProductFunctions& avx512_product_functions();
 #endif
 
 }  // namespace palpate::deformation::kernel

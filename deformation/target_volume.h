@@ -13,6 +13,8 @@ class TargetVolume {
   explicit TargetVolume(scene::Filling filling) : filling_(std::move(filling)) {}
 
   void reset() { ratio_ = 1; }
+  /// Follows from `ratio` on, wherever it was.
+  void restart(double ratio) { ratio_ = ratio; }
   /// V*/V₀ at the end of a step of h [s] that ends at `time` [s].
   double follow(double time, double h);
 

@@ -16,13 +16,20 @@ inline Vec4f wide(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
-/// a·b over the nodes of a. Summed in float over a few nodes at a time, in double over those.
+/// A node and the vector a matrix is to be applied to: what a product loads at once.
+struct WideNode {
+  Vec4f position = Vec4f::Zero(), vector = Vec4f::Zero();
+};
+
+/// Nodes summed in float; in double over those.
+inline constexpr std::size_t kDotBlock = 32;
+
+/// a·b over the nodes of a.
 inline double dot(const std::vector<Vec4f>& a, const std::vector<Vec4f>& b) {
-  constexpr std::size_t kBlock = 32;
   double sum = 0;
-  for (std::size_t first = 0; first < a.size(); first += kBlock) {
+  for (std::size_t first = 0; first < a.size(); first += kDotBlock) {
     Vec4f block = Vec4f::Zero();
-    const std::size_t end = std::min(first + kBlock, a.size());
+    const std::size_t end = std::min(first + kDotBlock, a.size());
     for (std::size_t i = first; i < end; ++i) block += a[i].cwiseProduct(b[i]);
     sum += block.sum();
   }

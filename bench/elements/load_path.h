@@ -3,6 +3,7 @@
 
 #include "bench/elements/verification.h"
 #include "deformation/elements/equilibrium.h"
+#include "deformation/elements/rigid_contact.h"
 
 namespace palpate::elements_bench {
 

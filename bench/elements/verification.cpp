@@ -6,9 +6,9 @@
 
 #include "bench/elements/load_path.h"
 #include "bench/elements/reference_columns.h"
-#include "deformation/elements/gmsh_tool.h"
 #include "deformation/elements/vibration.h"
 #include "modules/core/error.h"
+#include "modules/geometry/gmsh_tool.h"
 
 namespace palpate::elements_bench {
 namespace {
@@ -67,8 +67,8 @@ std::size_t node_at(const MixedSolid& solid, const Vec3& place) {
   return nearest;
 }
 
-MixedSolid ball(BallPart part, const std::string& size) {
-  auto mesh = make_quadratic(mesh_ball(kBallRadius, part, size));
+MixedSolid ball(geometry::BallPart part, const std::string& size) {
+  auto mesh = make_quadratic(geometry::mesh_ball(kBallRadius, part, size));
   curve_onto_sphere(mesh, Vec3::Zero(), kBallRadius);
   return {std::move(mesh), tissue(), kBallDensity};
 }
@@ -76,7 +76,7 @@ MixedSolid ball(BallPart part, const std::string& size) {
 Run squeezed_ball(double size, const Setting& setting) {
   // Three times coarser in the middle, where nothing happens.
   const MixedSolid solid =
-      ball(BallPart::kOctant,
+      ball(geometry::BallPart::kOctant,
            text("%g - %g*(x*x+y*y+z*z)", 3 * size * kBallRadius, 2 * size / kBallRadius));
   RigidContact contact(
       solid, faces_where(solid, [](const Vec3& p) { return p.norm() > (1 - 1e-6) * kBallRadius; }),
@@ -109,8 +109,9 @@ Run bonded_block(double size, const Setting& setting) {
   // Stress is singular at the two bonded edges: elements shrink with the distance from them.
   const auto expression = text("%g*(0.05 + 0.95*(((x-%g)^2+(z-%g)^2)*((y-%g)^2+(z-%g)^2))^0.5/%g)",
                                size * a, a, a, a, a, a * a);
-  const MixedSolid solid(make_quadratic(mesh_block(Vec3::Zero(), Vec3::Constant(a), expression)),
-                         tissue(), 1000);
+  const MixedSolid solid(
+      make_quadratic(geometry::mesh_block(Vec3::Zero(), Vec3::Constant(a), expression)), tissue(),
+      1000);
   const auto held =
       held_where(solid, [](const Vec3& p, int axis) { return p.z() == a || p[axis] == 0; });
   EquilibriumSolver solver(solid, held, nullptr);
@@ -147,8 +148,8 @@ Run indented_block(double size, const Setting& setting) {
       text("%g + 0.012*((x*x+y*y+(z-0.08)*(z-0.08))/(x*x+y*y+(z-0.08)*(z-0.08)+0.0004))^2",
            size * kIndenterRadius);
   const MixedSolid solid(
-      make_quadratic(mesh_block(Vec3::Zero(), {kHalfWidth, kHalfWidth, top}, expression)), tissue(),
-      1000);
+      make_quadratic(geometry::mesh_block(Vec3::Zero(), {kHalfWidth, kHalfWidth, top}, expression)),
+      tissue(), 1000);
   RigidContact contact(solid,
                        faces_where(solid,
                                    [](const Vec3& p) {
@@ -181,7 +182,7 @@ Run indented_block(double size, const Setting& setting) {
 /// Modes of one family and degree stand together; each is compared by its mean. Families nearer to
 /// each other than the mesh's splitting may swap members.
 Run vibrating_ball(double size, const Setting& setting) {
-  const MixedSolid solid = ball(BallPart::kWhole, text("%g", size * kBallRadius));
+  const MixedSolid solid = ball(geometry::BallPart::kWhole, text("%g", size * kBallRadius));
   Run run = described(solid, size);
   const auto reference = read_columns(setting.reference_folder / "E_ball_frequencies.csv",
                                       {"nu", "multiplicity", "f_Hz_Lamb_exact"});

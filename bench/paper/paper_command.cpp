@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "bench/paper/figures.h"
-#include "bench/paper/plot_script.h"
 #include "bench/report/measures.h"
+#include "bench/report/plot_script.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
 

@@ -38,7 +38,7 @@ void add_scaled(const Eigen::VectorXd& direction, double scale, SolidState& stat
 }  // namespace
 
 EquilibriumSolver::EquilibriumSolver(const MixedSolid& solid, std::vector<char> held,
-                                     RigidContact* contact)
+                                     Contact* contact)
     : solid_(solid), held_(std::move(held)), contact_(contact), factor_(make_factor(solid, held_)) {
   PALPATE_DEMAND(held_.size() == solid.displacement_count());
   for (std::size_t e = 0; e < solid.element_count(); ++e) masses_.push_back(solid.mass(e));
@@ -153,13 +153,9 @@ EquilibriumReport EquilibriumSolver::solve(SolidState& state, std::optional<Iner
       r = residual(state, inertia);
       if (!search(direction, inertia, state, r)) return report;
     }
-    report.deepest = 0;
-    if (contact_) {
-      for (const auto& outcome : contact_->outcomes(state)) {
-        report.deepest = std::max(report.deepest, outcome.deepest);
-      }
-    }
-    report.converged = report.deepest <= kMostPenetration * solid_.size();
+    report.deepest = contact_ ? contact_->deepest(state) : 0;
+    report.converged = report.deepest <= kMostPenetration * solid_.size() &&
+                       (!contact_ || contact_->is_settled(state));
     if (report.converged) return report;
     contact_->augment(state);
     r = residual(state, inertia);

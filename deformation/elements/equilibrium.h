@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "deformation/elements/contact.h"
 #include "deformation/elements/element_factor.h"
-#include "deformation/elements/rigid_contact.h"
 
 namespace palpate::elements {
 
@@ -32,12 +32,12 @@ class EquilibriumSolver {
   /// @param solid    outlives this
   /// @param held     true: this coordinate of this node does not move  (3 · node_count)
   /// @param contact  outlives this; null: none
-  EquilibriumSolver(const MixedSolid& solid, std::vector<char> held, RigidContact* contact);
+  EquilibriumSolver(const MixedSolid& solid, std::vector<char> held, Contact* contact);
 
   /// From `state`, held coordinates where they are to be. Stops when, in this order,
   ///   1. ‖r_u‖ ≤ kForceTolerance f and ‖r_p‖ ≤ kForceTolerance size³, and
-  ///   2. no point penetrates by more than kMostPenetration · size: else λ is augmented and 1.
-  ///      starts anew;
+  ///   2. no point penetrates by more than kMostPenetration · size, and friction is settled: else
+  ///      λ is augmented and 1. starts anew;
   /// not converged after kMostIterations, or where no step along Newton's direction keeps J > 0.
   EquilibriumReport solve(SolidState& state, std::optional<Inertia> inertia = {});
 
@@ -63,7 +63,7 @@ class EquilibriumSolver {
 
   const MixedSolid& solid_;
   std::vector<char> held_;
-  RigidContact* contact_;
+  Contact* contact_;
   std::vector<ElementMass> masses_;  ///< empty until inertia was asked for
   ElementFactor factor_;
 };

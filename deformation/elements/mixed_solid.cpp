@@ -78,7 +78,9 @@ std::array<int, kElementDofs> MixedSolid::dofs(std::size_t element) const {
   for (int a = 0; a < kElementNodes; ++a) {
     for (int i = 0; i < 3; ++i) dofs[3 * a + i] = static_cast<int>(3 * nodes[a] + i);
   }
-  for (int m = 0; m < 4; ++m) dofs[30 + m] = static_cast<int>(displacement_count() + nodes[m]);
+  for (int m = 0; m < 4; ++m) {
+    dofs[30 + m] = static_cast<int>(displacement_count() + mesh_.corners[element][m]);
+  }
   return dofs;
 }
 
@@ -98,7 +100,7 @@ Mat3 MixedSolid::deformation_gradient(std::size_t element, const ElementPoint& p
 double MixedSolid::pressure(std::size_t element, int point, const SolidState& state) const {
   const auto& barycentric = four_point_rule()[point].barycentric;
   double p = 0;
-  for (int m = 0; m < 4; ++m) p += barycentric[m] * state.pressures[mesh_.elements[element][m]];
+  for (int m = 0; m < 4; ++m) p += barycentric[m] * state.pressures[mesh_.corners[element][m]];
   return p;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/core/error.h"
+
 namespace palpate::elements {
 namespace {
 
@@ -23,7 +25,7 @@ int local_edge_node(int a, int b) {
 }
 
 std::array<int, kFaceNodes> face_locals(int face) {
-  const auto& [a, b, c] = kTetrahedronFaces[face];
+  const auto& [a, b, c] = geometry::kTetrahedronFaces[face];
   return {a, b, c, local_edge_node(a, b), local_edge_node(b, c), local_edge_node(c, a)};
 }
 
@@ -44,13 +46,36 @@ QuadraticMesh make_quadratic(const TetMesh& mesh) {
   for (const auto& corners : mesh.tetrahedra) {
     auto& element = result.elements.emplace_back();
     std::copy(corners.begin(), corners.end(), element.begin());
+    result.corners.push_back(corners);
     for (int e = 0; e < 6; ++e) {
       const auto at = std::lower_bound(edges.begin(), edges.end(), edge_of(corners, e));
       element[4 + e] = static_cast<std::uint32_t>(mesh.nodes.size() + (at - edges.begin()));
     }
   }
-  for (const auto& triangle : boundary_triangles(mesh)) {
+  for (const auto& triangle : geometry::boundary_triangles(mesh)) {
     result.faces.push_back({face_locals(triangle.face), triangle.tetrahedron});
+  }
+  return result;
+}
+
+QuadraticMesh make_quadratic(std::vector<Vec3> nodes, const std::vector<Tetrahedron>& tetrahedra,
+                             const std::vector<std::array<std::uint32_t, 6>>& middles) {
+  PALPATE_DEMAND(tetrahedra.size() == middles.size());
+  QuadraticMesh result;
+  std::vector<std::uint32_t> numbers(nodes.size(), 0);
+  for (const auto& corners : tetrahedra) {
+    for (const auto node : corners) numbers.at(node) = 1;
+  }
+  for (auto& number : numbers) {
+    if (number == 1) number = static_cast<std::uint32_t>(result.corner_count++);
+  }
+  result.nodes = std::move(nodes);
+  for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
+    auto& element = result.elements.emplace_back();
+    const auto middle = std::copy(tetrahedra[e].begin(), tetrahedra[e].end(), element.begin());
+    std::copy(middles[e].begin(), middles[e].end(), middle);
+    auto& corners = result.corners.emplace_back();
+    for (std::size_t m = 0; m < 4; ++m) corners[m] = numbers[tetrahedra[e][m]];
   }
   return result;
 }

@@ -141,6 +141,12 @@ void RigidContact::augment(const SolidState& state) {
   }
 }
 
+double RigidContact::deepest(const SolidState& state) const {
+  double deepest = 0;
+  for (const auto& outcome : outcomes(state)) deepest = std::max(deepest, outcome.deepest);
+  return deepest;
+}
+
 std::vector<ContactOutcome> RigidContact::outcomes(const SolidState& state) const {
   std::vector<ContactOutcome> outcomes(obstacles_.size());
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {

@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-#include "deformation/elements/mixed_solid.h"
+#include "deformation/elements/contact.h"
 
 namespace palpate::elements {
 
@@ -44,7 +44,7 @@ struct ContactOutcome {
   std::size_t touching = 0;   ///< integration points with traction
 };
 
-class RigidContact {
+class RigidContact : public Contact {
  public:
   /// @param solid    outlives this
   /// @param faces    of its mesh that may touch: indices into mesh().faces
@@ -55,12 +55,13 @@ class RigidContact {
   void set_obstacles(std::vector<Obstacle> obstacles);
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
 
-  /// Adds the faces of an element.
-  void add_residual(std::size_t element, const SolidState& state, ElementVector& residual) const;
-  void add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent) const;
-
+  void add_residual(std::size_t element, const SolidState& state,
+                    ElementVector& residual) const override;
+  void add_tangent(std::size_t element, const SolidState& state,
+                   ElementMatrix& tangent) const override;
+  double deepest(const SolidState& state) const override;
   /// λ ← max(0, λ − ε g)
-  void augment(const SolidState& state);
+  void augment(const SolidState& state) override;
 
   /// One per obstacle.
   std::vector<ContactOutcome> outcomes(const SolidState& state) const;

@@ -91,8 +91,11 @@ Vibration vibrate(const MixedSolid& solid, const std::vector<char>& held, std::s
     for (Eigen::Index k = 0; k < wanted; ++k) {
       result.angular_frequencies.push_back(std::sqrt(std::max(0.0, values[k] - shift)));
     }
-    result.modes = (x * ritz.eigenvectors().leftCols(wanted))
-                       .topRows(static_cast<Eigen::Index>(solid.displacement_count()));
+    const Eigen::MatrixXd solutions = x * ritz.eigenvectors().leftCols(wanted);
+    const auto displacements = static_cast<Eigen::Index>(solid.displacement_count());
+    result.modes = solutions.topRows(displacements);
+    result.momenta = (mass * solutions).topRows(displacements);
+    result.pressures = solutions.bottomRows(solutions.rows() - displacements);
     return result;
   }
   throw std::runtime_error("vibrate: not converged after " + std::to_string(kMostIterations) +

@@ -12,6 +12,8 @@ namespace palpate::elements {
 struct Vibration {
   std::vector<double> angular_frequencies;  ///< ω ≥ 0, rising; rigid motions first as 0 [rad/s]
   Eigen::MatrixXd modes;                    ///< u, uᵀMu = 1  (3 · node_count × count)
+  Eigen::MatrixXd momenta;                  ///< M u  (3 · node_count × count)
+  Eigen::MatrixXd pressures;                ///< p that go with u  (corner_count × count)
 };
 
 /// The lowest modes. Stops when no ω² changes by more than 1e-8 of the highest one wanted.

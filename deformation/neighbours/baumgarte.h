@@ -28,6 +28,9 @@ class Baumgarte : public OrganDynamics {
   explicit Baumgarte(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
 
  private:
   const OrganModel& model_;

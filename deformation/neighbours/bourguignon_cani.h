@@ -33,6 +33,9 @@ class BourguignonCani : public OrganDynamics {
   explicit BourguignonCani(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
 
   double stored_energy(const OrganState& state) const;  ///< ½ k (L − L*)² [J]
   /// L of these positions [m].

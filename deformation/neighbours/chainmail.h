@@ -35,6 +35,9 @@ class ChainMail : public OrganDynamics {
   explicit ChainMail(const OrganModel& model);
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
 
   struct Link {
     std::uint32_t node_a = 0, node_b = 0;

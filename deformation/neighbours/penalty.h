@@ -26,6 +26,9 @@ class Penalty : public OrganDynamics {
   explicit Penalty(const OrganModel& model, double modulus = kPenaltyModulus);
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
   double stored_energy(const OrganState& state) const;  ///< ½ K (V − V*)²/V* [J]
 
  private:

@@ -32,6 +32,9 @@ class Zordan : public OrganDynamics {
   explicit Zordan(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
   double stored_energy(const OrganState& state) const;  ///< Σ ½ p_t (V_t* − V_t) [J]
 
  private:

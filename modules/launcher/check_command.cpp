@@ -11,7 +11,7 @@
 #include "deformation/deformation_world.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
-#include "modules/geometry/triangle_surface.h"
+#include "modules/geometry/organ_shape.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
@@ -32,23 +32,29 @@ std::string integrator_text(const scene::Organ& organ,
       choice.symplectic_passes, choice.backward_passes);
 }
 
-std::string organ_text(const scene::Organ& organ, const geometry::TriangleSurface& surface,
+std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& shape,
                        const deformation::DeformationWorld& world, std::size_t index,
                        double period) {
   const SurfaceTopology& topology = world.topology(index);
-  const double volume = geometry::enclosed_volume(surface.nodes, surface.triangles);
+  const double volume = geometry::enclosed_volume(shape.surface.nodes, shape.surface.triangles);
   std::array<std::size_t, 3> springs{};
   for (const auto& spring : topology.springs) ++springs[static_cast<std::size_t>(spring.family)];
   const int substeps = world.substeps(index, period);
-  std::string text = fmt::format(
-      "organ {}: {} surface nodes + {} virtual nodes, {} fixed; {} triangles\n"
-      "  springs: {} structural, {} bending, {} inner\n"
-      "  volume {:.1f} cm3, mass {:.3f} kg, model {}\n",
-      organ.name, topology.surface_node_count,
-      topology.rest_positions.size() / 3 - topology.surface_node_count, topology.fixed_nodes.size(),
-      topology.triangles.size(), springs[0], springs[1], springs[2], 1e6 * volume,
-      organ.tissue.density * volume, scene::word_of(organ.model));
-  text += integrator_text(organ, world.integrator(index));
+  const std::size_t inner = topology.rest_positions.size() / 3 - topology.surface_node_count;
+  std::string text =
+      fmt::format("organ {}: {} surface nodes + {} {} nodes, {} fixed; {} triangles\n", organ.name,
+                  topology.surface_node_count, inner, shape.is_solid() ? "inner" : "virtual",
+                  topology.fixed_nodes.size(), topology.triangles.size());
+  text += shape.is_solid()
+              ? fmt::format("  {} {} tetrahedra, Poisson's ratio {:g}\n", shape.tetrahedra.size(),
+                            shape.edge_nodes.empty() ? "linear" : "quadratic",
+                            organ.solid.poisson_ratio)
+              : fmt::format("  springs: {} structural, {} bending, {} inner\n", springs[0],
+                            springs[1], springs[2]);
+  text += fmt::format("  volume {:.1f} cm3, mass {:.3f} kg, model {}\n", 1e6 * volume,
+                      organ.tissue.density * volume, scene::word_of(organ.model));
+  if (!deformation::has_own_steps(organ.model))
+    text += integrator_text(organ, world.integrator(index));
   text += fmt::format("  largest step {:.1f} us: {} sub-steps of {:.1f} us in a period\n",
                       1e6 * world.stable_step(index), substeps, 1e6 * period / substeps);
   return text;
@@ -117,13 +123,13 @@ double measured_cost(deformation::DeformationWorld& world, const scene::Scene& s
 int check_command(const std::filesystem::path& file, double measure_for, std::ostream& out) {
   const scene::Scene scene = scene::load_scene(file);
   out << scene::resolved_text(scene) << '\n';
-  std::vector<geometry::TriangleSurface> surfaces;
-  for (const auto& organ : scene.organs) surfaces.push_back(scene::load_organ(organ));
+  std::vector<geometry::OrganShape> shapes;
+  for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
   runtime::WorkerTeam team(scene.deformation_threads);
-  deformation::DeformationWorld world(scene, surfaces, &team);
+  deformation::DeformationWorld world(scene, shapes, &team);
   const double period = 1 / scene.rates.deformation;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    out << organ_text(scene.organs[i], surfaces[i], world, i, period);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    out << organ_text(scene.organs[i], shapes[i], world, i, period);
   }
   out << fmt::format(
       "rates: haptics {:g} Hz, collision {:g} Hz, deformation {:g} Hz, visualizer {:g} Hz\n",

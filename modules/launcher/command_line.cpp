@@ -95,15 +95,34 @@ void add_mesh(CLI::App& app, geometry::MeshCommandOptions& options, Job& job) {
       [&] { job = [&] { return geometry::run_mesh_command(options, std::cout, std::cerr); }; });
 }
 
-/// What follows WHAT belongs to its program, --help too.
+/// What follows belongs to the program, --help too.
+CLI::App* add_program(CLI::App& app, const char* name, const char* meaning, const char* program,
+                      Job& job) {
+  auto* command = app.add_subcommand(name, meaning);
+  command->prefix_command();
+  command->set_help_flag();
+  command->final_callback([&job, command, program] {
+    job = [words = command->remaining(), program]() -> int {
+      become(own_program_folder() / program, words);
+    };
+  });
+  return command;
+}
+
 void add_chart(CLI::App& app, Job& job) {
-  auto* command = app.add_subcommand("chart", "Measure and draw: chart WHAT [OPTIONS]");
+  auto* command = app.add_subcommand(
+      "chart", "Measure and draw speed against accuracy: chart [WHAT] [OPTIONS]");
   std::string names;
   for (const auto& name : chart_names()) names += " " + name;
-  command->footer("WHAT:" + names + "\n`palpate chart WHAT --help` lists its options.");
+  command->footer(
+      "WHAT:" + names +
+      ", the first where none is named\n`palpate chart WHAT --help` lists its options.");
   command->prefix_command();
   command->final_callback([&job, command] {
-    job = [words = command->remaining()]() -> int { chart_command(words, own_program_folder()); };
+    job = [words = command->remaining()]() mutable -> int {
+      const std::string program = chart_program(words);
+      become(own_program_folder() / program, words);
+    };
   });
 }
 
@@ -138,6 +157,10 @@ int palpate_command(int argc, char** argv) {
   add_check(app, scene, measure_for, job);
   add_mesh(app, mesh, job);
   add_chart(app, job);
+  add_program(app, "plan", "Find the cheapest model, mesh and step that meet a scene's needs",
+              "palpate-plan", job);
+  add_program(app, "stability", "Map where each method fails, measured and predicted",
+              "palpate-bench-stability", job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -36,10 +36,10 @@ struct ProbeLoop {
 };
 
 std::vector<std::vector<geometry::Triangle>> triangles_of(
-    const std::vector<geometry::TriangleSurface>& surfaces) {
+    const std::vector<geometry::OrganShape>& shapes) {
   std::vector<std::vector<geometry::Triangle>> triangles;
-  triangles.reserve(surfaces.size());
-  for (const auto& surface : surfaces) triangles.push_back(surface.triangles);
+  triangles.reserve(shapes.size());
+  for (const auto& shape : shapes) triangles.push_back(shape.surface.triangles);
   return triangles;
 }
 
@@ -55,14 +55,14 @@ std::vector<collision::ProbeGeometry> probe_geometry(
 }  // namespace
 
 struct Pipeline::Impl {
-  Impl(const scene::Scene& scene_in, std::vector<geometry::TriangleSurface> organ_surfaces,
+  Impl(const scene::Scene& scene_in, std::vector<geometry::OrganShape> organ_shapes,
        std::vector<geometry::TriangleSurface> probe_meshes)
       : scene(scene_in),
         haptics(every(scene_in.rates.haptics)),
         collision(every(scene_in.rates.collision)),
         deformation(every(scene_in.rates.deformation)),
-        finder(triangles_of(organ_surfaces), probe_geometry(scene_in, std::move(probe_meshes))),
-        world(scene_in, std::move(organ_surfaces)) {
+        finder(triangles_of(organ_shapes), probe_geometry(scene_in, std::move(probe_meshes))),
+        world(scene_in, std::move(organ_shapes)) {
     std::vector<std::string> warnings;
     for (std::uint32_t i = 0; i < scene.probes.size(); ++i) {
       probes.push_back({haptics::make_device(scene.probes[i].device, warnings),
@@ -144,9 +144,9 @@ struct Pipeline::Impl {
   std::int64_t now_ns = 0;
 };
 
-Pipeline::Pipeline(const scene::Scene& scene, std::vector<geometry::TriangleSurface> organ_surfaces,
+Pipeline::Pipeline(const scene::Scene& scene, std::vector<geometry::OrganShape> organ_shapes,
                    std::vector<geometry::TriangleSurface> probe_meshes)
-    : impl_(std::make_unique<Impl>(scene, std::move(organ_surfaces), std::move(probe_meshes))) {}
+    : impl_(std::make_unique<Impl>(scene, std::move(organ_shapes), std::move(probe_meshes))) {}
 
 Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
@@ -182,7 +182,8 @@ const NodePositions& Pipeline::node_positions(std::size_t organ) const {
 haptics::Device& Pipeline::device(std::size_t probe) { return *impl_->probes.at(probe).device; }
 
 Pipeline load_pipeline(const scene::Scene& scene) {
-  std::vector<geometry::TriangleSurface> organs, probes;
+  std::vector<geometry::OrganShape> organs;
+  std::vector<geometry::TriangleSurface> probes;
   for (const auto& organ : scene.organs) organs.push_back(scene::load_organ(organ));
   for (const auto& probe : scene.probes) probes.push_back(scene::load_probe_mesh(probe));
   return Pipeline(scene, std::move(organs), std::move(probes));

@@ -16,10 +16,10 @@ namespace palpate::pipeline {
 
 class Pipeline {
  public:
-  /// @param organ_surfaces  one per organ of the scene, in W [m]
+  /// @param organ_shapes  one per organ of the scene, in W [m]
   /// @param probe_meshes    one per probe, empty but for MeshShape [m]
   /// @throws InputError as the libraries do
-  Pipeline(const scene::Scene& scene, std::vector<geometry::TriangleSurface> organ_surfaces,
+  Pipeline(const scene::Scene& scene, std::vector<geometry::OrganShape> organ_shapes,
            std::vector<geometry::TriangleSurface> probe_meshes);
   ~Pipeline();
   Pipeline(Pipeline&&) noexcept;

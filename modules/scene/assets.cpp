@@ -3,6 +3,8 @@
 #include <variant>
 
 #include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/geometry/gmsh_tool.h"
 #include "modules/geometry/mesh_prepare.h"
 
 namespace palpate::scene {
@@ -16,12 +18,59 @@ geometry::TriangleSurface load(const Mesh& mesh, const std::string& owner) {
   }
 }
 
+bool holds_tetrahedra(const std::filesystem::path& file) {
+  return file.extension() == ".msh" || file.extension() == ".vtk";
+}
+
+geometry::OrganShape load_tetrahedra(const Mesh& mesh, const std::string& owner) {
+  try {
+    if (mesh.nodes != 0) {
+      throw InputError(mesh.file.string() +
+                       ": key 'nodes' resamples surfaces only; tetrahedra stay as they are (0)");
+    }
+    auto tetrahedra = geometry::read_tetrahedra(mesh.file);
+    const double scale = metres_per_unit(mesh.unit);
+    for (Vec3& node : tetrahedra.nodes) node *= scale;
+    return geometry::shape_of(tetrahedra);
+  } catch (const InputError& error) {
+    throw InputError(owner + ": " + error.what());
+  }
+}
+
+double mean_edge(const geometry::TriangleSurface& surface) {
+  const auto edges = geometry::edges_of(surface.triangles);
+  double sum = 0;
+  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
+  return sum / static_cast<double>(edges.size());
+}
+
+geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Solid& solid,
+                            const std::string& owner) {
+  try {
+    const double size = solid.element_size > 0 ? solid.element_size : mean_edge(surface);
+    return geometry::shape_of(geometry::fill_surface(surface, size));
+  } catch (const InputError& error) {
+    throw InputError(owner + ": " + error.what());
+  }
+}
+
 }  // namespace
 
-geometry::TriangleSurface load_organ(const Organ& organ) {
-  auto surface = load(organ.mesh, "organ '" + organ.name + "'");
-  for (Vec3& node : surface.nodes) node = organ.pose.to_world(node);
-  return surface;
+geometry::OrganShape load_organ(const Organ& organ) {
+  const std::string owner = "organ '" + organ.name + "'";
+  geometry::OrganShape shape;
+  if (holds_tetrahedra(organ.mesh.file)) {
+    shape = load_tetrahedra(organ.mesh, owner);
+    if (!is_solid(organ.model)) shape = geometry::OrganShape(std::move(shape.surface));
+  } else {
+    shape = geometry::OrganShape(load(organ.mesh, owner));
+    if (is_solid(organ.model)) shape = filled(shape.surface, organ.solid, owner);
+  }
+  if (is_quadratic(organ.model)) shape = geometry::with_edge_nodes(shape);
+  for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {
+    for (Vec3& node : *nodes) node = organ.pose.to_world(node);
+  }
+  return shape;
 }
 
 geometry::TriangleSurface load_probe_mesh(const Probe& probe) {

@@ -3,14 +3,15 @@
 
 #include <vector>
 
-#include "modules/geometry/triangle_surface.h"
+#include "modules/geometry/organ_shape.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::scene {
 
-/// Surface of one organ in W [m]: load_organ_surface(), then the organ's pose.
+/// Shape of one organ in W [m]: load_organ_surface(), filled with tetrahedra where its model wants
+/// them, or tetrahedra as they are in a file (.msh, .vtk); then the organ's pose.
 /// @throws InputError naming organ, file and problem
-geometry::TriangleSurface load_organ(const Organ& organ);
+geometry::OrganShape load_organ(const Organ& organ);
 
 /// Surface of a MeshShape probe in its own frame [m]; empty for every other shape.
 /// @throws InputError naming probe, file and problem

@@ -58,7 +58,25 @@ enum class Model {
   kBourguignonCani,    ///< springs to the barycentre
   kZordan,             ///< volumes of pyramids over each triangle
   kElementVolume,      ///< one volume constraint per element
-  kChainMail           ///< kinematic, 3D ChainMail
+  kChainMail,          ///< kinematic, 3D ChainMail
+  kXpbdSprings,        ///< springs and volume by extended position-based dynamics
+  kXpbdTetrahedra,     ///< neo-Hookean tetrahedra by extended position-based dynamics
+  kCorotational,       ///< linear tetrahedra, corotational, implicit
+  kNodalPressure,      ///< linear neo-Hookean tetrahedra with averaged pressures, implicit
+  kQuadraticElements,  ///< quadratic neo-Hookean tetrahedra with continuous pressure, implicit
+  kModal               ///< lowest vibrations of quadratic_elements
+};
+
+/// Whether the organ is a solid filled with tetrahedra, not a surface of springs.
+constexpr bool is_solid(Model model) { return model >= Model::kXpbdTetrahedra; }
+/// Whether its tetrahedra have nodes in the middles of their edges.
+constexpr bool is_quadratic(Model model) { return model >= Model::kQuadraticElements; }
+
+/// What models of solids need beside the tissue.
+struct Solid {
+  double poisson_ratio = 0.499;  ///< `poisson_ratio` [0 … 0.5]
+  double element_size = 0;       ///< `element_size_m`, edges inside; 0 = mean edge of the surface
+  std::size_t modes = 40;        ///< `modes` of model modal, beside rigid motion [1 … 400]
 };
 
 enum class Integrator { kAutomatic, kSymplecticEuler, kBackwardEuler };
@@ -81,6 +99,7 @@ struct Organ {
   Pose pose;  ///< `position_m`, `rotation_xyzw`; applied to the mesh
   Tissue tissue;
   Springs springs;
+  Solid solid;
   Model model = Model::kImplicitVolume;            ///< `model`
   std::size_t volume_corrections = 0;              ///< `volume_corrections`, Newton [0 … 5]
   Integrator integrator = Integrator::kAutomatic;  ///< `integrator`
@@ -152,6 +171,19 @@ struct Rates {
   double visualizer = 30;    ///< `visualizer_hz` [1 … 120]
 };
 
+/// What `palpate plan` looks for: the cheapest model, mesh and step that give this.
+struct Needs {
+  enum class Contents { kFluid, kSolid };
+  /// `contents`: what the organ is, whatever models it: a wall filled with fluid, or one solid.
+  Contents contents = Contents::kFluid;
+  std::optional<double> force_error;    ///< `force_error`, RMS over the probes' RMS [1e-3 … 10]
+  std::optional<double> surface_error;  ///< `surface_error_m`, RMS of the surface [1e-6 … 1]
+  std::optional<double> volume_error;   ///< `volume_error`, largest |V − V*|/V* [1e-12 … 1]
+  double step_rate = 100;               ///< `step_hz`: contact models per second [10 … 2000]
+  double haptics_rate = 1000;           ///< `haptics_hz` [500 … 4000]
+  std::size_t cores = 2;                ///< `cores` to run on [1 … 64]
+};
+
 struct Camera {
   std::optional<Vec3> position, target;  ///< `position_m`, `target_m`; default: all in view
 };
@@ -166,6 +198,7 @@ struct Scene {
   Rates rates;
   std::size_t deformation_threads = 1;  ///< `deformation_threads` [1 … 16]
   Haptics haptics;
+  Needs needs;
   Camera camera;
 };
 

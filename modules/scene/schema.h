@@ -29,13 +29,30 @@ template <class Enum>
 struct Words;
 template <>
 struct Words<Model> {
-  static constexpr std::array texts{
-      "implicit_volume",    "mass_spring",      "penalty", "baumgarte",      "promayon",
-      "post_stabilisation", "bourguignon_cani", "zordan",  "element_volume", "chainmail"};
+  static constexpr std::array texts{"implicit_volume",
+                                    "mass_spring",
+                                    "penalty",
+                                    "baumgarte",
+                                    "promayon",
+                                    "post_stabilisation",
+                                    "bourguignon_cani",
+                                    "zordan",
+                                    "element_volume",
+                                    "chainmail",
+                                    "xpbd_springs",
+                                    "xpbd_tetrahedra",
+                                    "corotational",
+                                    "nodal_pressure",
+                                    "quadratic_elements",
+                                    "modal"};
 };
 template <>
 struct Words<Integrator> {
   static constexpr std::array texts{"automatic", "symplectic_euler", "backward_euler"};
+};
+template <>
+struct Words<Needs::Contents> {
+  static constexpr std::array texts{"fluid", "solid"};
 };
 template <class Enum>
 const char* word_of(Enum value) {
@@ -75,7 +92,8 @@ inline About point(const char* meaning) { return ranged("m", -100, 100, meaning)
 
 template <class V>
 void describe(V& v, Mesh& mesh) {
-  v.field("file", mesh.file, plain("surface mesh, relative to the scene file").needed());
+  v.field("file", mesh.file,
+          plain("surface mesh, or tetrahedra (.msh, .vtk), relative to the scene file").needed());
   About unit = plain("unit of the mesh file's numbers: m, dm, cm, mm, um or in");
   unit.is_length_unit = true;
   v.field("unit", mesh.unit, unit);
@@ -113,6 +131,14 @@ void describe(V& v, Springs& springs) {
           ranged("", 0, 64, "nodes on the dominant axis that the inner springs hang on"));
   v.require(springs.virtual_nodes > 0 || springs.inner_ratio == 0,
             "inner_ratio must be 0 where virtual_nodes is 0 (inner springs hang on virtual nodes)");
+}
+
+template <class V>
+void describe(V& v, Solid& solid) {
+  v.field("poisson_ratio", solid.poisson_ratio, ranged("", 0, 0.5, "of the tissue"));
+  v.field("element_size_m", solid.element_size,
+          ranged("m", 0, 1, "wanted edges inside; 0 = as long as the surface's"));
+  v.field("modes", solid.modes, ranged("", 1, 400, "vibrations of model modal, lowest first"));
 }
 
 template <class V>
@@ -163,11 +189,12 @@ void describe(V& v, Organ& organ) {
   describe_pose(v, organ.pose, "where the mesh's origin is in W", "unit quaternion, of the mesh");
   v.field("tissue", organ.tissue, plain("what it is made of"));
   v.field("springs", organ.springs, plain("spring families without a continuum meaning"));
+  v.field("solid", organ.solid, plain("what models filled with tetrahedra need beside"));
   v.field("model", organ.model, plain("how its contents are modelled"));
   v.field("volume_corrections", organ.volume_corrections,
           ranged("", 0, 5, "Newton corrections of the volume in each step, of implicit_volume"));
   v.field("integrator", organ.integrator,
-          plain("of implicit_volume; automatic = what costs less here"));
+          plain("of implicit_volume and mass_spring; automatic = what costs less here"));
   v.field("filling", organ.filling, plain("the volume asked for, over the rest volume"));
   v.field("fixed", organ.fixed, plain("regions of W whose nodes do not move"));
 }
@@ -281,6 +308,22 @@ void describe(V& v, Haptics& haptics) {
 }
 
 template <class V>
+void describe(V& v, Needs& needs) {
+  v.field("contents", needs.contents,
+          plain("what the organ is: a wall filled with fluid, or one solid"));
+  v.field("force_error", needs.force_error,
+          ranged("", 1e-3, 10, "of the probes' forces, RMS over their RMS").otherwise("any"));
+  v.field("surface_error_m", needs.surface_error,
+          ranged("m", 1e-6, 1, "of the surface's positions, RMS").otherwise("any"));
+  v.field("volume_error", needs.volume_error,
+          ranged("", 1e-12, 1, "largest difference from the volume asked for, over it")
+              .otherwise("any"));
+  v.field("step_hz", needs.step_rate, ranged("Hz", 10, 2000, "least rate of deformation"));
+  v.field("haptics_hz", needs.haptics_rate, ranged("Hz", 500, 4000, "least rate of haptic ticks"));
+  v.field("cores", needs.cores, ranged("", 1, 64, "of the machine, for all processes"));
+}
+
+template <class V>
 void describe(V& v, Camera& camera) {
   v.field("position_m", camera.position, point("where it stands").otherwise("all in view"));
   v.field("target_m", camera.target, point("what it looks at").otherwise("all in view"));
@@ -316,6 +359,7 @@ void describe(V& v, Scene& scene) {
   v.field("deformation_threads", scene.deformation_threads,
           ranged("", 1, 16, "cores of deformation; more than one only helps large meshes"));
   v.field("haptics", scene.haptics, plain("limits of the force given to the hand"));
+  v.field("needs", scene.needs, plain("what `palpate plan` shall find a model for"));
   v.field("camera", scene.camera, plain("of the visualizer"));
 }
 

@@ -1,4 +1,4 @@
-#include "bench/paper/plot_script.h"
+#include "bench/report/plot_script.h"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>

@@ -149,16 +149,16 @@ TEST_CASE("backward Euler: without forces from outside momentum is kept, however
 }
 
 TEST_CASE("backward Euler: fixed nodes stay, a resting organ stays and costs no iterations") {
-  // Oracle: invariant.
+  // Oracle: invariant. Floats know the ball's nodes and springs to a few 1e-9 m.
   auto organ = ball_organ();
   organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, 0.05), 0.03});
   auto model = testing::ball_model(2, organ);
   auto state = rest_state(model);
   BackwardEuler dynamics(model);
-  for (int s = 0; s < 10; ++s) dynamics.step(kStep, {}, state);
+  for (int s = 0; s < 100; ++s) dynamics.step(kStep, {}, state);
   CHECK(dynamics.iterations_used() == 0);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    CHECK((state.positions[i] - model.network.rest_positions[i]).norm() < 1e-12);
+    CHECK((state.positions[i] - model.network.rest_positions[i]).norm() < 2e-8);
   }
   // All of them: nothing can move, nor can the volume.
   std::fill(model.inverse_masses.begin(), model.inverse_masses.end(), 0);

@@ -1,6 +1,7 @@
 #include "deformation/constraint_projection.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -109,6 +110,38 @@ TEST_CASE("constraint projection: agrees with dense linear algebra") {
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const Vec3 answer = f.mobilities[i] * rest[i].head<3>().cast<double>();
     CHECK((wide(answer) - z[i]).norm() < 1e-5f);
+  }
+}
+
+TEST_CASE("constraint projection: a step in one pass is the same as its parts") {
+  // Oracle: x + s p, r − s q, project() and a dot product. 1e-5: float.
+  Fixture f;
+  f.add_contact(0, false);
+  f.add_contact(12, true);
+  ConstraintProjection projection;
+  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  const double step = 0.3, kept = 0.6;
+  AlignedVector<WideNode> p(f.r.size());
+  std::vector<Vec4f> q = f.r, x(f.r.size(), Vec4f::Ones()), r(f.r.size()), z(f.r.size());
+  std::reverse(q.begin(), q.end());
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    p[i].vector = q[i] - f.r[i];
+    r[i] = f.r[i] - static_cast<float>(step) * q[i];
+  }
+  const double expected = projection.project(r, z);
+  CHECK(expected == Approx(dot(r, z)).epsilon(1e-5));
+
+  auto rest = f.r;
+  auto found_z = z, found_x = x;
+  auto turned = p;
+  CHECK(projection.descend(step, p, q, found_x, rest, found_z) == Approx(expected).epsilon(1e-5));
+  projection.turn(kept, found_z, turned);
+  const float size = z[0].norm();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    CHECK((rest[i] - r[i]).norm() < 1e-6f * q[i].norm());
+    CHECK((found_x[i] - x[i] - static_cast<float>(step) * p[i].vector).norm() < 1e-5f);
+    const Vec4f direction = z[i] + static_cast<float>(kept) * p[i].vector;
+    CHECK((turned[i].vector - direction).norm() < 1e-5f * (size + p[i].vector.norm()));
   }
 }
 

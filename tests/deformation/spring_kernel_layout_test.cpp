@@ -29,20 +29,22 @@ TEST_CASE("one-rings: each follows the triangles around its node") {
 }
 
 /// Springs between surface nodes as the layout holds them: (node, neighbour) → rest length.
-std::map<std::pair<std::uint32_t, std::uint32_t>, double> half_springs(
+std::map<std::pair<std::uint32_t, std::uint32_t>, float> half_springs(
     const kernel::Layout& layout) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, double> found;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, float> found;
   for (std::size_t s = 0; s < layout.slice_count; ++s) {
     const kernel::Slice& slice = layout.slices[s];
     for (std::size_t lane = 0; lane < kernel::kLanes; ++lane) {
       const std::size_t row = s * kernel::kLanes + lane;
-      if (row >= layout.surface_node_count) continue;
       for (std::size_t k = 0; k < slice.slots; ++k) {
-        const bool ring = k < slice.ring_slots;
-        if (ring && static_cast<double>(k) >= layout.ring_sizes[row]) continue;
         const std::size_t at = (slice.first_slot + k) * kernel::kLanes + lane;
-        const std::uint32_t node = layout.row_nodes[row] / 3, other = layout.neighbours[at] / 3;
-        if (other == node) continue;  // padding
+        const std::uint32_t node = layout.row_nodes[row] / kernel::kNodeFloats;
+        const std::uint32_t other = layout.neighbours[at] / kernel::kNodeFloats;
+        if (other == node) {  // padding
+          CHECK(layout.rest_lengths[at] == kernel::kPaddingLength);
+          continue;
+        }
+        CHECK(row < layout.surface_node_count);
         CHECK(found.insert({{node, other}, layout.rest_lengths[at]}).second);
       }
     }
@@ -60,28 +62,33 @@ TEST_CASE("spring kernel layout: holds every spring of the network once from eac
   CHECK(found.size() == 2 * surface_springs);
   for (std::size_t s = 0; s < surface_springs; ++s) {
     const Spring& spring = network.springs[s];
-    REQUIRE(found.at({spring.node_a, spring.node_b}) == spring.rest_length);
-    REQUIRE(found.at({spring.node_b, spring.node_a}) == spring.rest_length);
+    const auto rest_length = static_cast<float>(spring.rest_length);
+    REQUIRE(found.at({spring.node_a, spring.node_b}) == rest_length);
+    REQUIRE(found.at({spring.node_b, spring.node_a}) == rest_length);
   }
 }
 
-TEST_CASE("spring kernel layout: short rings repeat their first neighbour") {
-  // Oracle: definition; the ring then closes by itself.
+TEST_CASE("spring kernel layout: rings hold the node, its one-ring, and the first again") {
+  // Oracle: ordered_one_rings(). Short rings repeat their first neighbour and so close.
   const auto model = testing::ball_model(2);  // twelve nodes with five neighbours, others six
   const SpringKernelLayout layout(model);
   const auto view = layout.view();
-  std::size_t short_rings = 0;
+  const auto rings = ordered_one_rings(model.triangles, view.surface_node_count);
+  std::size_t repeated = 0;
   for (std::size_t row = 0; row < view.surface_node_count; ++row) {
-    const kernel::Slice& slice = view.slices[row / kernel::kLanes];
+    const kernel::RingSlice& slice = view.ring_slices[row / kernel::kRingLanes];
     const auto entry = [&](std::size_t k) {
-      return view.neighbours[(slice.first_slot + k) * kernel::kLanes + row % kernel::kLanes];
+      return view.ring_nodes[(slice.first_slot + k) * kernel::kRingLanes +
+                             row % kernel::kRingLanes] /
+             3;
     };
-    for (auto k = static_cast<std::size_t>(view.ring_sizes[row]); k < slice.ring_slots; ++k) {
-      CHECK(entry(k) == entry(0));
-      ++short_rings;
+    CHECK(entry(0) == row);
+    for (std::size_t k = 0; k + 1 < slice.slots; ++k) {
+      CHECK(entry(k + 1) == (k < rings[row].size() ? rings[row][k] : rings[row][0]));
+      if (k >= rings[row].size()) ++repeated;
     }
   }
-  CHECK(short_rings > 0);
+  CHECK(repeated > 0);
 }
 
 TEST_CASE("spring kernel layout: links name each row's virtual node once") {
@@ -93,10 +100,10 @@ TEST_CASE("spring kernel layout: links name each row's virtual node once") {
   for (std::size_t i = 0; i < network.inner_count; ++i) {
     const Spring& spring = network.springs[network.springs.size() - network.inner_count + i];
     const kernel::Slice& slice = view.slices[spring.node_a / kernel::kLanes];
-    double weight = 0;
+    float weight = 0;
     for (std::uint32_t k = 0; k < slice.link_count; ++k) {
       const kernel::Link& link = view.links[slice.first_link + k];
-      const double here = link.weights[spring.node_a % kernel::kLanes];
+      const float here = link.weights[spring.node_a % kernel::kLanes];
       if (link.virtual_node + view.surface_node_count == spring.node_b) weight = here;
       if (link.virtual_node + view.surface_node_count != spring.node_b) CHECK(here == 0);
     }

@@ -91,15 +91,16 @@ Differences from_plain(const OrganModel& model, const OrganState& state, Instruc
 }
 
 void check_agrees(const OrganModel& model, const OrganState& state) {
-  // Sums of some twenty terms, each off by a few units in the last place: 1e-14 is fifty of them.
+  // Sums of some twenty terms, each off by a few units in the last place: 6e-8 of the float's that
+  // springs are in, 1e-16 of the volume's.
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
     const Differences difference = from_plain(model, state, set);
-    CHECK(difference.velocity < 1e-14);
+    CHECK(difference.velocity < 3e-7);
     CHECK(difference.gradient < 1e-14);
     CHECK(difference.volume < 1e-14);
     CHECK(difference.denominator < 1e-14);
-    CHECK(difference.volume_velocity < 1e-14);
+    CHECK(difference.volume_velocity < 3e-7);
   }
 }
 
@@ -204,7 +205,8 @@ TEST_CASE("spring kernel: the same bits for all instruction sets with fused mult
 }
 
 TEST_CASE("spring kernel: internal forces keep momentum and angular momentum") {
-  // Oracle: invariant, to the rounding of the sums.
+  // Oracle: invariant. The two ends of a spring get the same force to the bit; the sums at the
+  // nodes are rounded, in float for springs, in double for the volume's gradient.
   auto organ = ball_organ();
   organ.tissue.drag = 0;
   const auto model = ball_model(2, organ);
@@ -221,8 +223,8 @@ TEST_CASE("spring kernel: internal forces keep momentum and angular momentum") {
     size += change.norm();
   }
   for (const Vec3& g : step.volume.gradient) volume += g;
-  CHECK(momentum.norm() < 1e-13 * size);
-  CHECK(angular.norm() < 1e-13 * size * testing::kBallRadius);
+  CHECK(momentum.norm() < 1e-7 * size);
+  CHECK(angular.norm() < 1e-7 * size * testing::kBallRadius);
   CHECK(volume.norm() < 1e-13 * geometry::surface_area(state.positions, model.triangles));
 }
 
@@ -242,7 +244,8 @@ TEST_CASE("spring kernel: without volume it is the same step") {
 }
 
 TEST_CASE("spring kernel: elastic energy is that of the plain code") {
-  // Oracle: elastic_energy(). At rest lengths cancel to their last bits: (1e-16 l)² k is nothing.
+  // Oracle: elastic_energy(). At rest lengths cancel to their last bits: (1e-7 l)² k is 1e-17 J for
+  // each of some thousand springs.
   auto organ = ball_organ();
   if (GENERATE(false, true)) organ.springs = {0.1, 0, 0};
   const auto model = ball_model(GENERATE(0, 2), organ);
@@ -250,14 +253,15 @@ TEST_CASE("spring kernel: elastic energy is that of the plain code") {
   for (const InstructionSet set : available_instruction_sets()) {
     SpringKernel kernel(model, nullptr, set);
     const double expected = elastic_energy(model, state.positions);
-    CHECK(kernel.elastic_energy(state.positions) == Approx(expected).epsilon(1e-13));
-    CHECK(kernel.elastic_energy(model.network.rest_positions) < 1e-25);
+    CHECK(kernel.elastic_energy(state.positions) == Approx(expected).epsilon(1e-6));
+    CHECK(kernel.elastic_energy(model.network.rest_positions) < 1e-13);
   }
 }
 
 TEST_CASE(
     "spring kernel: symplectic Euler takes the plain step, contacts and corrections included") {
-  // Oracle: symplectic_euler_step(). One step: chaos has no time; 1e-12 m/s against 1 m/s.
+  // Oracle: symplectic_euler_step(). One step: chaos has no time. Velocities up to 2 m/s, springs
+  // that change them by 0.1 m/s: floats leave 1e-7 of that.
   auto organ = loaded_organ();
   organ.volume_corrections = GENERATE(0, 1);
   const auto model = ball_model(2, organ);
@@ -273,10 +277,10 @@ TEST_CASE(
   SymplecticEuler(model).step(kStep, fast_rows, fast);
   symplectic_euler_step(model, kStep, plain_rows, plain, buffers);
   REQUIRE(plain_rows[0].normal_impulse > 0);
-  CHECK(fast_rows[0].normal_impulse == Approx(plain_rows[0].normal_impulse).epsilon(1e-10));
-  CHECK(fast.pressure == Approx(plain.pressure).epsilon(1e-10));
+  CHECK(fast_rows[0].normal_impulse == Approx(plain_rows[0].normal_impulse).epsilon(1e-6));
+  CHECK(fast.pressure == Approx(plain.pressure).epsilon(1e-6));
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    CHECK((fast.velocities[i] - plain.velocities[i]).norm() < 1e-12);
+    CHECK((fast.velocities[i] - plain.velocities[i]).norm() < 1e-6);
   }
 }
 

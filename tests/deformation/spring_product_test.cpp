@@ -1,6 +1,8 @@
 #include "deformation/spring_product.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 #include <thread>
 
@@ -34,6 +36,11 @@ std::vector<Vec4f> directions(const OrganModel& model) {
   return p;
 }
 
+double apply(SpringProduct& product, const std::vector<Vec4f>& p, std::vector<Vec4f>& out) {
+  for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
+  return product.apply(out);
+}
+
 void check_agrees(const OrganModel& model) {
   const auto positions = disturbed(model, 3e-3);
   const auto p = directions(model);
@@ -45,13 +52,13 @@ void check_agrees(const OrganModel& model) {
     INFO(name_of(set));
     SpringProduct fast(model, nullptr, set);
     fast.linearise(positions, kStep);
-    fast.apply(p, found);
+    const double found_dot = apply(fast, p, found);
+    CHECK(found_dot == Approx(dot(p, found)).epsilon(1e-5));
     for (std::size_t i = 0; i < p.size(); ++i) {
-      // Floats: each of a node's terms is off by some 6e-8 of the node's block; an inner node's
-      // sums have hundreds of terms.
+      // Couplings have eight binary digits: each of a node's terms is off by 2e-3 at most.
       const double size = plain.diagonal()[i].norm();
-      CHECK((found[i] - expected[i]).norm() < 3e-6 * size);
-      CHECK((fast.diagonal()[i] - plain.diagonal()[i]).norm() < 3e-6 * size);
+      CHECK((found[i] - expected[i]).norm() < 4e-3 * size);
+      CHECK((fast.diagonal()[i] - plain.diagonal()[i]).norm() < 2e-3 * size);
     }
   }
 }
@@ -81,10 +88,37 @@ TEST_CASE("spring product: springs without length give nothing and no NaN") {
     SpringProduct product(model, nullptr, set);
     product.linearise(positions, kStep);
     std::vector<Vec4f> out(p.size());
-    product.apply(p, out);
+    apply(product, p, out);
     for (std::size_t i = 0; i < p.size(); ++i) {
       const auto mass = static_cast<float>((1 + kStep * model.drag) * model.masses[i]);
       CHECK((out[i] - mass * p[i]).norm() < 1e-6f * mass);
+    }
+  }
+}
+
+TEST_CASE("spring product: rounded couplings leave the matrix symmetric, and its blocks its own") {
+  // Oracle: invariant a·A b = b·A a, to the rounding of float sums; and the blocks by probing one
+  // coordinate of one node at a time.
+  const auto model = ball_model(2);
+  const auto a = directions(model);
+  auto b = a;
+  std::reverse(b.begin(), b.end());
+  std::vector<Vec4f> image_a(a.size()), image_b(a.size());
+  for (const InstructionSet set : available_instruction_sets()) {
+    SpringProduct product(model, nullptr, set);
+    product.linearise(disturbed(model, 3e-3), kStep);
+    const double a_a = apply(product, a, image_a), b_b = apply(product, b, image_b);
+    CHECK(a_a > 0);
+    CHECK(std::abs(dot(a, image_b) - dot(b, image_a)) < 1e-6 * (a_a + b_b));
+    for (const std::size_t node : {std::size_t{0}, std::size_t{77}, model.node_count() - 1}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        std::vector<Vec4f> unit(a.size(), Vec4f::Zero());
+        unit[node][axis] = 1;
+        apply(product, unit, image_a);
+        const Vec3 column = image_a[node].head<3>().cast<double>();
+        const Mat3& block = product.diagonal()[node];
+        CHECK((column - block.col(axis)).norm() < 3e-6 * block.norm());
+      }
     }
   }
 }
@@ -106,6 +140,24 @@ class Threads : public ChunkRunner {
   std::size_t count_;
 };
 
+TEST_CASE("spring product: the same bits for all instruction sets with fused multiply-add") {
+  // Oracle: each other.
+  const auto sets = available_instruction_sets();
+  if (sets.size() < 3) {
+    WARN("SKIPPED: this CPU has no two instruction sets with fused multiply-add");
+    return;
+  }
+  const auto model = ball_model(3);
+  const auto p = directions(model);
+  std::vector<Vec4f> first(p.size()), second(p.size());
+  SpringProduct narrow(model, nullptr, sets[1]), wide(model, nullptr, sets[2]);
+  narrow.linearise(disturbed(model, 3e-3), kStep);
+  wide.linearise(disturbed(model, 3e-3), kStep);
+  CHECK(apply(narrow, p, first) == apply(wide, p, second));
+  CHECK(first == second);
+  CHECK(narrow.diagonal() == wide.diagonal());
+}
+
 TEST_CASE("spring product: the same bits for any number of threads") {
   // Oracle: itself on one thread.
   const auto model = ball_model(3);
@@ -115,12 +167,12 @@ TEST_CASE("spring product: the same bits for any number of threads") {
     std::vector<Vec4f> expected(p.size()), found(p.size());
     SpringProduct serial(model, nullptr, set);
     serial.linearise(positions, kStep);
-    serial.apply(p, expected);
+    apply(serial, p, expected);
     for (std::size_t threads = 2; threads <= 3; ++threads) {
       Threads runner(threads);
       SpringProduct product(model, &runner, set);
       product.linearise(positions, kStep);
-      product.apply(p, found);
+      apply(product, p, found);
       CHECK(found == expected);
       CHECK(product.diagonal() == serial.diagonal());
     }

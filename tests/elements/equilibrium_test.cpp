@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "deformation/elements/gmsh_tool.h"
+#include "modules/geometry/gmsh_tool.h"
 #include "solids.h"
 
 namespace palpate::elements {
@@ -88,7 +88,7 @@ MixedSolid thick_sphere(double size, double poissons_ratio) {
   script += "Sphere(2) = {0, 0, 0, 0.025, 0, Pi/2, Pi/2};\n";
   script += "BooleanDifference(3) = {Volume{1}; Delete;}{Volume{2}; Delete;};\n";
   script += "Mesh.CharacteristicLengthMax = " + std::to_string(size) + ";\n";
-  auto mesh = run_gmsh(script);
+  auto mesh = geometry::run_gmsh(script);
   for (Vec3& p : mesh.nodes) {
     for (int i = 0; i < 3; ++i) {
       if (std::abs(p[i]) < 1e-9) p[i] = 0;

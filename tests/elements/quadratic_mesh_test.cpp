@@ -1,7 +1,9 @@
 #include "deformation/elements/quadratic_mesh.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "modules/geometry/organ_shape.h"
 #include "solids.h"
 
 namespace palpate::elements {
@@ -27,6 +29,27 @@ TEST_CASE("quadratic mesh: every edge has one node in its middle, on faces too")
       CHECK((mesh.nodes[mesh.face_node(face, 3 + k)] - middle).norm() == 0);
     }
   }
+}
+
+TEST_CASE("quadratic mesh: nodes may come in any order") {
+  // Oracle: the same solid numbered corners first. Corners are numbered without a gap, and every
+  // element has the same nodes in the same places.
+  const auto shape =
+      geometry::with_edge_nodes(geometry::shape_of(testing::block(Vec3::Ones(), 2, 2, 2)));
+  std::vector<Vec3> nodes;
+  for (std::size_t i = 0; i < shape.node_count(); ++i) nodes.push_back(shape.node(i));
+  const auto mesh = make_quadratic(nodes, shape.tetrahedra, shape.edge_nodes);
+  const auto ordered = make_quadratic(testing::block(Vec3::Ones(), 2, 2, 2));
+  CHECK(mesh.corner_count == ordered.corner_count);
+  REQUIRE(mesh.elements.size() == ordered.elements.size());
+  std::vector<int> used(mesh.corner_count, 0);
+  for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+    for (std::size_t a = 0; a < kElementNodes; ++a) {
+      CHECK(mesh.nodes[mesh.elements[e][a]] == ordered.nodes[ordered.elements[e][a]]);
+    }
+    for (const auto corner : mesh.corners[e]) used.at(corner) = 1;
+  }
+  CHECK(std::count(used.begin(), used.end(), 1) == 27);
 }
 
 TEST_CASE("quadratic mesh: curving moves edge nodes of faces on the sphere only") {

@@ -2,45 +2,15 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 
 #include "deformation/elements/mixed_solid.h"
 #include "modules/core/error.h"
+#include "tests/geometry/tetrahedra.h"
 
 namespace palpate::elements::testing {
 
-/// Block from the origin, every cube of the grid in six tetrahedra (Kuhn's).
-inline TetMesh block(const Vec3& size, int nx, int ny, int nz) {
-  TetMesh mesh;
-  const auto at = [&](int i, int j, int k) {
-    return static_cast<std::uint32_t>(i + (nx + 1) * (j + (ny + 1) * k));
-  };
-  for (int k = 0; k <= nz; ++k) {
-    for (int j = 0; j <= ny; ++j) {
-      for (int i = 0; i <= nx; ++i) {
-        mesh.nodes.emplace_back(size.x() * i / nx, size.y() * j / ny, size.z() * k / nz);
-      }
-    }
-  }
-  constexpr int kPaths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
-  for (int k = 0; k < nz; ++k) {
-    for (int j = 0; j < ny; ++j) {
-      for (int i = 0; i < nx; ++i) {
-        for (int p = 0; p < 6; ++p) {
-          int at_corner[3] = {i, j, k};
-          Tetrahedron corners{at(i, j, k)};
-          for (std::size_t s = 0; s < 3; ++s) {
-            ++at_corner[kPaths[p][s]];
-            corners[s + 1] = at(at_corner[0], at_corner[1], at_corner[2]);
-          }
-          if (p >= 3) std::swap(corners[2], corners[3]);  // odd permutations are inside out
-          mesh.tetrahedra.push_back(corners);
-        }
-      }
-    }
-  }
-  return mesh;
-}
+using geometry::testing::block;
+using geometry::testing::without_gmsh;
 
 /// A number in −1 … 1 that depends on i only.
 inline double noise(std::size_t i) {
@@ -79,13 +49,6 @@ inline std::vector<char> symmetry(const MixedSolid& solid) {
     for (int axis = 0; axis < 3; ++axis) held.push_back(p[axis] == 0);
   }
   return held;
-}
-
-/// True, and says so, where Gmsh is not installed.
-inline bool without_gmsh() {
-  if (std::system("gmsh --version >/dev/null 2>&1") == 0) return false;
-  std::printf("SKIPPED: gmsh is not installed\n");
-  return true;
 }
 
 }  // namespace palpate::elements::testing

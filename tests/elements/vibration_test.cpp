@@ -34,6 +34,29 @@ TEST_CASE("vibration: none is missed, and modes are orthonormal") {
     }
   }
   CHECK((gram - Eigen::MatrixXd::Identity(8, 8)).norm() < 1e-6);
+  const Eigen::MatrixXd by_momenta = vibration.modes.transpose() * vibration.momenta;
+  CHECK((by_momenta - gram).norm() < 1e-9);
+}
+
+TEST_CASE("vibration: pressures are those the bulk modulus answers the shapes' volumes with") {
+  // Oracle: the definition of p, ∫ L (J − 1 − p/κ) dV = 0, linearised by a small amplitude.
+  const auto solid = testing::solid(testing::block({0.04, 0.04, 0.04}, 2, 2, 2), 0.4);
+  std::vector<char> held(solid.displacement_count(), 0);
+  std::fill(held.begin(), held.begin() + 75, 1);
+  const auto vibration = vibrate(solid, held, 3);
+  for (int k = 0; k < 3; ++k) {
+    auto state = solid.rest_state();
+    const double amplitude = 1e-7 / vibration.modes.col(k).cwiseAbs().maxCoeff();
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+      state.positions[i] +=
+          amplitude * vibration.modes.col(k).segment<3>(static_cast<Eigen::Index>(3 * i));
+    }
+    const auto corners = static_cast<Eigen::Index>(solid.mesh().corner_count);
+    EquilibriumSolver solver(solid, held, nullptr);
+    const double without = solver.residual(state, {}).tail(corners).norm();
+    state.pressures = amplitude * vibration.pressures.col(k);
+    CHECK(solver.residual(state, {}).tail(corners).norm() < 1e-3 * without);
+  }
 }
 
 TEST_CASE("vibration: a free body has six rigid motions") {

@@ -39,18 +39,23 @@ Outcome type(const std::vector<std::string>& arguments) {
 
 }  // namespace
 
-TEST_CASE("chart command: the program is in the launcher's folder and named after the chart") {
-  // Oracle: the naming rule of the benchmark programs.
-  CHECK(launcher::chart_program("paper", kPrograms) == kPrograms / "palpate-bench-paper");
+TEST_CASE(
+    "chart command: the program is named after the chart, the first one where none is named") {
+  // Oracle: the naming rule of the benchmark programs; options stay for the program.
+  std::vector<std::string> words{"paper", "--quick"};
+  CHECK(launcher::chart_program(words) == "palpate-bench-paper");
+  CHECK(words == std::vector<std::string>{"--quick"});
+  CHECK(launcher::chart_program(words) == "palpate-bench-accuracy");
+  CHECK(words == std::vector<std::string>{"--quick"});
 }
 
 TEST_CASE("chart command: what cannot be charted is refused with what can") {
   // Oracle: the message text.
-  CHECK_THROWS_WITH(launcher::chart_program("weather", kPrograms),
-                    "chart 'weather': must be one of paper, neighbours");
-  CHECK_THROWS_AS(launcher::chart_program("paper", "/nowhere"), InputError);
-  CHECK_THROWS_WITH(launcher::chart_program("paper", "/nowhere"),
-                    "chart paper: /nowhere/palpate-bench-paper is missing; build it");
+  std::vector<std::string> words{"weather"};
+  CHECK_THROWS_WITH(launcher::chart_program(words),
+                    "chart 'weather': must be one of accuracy, paper, neighbours");
+  CHECK_THROWS_WITH(launcher::become("/nowhere/palpate-bench-paper", {}),
+                    "/nowhere/palpate-bench-paper is missing; build it");
 }
 
 TEST_CASE("chart command: a program that cannot be started is named") {
@@ -58,7 +63,7 @@ TEST_CASE("chart command: a program that cannot be started is named") {
   const auto folder = std::filesystem::temp_directory_path() / "palpate_chart_test";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "palpate-bench-paper") << "not a program";
-  CHECK_THROWS_WITH(launcher::chart_command({"paper"}, folder),
+  CHECK_THROWS_WITH(launcher::become(folder / "palpate-bench-paper", {}),
                     Contains("cannot start") && Contains("palpate-bench-paper"));
   std::filesystem::remove_all(folder);
 }
@@ -74,6 +79,10 @@ TEST_CASE("chart command: typed, it passes options on and the exit code back") {
   CHECK(type({"chart", "paper", "--only", "5"}).code == kExitBadInput);
   const auto unknown = type({"chart", "weather"});
   CHECK(unknown.code == kExitBadInput);
-  CHECK_THAT(unknown.said, Contains("must be one of paper, neighbours"));
-  CHECK(type({"chart"}).code == kExitBadInput);
+  CHECK_THAT(unknown.said, Contains("must be one of accuracy, paper, neighbours"));
+  CHECK(type({"chart", "--case", "cone"}).code == kExitBadInput);
+  CHECK(type({"plan"}).code == kExitBadInput);
+  CHECK_THAT(type({"plan", "--help"}).said, Contains("palpate plan") && Contains("--seconds"));
+  CHECK(type({"stability", "--only", "weather"}).code == kExitBadInput);
+  CHECK_THAT(type({"stability", "--help"}).said, Contains("palpate-bench-stability"));
 }

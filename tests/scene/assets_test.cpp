@@ -41,7 +41,7 @@ TEST_CASE("assets: an organ is loaded and placed by its pose") {
   Organ organ = box_organ(folder);
   organ.pose.position = Vec3(1, 2, 3);
   organ.pose.rotation = Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitZ());
-  const auto surface = load_organ(organ);
+  const auto surface = load_organ(organ).surface;
   CHECK(surface.nodes.size() == 8);
   const auto [low, high] = extent(surface);
   CHECK((low - Vec3(0.97, 1.98, 2.96)).norm() < kFileRounding);
@@ -53,7 +53,7 @@ TEST_CASE("assets: a mesh in millimetres is a thousandth of the same in metres")
   const Folder folder;
   Organ organ = box_organ(folder);
   organ.mesh.unit = "mm";
-  const auto surface = load_organ(organ);
+  const auto surface = load_organ(organ).surface;
   CHECK((extent(surface)[1] - Vec3(0.02, 0.03, 0.04) * 1e-3).norm() < kFileRounding * 1e-3);
 }
 

@@ -29,7 +29,7 @@ TEST_CASE("object reader: an unknown key is refused with the nearest and all all
   CHECK(refusal("rates: {", "rate: {") ==
         "scene.yaml:65: key 'rate' is not known; did you mean 'rates'? Allowed: palpate_scene, "
         "name, organs, probes, gravity_m_per_s2, duration_s, rates, deformation_threads, "
-        "haptics, camera");
+        "haptics, needs, camera");
   CHECK(refusal("capsule: {", "cylinder: {") ==
         "scene.yaml:47: key 'probes[1].shape.cylinder' is not known. "
         "Allowed: sphere, capsule, box, plane, mesh");

@@ -162,7 +162,7 @@ TEST_CASE("resolved text: writes every default out, in the schema's order") {
                                      (folder.path() / "organ.ply").string() +
                                      "\"\n    unit: \"m\"\n    nodes: 0\n"));
   CHECK_THAT(text, Catch::Contains("  - shape") || Catch::Contains("  shape:\n    sphere:\n"));
-  CHECK_THAT(text, Catch::EndsWith("  fade_time_s: 0.05\ncamera: {}\n"));
+  CHECK_THAT(text, Catch::EndsWith("  haptics_hz: 1000\n  cores: 2\ncamera: {}\n"));
 }
 
 TEST_CASE("digest: the same scene elsewhere has the same digest") {

@@ -81,7 +81,8 @@ TEST_CASE("schema: an unknown model or integrator is refused with all there are"
   CHECK(folder.refusal(changed("model: mass_spring", "model: tetrahedra")) ==
         "scene.yaml:18: key 'organs[0].model' = 'tetrahedra': must be one of: implicit_volume, "
         "mass_spring, penalty, baumgarte, promayon, post_stabilisation, bourguignon_cani, zordan, "
-        "element_volume, chainmail");
+        "element_volume, chainmail, xpbd_springs, xpbd_tetrahedra, corotational, nodal_pressure, "
+        "quadratic_elements, modal");
   CHECK(folder.refusal(changed("backward_euler", "euler")) ==
         "scene.yaml:20: key 'organs[0].integrator' = 'euler': must be one of: automatic, "
         "symplectic_euler, backward_euler");

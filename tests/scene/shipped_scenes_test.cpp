@@ -129,7 +129,7 @@ TEST_CASE("shipped scenes: each probe starts clear of the organ and presses 10 t
     const Scene scene = load_scene(kScenes / (name + ".yaml"));
     REQUIRE(scene.organs.size() == 1);
     REQUIRE(scene.probes.size() == 1);
-    const auto depth = depths(scene.probes[0], load_organ(scene.organs[0]));
+    const auto depth = depths(scene.probes[0], load_organ(scene.organs[0]).surface);
     CHECK(depth.front() < -0.005);
     CHECK(depth.back() < 0);
     const double deepest = *std::max_element(depth.begin(), depth.end());
@@ -144,7 +144,7 @@ TEST_CASE("shipped scenes: each probe slides over the organ while it presses") {
     INFO(name);
     const Scene scene = load_scene(kScenes / (name + ".yaml"));
     const auto path = path_of(scene.probes[0]);
-    const auto depth = depths(scene.probes[0], load_organ(scene.organs[0]));
+    const auto depth = depths(scene.probes[0], load_organ(scene.organs[0]).surface);
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) {
       if (depth[i] > 0.005) length += (path[i].point - path[i - 1].point).norm();
@@ -177,7 +177,7 @@ TEST_CASE("shipped scenes: fixed regions hold some nodes of the organ, and not m
   for (const std::string& name : kOneProbeScenes) {
     INFO(name);
     const Scene scene = load_scene(kScenes / (name + ".yaml"));
-    const auto surface = load_organ(scene.organs[0]);
+    const auto surface = load_organ(scene.organs[0]).surface;
     CHECK_FALSE(scene.organs[0].fixed.empty());
     for (const Region& region : scene.organs[0].fixed) {
       const auto held = std::count_if(surface.nodes.begin(), surface.nodes.end(),
@@ -199,7 +199,7 @@ TEST_CASE("shipped scenes: stomach_probe is the paper's figure") {
   CHECK(scene.rates.visualizer == 30);
   CHECK(scene.organs[0].fixed.size() == 3);
   CHECK(path_of(scene.probes[0]).back().time == Approx(20));
-  const auto surface = load_organ(scene.organs[0]);
+  const auto surface = load_organ(scene.organs[0]).surface;
   CHECK(surface.nodes.size() == 550);
   CHECK(surface.triangles.size() == 1096);
   const Vec3 middle = geometry::solid_centroid(surface);
@@ -227,7 +227,7 @@ TEST_CASE("shipped scenes: stomach_probe is the paper's figure") {
 TEST_CASE("shipped scenes: stomach_probe_refined is the same on at least 19 000 nodes") {
   // Oracle: the promised size and tissue.
   const Scene scene = load_scene(kScenes / "stomach_probe_refined.yaml");
-  const auto surface = load_organ(scene.organs[0]);
+  const auto surface = load_organ(scene.organs[0]).surface;
   CHECK(surface.nodes.size() >= 19'000);
   CHECK(surface.triangles.size() >= 38'000);
   CHECK(scene.organs[0].tissue.youngs_modulus == 10e3);
@@ -238,7 +238,7 @@ TEST_CASE("shipped scenes: ball_squeeze flattens the ball by 30 percent between 
   // Oracle: extents of the ball's nodes along the way of the plates, against the plates' faces.
   const Scene scene = load_scene(kScenes / "ball_squeeze.yaml");
   REQUIRE(scene.probes.size() == 2);
-  const auto ball = load_organ(scene.organs[0]);
+  const auto ball = load_organ(scene.organs[0]).surface;
   double low = 1, high = -1;
   for (const Vec3& node : ball.nodes) {
     low = std::min(low, node.z());

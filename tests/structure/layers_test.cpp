@@ -70,7 +70,7 @@ TEST_CASE("structure: libraries include only the layers below them") {
       {"core", {}},
       {"geometry", {"core"}},
       {"scene", {"core", "geometry"}},
-      {"deformation", {"core", "geometry", "scene"}},
+      {"deformation", {"core", "geometry", "scene", "elements"}},
       {"elements", {"core", "geometry"}},
       {"collision", {"core", "geometry", "scene"}},
       {"haptics", {"core", "geometry", "scene"}},

@@ -12,7 +12,7 @@ constexpr double kStep = 1e-3;
 
 std::vector<Model> all_models() {
   std::vector<Model> models;
-  for (std::size_t i = 0; i < scene::Words<Model>::texts.size(); ++i) {
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(Model::kChainMail); ++i) {
     models.push_back(static_cast<Model>(i));
   }
   return models;
@@ -35,7 +35,7 @@ Vec3 angular_momentum(const OrganModel& model, const OrganState& state) {
 }
 
 TEST_CASE("neighbours: every model of the scene can be stepped, with its own largest step") {
-  // Oracle: none stays far below or above what the springs allow, and a scene has no more models.
+  // Oracle: none stays far below or above what the springs allow.
   for (const Model method : all_models()) {
     INFO(scene::word_of(method));
     const auto organ = testing::ball_organ_with(method);
@@ -51,7 +51,8 @@ TEST_CASE("neighbours: every model of the scene can be stepped, with its own lar
 
 TEST_CASE("neighbours: a free organ keeps its momentum") {
   // Oracle: no outer force. All but ChainMail have momentum; those that project positions keep the
-  // linear one only (their headers say so).
+  // linear one only (their headers say so). Sums of a node's springs are rounded in float: 6e-8 of
+  // what is exchanged, at random.
   for (const Model method : all_models()) {
     if (method == Model::kChainMail) continue;
     INFO(scene::word_of(method));
@@ -62,10 +63,10 @@ TEST_CASE("neighbours: a free organ keeps its momentum") {
     const Vec3 linear = momentum(model, state), angular = angular_momentum(model, state);
     for (int s = 0; s < 200; ++s) dynamics->step(kStep, {}, state);
     const double scale = model.masses[0] * static_cast<double>(model.node_count()) * 0.1;
-    CHECK((momentum(model, state) - linear).norm() < 1e-12 * scale);
+    CHECK((momentum(model, state) - linear).norm() < 1e-8 * scale);
     const bool projects = method == Model::kPromayon || method == Model::kPostStabilisation;
     if (projects) continue;
-    CHECK((angular_momentum(model, state) - angular).norm() < 1e-12 * scale * testing::kBallRadius);
+    CHECK((angular_momentum(model, state) - angular).norm() < 1e-8 * scale * testing::kBallRadius);
   }
 }
 

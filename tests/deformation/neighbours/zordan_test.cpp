@@ -26,7 +26,7 @@ TEST_CASE("Zordan: a uniform inflation is answered by a penalty's pressure") {
 
 TEST_CASE("Zordan: a local dent is answered where it is, unlike by a global pressure") {
   // Oracle: the definition. Triangles without a moved corner or apex have their volume and so no
-  // pressure: nodes two rings from the dent and farther feel nothing.
+  // pressure: nodes two rings from the dent and farther feel nothing, to the rounding of springs.
   const auto model = testing::ball_model(2);
   Zordan method(model);
   OrganState state = rest_state(model);
@@ -36,7 +36,7 @@ TEST_CASE("Zordan: a local dent is answered where it is, unlike by a global pres
   for (std::size_t i = 0; i < model.surface_node_count(); ++i) {
     const double distance =
         (model.network.rest_positions[i] - model.network.rest_positions[0]).norm();
-    if (distance > testing::kBallRadius) CHECK(forces[i].norm() < 1e-9 * forces[0].norm());
+    if (distance > testing::kBallRadius) CHECK(forces[i].norm() < 1e-6 * forces[0].norm());
   }
 }
 

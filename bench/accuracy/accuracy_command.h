@@ -1,0 +1,27 @@
+// `palpate chart`: what each model costs and how wrong it is, on the same cases.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "bench/accuracy/sweep.h"
+
+namespace palpate::accuracy {
+
+struct AccuracyOptions {
+  std::filesystem::path out = "out/accuracy";
+  std::filesystem::path root;           ///< of the sources: scenes, references, the plot script
+  std::vector<std::string> only_cases;  ///< empty: all
+  std::vector<std::string> only_models;
+  Extent extent = Extent::kUsual;
+  std::filesystem::path bullet_program;  ///< palpate-bench-bullet, if it was built
+  bool peers = true;
+  bool again = false;  ///< measures anew what has been measured
+};
+
+/// The whole command. @return an exit code @throws InputError
+int run_accuracy(const AccuracyOptions& options, std::ostream& out, std::ostream& log);
+
+}  // namespace palpate::accuracy

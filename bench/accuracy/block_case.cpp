@@ -1,0 +1,201 @@
+// A block with bonded ends, compressed: force and bulge against reference solutions, and the beads
+// of the Truth Cube. The same block bends as a beam, and is indented by a sphere.
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "bench/accuracy/case_parts.h"
+#include "bench/accuracy/displacement_field.h"
+#include "bench/accuracy/truth_cube.h"
+#include "modules/core/error.h"
+#include "modules/geometry/gmsh_tool.h"
+
+namespace palpate::accuracy {
+namespace {
+
+constexpr double kHalf = 0.04, kHeight = 0.08;  // [m]
+constexpr double kPlateSpeed = 0.01;            // [m/s]
+constexpr double kDrag = 60;                    // [1/s]
+/// No less than the largest a scene takes: the plate holds the tissue as if bonded.
+constexpr double kBondFriction = 2;
+const double kEqualRadius = std::cbrt(3 * 8 * kHalf * kHalf * kHalf / (4 * M_PI));
+
+/// Edges of `size`; of a quadratic model twice as long, so that nodes are as many.
+geometry::OrganShape block_shape(const Setting& setting, const Vec3& low, const Vec3& high,
+                                 double size, const std::string& growth) {
+  if (scene::is_quadratic(setting.model)) size *= 2;
+  std::ostringstream expression;
+  expression << size << growth;
+  return shape_for(setting, geometry::shape_of(geometry::mesh_block(low, high, expression.str())));
+}
+
+geometry::OrganShape block_shape(const Setting& setting) {
+  constexpr std::array kSizes{0.016, 0.008, 0.004};
+  return block_shape(setting, {-kHalf, -kHalf, 0}, {kHalf, kHalf, kHeight},
+                     kSizes[static_cast<std::size_t>(setting.level)], " + 0*x");
+}
+
+scene::Scene block_scene(const Setting& setting) {
+  scene::Scene scene;
+  scene.organs.push_back(solid_organ(setting, kEqualRadius, 1, kYoungsModulus, kDensity));
+  scene.organs[0].tissue.drag = kDrag;
+  scene.organs[0].fixed.push_back(scene::BoxRegion{{-1, -1, -1}, {1, 1, 1e-6}});
+  scene.rates.deformation = setting.rate;
+  return scene;
+}
+
+Vec3 displacement(const Stage& stage, const NodeWeights& weights) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& [node, weight] : weights) {
+    sum += weight * (stage.position(node) - stage.rest_position(node));
+  }
+  return sum;
+}
+
+/// Compresses the block by each of `compressions` and asks `answer` each time it has come to rest.
+Measurement compress(const Setting& setting, const std::vector<double>& compressions,
+                     const geometry::OrganShape& shape,
+                     const std::function<Sample(const Stage&, double)>& answer,
+                     const KeepGoing& keep_going) {
+  scene::Scene scene = block_scene(setting);
+  scene.probes.push_back({"plate", scene::PlaneShape{}, kBondFriction, scene::ScriptedDevice{}});
+  std::vector<Pose> poses{plate(kHeight, false)};
+  Stage stage(scene, shape, poses);
+  std::vector<Sample> samples;
+  for (const double compression : compressions) {
+    move_and_settle(stage, poses, {{0, 0, kHeight * (1 - compression)}}, kPlateSpeed, keep_going);
+    samples.push_back(answer(stage, compression));
+    if (stage.diverged()) break;
+  }
+  Measurement result = summary(stage, shape);
+  result.samples = samples;
+  return result;
+}
+
+struct GridPoint {
+  NodeWeights weights;
+  double compression = 0;
+  Vec3 displacement;  ///< of the reference [m]
+};
+
+std::vector<GridPoint> reference_grid(const std::filesystem::path& file,
+                                      const geometry::OrganShape& shape) {
+  const ReferenceTable table(file);
+  std::vector<GridPoint> grid;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const Vec3 at(table.at("X_m", row), table.at("Y_m", row), table.at("Z_m", row));
+    const Vec3 moved(table.at("ux_mm", row), table.at("uy_mm", row), table.at("uz_mm", row));
+    grid.push_back({weights_at(shape, at), table.at("compression", row), 1e-3 * moved});
+  }
+  return grid;
+}
+
+double grid_error(const Stage& stage, const std::vector<GridPoint>& grid, double compression) {
+  double sum = 0;
+  int count = 0;
+  for (const GridPoint& point : grid) {
+    if (std::abs(point.compression - compression) > 1e-9) continue;
+    sum += (displacement(stage, point.weights) - point.displacement).squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : kUnknown;
+}
+
+}  // namespace
+
+Measurement measure_block(const Setting& setting, const Source& source,
+                          const KeepGoing& keep_going) {
+  const ReferenceTable truth(source.references / "C_block_force_bulge.csv");
+  const auto shape = block_shape(setting);
+  const auto grid = reference_grid(source.references / "C_block_grid_5x5x5.csv", shape);
+  const auto middle = weights_at(shape, {kHalf, 0, kHeight / 2});
+  const auto answer = [&](const Stage& stage, double compression) {
+    const std::size_t row = truth.row_of("compression", compression);
+    Sample sample;
+    sample.load = compression;
+    sample.force = std::abs(stage.force(0).z());
+    sample.reference_force = truth.at("F_N", row);
+    sample.shape = displacement(stage, middle).x();
+    sample.reference_shape = 1e-3 * truth.at("lateral_bulge_face_centre_mm", row);
+    sample.field_error = grid_error(stage, grid, compression);
+    return sample;
+  };
+  return compress(setting, {0.05, 0.125, 0.1825}, shape, answer, keep_going);
+}
+
+Measurement measure_truth_cube(const Setting& setting, const Source& source,
+                               const KeepGoing& keep_going) {
+  if (!source.data) throw InputError("truthcube: PALPATE_DATA is not there");
+  const TruthCube cube = read_truth_cube(*source.data / "truthcube");
+  const auto shape = block_shape(setting);
+  std::vector<NodeWeights> beads;
+  for (const Vec3& bead : cube.rest) beads.push_back(weights_at(shape, bead));
+  const auto answer = [&](const Stage& stage, double compression) {
+    std::vector<Vec3> moved;
+    for (std::size_t i = 0; i < beads.size(); ++i) {
+      moved.push_back(cube.rest[i] + displacement(stage, beads[i]));
+    }
+    Sample sample;
+    sample.load = compression;
+    sample.field_error = distance_after_fit(moved, cube.states.at(compression));
+    return sample;
+  };
+  std::vector<double> compressions;
+  for (const auto& [compression, positions] : cube.states) compressions.push_back(compression);
+  return compress(setting, compressions, shape, answer, keep_going);
+}
+
+Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing& keep_going) {
+  constexpr double kLength = 0.1, kWidth = 0.02, kStiff = 200e3, kLongest = 5;
+  constexpr std::array kSizes{0.01, 0.0067, 0.004};
+  const auto shape =
+      block_shape(setting, {0, -kWidth / 2, -kWidth / 2}, {kLength, kWidth / 2, kWidth / 2},
+                  kSizes[static_cast<std::size_t>(setting.level)], " + 0*x");
+  scene::Scene scene;
+  const double radius = std::cbrt(3 * kLength * kWidth * kWidth / (4 * M_PI));
+  scene.organs.push_back(solid_organ(setting, radius, kVirtualNodes, kStiff, kDensity));
+  scene.organs[0].tissue.drag = 20;
+  scene.organs[0].fixed.push_back(scene::BoxRegion{{-1, -1, -1}, {1e-6, 1, 1}});
+  scene.gravity = Vec3(0, 0, -9.81);
+  scene.rates.deformation = setting.rate;
+  Stage stage(scene, shape, {});
+  const auto tip = weights_at(shape, {kLength, 0, 0});
+  keep_going();
+  stage.settle(kLongest);
+  Measurement result = summary(stage, shape);
+  Sample sample;
+  sample.load = 9.81;
+  sample.shape = -displacement(stage, tip).z();
+  result.samples.push_back(sample);
+  return result;
+}
+
+Measurement measure_indent(const Setting& setting, const Source& source,
+                           const KeepGoing& keep_going) {
+  constexpr double kTip = 5e-3, kSpeed = 4e-3;        // [m], [m/s]
+  constexpr std::array kSizes{2.4e-3, 1.2e-3, 6e-4};  // under the tip
+  const ReferenceTable truth(source.references / "D_indent_force_depth.csv");
+  const auto shape = block_shape(setting, {-kHalf, -kHalf, 0}, {kHalf, kHalf, kHeight},
+                                 kSizes[static_cast<std::size_t>(setting.level)],
+                                 " + 0.25*sqrt(x*x + y*y + (z-0.08)*(z-0.08))");
+  scene::Scene scene = block_scene(setting);
+  scene.probes.push_back({"tip", scene::SphereShape{kTip}, 0.0, scene::ScriptedDevice{}});
+  std::vector<Pose> poses(1);
+  poses[0].position = Vec3(0, 0, kHeight + kTip + 1e-4);
+  Stage stage(scene, shape, poses);
+  std::vector<Sample> samples;
+  for (const double depth : {2e-3, 4e-3, 6e-3, 8e-3}) {
+    move_and_settle(stage, poses, {{0, 0, kHeight + kTip - depth}}, kSpeed, keep_going);
+    const std::size_t row = truth.row_of("depth_mm", std::round(1e3 * depth));
+    Sample sample;
+    sample.load = depth;
+    sample.force = stage.force(0).z();
+    sample.reference_force = truth.at("F_block_N", row);
+    samples.push_back(sample);
+    if (stage.diverged()) break;
+  }
+  Measurement result = summary(stage, shape);
+  result.samples = samples;
+  return result;
+}
+
+}  // namespace palpate::accuracy

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+
+namespace palpate::plan {
+
+struct PlanOptions {
+  std::filesystem::path scene;
+  std::filesystem::path out;  ///< scene file to write; empty: NAME.planned.yaml beside the scene
+  double seconds = 4;         ///< of the scene, from its start
+};
+
+/// The whole command: measures, prints choice and runners-up with what they lost by, writes the
+/// scene. @return an exit code: 1 if nothing meets the needs @throws InputError
+int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log);
+
+}  // namespace palpate::plan

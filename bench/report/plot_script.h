@@ -1,0 +1,17 @@
+// Draws the figures: runs scripts/plot_paper.py.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::bench {
+
+/// Exit code of a program that speaks for itself; -1 if it could not be started or was killed.
+int run_program(const std::vector<std::string>& words);
+
+/// Runs `python3 script folder`, with the system's python3 where the one in PATH has no matplotlib.
+/// @throws std::runtime_error saying what is missing, or that the script failed
+void draw_figures(const std::filesystem::path& script, const std::filesystem::path& folder);
+
+}  // namespace palpate::bench

@@ -1,0 +1,137 @@
+#include "deformation/simulated_organ.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "modules/geometry/triangle_surface.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// Of what stretches the wall of a ball of this volume by its own length, E t/R.
+double pressure_cap(const scene::Tissue& tissue, double rest_volume) {
+  const double radius = std::cbrt(3 * rest_volume / (4 * std::numbers::pi));
+  return std::max(kLeastPressureCap,
+                  kPressureCapOfWall * tissue.youngs_modulus * tissue.wall_thickness / radius);
+}
+
+/// Advances between two shortenings for the first to show.
+constexpr int kAdvancesToShow = 4;
+
+}  // namespace
+
+SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
+                               std::unique_ptr<OrganDynamics> dynamics)
+    : model_(std::move(model)),
+      dynamics_(std::move(dynamics)),
+      target_volume_(organ.filling),
+      guard_(*model_, knows_energy(organ.model)),
+      holds_volume_(organ.model == scene::Model::kImplicitVolume),
+      pressure_cap_(pressure_cap(organ.tissue, model_->rest_volume)) {
+  reset();
+}
+
+int SimulatedOrgan::substeps(double period) const {
+  const int needed = std::max(1, static_cast<int>(std::ceil(period / dynamics_->largest_step())));
+  return needed << halvings_;
+}
+
+void SimulatedOrgan::put(const OrganState& state) {
+  state_ = state;
+  release_volume();
+  guard_.begin(state_, dynamics_->elastic_energy(state_));
+  advances_ = kThoroughLookEvery;
+  collapsed_time_ = 0;
+}
+
+void SimulatedOrgan::reset() {
+  target_volume_.reset();
+  state_ = last_good_ = rest_state(*model_);
+  guard_.begin(state_, dynamics_->elastic_energy(state_));
+  halvings_ = failures_ = advances_ = 0;
+  collapsed_time_ = aloof_time_ = 0;
+  quiet_time_ = kQuietTime;
+}
+
+void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
+                          AdvanceReport& report) {
+  const double before = state_.target_volume;
+  state_.target_volume = model_->rest_volume * target_volume_.follow(time, h);
+  const StepReport stepped = dynamics_->step(h, rows, state_);
+  guard_.add_work(h, rows, state_.target_volume - before, state_);
+  if (stepped.volume_skipped) {
+    report.volume_skipped = true;
+    advances_ = kThoroughLookEvery;
+  }
+  collapsed_time_ = stepped.volume_skipped && rows.empty() ? collapsed_time_ + h : 0;
+  if (!holds_volume_ || !(std::abs(state_.pressure) > pressure_cap_)) return;
+  report.pressure_capped = true;
+  state_.pressure = std::copysign(pressure_cap_, state_.pressure);
+  release_volume();
+  advances_ = kThoroughLookEvery;
+}
+
+bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
+  const bool thorough = ++advances_ >= kThoroughLookEvery;
+  Disbelief seen = thorough ? guard_.look_thoroughly(state_, *dynamics_) : guard_.look(state_);
+  if (collapsed_time_ > kCollapsedTime) seen = Disbelief::kCollapsed;
+  if (seen != Disbelief::kNone) {
+    recover(seen, report);
+    return false;
+  }
+  if (guard_.suspicious() && quiet_time_ >= kAdvancesToShow * period) shorten_steps();
+  lengthen_steps(period);
+  report.step_reduced |= halvings_ > 0;
+  report.contacts_ignored |= aloof();
+  if (!thorough) return true;
+  advances_ = 0;
+  const bool far = holds_volume_ && volume_is_far();
+  if (far) release_volume();
+  report.volume_released |= far;
+  report.tissue_inverted |= inverted_tetrahedra(*model_, state_.positions) > 0;
+  if (!guard_.suspicious() && !far && collapsed_time_ == 0) last_good_ = state_;
+  return true;
+}
+
+void SimulatedOrgan::release_volume() {
+  const double volume = geometry::enclosed_volume(state_.positions, model_->triangles);
+  if (!std::isfinite(volume)) return;
+  target_volume_.restart(volume / model_->rest_volume);
+  state_.target_volume = volume;
+}
+
+bool SimulatedOrgan::volume_is_far() const {
+  const double volume = geometry::enclosed_volume(state_.positions, model_->triangles);
+  return std::abs(volume - state_.target_volume) > kMaxVolumeError * model_->rest_volume;
+}
+
+void SimulatedOrgan::recover(Disbelief reason, AdvanceReport& report) {
+  report.diverged = report.step_reduced = true;
+  report.reason = reason;
+  if (++failures_ > kMostFailures) {
+    report.back_to_rest = true;
+    last_good_ = rest_state(*model_);
+    aloof_time_ = kQuietTime;
+  }
+  put(last_good_);
+  std::fill(state_.velocities.begin(), state_.velocities.end(), Vec3::Zero());
+  state_.pressure = last_good_.pressure;
+  shorten_steps();
+}
+
+void SimulatedOrgan::shorten_steps() {
+  halvings_ = std::min(halvings_ + 1, kMostHalvings);
+  quiet_time_ = 0;
+}
+
+void SimulatedOrgan::lengthen_steps(double period) {
+  aloof_time_ -= period;
+  quiet_time_ += period;
+  if (halvings_ == 0 || quiet_time_ < kQuietTime) return;
+  --halvings_;
+  failures_ = std::max(failures_ - 1, 0);
+  quiet_time_ = 0;
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,96 @@
+// One organ with all that keeps it alive: its dynamics, the volume it is asked for, and what is
+// done when its state is not believed (state_guard.h).
+//
+// From mild to harsh, each seen in AdvanceReport:
+//   1. suspicious energy: the next steps are halved, quartered, … down to 1/2^kMostHalvings
+//   2. not believed: back to the last good state, at rest, with halved steps
+//   3. not believed for the fourth time: back to the rest state, and no contacts for kQuietTime
+// kQuietTime without any of them doubles the steps again and forgives a failure. Each advance ends
+// in a state that was looked at; none is computed twice.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "deformation/organ_dynamics.h"
+#include "deformation/state_guard.h"
+#include "deformation/target_volume.h"
+
+namespace palpate::deformation {
+
+/// What an advance had to do beyond stepping. Never silent: the process publishes it.
+struct AdvanceReport {
+  bool diverged = false;                ///< a state was not believed and replaced
+  Disbelief reason = Disbelief::kNone;  ///< of that
+  bool back_to_rest = false;            ///< replaced by the rest state, not the last good one
+  bool step_reduced = false;            ///< steps are shorter than stability should need
+  bool pressure_capped = false;         ///< kLeastPressureCap was met: V* follows V from there
+  bool volume_released = false;         ///< V was far from V*: V* follows V from there
+  bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
+  bool contacts_ignored = false;        ///< of an organ put back to rest, for kQuietTime
+  bool tissue_inverted = false;         ///< some tetrahedra of a solid are turned inside out
+  bool probe_jumped = false;            ///< a probe moved faster than believed: no contacts
+};
+
+/// Least cap of the pressure |p| of a volume constraint [Pa]: an atmosphere, five times what a
+/// cough makes. Stiff walls hold more: the cap is kPressureCapOfWall E t/R if that is larger.
+inline constexpr double kLeastPressureCap = 1e5;
+inline constexpr double kPressureCapOfWall = 10;
+/// A volume further from V* than this part of V₀ is not corrected at once: V* begins again at the
+/// volume there is and goes back no faster than the scene's max_rate_per_s.
+inline constexpr double kMaxVolumeError = 0.05;
+/// An organ that nothing touches and whose volume cannot be corrected for longer than this does not
+/// come back by itself [s].
+inline constexpr double kCollapsedTime = 0.5;
+inline constexpr int kMostHalvings = 3;
+inline constexpr int kMostFailures = 3;
+inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
+/// Energy, volume and inversion are looked at in every such advance, and after any guard acted.
+inline constexpr int kThoroughLookEvery = 16;
+
+class SimulatedOrgan {
+ public:
+  SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
+                 std::unique_ptr<OrganDynamics> dynamics);
+
+  const OrganModel& model() const { return *model_; }
+  OrganDynamics& dynamics() const { return *dynamics_; }
+  const OrganState& state() const { return state_; }
+
+  int substeps(double period) const;
+  bool aloof() const { return aloof_time_ > 0; }  ///< takes no contacts for now
+
+  /// Starts from any state. V* begins at its volume.
+  void put(const OrganState& state);
+  void reset();  ///< at rest, at time 0
+
+  /// One step of h [s] that ends at simulated `time` [s].
+  void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
+
+  /// Ends an advance of `period` [s]. @returns false if the state was replaced: impulses of the
+  /// rows of this advance mean nothing
+  bool finish(double period, AdvanceReport& report);
+
+ private:
+  void release_volume();
+  bool volume_is_far() const;
+  void recover(Disbelief reason, AdvanceReport& report);
+  void shorten_steps();
+  void lengthen_steps(double period);
+
+  std::unique_ptr<const OrganModel> model_;
+  std::unique_ptr<OrganDynamics> dynamics_;
+  TargetVolume target_volume_;
+  StateGuard guard_;
+  OrganState state_, last_good_;
+  bool holds_volume_ = false;  ///< by a constraint that answers an error with an impulse
+  double pressure_cap_ = 0;    ///< [Pa]
+  int halvings_ = 0;           ///< of the step
+  int failures_ = 0;           ///< states not believed, less those forgiven
+  double aloof_time_ = 0;      ///< left [s]
+  double quiet_time_ = 0;      ///< since a guard acted [s]
+  double collapsed_time_ = 0;  ///< [s]
+  int advances_ = 0;           ///< since the last thorough look
+};
+
+}  // namespace palpate::deformation

@@ -1,0 +1,49 @@
+// Springs as compliant distance constraints, by extended position-based dynamics.
+//   M. Macklin, M. Müller, N. Chentanez, "XPBD: Position-Based Simulation of Compliant Constrained
+//   Dynamics", MIG 2016;  M. Macklin et al., "Small Steps in Physics Simulation", SCA 2019: many
+//   short steps of one iteration.
+//
+// From the free flight x = xₙ + h (v + h·gravity)/(1 + h·drag), every spring once, in order, with
+// C = |x_b − x_a| − l₀, α = 1/(k h²), γ = c/(k h) (its damping), w = 1/m_a + 1/m_b:
+//   λ = −(C + γ u·(Δx_b − Δx_a)) / ((1 + γ) w + α),    x ← x + M⁻¹∇Cᵀλ,   Δx = x − xₙ
+// The volume and the contacts, constraints of no compliance, follow together, solved to the end
+// (contact_solve.h) on the velocities (x − xₙ)/h: the contents are kept whatever the springs do.
+//
+// One visit meets a spring as if alone in the world: the answer to a sum of springs comes out
+// softer, for short steps by about h²ω² of the local frequency ω. The number of passes over the
+// springs per second is that of an explicit method; but no stiffness is too much.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "deformation/organ_dynamics.h"
+#include "deformation/volume_constraint.h"
+
+namespace palpate::deformation {
+
+class XpbdSprings : public OrganDynamics {
+ public:
+  /// For accuracy alone [s].
+  static constexpr double kStep = 5e-4;
+
+  /// @param model  of springs, outlives this
+  explicit XpbdSprings(const OrganModel& model) : model_(model) {}
+
+  double largest_step() const override { return kStep; }
+  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override;
+
+ private:
+  void relax_springs(double h, const std::vector<Vec3>& start);
+
+  const OrganModel& model_;
+  std::vector<Vec3> positions_, velocities_;
+  VolumeGradient volume_;
+};
+
+/// xₙ + h (v + h·gravity)/(1 + h·drag), fixed nodes where they are  (node_count)
+void free_flight(const OrganModel& model, double h, const OrganState& state,
+                 std::vector<Vec3>& positions);
+
+}  // namespace palpate::deformation

@@ -1,0 +1,53 @@
+// Neo-Hookean tetrahedra by extended position-based dynamics.
+//   M. Macklin, M. Müller, "A Constraint-based Formulation of Stable Neo-Hookean Materials",
+//   MIG 2021;  steps as in xpbd_springs.h.
+//
+//   ψ(F) = μ/2 (tr FᵀF − 3) + λ/2 (J − 1 − μ/λ)²,   μ and λ − μ: Lamé's constants
+// (B. Smith, F. de Goes, T. Kim, "Stable Neo-Hookean Flesh Simulation", ACM Trans. Graph. 37, 2018:
+// finite when flat or inside out). Per tetrahedron of volume V two constraints and compliances:
+//   C_D = √(tr FᵀF),        α_D = 1/(μ V h²),   ∂C_D/∂F = F/C_D
+//   C_H = J − 1 − μ/λ,      α_H = 1/(λ V h²),   ∂C_H/∂F = cofactor of F
+// At rest neither vanishes, but their forces cancel. So that an organ at rest stays there, both are
+// solved at once, a 2×2 system per visit.
+//
+// Linear tetrahedra lock as ν goes to ½: near it the organ is too stiff in shape. On top of that
+// one visit per step leaves stresses unbalanced; both errors are measured, not corrected.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "deformation/organ_dynamics.h"
+
+namespace palpate::deformation {
+
+class XpbdTetrahedra : public OrganDynamics {
+ public:
+  /// For accuracy alone [s].
+  static constexpr double kStep = 5e-4;
+
+  /// @param model  a solid of linear tetrahedra, ν < ½; outlives this
+  explicit XpbdTetrahedra(const OrganModel& model);
+
+  double largest_step() const override { return kStep; }
+  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  /// ∫ ψ(F) − ψ(1) dV₀ [J]
+  double elastic_energy(const OrganState& state) override;
+
+ private:
+  struct Element {
+    Mat3 inverse_edges;  ///< (X₁−X₀, X₂−X₀, X₃−X₀)⁻¹ [1/m]
+    double volume = 0;   ///< V [m³]
+  };
+  Mat3 deformation_gradient(std::size_t element, const std::vector<Vec3>& positions) const;
+  /// @returns V times the mean stress, of which compression is negative [J]
+  double relax(std::size_t element, double h);
+
+  const OrganModel& model_;
+  double shear_modulus_, lame_;  ///< μ, λ [Pa]
+  std::vector<Element> elements_;
+  std::vector<Vec3> positions_, velocities_;
+};
+
+}  // namespace palpate::deformation

@@ -1,0 +1,154 @@
+#include "deformation/state_guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "modules/geometry/triangle_surface.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// Σ m x of the nodes that move [kg·m].
+Vec3 first_moment(const OrganModel& model, const std::vector<Vec3>& positions) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (model.inverse_masses[i] > 0) sum += model.masses[i] * positions[i];
+  }
+  return sum;
+}
+
+double moving_mass(const OrganModel& model) {
+  double sum = 0;
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    if (model.inverse_masses[i] > 0) sum += model.masses[i];
+  }
+  return sum;
+}
+
+/// At most twice the largest distance from the first node.
+double largest_rest_distance(const OrganModel& model) {
+  double squared = 0;
+  for (const Vec3& p : model.network.rest_positions) {
+    squared = std::max(squared, (p - model.network.rest_positions[0]).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
+bool knows_energy(scene::Model model) {
+  switch (model) {
+    case scene::Model::kPenalty:
+    case scene::Model::kPromayon:
+    case scene::Model::kBourguignonCani:
+    case scene::Model::kZordan:
+    case scene::Model::kElementVolume:
+    case scene::Model::kChainMail:
+      return false;
+    default:
+      return true;
+  }
+}
+
+StateGuard::StateGuard(const OrganModel& model, bool knows_energy)
+    : model_(model),
+      knows_energy_(knows_energy),
+      total_mass_(moving_mass(model)),
+      largest_distance_(kMaxGrowth * largest_rest_distance(model)),
+      calm_energy_(total_mass_ * kCalmSpeed * kCalmSpeed / 2),
+      largest_unpaid_(total_mass_ * kUnpaidSpeed * kUnpaidSpeed / 2) {}
+
+void StateGuard::begin(const OrganState& state, double elastic_energy) {
+  double kinetic = 0;
+  for (std::size_t i = 0; i < state.velocities.size(); ++i) {
+    kinetic += model_.masses[i] * state.velocities[i].squaredNorm() / 2;
+  }
+  ledger_ = kinetic + elastic_energy;
+  unpaid_ = 0;
+  first_moment_ = first_moment(model_, state.positions);
+  suspicious_ = false;
+}
+
+void StateGuard::add_work(double h, std::span<const ContactRow> rows, double volume_change,
+                          const OrganState& state) {
+  unpaid_ -= std::min(h / kUnpaidMemory, 1.0) * unpaid_;
+  for (const ContactRow& row : rows) {
+    Vec3 velocity = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
+    const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
+    ledger_ += impulse.dot(velocity);
+    unpaid_ += std::max(0.0, impulse.dot(velocity - row.probe_velocity));
+  }
+  ledger_ += state.pressure * volume_change;
+}
+
+Disbelief StateGuard::look(const OrganState& state) {
+  const double far = largest_distance_ * largest_distance_;
+  const double fast = kMaxNodeSpeed * kMaxNodeSpeed;
+  const Vec3 first = state.positions[0];
+  double twice_energy = 0;
+  bool sound = std::isfinite(state.pressure);
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    const double speed = state.velocities[i].squaredNorm();
+    const double distance = (state.positions[i] - first).squaredNorm();
+    sound &= (speed <= fast) & (distance <= far);  // false for NaN
+    twice_energy += model_.masses[i] * speed;
+  }
+  suspicious_ = false;
+  if (!sound) return explain(state);
+  kinetic_energy_ = twice_energy / 2;
+  if (!model_.gravity.isZero(0)) {
+    const Vec3 moment = first_moment(model_, state.positions);
+    ledger_ += model_.gravity.dot(moment - first_moment_);
+    first_moment_ = moment;
+  }
+  return judge_energy(kinetic_energy_);
+}
+
+Disbelief StateGuard::look_thoroughly(const OrganState& state, OrganDynamics& dynamics) {
+  const Disbelief seen = look(state);
+  if (seen != Disbelief::kNone) return seen;
+  const double volume = geometry::enclosed_volume(state.positions, model_.triangles);
+  if (volume < -kTurnedVolume * model_.rest_volume) return Disbelief::kTurnedInside;
+  if (!knows_energy_) return Disbelief::kNone;
+  const double energy = kinetic_energy_ + dynamics.elastic_energy(state);
+  const bool was_suspicious = suspicious_;
+  const Disbelief judged = judge_energy(energy);
+  suspicious_ |= was_suspicious;
+  if (judged == Disbelief::kNone) ledger_ = std::min(ledger_, energy);
+  return judged;
+}
+
+/// @param energy  all or part of what the organ holds [J]
+Disbelief StateGuard::judge_energy(double energy) {
+  if (!knows_energy_) return Disbelief::kNone;
+  const double may_hold = std::max(ledger_, 0.0) + calm_energy_;
+  suspicious_ = energy > kSuspiciousGain * may_hold;
+  const bool believed = energy <= kEnergyGain * may_hold && unpaid_ <= largest_unpaid_;
+  return believed ? Disbelief::kNone : Disbelief::kEnergyGrew;
+}
+
+Disbelief StateGuard::explain(const OrganState& state) const {
+  bool finite = std::isfinite(state.pressure);
+  double speed = 0;
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    finite &= state.positions[i].allFinite() && state.velocities[i].allFinite();
+    speed = std::max(speed, state.velocities[i].squaredNorm());
+  }
+  if (!finite) return Disbelief::kNotFinite;
+  return speed > kMaxNodeSpeed * kMaxNodeSpeed ? Disbelief::kTooFast : Disbelief::kTooLarge;
+}
+
+std::size_t inverted_tetrahedra(const OrganModel& model, const std::vector<Vec3>& positions) {
+  return static_cast<std::size_t>(std::count_if(model.solid.tetrahedra.begin(),
+                                                model.solid.tetrahedra.end(),
+                                                [&](const geometry::Tetrahedron& t) {
+                                                  const Vec3 a = positions[t[1]] - positions[t[0]];
+                                                  const Vec3 b = positions[t[2]] - positions[t[0]];
+                                                  const Vec3 c = positions[t[3]] - positions[t[0]];
+                                                  return !(a.dot(b.cross(c)) > 0);
+                                                }));
+}
+
+}  // namespace palpate::deformation

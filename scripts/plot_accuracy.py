@@ -1,0 +1,256 @@
+#!/usr/bin/env python3
+"""Charts of what `palpate chart` measures.
+
+  plot_accuracy.py FOLDER   draws FOLDER/accuracy_*.png from points.csv, samples.csv and bullet.csv
+                            there, and prints Pareto fronts and slopes
+"""
+
+import argparse
+import csv
+import math
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+try:
+    import matplotlib
+except ImportError as error:
+    sys.exit(f"error: {error.name} is missing (Debian: apt install python3-matplotlib)")
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+COLORS = {
+    "mass_spring": "#9a9a9a",
+    "implicit_volume": "#1f6fb2",
+    "penalty": "#c0392b",
+    "promayon": "#d98c1f",
+    "element_volume": "#8e5a2b",
+    "xpbd_springs": "#e377c2",
+    "xpbd_tetrahedra": "#a23bb0",
+    "corotational": "#2a8f5b",
+    "nodal_pressure": "#0f9d9d",
+    "modal": "#7f8c1f",
+    "quadratic_elements": "#111111",
+}
+MARKERS = "ovsD^"  # by mesh level
+TITLES = {
+    "ball": "solid ball between plates, 10–40 %",
+    "block": "bonded block, 5–18 %",
+    "truthcube": "Truth Cube beads",
+    "indent": "5 mm sphere into a block, 2–8 mm",
+    "vibration": "free ball, ellipsoidal mode",
+    "beam": "cantilever under its weight",
+    "liver": "liver, 8 mm sphere, 3–9 mm",
+    "stomach": "stomach as a solid, 8 mm sphere, 3–9 mm",
+}
+# What stands for the error of a case: column, factor for the axis, words.
+ERRORS = {
+    "ball": ("force_error", 100, "error of force [%]"),
+    "block": ("force_error", 100, "error of force [%]"),
+    "truthcube": ("field_error_m", 1e3, "error of bead positions [mm]"),
+    "indent": ("force_error", 100, "error of force [%]"),
+    "vibration": ("force_error", 100, "error of frequency [%]"),
+    "beam": ("shape_error_m", 1e3, "error of the tip's sag [mm]"),
+    "liver": ("force_error", 100, "error of force [%]"),
+    "stomach": ("force_error", 100, "error of force [%]"),
+}
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def rows_of(file):
+    if not file.exists():
+        return []
+    with open(file, newline="", encoding="utf-8") as stream:
+        return [
+            {key: value if key in ("case", "model", "solver", "setting", "verdict") else number(value)
+             for key, value in row.items()}
+            for row in csv.DictReader(stream)
+        ]
+
+
+def known(*values):
+    return all(math.isfinite(value) and value > 0 for value in values)
+
+
+def nodes_of(point):
+    return point["surface_nodes"] + point["inner_nodes"]
+
+
+def pareto(points, error):
+    """Cheapest first; each next one is dearer and better."""
+    front = []
+    for point in sorted(points, key=lambda p: (p["cost_s_per_s"], p[error])):
+        if not front or point[error] < front[-1][error]:
+            front.append(point)
+    return front
+
+
+def label(point):
+    return f"{point['model']}, {int(nodes_of(point))} nodes, {point['rate_hz']:g} Hz"
+
+
+def legend_of_models(figure, models):
+    handles = [
+        plt.Line2D([], [], marker="o", linestyle="", color=COLORS.get(model, "k"), label=model)
+        for model in models
+    ]
+    figure.legend(handles=handles, loc="lower center", ncol=6, frameon=False, fontsize=8)
+
+
+def panels(count):
+    columns = min(count, 4 if count > 4 else 2)
+    rows = math.ceil(count / columns)
+    figure, axes = plt.subplots(rows, columns, figsize=(4.6 * columns, 3.9 * rows + 0.6), squeeze=False)
+    flat = list(axes.flat)
+    for axis in flat[count:]:
+        axis.set_visible(False)
+    return figure, flat
+
+
+def scatter(axis, points, x, y, scale):
+    for point in points:
+        axis.loglog(point[x], scale * point[y], marker=MARKERS[int(point["level"])],
+                    color=COLORS.get(point["model"], "k"), markersize=6, alpha=0.85, linestyle="")
+
+
+def draw_error_cost(folder, points, cases):
+    """The main chart: error against cost with the Pareto front."""
+    figure, axes = panels(len(cases))
+    for axis, case in zip(axes, cases):
+        error, scale, words = ERRORS[case]
+        here = [p for p in points if p["case"] == case and not p["diverged"]
+                and known(p["cost_s_per_s"], p[error])]
+        scatter(axis, here, "cost_s_per_s", error, scale)
+        front = pareto(here, error)
+        axis.plot([p["cost_s_per_s"] for p in front], [scale * p[error] for p in front],
+                  color="#555", linewidth=0.8, zorder=0)
+        axis.axvline(1, color="#bbb", linewidth=0.8, zorder=0)
+        axis.set_title(TITLES[case], fontsize=9)
+        axis.set_xlabel("cost [processor s per simulated s]", fontsize=8)
+        axis.set_ylabel(words, fontsize=8)
+        if front:
+            print(f"\n{case}: Pareto front, {words}")
+        for k, point in enumerate(front):
+            print(f"  {point['cost_s_per_s']:10.4g} s/s  {scale * point[error]:8.3g}  {label(point)}")
+            axis.annotate(str(k + 1), (point["cost_s_per_s"], scale * point[error]), fontsize=7,
+                          xytext=(4, 4), textcoords="offset points")
+    figure.suptitle("error against cost; right of the line: slower than real time on one core", fontsize=10)
+    legend_of_models(figure, [m for m in COLORS if any(p["model"] == m for p in points)])
+    figure.tight_layout(rect=(0, 0.06, 1, 0.98))
+    figure.savefig(folder / "accuracy_cost.png", dpi=110)
+    plt.close(figure)
+
+
+def slope(xs, ys):
+    """Of log y over log x, least squares."""
+    lx, ly = [math.log(x) for x in xs], [math.log(y) for y in ys]
+    mx, my = sum(lx) / len(lx), sum(ly) / len(ly)
+    spread = sum((x - mx) ** 2 for x in lx)
+    return sum((x - mx) * (y - my) for x, y in zip(lx, ly)) / spread if spread > 0 else math.nan
+
+
+def draw_mesh(folder, points, cases, y, scale_of, words, name):
+    figure, axes = panels(len(cases))
+    for axis, case in zip(axes, cases):
+        column, scale = (ERRORS[case][0], ERRORS[case][1]) if y is None else (y, scale_of)
+        lines = defaultdict(list)
+        for p in points:
+            if p["case"] == case and not p["diverged"] and known(p[column]):
+                lines[(p["model"], p["rate_hz"])].append(p)
+        best = {}
+        for (model, rate), line in lines.items():
+            if len(line) >= 2 and rate <= best.get(model, (math.inf,))[0]:
+                best[model] = (rate, line)
+        for model, (rate, line) in best.items():
+            line.sort(key=nodes_of)
+            xs, ys = [nodes_of(p) for p in line], [scale * p[column] for p in line]
+            axis.loglog(xs, ys, marker="o", markersize=4, color=COLORS.get(model, "k"), linewidth=1)
+            print(f"{case:10} {model:20} {words}: slope {slope(xs, ys):+.2f} in nodes ({rate:g} Hz)")
+        axis.set_title(TITLES[case], fontsize=9)
+        axis.set_xlabel("nodes", fontsize=8)
+        axis.set_ylabel(ERRORS[case][2] if y is None else words, fontsize=8)
+    legend_of_models(figure, [m for m in COLORS if any(p["model"] == m for p in points)])
+    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    figure.savefig(folder / name, dpi=110)
+    plt.close(figure)
+
+
+def draw_volume(folder, points, bullet):
+    """Volume error against cost on the squeezed ball; Bullet's settings beside."""
+    figure, axis = plt.subplots(figsize=(7, 4.6))
+    here = [p for p in points if p["case"] == "ball" and not p["diverged"]
+            and known(p["cost_s_per_s"], p["volume_error"])]
+    scatter(axis, here, "cost_s_per_s", "volume_error", 1)
+    for row in bullet:
+        if row["solver"].lower().startswith("bullet") and known(row["us_per_step"], row["volume_error_peak"]):
+            axis.loglog(row["us_per_step"] * 1e-6 / 2e-3, row["volume_error_peak"], marker="x", color="#e67e22",
+                        linestyle="", markersize=6)
+    axis.set_xlabel("cost [processor s per simulated s]")
+    axis.set_ylabel("largest |V − V*| / V*")
+    axis.set_title("squeezed ball: volume error against cost (× Bullet's soft body, 642 nodes, h = 2 ms)", fontsize=9)
+    legend_of_models(figure, [m for m in COLORS if any(p["model"] == m for p in here)])
+    figure.tight_layout(rect=(0, 0.09, 1, 1))
+    figure.savefig(folder / "accuracy_volume.png", dpi=110)
+    plt.close(figure)
+
+
+def draw_curves(folder, samples):
+    """Shape of the answer: force over Hertz, bulge over force, against compression."""
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.4))
+    ball = [s for s in samples if s["case"] == "ball" and known(s["force"])]
+    # Two equal contacts: each gives way by half of the whole approach, d = load · R.
+    hertz = {load: 4 / 3 * (5e3 / 0.75) * math.sqrt(0.05) * (load * 0.05) ** 1.5
+             for load in {s["load"] for s in ball}}
+    truth = sorted({(s["load"], s["reference_force"], s["reference_shape_m"]) for s in ball})
+    axes[0].plot([t[0] for t in truth], [t[1] / hertz[t[0]] for t in truth], "k--", label="reference (finite elements)")
+    axes[1].plot([t[0] for t in truth], [1e3 * t[2] / t[1] for t in truth], "k--", label="reference")
+    finest = {}
+    for s in ball:
+        key = s["model"]
+        finest[key] = max(finest.get(key, (-1, -1)), (s["level"], -s["rate_hz"]))
+    for model, color in COLORS.items():
+        line = sorted((s for s in ball if s["model"] == model and (s["level"], -s["rate_hz"]) == finest[model]),
+                      key=lambda s: s["load"])
+        if not line:
+            continue
+        loads = [s["load"] for s in line]
+        axes[0].plot(loads, [s["force"] / hertz[s["load"]] for s in line], marker="o", markersize=3, color=color, label=model)
+        axes[1].plot(loads, [1e3 * s["shape_m"] / s["force"] for s in line], marker="o", markersize=3, color=color)
+    axes[0].set_ylabel("force / Hertz")
+    axes[1].set_ylabel("growth of the equator / force [mm/N]")
+    axes[1].set_yscale("log")
+    for axis in axes:
+        axis.set_xlabel("compression")
+    axes[0].legend(fontsize=7, frameon=False)
+    figure.suptitle("solid ball: how the answer grows with compression", fontsize=10)
+    figure.tight_layout()
+    figure.savefig(folder / "accuracy_curves.png", dpi=110)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    folder = parser.parse_args().folder
+    points, samples = rows_of(folder / "points.csv"), rows_of(folder / "samples.csv")
+    if not points:
+        sys.exit(f"error: {folder / 'points.csv'} holds no points")
+    cases = [case for case in TITLES if any(p["case"] == case for p in points)]
+    draw_error_cost(folder, points, cases)
+    print()
+    draw_mesh(folder, points, cases, None, None, "error", "accuracy_mesh.png")
+    draw_mesh(folder, points, cases, "cost_s_per_s", 1, "cost [s/s]", "accuracy_cost_mesh.png")
+    if "ball" in cases:
+        draw_volume(folder, points, rows_of(folder / "bullet.csv"))
+        draw_curves(folder, samples)
+
+
+if __name__ == "__main__":
+    main()

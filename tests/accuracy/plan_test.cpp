@@ -1,0 +1,68 @@
+#include "bench/plan/plan.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace palpate::plan {
+namespace {
+
+Course course_of(double force, double surface) {
+  Course course;
+  course.forces = {{Vec3(0, 0, 0)}, {Vec3(0, 0, force)}};
+  course.surfaces = {{Vec3::Zero(), Vec3::Zero()}, {Vec3(surface, 0, 0), Vec3::Zero()}};
+  course.deformation_cost = 0.1;
+  course.collision_cost = 0.01;
+  return course;
+}
+
+TEST_CASE("plan: errors of a course are root mean squares against the truth") {
+  // Oracle: by hand.
+  const Errors errors = compare(course_of(1.1, 3e-3), course_of(1, 1e-3));
+  CHECK(errors.force == Approx(0.1));
+  CHECK(errors.surface == Approx(std::sqrt(4e-6 / 4)));
+  Course cut = course_of(1, 0);
+  cut.forces.pop_back();
+  CHECK(std::isinf(compare(cut, course_of(1, 0)).force));
+}
+
+TEST_CASE("plan: the cheapest that meets all needs is chosen, and losers know why") {
+  // Oracle: by hand.
+  scene::Needs needs;
+  needs.force_error = 0.2;
+  const Course truth = course_of(1, 1e-3);
+  Course dear = course_of(1.05, 1e-3), wrong = course_of(1.5, 1e-3), slow = course_of(1, 1e-3);
+  dear.deformation_cost = 0.3;
+  slow.deformation_cost = 2;
+  std::vector<Verdict> verdicts;
+  for (const Course& course : {wrong, dear, slow}) {
+    verdicts.push_back(judge(needs, {}, course, truth));
+  }
+  REQUIRE(best(verdicts) == &verdicts[1]);
+  CHECK_THAT(verdicts[0].failures.at(0), Catch::Contains("force error 0.5 > 0.2"));
+  CHECK_THAT(verdicts[2].failures.at(0), Catch::Contains("load of the core"));
+  CHECK(verdicts[1].total_load == Approx(0.31 + needs.haptics_rate * kHapticTick));
+
+  verdicts.erase(verdicts.begin() + 1);
+  CHECK(best(verdicts) == nullptr);
+  const auto ways = ways_out(needs, verdicts);
+  REQUIRE(ways.size() == 2);
+  CHECK_THAT(ways[0], Catch::Contains("cores 2.5 times as fast"));
+  CHECK_THAT(ways[1], Catch::Contains("force_error 0.5"));
+}
+
+TEST_CASE("plan: a candidate is written into the scene explicitly") {
+  // Oracle: the fields.
+  scene::Scene scene;
+  scene.organs.push_back({});
+  scene.needs.haptics_rate = 2000;
+  const auto planned =
+      scene_with(scene, {scene::Model::kNodalPressure, 500, 400, scene::Integrator::kAutomatic});
+  CHECK(planned.organs[0].model == scene::Model::kNodalPressure);
+  CHECK(planned.organs[0].mesh.nodes == 500);
+  CHECK(planned.rates.deformation == 400);
+  CHECK(planned.rates.collision == 400);
+  CHECK(planned.rates.haptics == 2000);
+}
+
+}  // namespace
+}  // namespace palpate::plan

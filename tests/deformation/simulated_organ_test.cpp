@@ -1,0 +1,145 @@
+#include "deformation/simulated_organ.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/stability/organs_under_test.h"
+#include "tests/stability/overstated_step.h"
+
+namespace palpate::deformation {
+namespace {
+
+using testing::kPeriod;
+
+AdvanceReport one_advance(SimulatedOrgan& organ, std::span<ContactRow> rows = {}) {
+  AdvanceReport report;
+  const int substeps = organ.substeps(kPeriod);
+  for (int s = 1; s <= substeps; ++s) organ.step(0, kPeriod / substeps, rows, report);
+  organ.finish(kPeriod, report);
+  return report;
+}
+
+TEST_CASE("simulated organ: at rest no guard acts and nothing moves") {
+  // Oracle: invariant; the target volume is the rest volume to the last bit.
+  for (const auto model : {scene::Model::kImplicitVolume, scene::Model::kMassSpring}) {
+    auto scene = testing::ball_organ();
+    scene.model = model;
+    auto organ = testing::simulated_ball(2, scene);
+    const auto story = testing::run(organ, 0.5);
+    CHECK(story.replaced == 0);
+    CHECK_FALSE(story.step_reduced);
+    CHECK_FALSE(story.volume_released);
+    CHECK(organ.state().target_volume == organ.model().rest_volume);
+    CHECK(testing::shape_error(organ) < 1e-6);  // springs in float
+  }
+}
+
+TEST_CASE("simulated organ: a step a little too large is halved before anything is lost") {
+  // Oracle: 2.1 times the bound is unstable for this ball (1.05 times the highest frequency's),
+  // half of it is not. The steps grow back after a quiet second.
+  auto organ = testing::ball_with_overstated_step(2.1);
+  CHECK(organ.substeps(kPeriod) == 2);
+  const auto story = testing::run(organ, 1.0);
+  CHECK(story.replaced == 0);
+  CHECK(story.step_reduced);
+  CHECK(testing::volume_error(organ) < 1e-6);
+}
+
+TEST_CASE("simulated organ: after a failure steps are halved until a second was quiet") {
+  // Oracle: kQuietTime.
+  auto organ = testing::simulated_ball(2);
+  const int usual = organ.substeps(kPeriod);
+  OrganState fast = organ.state();
+  for (auto& v : fast.velocities) v = Vec3(2 * kMaxNodeSpeed, 0, 0);
+  organ.put(fast);
+  const AdvanceReport report = one_advance(organ);
+  CHECK(report.diverged);
+  CHECK(report.reason == Disbelief::kTooFast);
+  CHECK(report.step_reduced);
+  CHECK_FALSE(report.back_to_rest);
+  CHECK(organ.substeps(kPeriod) == 2 * usual);
+  int advances = 0;
+  while (organ.substeps(kPeriod) > usual && advances < 1000) {
+    CHECK_FALSE(one_advance(organ).diverged);
+    ++advances;
+  }
+  CHECK(advances * kPeriod == Approx(kQuietTime).margin(2 * kPeriod));
+  CHECK_FALSE(one_advance(organ).step_reduced);
+}
+
+TEST_CASE("simulated organ: the fourth failure in a row ends at rest, without contacts") {
+  // Oracle: kMostFailures. Whatever is done to it, each advance ends in a finite state.
+  auto organ = testing::simulated_ball(2);
+  for (int failure = 1; failure <= 6; ++failure) {
+    OrganState broken = organ.state();
+    broken.positions[3].x() = std::numeric_limits<double>::quiet_NaN();
+    organ.put(broken);
+    const AdvanceReport report = one_advance(organ);
+    CHECK(report.reason == Disbelief::kNotFinite);
+    CHECK(report.back_to_rest == (failure > kMostFailures));
+    CHECK(organ.aloof() == (failure > kMostFailures));
+    CHECK(testing::shape_error(organ) < 1e-6);  // springs in float
+  }
+  CHECK(organ.substeps(kPeriod) == testing::simulated_ball(2).substeps(kPeriod) << kMostHalvings);
+  testing::run(organ, 1.1 * kQuietTime);
+  CHECK_FALSE(organ.aloof());
+}
+
+TEST_CASE("simulated organ: a volume far from its target comes back at the scene's rate") {
+  // Oracle: V*' = max_rate V₀.
+  auto scene = testing::ball_organ();
+  scene.filling.max_rate = 0.25;
+  auto organ = testing::simulated_ball(2, scene);
+  OrganState small = organ.state();
+  for (Vec3& p : small.positions) p *= std::cbrt(0.8);
+  organ.put(small);
+  testing::run(organ, 0.4);
+  CHECK(organ.state().target_volume / organ.model().rest_volume == Approx(0.9).epsilon(0.01));
+  CHECK(testing::volume_error(organ) == Approx(0.1).epsilon(0.02));
+  testing::run(organ, 0.6);
+  CHECK(testing::volume_error(organ) < 1e-6);
+}
+
+/// Holds every node on a sphere of radius (1 − shrunk) R at the end of a step of h.
+std::vector<ContactRow> shell_rows(const SimulatedOrgan& organ, double shrunk, double h,
+                                   double speed) {
+  std::vector<ContactRow> rows;
+  for (std::uint32_t i = 0; i < organ.model().surface_node_count(); ++i) {
+    ContactRow row;
+    row.nodes = {i, i, i};
+    row.weights = Vec3(1, 0, 0);
+    row.normal = organ.model().network.rest_positions[i].normalized();
+    row.probe_velocity = -speed * row.normal;
+    row.gap = testing::kBallRadius * (1 - shrunk) + speed * h -
+              row.normal.dot(organ.state().positions[i]);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST_CASE("simulated organ: the pressure of a volume that cannot be held is capped") {
+  // Oracle: kLeastPressureCap. Every node is held on a sphere that shrinks by 20 % in 0.2 s.
+  auto organ = testing::simulated_ball(2);
+  bool capped = false;
+  const double speed = testing::kBallRadius;
+  for (int k = 0; k < 50; ++k) {
+    AdvanceReport report;
+    const int substeps = organ.substeps(kPeriod);
+    const double h = kPeriod / substeps;
+    for (int s = 1; s <= substeps; ++s) {
+      auto rows = shell_rows(organ, k * kPeriod + s * h, h, speed);
+      organ.step(0, h, rows, report);
+    }
+    organ.finish(kPeriod, report);
+    capped |= report.pressure_capped;
+    CHECK(std::abs(organ.state().pressure) <= kLeastPressureCap);
+  }
+  CHECK(capped);
+  const auto after = testing::run(organ, 2.0);
+  CHECK(after.finite);
+  CHECK(after.replaced == 0);
+  CHECK(testing::volume_error(organ) < 1e-4);
+}
+
+}  // namespace
+}  // namespace palpate::deformation

@@ -1,0 +1,110 @@
+#include "deformation/solids/xpbd_springs.h"
+
+#include "deformation/symplectic_euler.h"
+#include "squeeze.h"
+#include "tests/deformation/organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+scene::Organ spring_ball(double drag) {
+  auto organ = testing::ball_organ();
+  organ.model = scene::Model::kXpbdSprings;
+  organ.tissue.drag = drag;
+  return organ;
+}
+
+TEST_CASE("XPBD springs: alone, a damped spring is stepped by backward Euler exactly") {
+  // Oracle: analytic. L⁺ (1 + h²kw + hcw) = L + hL' + hcw L, L the stretch, w = 1/m_a + 1/m_b.
+  OrganModel model;
+  model.network.rest_positions = {Vec3::Zero(), Vec3(0.01, 0, 0)};
+  model.network.surface_node_count = 2;
+  model.network.springs = {{0, 1, 0.01, 400}};
+  model.masses = {0.002, 0.003};
+  model.inverse_masses = {500, 1 / 0.003};
+  model.spring_damping = {0.05};
+  model.preserve_volume = false;
+  XpbdSprings xpbd(model);
+  OrganState state = rest_state(model);
+  state.positions[1].x() += 2e-3;
+  const double h = 1e-3, w = 500 + 1 / 0.003, k = 400, c = 0.05;
+  double stretch = 2e-3, rate = 0;
+  for (int n = 0; n < 50; ++n) {
+    xpbd.step(h, {}, state);
+    const double next =
+        (stretch + h * rate + h * c * w * stretch) / (1 + h * h * k * w + h * c * w);
+    rate = (next - stretch) / h;
+    stretch = next;
+    REQUIRE(state.positions[1].x() - state.positions[0].x() - 0.01 ==
+            Approx(stretch).margin(1e-12));
+  }
+}
+
+TEST_CASE("XPBD springs: an organ at rest stays there") {
+  // Rest lengths are rounded: what they leave is below 1e-12 m.
+  const auto model = testing::ball_model(2, spring_ball(0));
+  XpbdSprings xpbd(model);
+  testing::check_stays_at_rest(model, xpbd, 1e-12);
+}
+
+TEST_CASE("XPBD springs: free fall with drag is backward Euler's") {
+  const auto model = testing::ball_model(2, spring_ball(3), Vec3(1, 2, -9.81));
+  XpbdSprings xpbd(model);
+  testing::check_free_fall(model, xpbd);
+}
+
+TEST_CASE("XPBD springs: a shaken organ keeps momentum and volume") {
+  // Oracle: invariants. Volume is linearised once a step: of second order in what a step moves.
+  const auto model = testing::ball_model(2, spring_ball(0));
+  XpbdSprings xpbd(model);
+  OrganState state = rest_state(model);
+  Vec3 momentum = Vec3::Zero();
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    const Vec3& x = state.positions[i];
+    state.velocities[i] = Vec3(0.1 + 3 * x.y(), 2 * x.x() - x.z(), 5 * x.y() + 0.2);
+    momentum += model.masses[i] * state.velocities[i];
+  }
+  for (int k = 0; k < 200; ++k) xpbd.step(XpbdSprings::kStep, {}, state);
+  Vec3 after = Vec3::Zero();
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    after += model.masses[i] * state.velocities[i];
+  }
+  CHECK((after - momentum).norm() < 1e-12 * momentum.norm());
+  CHECK(geometry::enclosed_volume(state.positions, model.triangles) ==
+        Approx(model.rest_volume).epsilon(1e-5));
+}
+
+TEST_CASE("XPBD springs: squeezed, softer than the springs are, less so for shorter steps") {
+  // Oracle: independent method, symplectic Euler at rest, which is at the springs' equilibrium.
+  const auto model = testing::ball_model(2, spring_ball(10));
+  const auto squeezed = [&](OrganDynamics& dynamics, double h) {
+    struct Shorter : OrganDynamics {
+      Shorter(OrganDynamics& by, double step) : inner(by), longest(step) {}
+      double largest_step() const override { return longest; }
+      StepReport step(double step, std::span<ContactRow> rows, OrganState& state) override {
+        return inner.step(step, rows, state);
+      }
+      double elastic_energy(const OrganState& state) override {
+        return inner.elastic_energy(state);
+      }
+      OrganDynamics& inner;
+      double longest;
+    } shorter(dynamics, h);
+    testing::Squeeze squeeze(model, shorter, 0.05);
+    const double force = squeeze.go_to(0.04, 0.1, 0.8);
+    CHECK(squeeze.deepest() < 1e-6);
+    return force;
+  };
+  SymplecticEuler symplectic(model);
+  XpbdSprings xpbd(model);
+  const double wanted = squeezed(symplectic, 2e-4);
+  const double error = squeezed(xpbd, XpbdSprings::kStep) / wanted - 1;
+  const double error_halved = squeezed(xpbd, XpbdSprings::kStep / 2) / wanted - 1;
+  std::printf("XPBD springs: force error %.2f %%, at half the step %.2f %%\n", 100 * error,
+              100 * error_halved);
+  CHECK(std::abs(error) < 0.05);
+  CHECK(std::abs(error_halved) < std::abs(error) + 1e-3);
+}
+
+}  // namespace
+}  // namespace palpate::deformation
