@@ -23,6 +23,13 @@ void check_poisson_ratio(const scene::Organ& organ) {
                    "quadratic_elements take up to 0.5");
 }
 
+/// A solid's volume is its own.
+void check_filling(const scene::Organ& organ) {
+  if (organ.filling.points.empty() && organ.filling.breathing_amplitude == 0) return;
+  throw InputError("organ '" + organ.name + "': key 'filling' does not go with model " +
+                   scene::word_of(organ.model) + ", a solid; models of surfaces are filled");
+}
+
 double volume_of(const geometry::Tetrahedron& t, const std::vector<Vec3>& nodes) {
   return geometry::tetrahedron_volume(nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]]);
 }
@@ -72,6 +79,7 @@ void add_stiffness(OrganModel& model) {
 OrganModel build_solid_model(const scene::Organ& organ, const Vec3& gravity,
                              const geometry::OrganShape& shape) {
   check_poisson_ratio(organ);
+  check_filling(organ);
   OrganModel model;
   model.solid = {shape.tetrahedra, shape.edge_nodes, organ.tissue.youngs_modulus,
                  organ.solid.poisson_ratio, organ.tissue.density};

@@ -10,8 +10,8 @@ namespace palpate::deformation {
 /// E. Hinton, T. Rock, O. Zienkiewicz, Earthquake Eng. Struct. Dyn. 4, 1976). Nodes of the surface
 /// and inside are fixed by the organ's regions. There are no springs.
 /// @param shape  solid, in W [m]
-/// @throws InputError naming the organ if every node is fixed or Poisson's ratio does not go with
-///         the model
+/// @throws InputError naming the organ if every node is fixed, or Poisson's ratio or a filling does
+///         not go with the model
 OrganModel build_solid_model(const scene::Organ& organ, const Vec3& gravity,
                              const geometry::OrganShape& shape);
 

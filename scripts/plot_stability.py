@@ -123,7 +123,7 @@ def draw_locking(folder, rows):
     figure, axis = plt.subplots(figsize=(6, 4))
     for model in dict.fromkeys(row["model"] for row in rows):
         line = [(0.5 - number(row["poisson_ratio"]), 100 * number(row["force_error"]))
-                for row in rows if row["model"] == model]
+                for row in rows if row["model"] == model and row["diverged"] == "0"]
         axis.semilogx(*zip(*line), marker="o", markersize=4, label=model)
     axis.invert_xaxis()
     axis.axhline(0, color="#999", linewidth=0.8)

@@ -171,12 +171,15 @@ Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing&
 
 Measurement measure_indent(const Setting& setting, const Source& source,
                            const KeepGoing& keep_going) {
-  constexpr double kTip = 5e-3, kSpeed = 4e-3;        // [m], [m/s]
-  constexpr std::array kSizes{2.4e-3, 1.2e-3, 6e-4};  // under the tip
+  constexpr double kTip = 5e-3, kSpeed = 4e-3;         // [m], [m/s]
+  constexpr std::array kSizes{2e-3, 0.93e-3, 0.6e-3};  // under the tip
   const ReferenceTable truth(source.references / "D_indent_force_depth.csv");
-  const auto shape = block_shape(setting, {-kHalf, -kHalf, 0}, {kHalf, kHalf, kHeight},
-                                 kSizes[static_cast<std::size_t>(setting.level)],
-                                 " + 0.25*sqrt(x*x + y*y + (z-0.08)*(z-0.08))");
+  const double size = kSizes[static_cast<std::size_t>(setting.level)];
+  // Flat to a radius from the tip, then growing twentyfold.
+  std::ostringstream growth;
+  growth << " + " << 20 * size << "*((x*x + y*y + (z-0.08)^2)/(x*x + y*y + (z-0.08)^2 + 0.0003))^2";
+  const auto shape =
+      block_shape(setting, {-kHalf, -kHalf, 0}, {kHalf, kHalf, kHeight}, size, growth.str());
   scene::Scene scene = block_scene(setting);
   scene.probes.push_back({"tip", scene::SphereShape{kTip}, 0.0, scene::ScriptedDevice{}});
   std::vector<Pose> poses(1);

@@ -15,13 +15,15 @@ namespace palpate::accuracy {
 namespace {
 
 /// Of what is stored; raised when a case, a model or its constants change.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 /// Neither the usual chart nor the quick one waits for these.
 bool is_slow(const Setting& setting) { return setting.model == scene::Model::kQuadraticElements; }
 
 bool wanted(const Case& of, const Setting& setting, Extent extent) {
   if (of.truth_is_finest && extent == Extent::kQuick) return false;
+  // Under a small sphere its contacts take hundreds of factorizations per step.
+  if (is_slow(setting) && std::string(of.name) == "indent" && extent != Extent::kFull) return false;
   const int finest = extent == Extent::kQuick ? 0 : extent == Extent::kUsual ? 1 : 2;
   if (setting.level > std::min(finest, of.level_count - 1)) return false;
   if (extent == Extent::kFull) return true;

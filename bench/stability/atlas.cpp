@@ -38,6 +38,8 @@ void take(const std::vector<double>& n, Column& column) {
   column.prediction = {n[6], n[7], n[8] != 0};
 }
 
+bool stands(const Cell& cell) { return holds(cell.verdict.state); }
+
 /// Of the grid, so that a coarser run's columns are not taken for a finer one's.
 std::size_t grid_key(const Map& map) {
   std::string text = fmt::format("{:.6g}", map.precision);
@@ -51,25 +53,25 @@ std::size_t grid_key(const Map& map) {
 
 Frontier frontier_of(const std::vector<Cell>& cells) {
   PALPATE_DEMAND(!cells.empty());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (holds(cells[i].verdict.state)) continue;
-    if (i == 0) return {cells[0].y, Edge::kNoneHolds};
-    return {cells[i - 1].y, Edge::kFound};
-  }
-  return {cells.back().y, Edge::kAllHold};
+  const auto first = std::find_if(cells.begin(), cells.end(), stands);
+  if (first == cells.end()) return {cells.front().y, Edge::kNoneHolds, 0};
+  const double floor = first == cells.begin() ? 0 : (first - 1)->y;
+  const auto above = std::find_if_not(first, cells.end(), stands);
+  return {(above - 1)->y, above == cells.end() ? Edge::kAllHold : Edge::kFound, floor};
 }
 
 Column measure_column(const Map& map, const std::string& series, double x,
                       const KeepGoing& keep_going) {
   Column column{map.name, series, x, map.predict(series, x), {}};
-  for (const double y : map.ys) column.cells.push_back({y, map.attempt(series, x, y, keep_going)});
-  while (frontier_of(column.cells).edge == Edge::kFound) {
-    const auto above = std::find_if(column.cells.begin(), column.cells.end(),
-                                    [](const Cell& cell) { return !holds(cell.verdict.state); });
+  auto& cells = column.cells;
+  for (const double y : map.ys) cells.push_back({y, map.attempt(series, x, y, keep_going)});
+  while (frontier_of(cells).edge == Edge::kFound) {
+    const auto first = std::find_if(cells.begin(), cells.end(), stands);
+    const auto above = std::find_if_not(first, cells.end(), stands);
     const double low = (above - 1)->y, high = above->y;
     if (high <= low * (1 + map.precision)) break;
     const double middle = std::sqrt(low * high);
-    column.cells.insert(above, {middle, map.attempt(series, x, middle, keep_going)});
+    cells.insert(above, {middle, map.attempt(series, x, middle, keep_going)});
   }
   return column;
 }

@@ -43,11 +43,13 @@ enum class Edge {
 };
 
 struct Frontier {
-  double value = 0;  ///< the largest y that stands below the smallest that does not; or the edge
+  double value = 0;  ///< the largest y that stands below the next that does not; or the edge
   Edge edge = Edge::kFound;
+  double floor = 0;  ///< the largest y below all that stand that does not itself; 0: none
 };
 
-/// Above the first failure some y may stand again; that is not trusted.
+/// Of the lowest y that stand. Above the failure that ends them some y may stand again; that is not
+/// trusted.
 /// @param cells  by rising y, not empty
 Frontier frontier_of(const std::vector<Cell>& cells);
 

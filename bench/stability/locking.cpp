@@ -25,6 +25,7 @@ constexpr double kDrag = 60;          // about critical for the slowest mode [1/
 constexpr double kRate = 100;         // steps asked for per second [Hz]
 constexpr double kPenalty = 3e4 * kLockingModulus / kRadius;  // as in bench/elements [Pa/m]
 constexpr double kStride = 0.025;                             // of compression
+constexpr double kEdge = 0.16;  // of the reference\'s mesh at the surface, of the radius
 
 geometry::OrganShape solid_ball() {
   const auto surface = geometry::make_ball(kRadius, 2);
@@ -48,11 +49,11 @@ scene::Scene plates_scene(Model model, double poisson_ratio) {
   return scene;
 }
 
-/// An octant, finer towards its surface.
+/// An octant, three times coarser in the middle, where nothing happens.
 elements::MixedSolid octant(double poisson_ratio) {
-  auto mesh = elements::make_quadratic(
-      geometry::mesh_ball(kRadius, geometry::BallPart::kOctant,
-                          fmt::format("{:g} - {:g}*(x*x+y*y+z*z)", 0.3 * kRadius, 0.2 / kRadius)));
+  auto mesh = elements::make_quadratic(geometry::mesh_ball(
+      kRadius, geometry::BallPart::kOctant,
+      fmt::format("{:g} - {:g}*(x*x+y*y+z*z)", 3 * kEdge * kRadius, 2 * kEdge / kRadius)));
   elements::curve_onto_sphere(mesh, Vec3::Zero(), kRadius);
   return {std::move(mesh), elements::NeoHookean::from_engineering(kLockingModulus, poisson_ratio),
           kDensity};
@@ -79,16 +80,22 @@ std::vector<std::uint32_t> outer_faces(const elements::MixedSolid& solid) {
   return faces;
 }
 
-/// One number in a file of its own, measured if it is not there.
-double kept(const std::filesystem::path& file, const std::function<double()>& measure) {
+/// Force and divergence in a file of their own, measured if it is not there.
+LockingPoint kept(const std::filesystem::path& file, const std::function<LockingPoint()>& measure) {
   std::ifstream stream(file);
-  double value = 0;
-  if (std::string title; std::getline(stream, title) && stream >> value) return value;
-  value = measure();
-  bench::TableFile table(file, {"force_n"});
-  table.write_row({value});
+  LockingPoint point;
+  char comma = 0;
+  if (std::string title; std::getline(stream, title) && stream >> point.force >> comma) {
+    int diverged = 0;
+    stream >> diverged;
+    point.diverged = diverged != 0;
+    return point;
+  }
+  point = measure();
+  bench::TableFile table(file, {"force_n", "diverged"});
+  table.write_row({point.force, double(point.diverged)});
   table.finish();
-  return value;
+  return point;
 }
 
 }  // namespace
@@ -116,31 +123,42 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
   return 4 * contact.outcomes(path.state())[0].force.z();
 }
 
-double locking_force(Model model, double poisson_ratio, const KeepGoing& keep_going) {
+LockingPoint locking_point(Model model, double poisson_ratio, const KeepGoing& keep_going) {
   static const geometry::OrganShape kBall = solid_ball();
   std::vector<Pose> poses{accuracy::plate(kRadius, false), accuracy::plate(-kRadius, true)};
   accuracy::Stage stage(plates_scene(model, poisson_ratio), kBall, poses);
   const double height = kRadius * (1 - kLockingCompression);
   accuracy::move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed,
                             keep_going);
-  return (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+  LockingPoint point{model, poisson_ratio, 0, 0, stage.diverged()};
+  point.force = (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+  return point;
 }
 
-std::vector<LockingPoint> measure_locking(bool quick, const std::filesystem::path& folder,
+std::vector<double> locking_ratios(bool quick) {
+  if (quick) return {0.3, 0.45, 0.499};
+  return {0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4999};
+}
+
+std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
+                                          const std::filesystem::path& folder,
                                           const KeepGoing& keep_going) {
-  std::vector<double> ratios{0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4999};
-  if (quick) ratios = {0.3, 0.45, 0.499};
   std::vector<LockingPoint> points;
   for (const Model model : {Model::kCorotational, Model::kXpbdTetrahedra, Model::kNodalPressure}) {
     for (const double ratio : ratios) {
-      LockingPoint point{model, ratio, 0, 0};
       const auto file = [&](const char* what) {
         return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kVersion);
       };
-      point.reference_force =
-          kept(file("reference"), [&] { return locking_reference(ratio, keep_going); });
-      point.force = kept(file(scene::word_of(model)),
-                         [&] { return locking_force(model, ratio, keep_going); });
+      const double reference = kept(file("reference"), [&] {
+                                 LockingPoint truth;
+                                 truth.force = locking_reference(ratio, keep_going);
+                                 return truth;
+                               }).force;
+      LockingPoint point = kept(file(scene::word_of(model)),
+                                [&] { return locking_point(model, ratio, keep_going); });
+      point.model = model;
+      point.poisson_ratio = ratio;
+      point.reference_force = reference;
       points.push_back(point);
     }
   }
@@ -148,13 +166,13 @@ std::vector<LockingPoint> measure_locking(bool quick, const std::filesystem::pat
 }
 
 void write_locking(const std::vector<LockingPoint>& points, const std::filesystem::path& file) {
-  bench::TableFile table(file,
-                         {"model", "poisson_ratio", "force_n", "reference_force_n", "force_error"});
+  bench::TableFile table(
+      file, {"model", "poisson_ratio", "force_n", "reference_force_n", "force_error", "diverged"});
   for (const LockingPoint& p : points) {
     table.write_row(std::vector<std::string>{
         scene::word_of(p.model), fmt::format("{:.6g}", p.poisson_ratio),
         fmt::format("{:.8g}", p.force), fmt::format("{:.8g}", p.reference_force),
-        fmt::format("{:.6g}", p.error())});
+        fmt::format("{:.6g}", p.error()), p.diverged ? "1" : "0"});
   }
   table.finish();
 }

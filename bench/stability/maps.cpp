@@ -25,7 +25,7 @@ Map step_stiffness(bool quick) {
   const auto shapes = std::make_shared<Shapes>();
   Map map{
       "step_stiffness", "youngs_modulus_pa", "step_s", names_of(quick, false), {}, {}, 0, {}, {}};
-  map.xs = geometric(1e3, 1e6, quick ? 3 : 7);
+  map.xs = quick ? geometric(1e3, 1e6, 3) : geometric(1e3, 1e7, 9);
   map.ys = geometric(1e-5, 0.1, quick ? 9 : 17);
   map.precision = precision(quick);
   map.attempt = [shapes](const std::string& name, double x, double y, const KeepGoing& keep_going) {
@@ -44,7 +44,7 @@ Map squeezes(bool quick) {
   const auto shapes = std::make_shared<Shapes>();
   Map map{"squeeze", "squeeze", "step_s", names_of(quick, false), {0, 0.3, 0.6}, {}, 0, {}, {}};
   if (!quick) map.xs = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
-  map.ys = geometric(1e-3, 0.03, quick ? 4 : 7);
+  map.ys = quick ? geometric(1e-3, 0.03, 4) : geometric(2.5e-4, 0.032, 8);
   map.precision = precision(quick);
   map.attempt = [shapes](const std::string& name, double x, double y, const KeepGoing& keep_going) {
     const Subject& subject = subject_named(name);
@@ -76,7 +76,7 @@ Map probe_speeds(bool quick) {
           {},
           {}};
   if (!quick) map.xs = geometric(0.01, 3, 7);
-  map.ys = geometric(1e-3, 0.03, quick ? 4 : 7);
+  map.ys = quick ? geometric(1e-3, 0.03, 4) : geometric(5e-4, 0.032, 7);
   map.precision = precision(quick);
   map.attempt = [shapes](const std::string& name, double x, double y, const KeepGoing& keep_going) {
     const Subject& subject = subject_named(name);

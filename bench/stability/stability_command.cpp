@@ -113,14 +113,15 @@ void write_tries(const std::vector<Column>& columns, const std::filesystem::path
 }
 
 void write_frontiers(const std::vector<Column>& columns, const std::filesystem::path& file) {
-  bench::TableFile table(file, {"map", "series", "x", "frontier", "edge", "predicted", "exact",
-                                "given", "measured_over_predicted"});
+  bench::TableFile table(file, {"map", "series", "x", "frontier", "edge", "fails_up_to",
+                                "predicted", "exact", "given", "measured_over_predicted"});
   for (const Column& column : columns) {
     const Frontier frontier = frontier_of(column.cells);
     const Prediction& p = column.prediction;
     table.write_row(std::vector<std::string>{
         column.map, column.series, number(column.x), number(frontier.value), name_of(frontier.edge),
-        number(p.value), p.exact ? "1" : "0", number(p.given), number(ratio_of(column))});
+        number(frontier.floor), number(p.value), p.exact ? "1" : "0", number(p.given),
+        number(ratio_of(column))});
   }
   table.finish();
 }
@@ -175,11 +176,28 @@ void print(const std::vector<Column>& columns, std::ostream& out) {
       within, judged, 100 * kGoal);
 }
 
+/// Where a model is given steps that do not stand, and where small ones do not.
+void print_surprises(const std::vector<Column>& columns, std::ostream& out) {
+  for (const Column& column : columns) {
+    const Frontier frontier = frontier_of(column.cells);
+    const std::string where =
+        fmt::format("{}, {}, x = {:.4g}", column.map, column.series, column.x);
+    if (frontier.floor > 0) {
+      out << fmt::format("{}: steps of {:.3g} s and some below do not stand\n", where,
+                         frontier.floor);
+    }
+    if (frontier.edge == Edge::kAllHold || !(column.prediction.given > frontier.value)) continue;
+    out << fmt::format("{}: is given {:.3g} s, stands up to {}{:.3g} s\n", where,
+                       column.prediction.given,
+                       frontier.edge == Edge::kNoneHolds ? "less than " : "", frontier.value);
+  }
+}
+
 void print_locking(const std::vector<LockingPoint>& points, std::ostream& out) {
   out << "locking: error of the force at 10 % compression\n";
   for (const LockingPoint& p : points) {
-    out << fmt::format("  nu {:<7g} {:<17} {:+8.1f} %\n", p.poisson_ratio, scene::word_of(p.model),
-                       100 * p.error());
+    out << fmt::format("  nu {:<7g} {:<17} {:+8.1f} %{}\n", p.poisson_ratio,
+                       scene::word_of(p.model), 100 * p.error(), p.diverged ? "  diverged" : "");
   }
 }
 
@@ -207,9 +225,10 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
     write_tries(columns, options.out / "atlas.csv");
     write_frontiers(columns, options.out / "frontiers.csv");
     print(columns, out);
+    print_surprises(columns, out);
     if (wants(options, kLocking)) {
       log << kLocking << std::endl;
-      const auto locking = measure_locking(options.quick, points, keep_going);
+      const auto locking = measure_locking(locking_ratios(options.quick), points, keep_going);
       write_locking(locking, options.out / "locking.csv");
       print_locking(locking, out);
     }

@@ -1,7 +1,9 @@
 #include "bench/stability/subject.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "deformation/neighbours/baumgarte.h"
 #include "deformation/neighbours/bourguignon_cani.h"
 #include "deformation/neighbours/penalty.h"
 #include "modules/core/error.h"
@@ -35,6 +37,12 @@ Contents contents_of(const Subject& subject, const deformation::OrganModel& mode
     default:
       return {true, 0};
   }
+}
+
+/// Of Φ̈ + 2a Φ̇ + b² Φ = 0 alone, whatever the springs: b² h² + 4 a h = 4.
+double baumgarte_step() {
+  constexpr double a = deformation::Baumgarte::kA, b = deformation::Baumgarte::kB;
+  return 2 * (std::sqrt(a * a + b * b) - a) / (b * b);
 }
 
 }  // namespace
@@ -99,8 +107,9 @@ geometry::OrganShape ball_with_sliver(double ratio) {
   geometry::TriangleSurface surface = geometry::make_ball(kRadius, kLevels);
   const auto [a, b, c] = surface.triangles[0];
   const Vec3 middle = (surface.nodes[a] + surface.nodes[b]) / 2;
-  const Vec3 inward = (surface.nodes[c] - middle).normalized();
-  const double height = (surface.nodes[b] - surface.nodes[a]).norm() / ratio;
+  const Vec3 edge = surface.nodes[b] - surface.nodes[a], side = surface.nodes[c] - middle;
+  const Vec3 inward = (side - side.dot(edge) / edge.squaredNorm() * edge).normalized();
+  const double height = edge.norm() / ratio;
   const auto apex = static_cast<std::uint32_t>(surface.nodes.size()), core = apex + 1;
   surface.nodes.push_back(middle + height * inward);
   surface.nodes.push_back(middle + height / 3 * inward);
@@ -131,6 +140,9 @@ Prediction predict(const Subject& subject, Specimen& specimen) {
   if (!is_explicit(subject) || pyramids) return prediction;
   prediction.value = predicted_step(specimen.model(), specimen.state().positions,
                                     contents_of(subject, specimen.model()));
+  if (subject.model == Model::kBaumgarte) {
+    prediction.value = std::min(prediction.value, baumgarte_step());
+  }
   prediction.exact = true;
   return prediction;
 }

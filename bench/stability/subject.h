@@ -41,8 +41,8 @@ class Shapes {
   std::optional<geometry::OrganShape> surface_, solid_;
 };
 
-/// The ball with one triangle more and more of a sliver: a node at 1/ratio of the edge's length
-/// from the middle of an edge, and another in the middle of the flat triangle that makes, whose
+/// The ball with one triangle more and more of a sliver: a node at 1/ratio of an edge's length
+/// beside that edge's middle, and another in the middle of the flat triangle that makes, whose
 /// mass is as small as its triangles are flat.
 /// @param ratio  ≥ 4
 geometry::OrganShape ball_with_sliver(double ratio);
@@ -71,7 +71,7 @@ struct Prediction {
   bool exact = false;  ///< the theory is one of this model, not of its springs alone
 };
 
-/// 2/ω_max with damping, for explicit steps.
+/// 2/ω_max with damping, for explicit steps, as the springs are at the specimen's positions.
 Prediction predict(const Subject& subject, Specimen& specimen);
 
 }  // namespace palpate::stability

@@ -6,9 +6,10 @@
 namespace palpate::deformation {
 namespace {
 
-/// ρ over the inverse mobility of the contact's nodes, others held: large enough to leave little,
-/// small enough for conjugate gradients.
-constexpr double kStiffness = 100;
+/// ρ over the inverse mobility of the contact's nodes, others held: what the last step's impulses
+/// leave is soon taken up, and conjugate gradients are not slowed. At 100 they did not find the
+/// contacts of a fine mesh.
+constexpr double kStiffness = 10;
 /// Friction that changes by less than this part of ρ needs no further round.
 constexpr double kFrictionTolerance = 0.1;
 
@@ -39,14 +40,16 @@ void ImplicitSolidContacts::begin(std::span<const Mat3> mobilities, std::span<Co
     }
     if (mobility > 0) spring.stiffness = kStiffness / mobility;
     spring.allowed_approach = std::max(row.gap / h, -kMaxSeparationSpeed);
-    const double last = row.normal_impulse;
+    if (spring.stiffness == 0) row.normal_impulse = 0;
+    const double last = spring.last_pressing = row.normal_impulse;
     spring.last_friction = across(row.tangential_impulse, row.normal);
     spring.friction = press(row, velocities, spring);
-    if (last <= 0 || spring.stiffness == 0) continue;
+    if (last <= 0) continue;
     // As it will be linearised, pulling if need be: the rounds find out.
     spring.presses = true;
     const Vec3 relative = relative_velocity(row, velocities);
-    row.normal_impulse = spring.stiffness * (row.normal.dot(relative) - spring.allowed_approach);
+    row.normal_impulse =
+        last + spring.stiffness * (row.normal.dot(relative) - spring.allowed_approach);
     spring.friction = rub(row, relative, last, spring);
   }
 }
@@ -54,8 +57,8 @@ void ImplicitSolidContacts::begin(std::span<const Mat3> mobilities, std::span<Co
 double ImplicitSolidContacts::press(ContactRow& row, const std::vector<Vec3>& velocities,
                                     Spring& spring) const {
   const Vec3 relative = relative_velocity(row, velocities);
-  row.normal_impulse =
-      std::max(0.0, spring.stiffness * (row.normal.dot(relative) - spring.allowed_approach));
+  const double approach = row.normal.dot(relative) - spring.allowed_approach;
+  row.normal_impulse = std::max(0.0, spring.last_pressing + spring.stiffness * approach);
   spring.presses = row.normal_impulse > 0;
   return rub(row, relative, row.normal_impulse, spring);
 }

@@ -1,11 +1,11 @@
 // Contacts inside an implicit step, as stiff springs and dampers that only press and rub:
-//   j = max(0, ρ (n·(Σ b v⁺ − v_c) − gap/h)),   t = cut off at friction·j of t₀ − ρ s
-// with s the sliding and t₀ the friction of the step before: what sticks does not creep. Piecewise
-// linear in v⁺, so that Newton's method needs a few rounds; each adds to A, of the contacts that
-// press, b (ρ nnᵀ + σ (I − nnᵀ)) b with σ = ρ |t|/|t₀ − ρ s| of the round before (lagged, so that
-// friction always brakes). Contacts may depend on each other: they share their force. What a held
-// contact is penetrated by, h j/ρ, is some micrometres for tissue; ρ grows with A as steps grow
-// longer.
+//   j = max(0, j₀ + ρ (n·(Σ b v⁺ − v_c) − gap/h)),   t = t₀ − ρ s, cut off at friction·j
+// with s the sliding and j₀, t₀ the impulses of the step before (an augmented Lagrangian, one round
+// per step): what is held keeps its place, what sticks does not creep. Piecewise linear in v⁺, so
+// that Newton's method needs a few rounds; each adds to A, of the contacts that press,
+// b (ρ nnᵀ + σ (I − nnᵀ)) b with σ = ρ |t|/|t₀ − ρ s| of the round before (lagged, so that friction
+// always brakes). Contacts may depend on each other: they share their force. A contact whose force
+// changes by Δj in a step is penetrated by h Δj/ρ until the next.
 #pragma once
 
 #include <span>
@@ -43,6 +43,7 @@ class ImplicitSolidContacts {
     double stiffness = 0;               ///< ρ [kg]; 0: all nodes fixed
     double allowed_approach = 0;        ///< [m/s]
     double friction = 0;                ///< σ [kg]
+    double last_pressing = 0;           ///< j₀ [N·s]
     Vec3 last_friction = Vec3::Zero();  ///< t₀ [N·s]
     bool presses = false;
   };

@@ -102,7 +102,7 @@ bool is_inside(const Region& region, const Vec3& point) {
 }
 
 const std::vector<std::string> kOneProbeScenes{"stomach_probe", "stomach_probe_refined",
-                                               "liver_probe", "own_mesh"};
+                                               "liver_probe", "liver_solid", "own_mesh"};
 
 }  // namespace
 
@@ -117,7 +117,7 @@ TEST_CASE("shipped scenes: are the ones promised, and every one loads") {
     CHECK(scene.duration > 0);
     CHECK(parse_scene(resolved_text(scene), scene.file).organs.size() == scene.organs.size());
   }
-  CHECK(found == std::set<std::string>{"ball_squeeze", "liver_probe", "own_mesh",
+  CHECK(found == std::set<std::string>{"ball_squeeze", "liver_probe", "liver_solid", "own_mesh",
                                        "stomach_insufflated", "stomach_probe",
                                        "stomach_probe_refined"});
 }

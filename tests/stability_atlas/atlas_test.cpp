@@ -52,7 +52,14 @@ TEST_CASE("atlas: frontiers outside the map are said to be so; what stands again
   const auto all = frontier_of({cell(1, State::kStable), cell(2, State::kDrifting)});
   CHECK(all.edge == Edge::kAllHold);
   CHECK(all.value == 2);
-  CHECK(frontier_of({cell(1, State::kDiverged), cell(2, State::kStable)}).edge == Edge::kNoneHolds);
+  CHECK(all.floor == 0);
+  CHECK(frontier_of({cell(1, State::kDiverged), cell(2, State::kOscillating)}).edge ==
+        Edge::kNoneHolds);
+  const auto between = frontier_of({cell(1, State::kDiverged), cell(2, State::kOscillating),
+                                    cell(3, State::kStable), cell(4, State::kDiverged)});
+  CHECK(between.edge == Edge::kFound);
+  CHECK(between.value == 3);
+  CHECK(between.floor == 2);
   const auto first =
       frontier_of({cell(1, State::kStable), cell(2, State::kOscillating), cell(3, State::kStable)});
   CHECK(first.edge == Edge::kFound);

@@ -90,7 +90,8 @@ TEST_CASE("predicted step: agrees with all eigenvalues of the springs' forces by
   Matrices of = by_differences(model, positions);
   const Eigen::VectorXd scale = of.masses.cwiseSqrt().cwiseInverse();
   for (auto* matrix : {&of.stiffness, &of.damping}) {
-    *matrix = scale.asDiagonal() * ((*matrix + matrix->transpose()) / 2) * scale.asDiagonal();
+    const Eigen::MatrixXd symmetric = (*matrix + matrix->transpose()) / 2;
+    *matrix = scale.asDiagonal() * symmetric * scale.asDiagonal();
     if (!kept) continue;
     const Eigen::MatrixXd projector = volume_projector(model, positions);
     *matrix = projector * *matrix * projector;

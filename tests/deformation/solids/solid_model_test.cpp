@@ -59,6 +59,10 @@ TEST_CASE("solid assets: what does not go with a solid is refused") {
   const auto shape = scene::load_organ(organ);
   CHECK_THROWS_WITH(deformation::build_organ_model(organ, Vec3::Zero(), shape),
                     Catch::Contains("model corotational needs solid: poisson_ratio at most"));
+  organ.solid.poisson_ratio = 0.45;
+  organ.filling.breathing_amplitude = 0.1;
+  CHECK_THROWS_WITH(deformation::build_organ_model(organ, Vec3::Zero(), shape),
+                    Catch::Contains("'filling' does not go with model corotational"));
   const accuracy::testing::WorkFolder folder;
   std::ofstream(folder.path / "a.msh") << "nothing";
   organ.mesh.file = folder.path / "a.msh";
