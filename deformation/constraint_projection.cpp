@@ -12,6 +12,9 @@ constexpr double kCompliance = 1e-9;
 constexpr double kSlidingFraction = 0.999;
 /// Below this part of gᵀWg the contacts hold all the volume that can move.
 constexpr double kVanishedMobility = 1e-9;
+/// A projection that leaves less than this part of r·W r is mostly rounding: it is done again,
+/// without what the rows took.
+constexpr double kMostlyTaken = 1e-4;
 
 bool sticks(const ContactRow& contact) {
   return contact.tangential_impulse.norm() <
@@ -34,6 +37,8 @@ void ConstraintProjection::prepare(std::span<const Mat3> mobilities, std::span<c
   collect_rows(mobilities, contacts);
   if (!rows_.empty()) factor_contacts(mobilities);
   prepare_volume(gradient);
+  all_mu_.setZero(static_cast<Eigen::Index>(rows_.size()));
+  all_volume_mu_ = volume_mu_ = 0;
 }
 
 void ConstraintProjection::take_mobilities(std::span<const Mat3> mobilities) {
@@ -105,15 +110,21 @@ void ConstraintProjection::prepare_volume(std::span<const Vec3> gradient) {
   const double unhindered = dot(gradient_, volume_answer_);
   if (!rows_.empty()) {
     volume_shares_ = factor_.solve(times_rows(volume_answer_));
-    subtract_rows(volume_shares_, volume_answer_);
+    subtract_rows(volume_shares_, gradient_, volume_answer_);
   }
   volume_mobility_ = dot(gradient_, volume_answer_);
   if (!(volume_mobility_ > kVanishedMobility * unhindered)) volume_mobility_ = 0;
 }
 
-double ConstraintProjection::project(const std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
-  for (std::size_t i = 0; i < r.size(); ++i) z[i] = answer(i, r[i]);
-  const double descent = hold_rows({dot(r, z), dot(gradient_, z)}, z);
+double ConstraintProjection::project(std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
+  double descent = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    add(-volume_mu_, gradient_, r);
+    for (std::size_t i = 0; i < r.size(); ++i) z[i] = answer(i, r[i]);
+    const Sums sums{dot(r, z), dot(gradient_, z)};
+    descent = hold_rows(sums, r, z);
+    if (descent > kMostlyTaken * sums.r_z) break;
+  }
   add(-volume_mu_, volume_answer_, z);
   return descent;
 }
@@ -121,14 +132,14 @@ double ConstraintProjection::project(const std::vector<Vec4f>& r, std::vector<Ve
 double ConstraintProjection::descend(double step, const AlignedVector<WideNode>& p,
                                      const std::vector<Vec4f>& q, std::vector<Vec4f>& x,
                                      std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
-  const auto factor = static_cast<float>(step);
+  const auto factor = static_cast<float>(step), mu = static_cast<float>(volume_mu_);
   Sums sums;
   for (std::size_t first = 0; first < r.size(); first += kDotBlock) {
     Vec4f r_z = Vec4f::Zero(), g_z = Vec4f::Zero();
     const std::size_t end = std::min(first + kDotBlock, r.size());
     for (std::size_t i = first; i < end; ++i) {
       x[i] += factor * p[i].vector;
-      const Vec4f rest = r[i] - factor * q[i];
+      const Vec4f rest = r[i] - factor * q[i] - mu * gradient_[i];
       r[i] = rest;
       const Vec4f velocity = answer(i, rest);
       z[i] = velocity;
@@ -138,25 +149,23 @@ double ConstraintProjection::descend(double step, const AlignedVector<WideNode>&
     sums.r_z += static_cast<double>(r_z.sum());
     sums.g_z += static_cast<double>(g_z.sum());
   }
-  return hold_rows(sums, z);
+  return hold_rows(sums, r, z);
 }
 
-/// With c = C W r:  μ_c = S⁻¹ c,  μ_v = (g·W r − shares·c) / mobility, and r·z is r·W r less what
-/// each row takes.
-double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& z) {
-  double r_z = sums.r_z, g_z = sums.g_z;
+/// With c = C W r:  μ_c = S⁻¹ c but for what the volume's share of it changes, μ_v = g'·W r /
+/// mobility, and r·z is r·W r less what each row takes.
+double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& r,
+                                       std::vector<Vec4f>& z) {
+  double r_z = sums.r_z;
   if (!rows_.empty()) {
-    row_speeds_ = times_rows(z);
-    mu_ = factor_.solve(row_speeds_);
-    subtract_rows(mu_, z);
-    r_z -= mu_.dot(row_speeds_);
-    if (volume_mobility_ > 0) g_z -= volume_shares_.dot(row_speeds_);
+    const Eigen::VectorXd row_speeds = times_rows(z), mu = factor_.solve(row_speeds);
+    subtract_rows(mu, r, z);
+    r_z -= mu.dot(row_speeds);
+    all_mu_ += mu;
   }
-  volume_mu_ = 0;
-  if (volume_mobility_ == 0) return r_z;
-  volume_mu_ = g_z / volume_mobility_;
-  if (!rows_.empty()) mu_ -= volume_mu_ * volume_shares_;
-  return r_z - volume_mu_ * g_z;
+  volume_mu_ = volume_mobility_ > 0 ? sums.g_z / volume_mobility_ : 0;
+  all_volume_mu_ += volume_mu_;
+  return r_z - volume_mu_ * sums.g_z;
 }
 
 void ConstraintProjection::turn(double kept, const std::vector<Vec4f>& z,
@@ -168,22 +177,22 @@ void ConstraintProjection::turn(double kept, const std::vector<Vec4f>& z,
 }
 
 void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double& volume_impulse,
-                                         std::vector<Vec4f>& r) const {
+                                         std::vector<Vec4f>& r) {
+  if (volume_mobility_ > 0 && !rows_.empty()) all_mu_ -= all_volume_mu_ * volume_shares_;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const Row& row = rows_[k];
-    const double mu = mu_[static_cast<Eigen::Index>(k)];
+    const double mu = all_mu_[static_cast<Eigen::Index>(k)];
     ContactRow& contact = contacts[row.contact];
-    // μ is what r has along the row; the contact's impulse takes it away.
+    // μ is what r had along the row; the contact's impulse takes it away.
     if (row.normal) {
       contact.normal_impulse += mu;
     } else {
       contact.tangential_impulse -= mu * row.direction;
     }
-    for (int n = 0; n < 3; ++n) r[row.nodes[n]] -= wide((row.weights[n] * mu) * row.direction);
   }
-  const auto mu = static_cast<float>(volume_mu_);
-  for (std::size_t i = 0; i < gradient_.size(); ++i) r[i] -= mu * gradient_[i];
-  volume_impulse += volume_mu_;
+  add(-volume_mu_, gradient_, r);
+  volume_mu_ = 0;
+  volume_impulse += all_volume_mu_;
 }
 
 Vec4f ConstraintProjection::answer(std::size_t node, const Vec4f& impulse) const {
@@ -196,6 +205,7 @@ Eigen::VectorXd ConstraintProjection::times_rows(const std::vector<Vec4f>& v) co
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
+      if (rows_[r].weights[k] == 0) continue;
       sum += rows_[r].weights[k] * v[rows_[r].nodes[k]].head<3>().cast<double>();
     }
     out[static_cast<Eigen::Index>(r)] = rows_[r].direction.dot(sum);
@@ -203,12 +213,16 @@ Eigen::VectorXd ConstraintProjection::times_rows(const std::vector<Vec4f>& v) co
   return out;
 }
 
-void ConstraintProjection::subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& z) const {
-  for (std::size_t r = 0; r < rows_.size(); ++r) {
-    const double impulse = mu[static_cast<Eigen::Index>(r)];
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t node = rows_[r].nodes[k];
-      z[node] -= answer(node, wide((rows_[r].weights[k] * impulse) * rows_[r].direction));
+void ConstraintProjection::subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r,
+                                         std::vector<Vec4f>& z) const {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Row& row = rows_[k];
+    const double row_mu = mu[static_cast<Eigen::Index>(k)];
+    for (int n = 0; n < 3; ++n) {
+      if (row.weights[n] == 0) continue;
+      const Vec4f impulse = wide((row.weights[n] * row_mu) * row.direction);
+      r[row.nodes[n]] -= impulse;
+      z[row.nodes[n]] -= answer(row.nodes[n], impulse);
     }
   }
 }

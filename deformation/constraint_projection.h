@@ -8,6 +8,10 @@
 // Programming Problems Arising in Optimization", SIAM J. Sci. Comput. 2001. μ tells what the rows'
 // impulses lack.
 //
+// With every projection r gives Bᵀμ away (their residual update). Left in r it would outgrow all
+// else as the iterations converge, and r·z would be rounding: a step of r·z / p·A p along it has no
+// bound. In short steps, where A is nearly diagonal, one iteration is enough for that.
+//
 // The contact rows are sparse: S = C W Cᵀ is factored once per step. The volume row is dense and
 // eliminated by the scalar division, as in contact_solve.h with the roles exchanged. Vectors over
 // nodes are in float like the matrix they go with; what of a row that lets through is taken back
@@ -32,13 +36,15 @@ class ConstraintProjection {
   void prepare(std::span<const Mat3> mobilities, std::span<const Vec3> gradient,
                std::span<const ContactRow> contacts);
 
-  /// @param r  [N·s]  (node_count)
+  /// @param r  loses what the rows take, but for what the volume row takes at last [N·s]
+  ///           (node_count)
   /// @param z  out [m/s]  (node_count)
   /// @returns r·z
-  double project(const std::vector<Vec4f>& r, std::vector<Vec4f>& z);
+  double project(std::vector<Vec4f>& r, std::vector<Vec4f>& z);
 
-  /// A step of conjugate gradients in one pass: x += step p, r −= step q, and z of the new r but
-  /// for what the volume row takes from it. p are the nodes' vectors.
+  /// A step of conjugate gradients in one pass: x += step p, r −= step q and what the volume row
+  /// took before, z of the new r but for what the volume row takes from it, and r less what the
+  /// contacts take. p are the nodes' vectors.
   /// @returns r·z
   double descend(double step, const AlignedVector<WideNode>& p, const std::vector<Vec4f>& q,
                  std::vector<Vec4f>& x, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
@@ -46,9 +52,9 @@ class ConstraintProjection {
   /// p = z + kept p, with what the volume row takes from z.
   void turn(double kept, const std::vector<Vec4f>& z, AlignedVector<WideNode>& p) const;
 
-  /// Subtracts from r the Bᵀμ of the last projection, and adds μ to the impulses.
-  void take_impulses(std::span<ContactRow> contacts, double& volume_impulse,
-                     std::vector<Vec4f>& r) const;
+  /// Adds to the impulses the μ of all projections since prepare(), and takes from r what the
+  /// volume row took at last.
+  void take_impulses(std::span<ContactRow> contacts, double& volume_impulse, std::vector<Vec4f>& r);
 
  private:
   /// One scalar row of C: Σ_k weight_k direction·v_k.
@@ -67,22 +73,25 @@ class ConstraintProjection {
   struct Sums {
     double r_z = 0, g_z = 0;
   };
-  /// Takes from z = W r what the contacts take, and finds μ. @returns r·z, the volume's part taken
-  double hold_rows(const Sums& sums, std::vector<Vec4f>& z);
+  /// Takes from r and z = W r what the contacts take, and finds μ.
+  /// @returns r·z, the volume's part taken
+  double hold_rows(const Sums& sums, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
   Vec4f answer(std::size_t node, const Vec4f& impulse) const;     ///< W impulse
   Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;  ///< C v
-  /// z −= W Cᵀ μ
-  void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& z) const;
+  /// r −= Cᵀ μ and z −= W Cᵀ μ
+  void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r, std::vector<Vec4f>& z) const;
 
   std::vector<std::array<Vec4f, 3>> mobilities_;  ///< W, by columns
-  std::vector<Vec4f> gradient_;                   ///< g, zero beyond the surface (node_count)
   std::vector<Row> rows_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;  ///< of S
-  std::vector<Vec4f> volume_answer_;  ///< W (g − Cᵀ S⁻¹ C W g), the velocity a pressure gives
-  Eigen::VectorXd volume_shares_;     ///< S⁻¹ C W g: what of it the contacts take
-  double volume_mobility_ = 0;        ///< g · volume_answer_; 0: no volume row
-  Eigen::VectorXd mu_, row_speeds_;   ///< of the last projection; C W r
-  double volume_mu_ = 0;
+  Eigen::VectorXd volume_shares_;     ///< S⁻¹ C W g: what of the volume row the contacts take
+  std::vector<Vec4f> gradient_;       ///< g' = g − Cᵀ S⁻¹ C W g  (node_count)
+  std::vector<Vec4f> volume_answer_;  ///< W g', the velocity a pressure gives
+  double volume_mobility_ = 0;        ///< g' · W g'; 0: no volume row
+  double volume_mu_ = 0;              ///< of the last projection, still in r
+  // Since prepare():
+  Eigen::VectorXd all_mu_;  ///< without the volume row's shares
+  double all_volume_mu_ = 0;
 };
 
 }  // namespace palpate::deformation

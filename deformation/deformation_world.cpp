@@ -219,7 +219,8 @@ void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositio
   out.target_volume = std::max(state.target_volume, 0.0);
   out.pressure = state.pressure;
   out.kinetic_energy = kinetic_energy(model, state.velocities);
-  out.elastic_energy = organ.simulated.dynamics().elastic_energy(state);
+  // A difference of large sums may come out a little below its least value, rest.
+  out.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
   out.positions.resize(3 * model.node_count());
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {

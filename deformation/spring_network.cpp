@@ -100,6 +100,9 @@ SpringFamily SpringNetwork::family(std::size_t spring) const {
   return spring < structural_count + bending_count ? SpringFamily::kBending : SpringFamily::kInner;
 }
 
+/// The centroid of one or two nodes lies on the surface, where inner springs have no length.
+constexpr std::size_t kLeastInSection = 3;
+
 std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, std::size_t count) {
   const Vec3 axis = geometry::dominant_axis(surface.nodes);
   double low = std::numeric_limits<double>::max(), high = -low;
@@ -117,9 +120,12 @@ std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, 
     ++sizes[section];
   }
   std::vector<Vec3> nodes;
+  Vec3 all = Vec3::Zero();
   for (std::size_t s = 0; s < count; ++s) {
-    if (sizes[s] > 0) nodes.push_back(sums[s] / static_cast<double>(sizes[s]));
+    all += sums[s];
+    if (sizes[s] >= kLeastInSection) nodes.push_back(sums[s] / static_cast<double>(sizes[s]));
   }
+  if (nodes.empty()) nodes.push_back(all / static_cast<double>(surface.nodes.size()));
   return nodes;
 }
 

@@ -53,8 +53,8 @@ struct SpringNetwork {
 };
 
 /// Virtual nodes at the centres of `count` equal sections of the surface's extent along its
-/// dominant axis, each at the centroid of the surface nodes of its section [m]. Empty sections get
-/// none.
+/// dominant axis, each at the centroid of the surface nodes of its section [m]. Sections with fewer
+/// than three get none; where none is left, the centroid of all nodes.
 std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, std::size_t count);
 
 /// Every stiffness is proportional to kMembraneFactor · E t.

@@ -78,7 +78,8 @@ void StateGuard::add_work(double h, std::span<const ContactRow> rows, double vol
     for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
     ledger_ += impulse.dot(velocity);
-    unpaid_ += std::max(0.0, impulse.dot(velocity - row.probe_velocity));
+    const Vec3 parting = velocity - row.probe_velocity;
+    if (-row.normal.dot(parting) > kPushedSpeed) unpaid_ += std::max(0.0, impulse.dot(parting));
   }
   ledger_ += state.pressure * volume_change;
 }
@@ -125,8 +126,8 @@ Disbelief StateGuard::judge_energy(double energy) {
   if (!knows_energy_) return Disbelief::kNone;
   const double may_hold = std::max(ledger_, 0.0) + calm_energy_;
   suspicious_ = energy > kSuspiciousGain * may_hold;
-  const bool believed = energy <= kEnergyGain * may_hold && unpaid_ <= largest_unpaid_;
-  return believed ? Disbelief::kNone : Disbelief::kEnergyGrew;
+  const bool shaken = unpaid_ > largest_unpaid_ && kinetic_energy_ > calm_energy_;
+  return shaken || energy > kEnergyGain * may_hold ? Disbelief::kEnergyGrew : Disbelief::kNone;
 }
 
 Disbelief StateGuard::explain(const OrganState& state) const {

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """Charts of what `palpate chart` measures.
 
-  plot_accuracy.py FOLDER   draws FOLDER/accuracy_*.png from points.csv, samples.csv and bullet.csv
-                            there, and prints Pareto fronts and slopes
+  plot_accuracy.py FOLDER              draws FOLDER/accuracy_*.png from points.csv, samples.csv and
+                                       bullet.csv there, writes results.md, prints Pareto fronts and
+                                       slopes
+  plot_accuracy.py FOLDER --docs DOCS  also puts pictures and tables into DOCS/accuracy.md
 """
 
 import argparse
 import csv
 import math
+import shutil
 import sys
 from collections import defaultdict
 from pathlib import Path
@@ -33,6 +36,7 @@ COLORS = {
     "modal": "#7f8c1f",
     "quadratic_elements": "#111111",
 }
+PICTURES = ["accuracy_cost.png", "accuracy_curves.png", "accuracy_volume.png"]  # shown in the docs
 MARKERS = "ovsD^"  # by mesh level
 TITLES = {
     "ball": "solid ball between plates, 10–40 %",
@@ -216,7 +220,7 @@ def draw_curves(folder, samples):
         key = s["model"]
         finest[key] = max(finest.get(key, (-1, -1)), (s["level"], -s["rate_hz"]))
     for model, color in COLORS.items():
-        line = sorted((s for s in ball if s["model"] == model and (s["level"], -s["rate_hz"]) == finest[model]),
+        line = sorted((s for s in ball if s["model"] == model and (s["level"], -s["rate_hz"]) == finest.get(model)),
                       key=lambda s: s["load"])
         if not line:
             continue
@@ -235,10 +239,83 @@ def draw_curves(folder, samples):
     plt.close(figure)
 
 
+def cell(value, scale=1, digits=3):
+    return f"{scale * value:.{digits}g}" if math.isfinite(value) else "–"
+
+
+def write_tables(folder, points, samples, cases):
+    """results.md: the tables of docs/accuracy.md, at the smallest step rate of each model."""
+    lines = []
+    for case in cases:
+        here = [p for p in points if p["case"] == case]
+        slowest = {(p["model"], p["level"]): min(q["rate_hz"] for q in here if (q["model"], q["level"]) ==
+                                                 (p["model"], p["level"])) for p in here}
+        here = [p for p in here if p["rate_hz"] == slowest[(p["model"], p["level"])]]
+        loads = sorted({s["load"] for s in samples if s["case"] == case})
+        column, scale = ("field_error_m", 1e3) if case == "truthcube" else ("force", None)
+        if case in ("beam", "vibration"):
+            column = None
+        per_load = [f"at {load * (1e3 if case in ('indent', 'liver', 'stomach') else 100):g}"
+                    f"{' mm' if case in ('indent', 'liver', 'stomach') else ' %'}" for load in loads]
+        head = ["model", "level", "nodes", "cost [s/s]", ERRORS[case][2], "shape [mm]", "field [mm]", "volume"]
+        head += per_load if column else []
+        what = "error of force [%] at each load" if column == "force" else "RMS [mm] at each load" if column else ""
+        lines += [f"**{case}**: {TITLES[case]}" + (f"; last columns: {what}" if what else ""), "",
+                  "| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+        for p in here:
+            error, error_scale, _ = ERRORS[case]
+            row = [p["model"], f"{p['level']:g}", f"{nodes_of(p):g}", cell(p["cost_s_per_s"]),
+                   "diverged" if p["diverged"] else cell(p[error], error_scale),
+                   cell(p["shape_error_m"], 1e3), cell(p["field_error_m"], 1e3), cell(p["volume_error"], 1, 2)]
+            mine = {s["load"]: s for s in samples if (s["case"], s["model"], s["level"], s["rate_hz"]) ==
+                    (case, p["model"], p["level"], p["rate_hz"])}
+            for load in loads if column else []:
+                s = mine.get(load)
+                if s is None:
+                    row.append("–")
+                elif column == "force":
+                    ratio = s["force"] / s["reference_force"] - 1 if s["reference_force"] else math.nan
+                    row.append(f"{100 * ratio:+.1f}" if math.isfinite(ratio) else "–")
+                else:
+                    row.append(cell(s["field_error_m"], 1e3))
+            lines.append("| " + " | ".join(row) + " |")
+        lines.append("")
+    (folder / "results.md").write_text("\n".join(lines), encoding="utf-8")
+
+
+def compare_bullet(bullet):
+    """Which settings of Bullet are both slower and less accurate than one of ours."""
+    theirs = [r for r in bullet if r["solver"].lower().startswith("bullet") and r["verdict"] == "stable"]
+    ours = [r for r in bullet if not r["solver"].lower().startswith("bullet") and r["verdict"] == "stable"]
+    for nodes in sorted({r["nodes"] for r in theirs}):
+        left = []
+        here = [r for r in theirs if r["nodes"] == nodes]
+        for r in here:
+            if not any(o["nodes"] == nodes and o["us_per_step"] < r["us_per_step"]
+                       and o["volume_error_held"] < r["volume_error_held"] for o in ours):
+                left.append(r["setting"])
+        print(f"Bullet, {nodes:g} nodes: {len(here) - len(left)} of {len(here)} stable settings are slower and keep the "
+              f"volume worse than one of ours" + (f"; not: {', '.join(left)}" if left else ""))
+
+
+def put_into_docs(folder, docs):
+    for name in PICTURES:
+        shutil.copyfile(folder / name, docs / "images" / name)
+    page = docs / "accuracy.md"
+    text = page.read_text(encoding="utf-8")
+    begin, end = "<!-- begin of results.md -->\n", "<!-- end of results.md -->"
+    head, rest = text.split(begin)
+    tail = rest.split(end)[1]
+    results = (folder / "results.md").read_text(encoding="utf-8")
+    page.write_text(head + begin + "\n" + results + "\n" + end + tail, encoding="utf-8")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    folder = parser.parse_args().folder
+    parser.add_argument("--docs", type=Path)
+    arguments = parser.parse_args()
+    folder = arguments.folder
     points, samples = rows_of(folder / "points.csv"), rows_of(folder / "samples.csv")
     if not points:
         sys.exit(f"error: {folder / 'points.csv'} holds no points")
@@ -247,9 +324,14 @@ def main():
     print()
     draw_mesh(folder, points, cases, None, None, "error", "accuracy_mesh.png")
     draw_mesh(folder, points, cases, "cost_s_per_s", 1, "cost [s/s]", "accuracy_cost_mesh.png")
+    write_tables(folder, points, samples, cases)
     if "ball" in cases:
-        draw_volume(folder, points, rows_of(folder / "bullet.csv"))
+        bullet = rows_of(folder / "bullet.csv")
+        draw_volume(folder, points, bullet)
+        compare_bullet(bullet)
         draw_curves(folder, samples)
+    if arguments.docs:
+        put_into_docs(folder, arguments.docs)
 
 
 if __name__ == "__main__":

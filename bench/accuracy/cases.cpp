@@ -26,8 +26,8 @@ const std::array<Entry, 8>& entries() {
       {{"indent", "depth [m]", "", 3, false, false}, measure_indent},
       {{"vibration", "exact frequency [Hz]", "", 3, true, false}, measure_vibration},
       {{"beam", "gravity [m/s2]", "sag of the tip", 3, false, true}, measure_beam},
-      {{"liver", "depth [m]", "displacement 20 mm beside", 2, false, true}, measure_liver},
-      {{"stomach", "depth [m]", "displacement 20 mm beside", 2, false, true}, measure_stomach},
+      {{"liver", "depth [m]", "displacement 20 mm beside", 3, false, true}, measure_liver},
+      {{"stomach", "depth [m]", "displacement 20 mm beside", 3, false, true}, measure_stomach},
   }};
   return kEntries;
 }

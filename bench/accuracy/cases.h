@@ -47,7 +47,7 @@ struct Case {
   const char* shape_name;  ///< what Sample::shape is; empty: nothing
   int level_count;         ///< meshes there are
   bool dynamic;            ///< needs velocities: kinematic models are left out
-  bool truth_is_finest;    ///< the reference is quadratic_elements at level_count, measured first
+  bool truth_is_finest;    ///< the reference is quadratic_elements, measured first (sweep.h)
 };
 
 const std::vector<Case>& cases();

@@ -16,13 +16,6 @@ constexpr double kForceChange = 2e-4;  // of the force
 constexpr double kLeastForce = 1e-3;   // [N]; changes are seen as parts of no less
 constexpr double kEnergyShare = 1e-6;
 
-/// Of this thread [s]: other jobs on the machine do not count.
-double processor_time() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 std::vector<collision::ProbeGeometry> shapes_of(const scene::Scene& scene) {
   std::vector<collision::ProbeGeometry> shapes;
   for (const auto& probe : scene.probes)
@@ -31,6 +24,12 @@ std::vector<collision::ProbeGeometry> shapes_of(const scene::Scene& scene) {
 }
 
 }  // namespace
+
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 Stage::Stage(const scene::Scene& scene, const geometry::OrganShape& shape, std::vector<Pose> poses)
     : rates_(scene.rates),

@@ -10,6 +10,9 @@
 
 namespace palpate::accuracy {
 
+/// Of this thread [s]: other jobs on the machine do not count.
+double processor_time();
+
 class Stage {
  public:
   /// @param scene  one organ; the probes' devices are not looked at

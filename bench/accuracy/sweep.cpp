@@ -82,17 +82,18 @@ void refer(const Measurement& truth, Measurement& measurement) {
 }  // namespace
 
 Setting truth_setting(const Case& of, Extent extent) {
-  const int finest = extent == Extent::kFull ? of.level_count - 1 : std::min(1, of.level_count - 1);
-  return {scene::Model::kQuadraticElements, finest, 50};
+  return {scene::Model::kQuadraticElements, extent == Extent::kFull ? of.level_count - 1 : 1, 50};
 }
 
 std::vector<Setting> settings_of(const Case& of, Extent extent) {
   std::vector<Setting> settings;
+  if (of.truth_is_finest && extent != Extent::kQuick) settings.push_back(truth_setting(of, extent));
   for (const scene::Model model : ladder()) {
     for (int level = 0; level < of.level_count; ++level) {
       for (const double rate : rates_of(extent)) {
         const Setting setting{model, level, rate};
-        if (wanted(of, setting, extent)) settings.push_back(setting);
+        if (!wanted(of, setting, extent)) continue;
+        if (settings.empty() || settings[0].key() != setting.key()) settings.push_back(setting);
       }
     }
   }

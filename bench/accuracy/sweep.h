@@ -15,7 +15,8 @@ enum class Extent { kQuick, kUsual, kFull };
 /// is the very first.
 std::vector<Setting> settings_of(const Case& of, Extent extent);
 
-/// The setting whose answers are the truth of a case with truth_is_finest.
+/// The setting whose answers are the truth of a case with truth_is_finest: level 1, or the finest
+/// where hours are there.
 Setting truth_setting(const Case& of, Extent extent);
 
 /// Results of earlier runs, one file per case and setting, which appears whole or not at all.

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMarks = 60;
 constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
 constexpr double kTruthRateOfFluid = 500, kTruthRateOfSolid = 50;  // [Hz]
-constexpr std::size_t kMostTruthCorners = 700;
+constexpr std::size_t kMostTruthCorners = 150;
 
 std::vector<scene::Model> models_for(scene::Needs::Contents contents) {
   using scene::Model;

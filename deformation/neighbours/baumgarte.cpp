@@ -1,11 +1,19 @@
 #include "deformation/neighbours/baumgarte.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "deformation/neighbours/volume_along_line.h"
 
 namespace palpate::deformation {
 
+double Baumgarte::law_step_bound() { return 2 * (std::sqrt(kA * kA + kB * kB) - kA) / (kB * kB); }
+
 Baumgarte::Baumgarte(const OrganModel& model)
-    : model_(model), largest_step_(largest_explicit_step(model, 0)), kernel_(model) {}
+    : model_(model),
+      largest_step_(
+          std::min(largest_explicit_step(model, 0), kExplicitStepSafety * law_step_bound())),
+      kernel_(model) {}
 
 StepReport Baumgarte::step(double h, std::span<ContactRow> rows, OrganState& state) {
   // 1. Φ, Φ̇ and ġ·v at the step's start

@@ -13,6 +13,9 @@
 // with the implicit constraint. With a = b an error decays like (1 + a t) e^{−a t} and no faster:
 // whatever a contact or the linearisation brings stays for about 2/a. V* counts as constant during
 // a step, so V follows a ramp V̇* late by 2a/b² (40 ms).
+//
+// Stepped explicitly, that law ends at b² h² + 4 a h = 4 whatever the springs, which matters where
+// they are soft: h < 2 (√(a² + b²) − a)/b², 16.6 ms.
 #pragma once
 
 #include "deformation/neighbours/explicit_step.h"
@@ -24,6 +27,9 @@ namespace palpate::deformation {
 class Baumgarte : public OrganDynamics {
  public:
   static constexpr double kA = 50, kB = 50;  ///< a, b [1/s]
+
+  /// Largest stable step of Φ̈ + 2a Φ̇ + b² Φ = 0 alone [s].
+  static double law_step_bound();
 
   explicit Baumgarte(const OrganModel& model);
   double largest_step() const override { return largest_step_; }

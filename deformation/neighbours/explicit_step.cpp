@@ -3,11 +3,6 @@
 #include <cmath>
 
 namespace palpate::deformation {
-namespace {
-
-constexpr double kStepSafety = 0.9;  // as for the implicit constraint
-
-}  // namespace
 
 double largest_explicit_step(const OrganModel& model, double added_squared_frequency) {
   // The springs' bound h₀ is the root of ω² h² + 2 d h = 4 with the organ's ω² and d.
@@ -15,7 +10,7 @@ double largest_explicit_step(const OrganModel& model, double added_squared_frequ
   const double squared = highest_squared_frequency_bound(model);
   const double d = (4 - squared * springs_alone * springs_alone) / (2 * springs_alone);
   const double sum = squared + added_squared_frequency;
-  return kStepSafety * (std::sqrt(d * d + 4 * sum) - d) / sum;
+  return kExplicitStepSafety * (std::sqrt(d * d + 4 * sum) - d) / sum;
 }
 
 void add_along_gradient(const OrganModel& model, const std::vector<Vec3>& gradient, double scale,

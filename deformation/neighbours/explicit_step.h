@@ -9,6 +9,9 @@
 
 namespace palpate::deformation {
 
+/// Of a bound, as for the implicit constraint.
+inline constexpr double kExplicitStepSafety = 0.9;
+
 /// Largest step [s] of symplectic Euler for the organ's springs and damping together with forces
 /// of the method's own, a safety factor of 0.9 included. By the triangle inequality of the matrix
 /// norm the squared frequencies add up at most: ω² ≤ ω²_springs + added.

@@ -1,6 +1,7 @@
 #include "deformation/solids/xpbd_tetrahedra.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "deformation/contact_solve.h"
@@ -36,6 +37,24 @@ XpbdTetrahedra::XpbdTetrahedra(const OrganModel& model)
     edges << x[b] - x[a], x[c] - x[a], x[d] - x[a];
     elements_.push_back({edges.inverse(), edges.determinant() / 6});
   }
+  largest_step_ = std::min(kStep, kStepOfBound * 2 / std::sqrt(squared_frequency_bound()));
+}
+
+double XpbdTetrahedra::squared_frequency_bound() const {
+  std::vector<double> rows(model_.node_count(), 0);
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Gradients shapes = by_corners(Mat3::Identity(), elements_[e].inverse_edges);
+    const Eigen::RowVector4d sizes = shapes.colwise().norm();
+    for (int k = 0; k < 4; ++k) {
+      rows[model_.solid.tetrahedra[e][static_cast<std::size_t>(k)]] +=
+          shear_modulus_ * elements_[e].volume * sizes[k] * sizes.sum();
+    }
+  }
+  double bound = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    bound = std::max(bound, rows[i] * model_.inverse_masses[i]);
+  }
+  return bound;
 }
 
 Mat3 XpbdTetrahedra::deformation_gradient(std::size_t element,

@@ -161,6 +161,8 @@ int palpate_command(int argc, char** argv) {
               "palpate-plan", job);
   add_program(app, "stability", "Map where each method fails, measured and predicted",
               "palpate-bench-stability", job);
+  add_program(app, "fuzz", "Run random scenes, looking for one that fails without a guard noticing",
+              "palpate-fuzz", job);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -24,7 +24,7 @@ TEST_CASE("accuracy command: tables and charts of one case appear") {
   CHECK_THAT(out.str(), Catch::Contains("implicit_volume"));
   for (const char* name :
        {"points.csv", "samples.csv", "accuracy_cost.png", "accuracy_mesh.png",
-        "accuracy_cost_mesh.png", "accuracy_volume.png", "accuracy_curves.png"}) {
+        "accuracy_cost_mesh.png", "accuracy_volume.png", "accuracy_curves.png", "results.md"}) {
     INFO(name);
     CHECK(std::filesystem::exists(folder.path / name));
   }

@@ -173,5 +173,15 @@ TEST_CASE("spring network: virtual nodes lie on the dominant axis of a long box"
   CHECK(nodes[2].y() > 0.05);
 }
 
+TEST_CASE("spring network: one tetrahedron gets one virtual node, and no spring without length") {
+  // Oracle: its centroid; every section along its axis would hold one or two nodes.
+  const auto tetrahedron = geometry::make_tetrahedron(0.1);
+  const auto nodes = place_virtual_nodes(tetrahedron, 9);
+  REQUIRE(nodes.size() == 1);
+  CHECK(nodes[0].norm() < 1e-12);
+  const auto network = build_spring_network(tetrahedron, {}, {});
+  for (const Spring& spring : network.springs) CHECK(spring.rest_length > 0.01);
+}
+
 }  // namespace
 }  // namespace palpate::deformation

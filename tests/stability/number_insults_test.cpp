@@ -88,7 +88,10 @@ void check_recovers(DeformationWorld& world, Exit& exit) {
   for (std::size_t i = 0; i < rest.size(); ++i) {
     farthest = std::max(farthest, std::abs(exit.nodes.positions[i] - rest[i]));
   }
-  CHECK(farthest < 10e-3f);  // put back and pressed anew, the slowest swing is not over
+  // Put back to rest under the plate, the pole of this coarse ball is snapped through by it:
+  // another equilibrium of its springs, 10.3 mm away, 6.5 mm after these 3 s. Others are below 2
+  // mm.
+  CHECK(farthest < 10e-3f);
   CHECK(exit.nodes.kinetic_energy < 1e-6);
 }
 

@@ -31,5 +31,26 @@ TEST_CASE("Baumgarte: the volume error decays like (1 + a t) e^(-a t), whatever 
   CHECK(coarse / fine == Approx(2).epsilon(0.2));
 }
 
+TEST_CASE("Baumgarte: where springs are soft, the step is that of the law alone") {
+  // Oracle: analytic, the root of b² h² + 4 a h = 4: an error decays below it, and grows beyond.
+  auto organ = testing::ball_organ_with(scene::Model::kBaumgarte);
+  organ.tissue.youngs_modulus = 100;
+  const auto model = testing::ball_model(1, organ);
+  Baumgarte baumgarte(model);
+  CHECK(baumgarte.largest_step() == Approx(0.9 * Baumgarte::law_step_bound()));
+  const auto left_after = [&](double h) {
+    OrganState state = rest_state(model);
+    testing::scale(state, 1 + 1e-6);
+    const double start = testing::volume_of(model, state) - model.rest_volume;
+    for (int s = 0; s < 100; ++s) baumgarte.step(h, {}, state);
+    return std::abs((testing::volume_of(model, state) - model.rest_volume) / start);
+  };
+  CHECK(left_after(0.95 * Baumgarte::law_step_bound()) < 0.1);
+  CHECK(left_after(1.05 * Baumgarte::law_step_bound()) > 10);
+  organ.tissue.youngs_modulus = 1e6;
+  const auto stiff = testing::ball_model(1, organ);
+  CHECK(Baumgarte(stiff).largest_step() == largest_explicit_step(stiff, 0));
+}
+
 }  // namespace
 }  // namespace palpate::deformation

@@ -52,6 +52,39 @@ TEST_CASE("XPBD tetrahedra: a shaken organ keeps its momentum and loses energy")
   CHECK(left < energy);
 }
 
+/// Kinetic energy after 500 steps of h over that of the kick.
+double kept_of_kick(const OrganModel& model, XpbdTetrahedra& xpbd, double h) {
+  OrganState state = rest_state(model);
+  double kick = 0, left = 0;
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    const auto k = static_cast<double>(i);
+    state.velocities[i] = 1e-3 * Vec3(std::sin(k), std::sin(2 * k), std::sin(3 * k));
+    kick += model.masses[i] * state.velocities[i].squaredNorm();
+  }
+  for (int s = 0; s < 500; ++s) xpbd.step(h, {}, state);
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    left += model.masses[i] * state.velocities[i].squaredNorm();
+  }
+  return left / kick;
+}
+
+TEST_CASE("XPBD tetrahedra: stiff tissue and fine meshes shorten the step") {
+  // Oracle: dimension, h ~ a √(ρ/μ); the bound is stable, and three times it is not.
+  auto organ = tetrahedra_organ(0.45, 0);
+  const auto soft = testing::block_model(organ, 3);
+  CHECK(XpbdTetrahedra(soft).largest_step() == XpbdTetrahedra::kStep);
+  organ.tissue.youngs_modulus = 10e6;
+  const auto coarse = testing::block_model(organ, 3), fine = testing::block_model(organ, 6);
+  organ.tissue.youngs_modulus = 40e6;
+  const auto stiff = testing::block_model(organ, 3);
+  XpbdTetrahedra xpbd(coarse);
+  const double h = xpbd.largest_step();
+  CHECK(XpbdTetrahedra(fine).largest_step() == Approx(h / 2));
+  CHECK(XpbdTetrahedra(stiff).largest_step() == Approx(h / 2));
+  CHECK(kept_of_kick(coarse, xpbd, h) < 1);
+  CHECK_FALSE(kept_of_kick(coarse, xpbd, 3 * h) < 10);
+}
+
 TEST_CASE("XPBD tetrahedra: turned inside out, an organ finds back to its shape") {
   // Oracle: the shape at rest.
   const auto model = testing::block_model(tetrahedra_organ(0.45, 20), 2);
