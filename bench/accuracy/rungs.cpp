@@ -19,11 +19,13 @@ constexpr double kSolidWall = 0.16, kSolidInnerRatio = 10;  // docs/calibration.
 }  // namespace
 
 std::string Setting::name() const {
-  return fmt::format("{}, level {}, {:g} Hz", scene::word_of(model), level, rate);
+  return fmt::format("{}, level {}, {:g} Hz", scene::word_of(model), level, rate) +
+         (iterations > 0 ? fmt::format(", {} iterations", iterations) : "");
 }
 
 std::string Setting::key() const {
-  return fmt::format("{}-{}-{:g}", scene::word_of(model), level, rate);
+  return fmt::format("{}-{}-{:g}", scene::word_of(model), level, rate) +
+         (iterations > 0 ? fmt::format("-{}", iterations) : "");
 }
 
 std::vector<scene::Model> ladder() {
@@ -39,6 +41,7 @@ scene::Organ solid_organ(const Setting& setting, double radius, std::size_t virt
   scene::Organ organ;
   organ.name = "solid";
   organ.model = setting.model;
+  organ.iterations = setting.iterations;
   organ.tissue.youngs_modulus = youngs_modulus;
   organ.tissue.density = density;
   organ.tissue.wall_thickness = kSolidWall * radius;

@@ -122,6 +122,7 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   scene::Organ& organ = changed.organs[0];
   organ.model = candidate.model;
   organ.integrator = candidate.integrator;
+  organ.iterations = 0;
   organ.mesh.nodes = candidate.nodes;
   if (candidate.rate > 0) changed.rates.deformation = candidate.rate;
   changed.rates.collision = std::max(changed.rates.collision, changed.rates.deformation);
