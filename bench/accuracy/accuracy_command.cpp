@@ -119,7 +119,8 @@ int run_accuracy(const AccuracyOptions& options, std::ostream& out, std::ostream
     out << "on " << bench::machine_name() << '\n';
     bench::draw_figures(options.root / "scripts/plot_accuracy.py", options.out);
     out << "in " << options.out.string()
-        << ": the charts, points.csv, samples.csv, profiles.csv, truths.csv, bullet.csv; points/ is what a next run starts "
+        << ": the charts, points.csv, samples.csv, profiles.csv, truths.csv, bullet.csv; points/ "
+           "is what a next run starts "
            "from\n";
     return kExitDone;
   } catch (const bench::Stopped&) {

@@ -39,10 +39,10 @@ void write_points(const std::vector<Point>& points, const std::filesystem::path&
                      "profile_error_m", "volume_error", "diverged"}));
   for (const Point& p : points) {
     const Measurement& m = p.measurement;
-    table.write_row(row_of(
-        p, {double(m.surface_nodes), double(m.inner_nodes), double(m.tetrahedra), m.step, m.cost,
-            force_error(m), shape_error(m), field_error(m), contact_radius_error(m),
-            profile_error(m), m.volume_error, double(m.diverged)}));
+    table.write_row(
+        row_of(p, {double(m.surface_nodes), double(m.inner_nodes), double(m.tetrahedra), m.step,
+                   m.cost, force_error(m), shape_error(m), field_error(m), contact_radius_error(m),
+                   profile_error(m), m.volume_error, double(m.diverged)}));
   }
   table.finish();
 }
@@ -61,14 +61,13 @@ void write_samples(const std::vector<Point>& points, const std::filesystem::path
 }
 
 void write_profiles(const std::vector<Point>& points, const std::filesystem::path& file) {
-  bench::TableFile table(file,
-                         columns({"load", "distance_m", "displacement_m", "reference_m"}));
+  bench::TableFile table(file, columns({"load", "distance_m", "displacement_m", "reference_m"}));
   for (const Point& p : points) {
     for (const Sample& s : p.measurement.samples) {
       for (std::size_t i = 0; i < kProfilePlaces.size(); ++i) {
         if (std::isnan(s.profile[i])) continue;
-        table.write_row(row_of(p, {s.load, kProfilePlaces[i], s.profile[i],
-                                   s.reference_profile[i]}));
+        table.write_row(
+            row_of(p, {s.load, kProfilePlaces[i], s.profile[i], s.reference_profile[i]}));
       }
     }
   }

@@ -110,8 +110,8 @@ Measurement measure_ball(const Setting& setting, const Source& source,
     // The mesh's own radius is a little less than the ball's: growth is compared.
     sample.shape = equatorial_radius(stage) / rest_radius * kRadius - kRadius;
     sample.reference_shape = 1e-3 * truth.at("equatorial_radius_mm_nu0.499", row) - kRadius;
-    sample.contact_radius = contact_radius(stage, Vec3::UnitZ(),
-                                           [&](const Vec3& x) { return height - x.z(); });
+    sample.contact_radius =
+        contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
     sample.reference_contact_radius = 1e-3 * truth.at("contact_radius_mm_nu0.499", row);
     samples.push_back(sample);
     if (stage.diverged()) break;

@@ -182,8 +182,8 @@ Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing&
 Measurement bend_beam(int level, const Source&, const KeepGoing& keep_going) {
   constexpr std::array kSizes{"0.007", "0.005"};
   const elements::MixedSolid solid(
-      elements::make_quadratic(geometry::mesh_block(kBeamLow, kBeamHigh,
-                                                    kSizes[static_cast<std::size_t>(level)])),
+      elements::make_quadratic(
+          geometry::mesh_block(kBeamLow, kBeamHigh, kSizes[static_cast<std::size_t>(level)])),
       elements::NeoHookean::from_engineering(kStiff, kPoissonRatio), kDensity);
   std::vector<char> held;
   for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
@@ -210,7 +210,8 @@ Measurement measure_indent(const Setting& setting, const Source& source,
   poses[0].position = Vec3(0, 0, kHeight + kTip + 1e-4);
   Stage stage(scene, shape, poses);
   std::vector<NodeWeights> places;
-  for (const double place : kProfilePlaces) places.push_back(weights_at(shape, {place, 0, kHeight}));
+  for (const double place : kProfilePlaces)
+    places.push_back(weights_at(shape, {place, 0, kHeight}));
   std::vector<Sample> samples;
   for (const double depth : kTipDepths) {
     move_and_settle(stage, poses, {{0, 0, kHeight + kTip - depth}}, kTipSpeed, keep_going);
@@ -219,9 +220,8 @@ Measurement measure_indent(const Setting& setting, const Source& source,
     sample.load = depth;
     sample.force = stage.force(0).z();
     sample.reference_force = truth.at("F_block_N", row);
-    sample.contact_radius = contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) {
-      return (x - poses[0].position).norm() - kTip;
-    });
+    sample.contact_radius = contact_radius(
+        stage, Vec3::UnitZ(), [&](const Vec3& x) { return (x - poses[0].position).norm() - kTip; });
     sample.reference_contact_radius = 1e-3 * truth.at("contact_radius_mm", row);
     for (std::size_t i = 0; i < places.size(); ++i) {
       sample.profile[i] = displacement(stage, places[i]).z();

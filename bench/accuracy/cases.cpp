@@ -29,7 +29,9 @@ const std::array<Entry, 9>& entries() {
       {{"indent", "depth [m]", "", 3, false, Truth::kPartly}, measure_indent, press_block},
       {{"vibration", "exact frequency [Hz]", "", 3, true, Truth::kReference}, measure_vibration},
       {{"squeeze", "time [s]", "", 3, true, Truth::kOwn}, measure_squeeze, squeeze_in_small_steps},
-      {{"beam", "gravity [m/s2]", "sag of the tip", 3, false, Truth::kOwn}, measure_beam, bend_beam},
+      {{"beam", "gravity [m/s2]", "sag of the tip", 3, false, Truth::kOwn},
+       measure_beam,
+       bend_beam},
       {{"liver", "depth [m]", "displacement 20 mm beside", 3, false, Truth::kOwn},
        measure_liver,
        press_liver},
@@ -112,8 +114,8 @@ double force_error(const Measurement& measurement) {
   if (measurement.is_course) {
     const double scale =
         root_mean_square(measurement, [](const Sample& s) { return s.reference_force; });
-    const double off = root_mean_square(
-        measurement, [](const Sample& s) { return s.force - s.reference_force; });
+    const double off =
+        root_mean_square(measurement, [](const Sample& s) { return s.force - s.reference_force; });
     return off / scale;
   }
   return root_mean_square(measurement,

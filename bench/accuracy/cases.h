@@ -4,8 +4,8 @@
 //   indent    block under a frictionless 5 mm sphere      reference (case D)
 //   vibration free ball, its ellipsoidal mode             Lamb's exact root (case E)
 //   squeeze   the ball, squeezed within 50 ms             the accurate rung in small steps
-//   beam      a cantilever bends under its weight         equilibrium of the accurate rung (truths.h)
-//   liver, stomach   pressed by a sphere                  the same
+//   beam      a cantilever bends under its weight         equilibrium of the accurate rung
+//   (truths.h) liver, stomach   pressed by a sphere                  the same
 // All but vibration and squeeze move slowly and come to rest at each load.
 #pragma once
 
@@ -39,7 +39,7 @@ struct Sample {
   double reference_force = kUnknown;
   double shape = kUnknown;  ///< see Case::shape_name [m]
   double reference_shape = kUnknown;
-  double field_error = kUnknown;  ///< RMS distance of points from where they should be [m]
+  double field_error = kUnknown;     ///< RMS distance of points from where they should be [m]
   double contact_radius = kUnknown;  ///< of the touching nodes' share of the surface [m]
   double reference_contact_radius = kUnknown;
   Profile profile = unknown_profile();

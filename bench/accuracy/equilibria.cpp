@@ -13,7 +13,7 @@ namespace {
 using elements::MixedSolid;
 using elements::SolidState;
 
-constexpr double kStride = 5e-4;       // of the sphere between equilibria [m]
+constexpr double kStride = 0.1;        // radii, of the sphere between equilibria
 constexpr double kReach = 4;           // radii: faces within may touch
 constexpr double kPenaltyRatio = 300;  // as in case D of bench/elements
 
@@ -85,7 +85,7 @@ std::vector<Pressed> press_at_rest(const MixedSolid& solid, std::vector<char> he
   elements::EquilibriumSolver solver(solid, std::move(held), &contact);
   const auto setting = quiet(keep_going);
   elements_bench::LoadPath path(solid, solver, &contact, setting);
-  path.set_longest_stride(kStride);
+  path.set_longest_stride(kStride * press.radius);
   std::vector<Pressed> answers;
   for (const double depth : press.depths) {
     const bool reached = path.advance_to(depth, [&](double at, SolidState&) {
@@ -94,8 +94,8 @@ std::vector<Pressed> press_at_rest(const MixedSolid& solid, std::vector<char> he
     });
     if (!reached) break;
     const auto outcome = contact.outcomes(path.state())[0];
-    answers.push_back({-outcome.force.dot(press.direction),
-                       displacements(solid, path.state(), press.marks)});
+    answers.push_back(
+        {-outcome.force.dot(press.direction), displacements(solid, path.state(), press.marks)});
   }
   return answers;
 }

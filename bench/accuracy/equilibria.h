@@ -10,11 +10,11 @@ namespace palpate::accuracy {
 
 /// A frictionless sphere that has moved `depth` along `direction` since it touched at `place`.
 struct Press {
-  Vec3 place = Vec3::Zero();          ///< on the surface at rest [m]
-  Vec3 direction = -Vec3::UnitZ();    ///< unit, into the tissue
-  double radius = 0;                  ///< of the sphere [m]
-  std::vector<double> depths;         ///< rising [m]
-  std::vector<Vec3> marks;            ///< near the surface at rest [m]
+  Vec3 place = Vec3::Zero();        ///< on the surface at rest [m]
+  Vec3 direction = -Vec3::UnitZ();  ///< unit, into the tissue
+  double radius = 0;                ///< of the sphere [m]
+  std::vector<double> depths;       ///< rising [m]
+  std::vector<Vec3> marks;          ///< near the surface at rest [m]
 };
 
 struct Pressed {

@@ -12,8 +12,8 @@ namespace palpate::accuracy {
 /// A model at one mesh size and step: one point of a chart.
 struct Setting {
   scene::Model model = scene::Model::kImplicitVolume;
-  int level = 1;      ///< of the mesh, 0 coarse; each level halves the edges
-  double rate = 250;  ///< steps asked for per simulated second [Hz]; a model may sub-step
+  int level = 1;               ///< of the mesh, 0 coarse; each level halves the edges
+  double rate = 250;           ///< steps asked for per simulated second [Hz]; a model may sub-step
   std::size_t iterations = 0;  ///< scene key of this name; 0: as many as the model has
 
   std::string name() const;  ///< "corotational, level 1, 250 Hz, 10 iterations"

@@ -8,7 +8,8 @@ namespace palpate::accuracy {
 namespace {
 
 constexpr double kCompression = 0.2, kClosing = 0.06, kDuration = 0.3;  // [1], [s], [s]
-/// What a force is the mean over: the longest period there is, for a period has no finer answer [s].
+/// What a force is the mean over: the longest period there is, for a period has no finer answer
+/// [s].
 constexpr double kWindow = 0.02;
 constexpr double kDrag = 10;  // [1/s]; no other damping: its laws differ between models
 

@@ -87,8 +87,8 @@ void run(std::vector<Job>& jobs, const PointStore& store,
   Pace pace;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (known[i]) continue;
-    begin({jobs[i].name, static_cast<int>(i), static_cast<int>(jobs.size()),
-           pace.seconds_for(left)});
+    begin(
+        {jobs[i].name, static_cast<int>(i), static_cast<int>(jobs.size()), pace.seconds_for(left)});
     pace.begin();
     *jobs[i].result = jobs[i].measure();
     store.write(jobs[i].of, jobs[i].key, *jobs[i].result);
@@ -99,13 +99,12 @@ void run(std::vector<Job>& jobs, const PointStore& store,
 
 }  // namespace
 
-// Steps per second grow with the rate, and cost per step with nodes: eight times per level, more for
-// direct solvers; fitted to the usual chart, good to a factor of two or three.
+// Steps per second grow with the rate, and cost per step with nodes: eight times per level, more
+// for direct solvers; fitted to the usual chart, good to a factor of two or three.
 double weight_of(const Setting& setting) {
   const bool springs = setting.model < scene::Model::kXpbdSprings;
   const bool implicit = setting.model == scene::Model::kCorotational ||
-                        setting.model == scene::Model::kNodalPressure ||
-                        is_slow(setting.model);
+                        setting.model == scene::Model::kNodalPressure || is_slow(setting.model);
   const double model = is_slow(setting.model) ? 12 : springs ? 0.3 : 1;
   const double growth = is_slow(setting.model) ? 20 : 7;
   return model * std::pow(growth, setting.level) * (implicit ? setting.rate / 100 : 1);

@@ -1,5 +1,5 @@
-// Truths that no reference has. At rest: equilibria of quadratic elements (deformation/elements), on
-// meshes finer than a model can step and refined under what touches, independent of step and
+// Truths that no reference has. At rest: equilibria of quadratic elements (deformation/elements),
+// on meshes finer than a model can step and refined under what touches, independent of step and
 // damping. In motion: the model quadratic_elements in small steps.
 #pragma once
 

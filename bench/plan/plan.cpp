@@ -107,7 +107,9 @@ std::vector<Candidate> candidates_of(const scene::Scene& scene) {
   const double least = scene.needs.step_rate;
   std::vector<Candidate> candidates;
   for (const scene::Model model : models_for(scene.needs.contents)) {
-    for (const std::size_t count : {nodes / 4, nodes / 2, nodes, 2 * nodes}) {
+    for (std::size_t count : {nodes / 4, nodes / 2, nodes, 2 * nodes}) {
+      // Of a quadratic mesh these are corners: a quarter of them makes as many nodes.
+      if (scene::is_quadratic(model)) count /= 4;
       for (const double rate : {least, 2 * least}) {
         if (count < kLeastNodes || count > kMostNodes || rate > 2000) continue;
         candidates.push_back({model, count, rate});

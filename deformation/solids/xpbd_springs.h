@@ -10,10 +10,11 @@
 // The volume and the contacts, constraints of no compliance, follow together, solved to the end
 // (contact_solve.h) on the velocities (x − xₙ)/h: the contents are kept whatever the springs do.
 //
-// once, or as many times as the scene's `iterations` says: then backward Euler's step is approached,
-// at the price of as many passes. One visit meets a spring as if alone in the world: the answer to a sum of springs comes out
-// softer, for short steps by about h²ω² of the local frequency ω. The number of passes over the
-// springs per second is that of an explicit method; but no stiffness is too much.
+// once, or as many times as the scene's `iterations` says: then backward Euler's step is
+// approached, at the price of as many passes. One visit meets a spring as if alone in the world:
+// the answer to a sum of springs comes out softer, for short steps by about h²ω² of the local
+// frequency ω. The number of passes over the springs per second is that of an explicit method; but
+// no stiffness is too much.
 #pragma once
 
 #include <span>

@@ -57,7 +57,7 @@ class XpbdTetrahedra : public OrganDynamics {
   const OrganModel& model_;
   int iterations_;
   std::vector<std::array<double, 2>> multipliers_;  ///< λ_D, λ_H of this step  (tetrahedra)
-  double shear_modulus_, lame_;  ///< μ, λ [Pa]
+  double shear_modulus_, lame_;                     ///< μ, λ [Pa]
   double largest_step_ = kStep;
   std::vector<Element> elements_;
   std::vector<Vec3> positions_, velocities_;

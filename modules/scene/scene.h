@@ -105,9 +105,9 @@ struct Organ {
   Tissue tissue;
   Springs springs;
   Solid solid;
-  Model model = Model::kImplicitVolume;            ///< `model`
-  std::size_t volume_corrections = 0;              ///< `volume_corrections`, Newton [0 … 5]
-  std::size_t iterations = 0;                      ///< `iterations` [0 … 1000]; 0: the model's own
+  Model model = Model::kImplicitVolume;  ///< `model`
+  std::size_t volume_corrections = 0;    ///< `volume_corrections`, Newton [0 … 5]
+  std::size_t iterations = 0;            ///< `iterations` [0 … 1000]; 0: the model's own
   Integrator integrator = Integrator::kAutomatic;  ///< `integrator`
   Filling filling;                                 ///< `filling`
   std::vector<Region> fixed;                       ///< `fixed`

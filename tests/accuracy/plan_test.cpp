@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "modules/scene/scene_reader.h"
+
 namespace palpate::plan {
 namespace {
 
@@ -62,6 +64,20 @@ TEST_CASE("plan: a candidate is written into the scene explicitly") {
   CHECK(planned.rates.deformation == 400);
   CHECK(planned.rates.collision == 400);
   CHECK(planned.rates.haptics == 2000);
+}
+
+TEST_CASE("plan: quadratic candidates have as many nodes as the others, not as many corners") {
+  // Oracle: the rule; the liver's surface has 544 nodes.
+  const auto scene =
+      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/liver_solid.yaml");
+  std::size_t most_linear = 0, most_corners = 0;
+  for (const Candidate& candidate : candidates_of(scene)) {
+    CHECK(candidate.nodes >= 60);
+    auto& most = scene::is_quadratic(candidate.model) ? most_corners : most_linear;
+    most = std::max(most, candidate.nodes);
+  }
+  CHECK(most_linear == 2 * 544);
+  CHECK(most_corners == 2 * 544 / 4);
 }
 
 }  // namespace
