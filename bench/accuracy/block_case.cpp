@@ -210,6 +210,7 @@ Measurement measure_indent(const Setting& setting, const Source& source,
   poses[0].position = Vec3(0, 0, kHeight + kTip + 1e-4);
   Stage stage(scene, shape, poses);
   std::vector<NodeWeights> places;
+  places.reserve(kProfilePlaces.size());
   for (const double place : kProfilePlaces)
     places.push_back(weights_at(shape, {place, 0, kHeight}));
   std::vector<Sample> samples;
@@ -245,6 +246,7 @@ Measurement press_block(int level, const Source&, const KeepGoing& keep_going) {
           geometry::mesh_block(Vec3::Zero(), {kHalf, kHalf, kHeight}, size.str())),
       elements::NeoHookean::from_engineering(kYoungsModulus, kPoissonRatio), kDensity);
   std::vector<char> held;
+  held.reserve(solid.displacement_count());
   for (const Vec3& node : solid.mesh().nodes) {
     for (int axis = 0; axis < 3; ++axis) {
       held.push_back(node.z() == 0 || (axis < 2 && node[axis] == 0));

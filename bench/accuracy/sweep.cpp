@@ -79,14 +79,12 @@ struct Job {
 void run(std::vector<Job>& jobs, const PointStore& store,
          const std::function<void(const Outlook&)>& begin) {
   double left = 0;
-  std::vector<char> known;
   for (const Job& job : jobs) {
-    known.push_back(store.read(job.of, job.key, *job.result));
-    if (!known.back()) left += job.weight;
+    if (!store.read(job.of, job.key, *job.result)) left += job.weight;
   }
   Pace pace;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (known[i]) continue;
+    if (!jobs[i].result->samples.empty()) continue;
     begin(
         {jobs[i].name, static_cast<int>(i), static_cast<int>(jobs.size()), pace.seconds_for(left)});
     pace.begin();
