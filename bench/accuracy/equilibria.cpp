@@ -14,6 +14,7 @@ using elements::MixedSolid;
 using elements::SolidState;
 
 constexpr double kStride = 0.1;        // radii, of the sphere between equilibria
+constexpr int kMostHalvings = 2;         // a fold is not followed: it takes hours
 constexpr double kReach = 4;           // radii: faces within may touch
 constexpr double kPenaltyRatio = 300;  // as in case D of bench/elements
 
@@ -86,6 +87,7 @@ std::vector<Pressed> press_at_rest(const MixedSolid& solid, std::vector<char> he
   const auto setting = quiet(keep_going);
   elements_bench::LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(kStride * press.radius);
+  path.set_most_halvings(kMostHalvings);
   std::vector<Pressed> answers;
   for (const double depth : press.depths) {
     const bool reached = path.advance_to(depth, [&](double at, SolidState&) {

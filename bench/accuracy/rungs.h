@@ -23,6 +23,9 @@ struct Setting {
 /// The models of the chart, plain springs first, the accurate rung last.
 std::vector<scene::Model> ladder();
 
+/// Linear tetrahedra without averaged pressures lock near ½: at most 0.45 for them, else as wanted.
+double unlocked_poisson_ratio(scene::Model model, double wanted);
+
 /// A filled solid of `radius` (of the ball of equal volume) as a scene would have it, with the
 /// springs calibrated for solids (docs/calibration.md) where the model has springs.
 /// @param virtual_nodes  1 for what has no dominant axis

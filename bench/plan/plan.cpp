@@ -7,6 +7,7 @@
 #include <set>
 
 #include "bench/accuracy/displacement_field.h"
+#include "bench/accuracy/rungs.h"
 #include "bench/accuracy/stage.h"
 #include "haptics/device.h"
 #include "modules/scene/assets.h"
@@ -124,6 +125,8 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   organ.model = candidate.model;
   organ.integrator = candidate.integrator;
   organ.iterations = 0;
+  organ.solid.poisson_ratio =
+      accuracy::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
   organ.mesh.nodes = candidate.nodes;
   if (candidate.rate > 0) changed.rates.deformation = candidate.rate;
   changed.rates.collision = std::max(changed.rates.collision, changed.rates.deformation);

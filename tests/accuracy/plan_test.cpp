@@ -65,6 +65,9 @@ TEST_CASE("plan: a candidate is written into the scene explicitly") {
       scene_with(scene, {scene::Model::kNodalPressure, 500, 400, scene::Integrator::kAutomatic});
   CHECK(planned.organs[0].model == scene::Model::kNodalPressure);
   CHECK(planned.organs[0].mesh.nodes == 500);
+  CHECK(planned.organs[0].solid.poisson_ratio == 0.499);
+  CHECK(scene_with(scene, {scene::Model::kCorotational, 500, 400}).organs[0].solid.poisson_ratio ==
+        0.45);
   CHECK(planned.rates.deformation == 400);
   CHECK(planned.rates.collision == 400);
   CHECK(planned.rates.haptics == 2000);
