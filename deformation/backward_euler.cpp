@@ -75,9 +75,11 @@ bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradi
   if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
   double rate = (volume.volume - target_volume) / h;
   volume.denominator = 0;  // of these mobilities from here on
+  volume_answers_.resize(volume.gradient.size());
   for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
     rate -= volume.gradient[i].dot(velocities[i]);
-    volume.denominator += volume.gradient[i].dot(mobilities_[i] * volume.gradient[i]);
+    volume_answers_[i] = mobilities_[i] * volume.gradient[i];
+    volume.denominator += volume.gradient[i].dot(volume_answers_[i]);
   }
   volume_row_.emplace(VolumeRow{volume, rate});
   return true;
@@ -88,10 +90,22 @@ void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const O
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     trial_[i] = state.velocities[i] + change_[i] + mobilities_[i] * residual_[i];
   }
-  volume_impulse_ += solve_contacts_and_volume(mobilities_, volume_row_ ? &*volume_row_ : nullptr,
-                                               h, rows, trial_, start)
-                         .volume_impulse;
+  hold_rows(h, rows, start);
   for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+}
+
+void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, StartImpulses start) {
+  const VolumeRow* const volume = volume_row_ ? &*volume_row_ : nullptr;
+  double volume_velocity = 0;
+  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
+    volume_velocity += volume->at.gradient[i].dot(trial_[i]);
+  }
+  const double sigma =
+      solve_contacts(mobilities_, volume, volume_velocity, h, rows, trial_, start).volume_impulse;
+  volume_impulse_ += sigma;
+  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
+    trial_[i] -= sigma * volume_answers_[i];
+  }
 }
 
 void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
@@ -164,9 +178,7 @@ void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganSt
   evaluate_volume(model_, state.positions, free_.volume);
   if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
   trial_ = state.velocities;
-  volume_impulse_ += solve_contacts_and_volume(mobilities_, &*volume_row_, h, rows, trial_,
-                                               StartImpulses::kApplied)
-                         .volume_impulse;
+  hold_rows(h, rows, StartImpulses::kApplied);
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     state.positions[i] += h * (trial_[i] - state.velocities[i]);
   }
