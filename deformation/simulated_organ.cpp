@@ -22,13 +22,15 @@ constexpr int kAdvancesToShow = 4;
 }  // namespace
 
 SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
-                               std::unique_ptr<OrganDynamics> dynamics)
+                               std::unique_ptr<OrganDynamics> dynamics, Guarding guarding)
     : model_(std::move(model)),
       dynamics_(std::move(dynamics)),
       target_volume_(organ.filling),
       guard_(*model_, knows_energy(organ.model)),
+      guarding_(guarding),
       holds_volume_(organ.model == scene::Model::kImplicitVolume),
-      pressure_cap_(pressure_cap(organ.tissue, model_->rest_volume)) {
+      pressure_limit_(holds_volume_ ? pressure_cap(organ.tissue, model_->rest_volume)
+                                    : std::numeric_limits<double>::infinity()) {
   reset();
 }
 
@@ -58,6 +60,7 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
                           AdvanceReport& report) {
   const double before = state_.target_volume;
   state_.target_volume = model_->rest_volume * target_volume_.follow(time, h);
+  state_.pressure_limit = pressure_limit_;
   const StepReport stepped = dynamics_->step(h, rows, state_);
   guard_.add_work(h, rows, state_.target_volume - before, state_);
   if (stepped.volume_skipped) {
@@ -65,14 +68,14 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
     advances_ = kThoroughLookEvery;
   }
   collapsed_time_ = stepped.volume_skipped && rows.empty() ? collapsed_time_ + h : 0;
-  if (!holds_volume_ || !(std::abs(state_.pressure) > pressure_cap_)) return;
+  if (!stepped.pressure_capped) return;
   report.pressure_capped = true;
-  state_.pressure = std::copysign(pressure_cap_, state_.pressure);
   release_volume();
   advances_ = kThoroughLookEvery;
 }
 
 bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
+  if (guarding_ == Guarding::kOff) return true;
   const bool thorough = ++advances_ >= kThoroughLookEvery;
   Disbelief seen = thorough ? guard_.look_thoroughly(state_, *dynamics_) : guard_.look(state_);
   if (collapsed_time_ > kCollapsedTime) seen = Disbelief::kCollapsed;

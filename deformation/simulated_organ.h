@@ -24,7 +24,7 @@ struct AdvanceReport {
   Disbelief reason = Disbelief::kNone;  ///< of that
   bool back_to_rest = false;            ///< replaced by the rest state, not the last good one
   bool step_reduced = false;            ///< steps are shorter than stability should need
-  bool pressure_capped = false;         ///< kLeastPressureCap was met: V* follows V from there
+  bool pressure_capped = false;         ///< the cap was met: V* goes on from V
   bool volume_released = false;         ///< V was far from V*: V* follows V from there
   bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
   bool contacts_ignored = false;        ///< of an organ put back to rest, for kQuietTime
@@ -33,7 +33,8 @@ struct AdvanceReport {
 };
 
 /// Least cap of the pressure |p| of a volume constraint [Pa]: an atmosphere, five times what a
-/// cough makes. Stiff walls hold more: the cap is kPressureCapOfWall E t/R if that is larger.
+/// cough makes. Stiff walls hold more: the cap is kPressureCapOfWall E t/R if that is larger. A
+/// step that would need more is taken with the cap instead of the constraint.
 inline constexpr double kLeastPressureCap = 1e5;
 inline constexpr double kPressureCapOfWall = 10;
 /// A volume further from V* than this part of V₀ is not corrected at once: V* begins again at the
@@ -48,10 +49,13 @@ inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
 /// Energy, volume and inversion are looked at in every such advance, and after any guard acted.
 inline constexpr int kThoroughLookEvery = 16;
 
+/// Off: nothing of the above is done. For measuring what it is worth (`palpate fuzz`).
+enum class Guarding : std::uint8_t { kOn, kOff };
+
 class SimulatedOrgan {
  public:
   SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
-                 std::unique_ptr<OrganDynamics> dynamics);
+                 std::unique_ptr<OrganDynamics> dynamics, Guarding guarding = Guarding::kOn);
 
   const OrganModel& model() const { return *model_; }
   OrganDynamics& dynamics() const { return *dynamics_; }
@@ -83,8 +87,9 @@ class SimulatedOrgan {
   TargetVolume target_volume_;
   StateGuard guard_;
   OrganState state_, last_good_;
+  Guarding guarding_;
   bool holds_volume_ = false;  ///< by a constraint that answers an error with an impulse
-  double pressure_cap_ = 0;    ///< [Pa]
+  double pressure_limit_ = 0;  ///< [Pa]; infinite where no constraint makes it
   int halvings_ = 0;           ///< of the step
   int failures_ = 0;           ///< states not believed, less those forgiven
   double aloof_time_ = 0;      ///< left [s]
