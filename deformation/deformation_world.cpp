@@ -143,7 +143,8 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
     impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
-                                       1 / scene.rates.deformation, rest_shapes[i], runner, guarding));
+                                       1 / scene.rates.deformation, rest_shapes[i], runner,
+                                       guarding));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }

@@ -48,7 +48,7 @@ struct OrganState {
   /// A kept volume is let go for a step that would need |p| above this [Pa]: the contents then push
   /// with just so much, and the volume becomes what it becomes. Not below 0.
   double pressure_limit = std::numeric_limits<double>::infinity();
-  double pressure = 0;           ///< p = −λ of the last step [Pa]
+  double pressure = 0;  ///< p = −λ of the last step [Pa]
 };
 
 /// The organ's total mass is density × enclosed volume (filled organ), spread over the surface

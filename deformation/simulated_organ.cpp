@@ -52,7 +52,7 @@ void SimulatedOrgan::reset() {
   state_ = last_good_ = rest_state(*model_);
   guard_.begin(state_, dynamics_->elastic_energy(state_));
   halvings_ = failures_ = advances_ = 0;
-  collapsed_time_ = aloof_time_ = 0;
+  collapsed_time_ = aloof_time_ = gentle_time_ = 0;
   quiet_time_ = kQuietTime;
 }
 
@@ -61,6 +61,9 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
   const double before = state_.target_volume;
   state_.target_volume = model_->rest_volume * target_volume_.follow(time, h);
   state_.pressure_limit = pressure_limit_;
+  if (gentle_time_ > 0) {
+    for (ContactRow& row : rows) row.gap = std::max(row.gap, -kGentleSpeed * h);
+  }
   const StepReport stepped = dynamics_->step(h, rows, state_);
   guard_.add_work(h, rows, state_.target_volume - before, state_);
   if (stepped.volume_skipped) {
@@ -77,7 +80,8 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
 bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   if (guarding_ == Guarding::kOff) return true;
   const bool thorough = ++advances_ >= kThoroughLookEvery;
-  Disbelief seen = thorough ? guard_.look_thoroughly(state_, *dynamics_) : guard_.look(state_);
+  Disbelief seen =
+      thorough ? guard_.look_thoroughly(state_, period, *dynamics_) : guard_.look(state_, period);
   if (collapsed_time_ > kCollapsedTime) seen = Disbelief::kCollapsed;
   if (seen != Disbelief::kNone) {
     recover(seen, report);
@@ -112,10 +116,12 @@ bool SimulatedOrgan::volume_is_far() const {
 void SimulatedOrgan::recover(Disbelief reason, AdvanceReport& report) {
   report.diverged = report.step_reduced = true;
   report.reason = reason;
+  gentle_time_ = kQuietTime;
   if (++failures_ > kMostFailures) {
     report.back_to_rest = true;
     last_good_ = rest_state(*model_);
     aloof_time_ = kQuietTime;
+    gentle_time_ += kQuietTime;
   }
   put(last_good_);
   std::fill(state_.velocities.begin(), state_.velocities.end(), Vec3::Zero());
@@ -130,6 +136,7 @@ void SimulatedOrgan::shorten_steps() {
 
 void SimulatedOrgan::lengthen_steps(double period) {
   aloof_time_ -= period;
+  gentle_time_ -= period;
   quiet_time_ += period;
   if (halvings_ == 0 || quiet_time_ < kQuietTime) return;
   --halvings_;

@@ -3,7 +3,8 @@
 //
 // From mild to harsh, each seen in AdvanceReport:
 //   1. suspicious energy: the next steps are halved, quartered, … down to 1/2^kMostHalvings
-//   2. not believed: back to the last good state, at rest, with halved steps
+//   2. not believed: back to the last good state, at rest, with halved steps; where that is inside
+//      a probe, contacts push it out at kGentleSpeed for kQuietTime
 //   3. not believed for the fourth time: back to the rest state, and no contacts for kQuietTime
 // kQuietTime without any of them doubles the steps again and forgives a failure. Each advance ends
 // in a state that was looked at; none is computed twice.
@@ -46,6 +47,8 @@ inline constexpr double kCollapsedTime = 0.5;
 inline constexpr int kMostHalvings = 3;
 inline constexpr int kMostFailures = 3;
 inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
+/// A state put back may be inside a probe. Pushed out of it in a hurry it would fail again [m/s].
+inline constexpr double kGentleSpeed = 0.05;
 /// Energy, volume and inversion are looked at in every such advance, and after any guard acted.
 inline constexpr int kThoroughLookEvery = 16;
 
@@ -93,6 +96,7 @@ class SimulatedOrgan {
   int halvings_ = 0;           ///< of the step
   int failures_ = 0;           ///< states not believed, less those forgiven
   double aloof_time_ = 0;      ///< left [s]
+  double gentle_time_ = 0;     ///< left [s]
   double quiet_time_ = 0;      ///< since a guard acted [s]
   double collapsed_time_ = 0;  ///< [s]
   int advances_ = 0;           ///< since the last thorough look

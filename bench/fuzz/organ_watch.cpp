@@ -42,9 +42,8 @@ void OrganWatch::look(bool replaced) {
   before_ = seen_;
   world_.write_node_positions(organ_, nodes_);
   if (const char* field = refusal(nodes_)) {
-    throw Failure{
-        fmt::format("node positions not sound ({}): of organ {}, energies {} J and {} J", field,
-                    organ_, nodes_.kinetic_energy, nodes_.elastic_energy)};
+    throw Failure{fmt::format("node positions not sound ({}): of organ {}, energies {} J and {} J",
+                              field, organ_, nodes_.kinetic_energy, nodes_.elastic_energy)};
   }
   take_positions(nodes_.positions, seen_);
   look_at_nodes(replaced);

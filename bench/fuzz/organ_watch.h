@@ -33,7 +33,7 @@ class OrganWatch {
   double size_, period_;
   NodePositions nodes_;
   std::vector<Vec3> rest_, seen_, before_;  ///< [m]
-  double away_ = 0;  ///< largest way from rest when last looked at [m]
+  double away_ = 0;                         ///< largest way from rest when last looked at [m]
 };
 
 }  // namespace palpate::fuzz
