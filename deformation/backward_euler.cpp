@@ -1,6 +1,7 @@
 #include "deformation/backward_euler.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace palpate::deformation {
 namespace {
@@ -33,6 +34,22 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   linearise_springs(h, state);
   report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
 
+  // 2.-4. contacts, springs and volume
+  solve(h, rows, state);
+  if (std::abs(volume_impulse_) > h * state.pressure_limit) {
+    push_with(std::copysign(h * state.pressure_limit, volume_impulse_), h, rows, state);
+    report.pressure_capped = true;
+  }
+
+  // 5. the new state, and what the linearisation of the volume left
+  add(1, change_, state.velocities);
+  add(h, state.velocities, state.positions);
+  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
+  state.pressure = -volume_impulse_ / h;
+  return report;
+}
+
+void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   // 2. which contacts close, which slide
   volume_impulse_ = 0;
   solve_impulses(h, rows, state, StartImpulses::kToApply);
@@ -44,13 +61,19 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   // 4. what opened, closed or began to slide meanwhile
   solve_impulses(h, rows, state, StartImpulses::kApplied);
   keep_momentum(h, rows, state);
+}
 
-  // 5. the new state, and what the linearisation of the volume left
-  add(1, change_, state.velocities);
-  add(h, state.velocities, state.positions);
-  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
-  state.pressure = -volume_impulse_ / h;
-  return report;
+/// Solves with a given impulse of the contents, which is one more outside force.
+void BackwardEuler::push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                              const OrganState& state) {
+  linearise_springs(h, state);
+  volume_row_.reset();
+  const auto& gradient = free_.volume.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    if (model_.inverse_masses[i] > 0) residual_[i] -= volume_impulse * gradient[i];
+  }
+  solve(h, rows, state);
+  volume_impulse_ = volume_impulse;
 }
 
 void BackwardEuler::linearise_springs(double h, const OrganState& state) {

@@ -53,6 +53,9 @@ class BackwardEuler : public OrganDynamics {
   int iterations_used() const { return iterations_used_; }
 
  private:
+  void solve(double h, std::span<ContactRow> rows, const OrganState& state);
+  void push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                 const OrganState& state);
   void linearise_springs(double h, const OrganState& state);
   /// Φ + h g·(v⁺ − velocities) = 0 with `volume` as it would be by these velocities.
   /// @returns false if g vanished
