@@ -91,6 +91,9 @@ IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& 
 std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
                                              double period, ChunkRunner* runner) {
   check_integrator(organ);
+  const auto iterations = [&](int usual) {
+    return organ.iterations > 0 ? static_cast<int>(organ.iterations) : usual;
+  };
   switch (organ.model) {
     case scene::Model::kImplicitVolume:
     case scene::Model::kMassSpring:
@@ -100,14 +103,14 @@ std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const Or
       return std::make_unique<SymplecticEuler>(model, runner);
     case scene::Model::kCorotational:
       return std::make_unique<ImplicitSolid>(model, std::make_unique<Corotational>(model),
-                                             Corotational::kIterations);
+                                             iterations(Corotational::kIterations));
     case scene::Model::kNodalPressure:
       return std::make_unique<ImplicitSolid>(model, std::make_unique<NodalPressure>(model),
-                                             NodalPressure::kIterations);
+                                             iterations(NodalPressure::kIterations));
     case scene::Model::kXpbdSprings:
-      return std::make_unique<XpbdSprings>(model);
+      return std::make_unique<XpbdSprings>(model, iterations(1));
     case scene::Model::kXpbdTetrahedra:
-      return std::make_unique<XpbdTetrahedra>(model);
+      return std::make_unique<XpbdTetrahedra>(model, iterations(1));
     case scene::Model::kQuadraticElements:
       return std::make_unique<QuadraticElements>(model);
     case scene::Model::kModal:

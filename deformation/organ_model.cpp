@@ -78,14 +78,16 @@ bool wants_volume(scene::Model model) {
 
 }  // namespace
 
+bool is_fixed(const scene::Organ& organ, const Vec3& rest_position) {
+  return std::any_of(organ.fixed.begin(), organ.fixed.end(),
+                     [&](const auto& region) { return contains(region, rest_position); });
+}
+
 void fix_nodes(const scene::Organ& organ, std::size_t count, OrganModel& model) {
   const auto& positions = model.network.rest_positions;
   std::size_t held = 0;  // of the surface
   for (std::uint32_t i = 0; i < count; ++i) {
-    const bool fixed = std::any_of(organ.fixed.begin(), organ.fixed.end(), [&](const auto& region) {
-      return contains(region, positions[i]);
-    });
-    if (!fixed) continue;
+    if (!is_fixed(organ, positions[i])) continue;
     model.inverse_masses[i] = 0;
     model.fixed_nodes.push_back(i);
     held += i < model.surface_node_count() ? 1 : 0;

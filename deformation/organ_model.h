@@ -63,6 +63,9 @@ struct OrganState {
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
                              const geometry::OrganShape& rest_shape);
 
+/// Whether a node at this place is held by one of the organ's regions.
+bool is_fixed(const scene::Organ& organ, const Vec3& rest_position);
+
 /// Fixes the first `count` nodes where their rest positions lie in the organ's regions.
 /// @throws InputError naming the organ if no node of the surface is left free
 void fix_nodes(const scene::Organ& organ, std::size_t count, OrganModel& model);

@@ -8,9 +8,7 @@
 """
 
 import argparse
-import csv
 import math
-import shutil
 import sys
 from collections import defaultdict
 from pathlib import Path
@@ -22,6 +20,8 @@ except ImportError as error:
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+
+from accuracy_tables import ERRORS, TITLES, known, nodes_of, put_into_docs, rows_of, write_tables  # noqa: E402
 
 COLORS = {
     "mass_spring": "#9a9a9a",
@@ -36,55 +36,9 @@ COLORS = {
     "modal": "#7f8c1f",
     "quadratic_elements": "#111111",
 }
-PICTURES = ["accuracy_cost.png", "accuracy_curves.png", "accuracy_volume.png"]  # shown in the docs
 MARKERS = "ovsD^"  # by mesh level
-TITLES = {
-    "ball": "solid ball between plates, 10–40 %",
-    "block": "bonded block, 5–18 %",
-    "truthcube": "Truth Cube beads",
-    "indent": "5 mm sphere into a block, 2–8 mm",
-    "vibration": "free ball, ellipsoidal mode",
-    "beam": "cantilever under its weight",
-    "liver": "liver, 8 mm sphere, 3–9 mm",
-    "stomach": "stomach as a solid, 8 mm sphere, 3–9 mm",
-}
-# What stands for the error of a case: column, factor for the axis, words.
-ERRORS = {
-    "ball": ("force_error", 100, "error of force [%]"),
-    "block": ("force_error", 100, "error of force [%]"),
-    "truthcube": ("field_error_m", 1e3, "error of bead positions [mm]"),
-    "indent": ("force_error", 100, "error of force [%]"),
-    "vibration": ("force_error", 100, "error of frequency [%]"),
-    "beam": ("shape_error_m", 1e3, "error of the tip's sag [mm]"),
-    "liver": ("force_error", 100, "error of force [%]"),
-    "stomach": ("force_error", 100, "error of force [%]"),
-}
-
-
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def rows_of(file):
-    if not file.exists():
-        return []
-    with open(file, newline="", encoding="utf-8") as stream:
-        return [
-            {key: value if key in ("case", "model", "solver", "setting", "verdict") else number(value)
-             for key, value in row.items()}
-            for row in csv.DictReader(stream)
-        ]
-
-
-def known(*values):
-    return all(math.isfinite(value) and value > 0 for value in values)
-
-
-def nodes_of(point):
-    return point["surface_nodes"] + point["inner_nodes"]
+# Iterations per step where the scene asks for none of its own.
+OWN_ITERATIONS = {"xpbd_springs": 1, "xpbd_tetrahedra": 1, "corotational": 20, "nodal_pressure": 40}
 
 
 def pareto(points, error):
@@ -97,7 +51,8 @@ def pareto(points, error):
 
 
 def label(point):
-    return f"{point['model']}, {int(nodes_of(point))} nodes, {point['rate_hz']:g} Hz"
+    iterations = f", {point['iterations']:g} iterations" if point["iterations"] else ""
+    return f"{point['model']}, {int(nodes_of(point))} nodes, {point['rate_hz']:g} Hz{iterations}"
 
 
 def legend_of_models(figure, models):
@@ -109,7 +64,7 @@ def legend_of_models(figure, models):
 
 
 def panels(count):
-    columns = min(count, 4 if count > 4 else 2)
+    columns = min(count, 5 if count > 8 else 4 if count > 4 else 2)
     rows = math.ceil(count / columns)
     figure, axes = plt.subplots(rows, columns, figsize=(4.6 * columns, 3.9 * rows + 0.6), squeeze=False)
     flat = list(axes.flat)
@@ -166,7 +121,7 @@ def draw_mesh(folder, points, cases, y, scale_of, words, name):
         column, scale = (ERRORS[case][0], ERRORS[case][1]) if y is None else (y, scale_of)
         lines = defaultdict(list)
         for p in points:
-            if p["case"] == case and not p["diverged"] and known(p[column]):
+            if p["case"] == case and not p["diverged"] and not p["iterations"] and known(p[column]):
                 lines[(p["model"], p["rate_hz"])].append(p)
         best = {}
         for (model, rate), line in lines.items():
@@ -206,15 +161,17 @@ def draw_volume(folder, points, bullet):
 
 
 def draw_curves(folder, samples):
-    """Shape of the answer: force over Hertz, bulge over force, against compression."""
-    figure, axes = plt.subplots(1, 2, figsize=(11, 4.4))
-    ball = [s for s in samples if s["case"] == "ball" and known(s["force"])]
+    """Shape of the answer: force over Hertz, bulge over force, radius of contact, against compression."""
+    figure, axes = plt.subplots(1, 3, figsize=(15.5, 4.4))
+    ball = [s for s in samples if s["case"] == "ball" and not s["iterations"] and known(s["force"])]
     # Two equal contacts: each gives way by half of the whole approach, d = load · R.
     hertz = {load: 4 / 3 * (5e3 / 0.75) * math.sqrt(0.05) * (load * 0.05) ** 1.5
              for load in {s["load"] for s in ball}}
-    truth = sorted({(s["load"], s["reference_force"], s["reference_shape_m"]) for s in ball})
+    truth = sorted({(s["load"], s["reference_force"], s["reference_shape_m"], s["reference_contact_radius_m"])
+                    for s in ball})
     axes[0].plot([t[0] for t in truth], [t[1] / hertz[t[0]] for t in truth], "k--", label="reference (finite elements)")
     axes[1].plot([t[0] for t in truth], [1e3 * t[2] / t[1] for t in truth], "k--", label="reference")
+    axes[2].plot([t[0] for t in truth], [1e3 * t[3] for t in truth], "k--", label="reference")
     finest = {}
     for s in ball:
         key = s["model"]
@@ -227,9 +184,11 @@ def draw_curves(folder, samples):
         loads = [s["load"] for s in line]
         axes[0].plot(loads, [s["force"] / hertz[s["load"]] for s in line], marker="o", markersize=3, color=color, label=model)
         axes[1].plot(loads, [1e3 * s["shape_m"] / s["force"] for s in line], marker="o", markersize=3, color=color)
+        axes[2].plot(loads, [1e3 * s["contact_radius_m"] for s in line], marker="o", markersize=3, color=color)
     axes[0].set_ylabel("force / Hertz")
     axes[1].set_ylabel("growth of the equator / force [mm/N]")
     axes[1].set_yscale("log")
+    axes[2].set_ylabel("radius of contact [mm]")
     for axis in axes:
         axis.set_xlabel("compression")
     axes[0].legend(fontsize=7, frameon=False)
@@ -239,48 +198,58 @@ def draw_curves(folder, samples):
     plt.close(figure)
 
 
-def cell(value, scale=1, digits=3):
-    return f"{scale * value:.{digits}g}" if math.isfinite(value) else "–"
+def draw_iterations(folder, points):
+    """What more iterations per step buy, and cost: one line per model, a point per count."""
+    figure, axis = plt.subplots(figsize=(7, 4.6))
+    error, scale, words = ERRORS["ball"]
+    swept = {(p["model"], p["level"], p["rate_hz"]) for p in points if p["case"] == "ball" and p["iterations"]}
+    for key in sorted(swept):
+        line = [p for p in points if p["case"] == "ball" and not p["diverged"] and known(p[error])
+                and (p["model"], p["level"], p["rate_hz"]) == key]
+        line.sort(key=lambda p: p["iterations"] or OWN_ITERATIONS[p["model"]])
+        axis.loglog([p["cost_s_per_s"] for p in line], [scale * p[error] for p in line], marker="o",
+                    color=COLORS.get(key[0], "k"), linewidth=1)
+        for p in line:
+            count = p["iterations"] or OWN_ITERATIONS[p["model"]]
+            axis.annotate(f"{count:g}", (p["cost_s_per_s"], scale * p[error]), fontsize=7, xytext=(4, 4),
+                          textcoords="offset points")
+            print(f"ball, {key[0]}, level {key[1]:g}, {key[2]:g} Hz, {count:g} iterations: {p['cost_s_per_s']:.3g} s/s, "
+                  f"force {scale * p[error]:.2f} %")
+    axis.set_xlabel("cost [processor s per simulated s]")
+    axis.set_ylabel(words)
+    axis.set_title("squeezed ball: number of iterations per step, beside the points", fontsize=9)
+    legend_of_models(figure, [m for m in COLORS if any(key[0] == m for key in swept)])
+    figure.tight_layout(rect=(0, 0.07, 1, 1))
+    figure.savefig(folder / "accuracy_iterations.png", dpi=110)
+    plt.close(figure)
 
 
-def write_tables(folder, points, samples, cases):
-    """results.md: the tables of docs/accuracy.md, at the smallest step rate of each model."""
-    lines = []
-    for case in cases:
-        here = [p for p in points if p["case"] == case]
-        slowest = {(p["model"], p["level"]): min(q["rate_hz"] for q in here if (q["model"], q["level"]) ==
-                                                 (p["model"], p["level"])) for p in here}
-        here = [p for p in here if p["rate_hz"] == slowest[(p["model"], p["level"])]]
-        loads = sorted({s["load"] for s in samples if s["case"] == case})
-        column, scale = ("field_error_m", 1e3) if case == "truthcube" else ("force", None)
-        if case in ("beam", "vibration"):
-            column = None
-        per_load = [f"at {load * (1e3 if case in ('indent', 'liver', 'stomach') else 100):g}"
-                    f"{' mm' if case in ('indent', 'liver', 'stomach') else ' %'}" for load in loads]
-        head = ["model", "level", "nodes", "cost [s/s]", ERRORS[case][2], "shape [mm]", "field [mm]", "volume"]
-        head += per_load if column else []
-        what = "error of force [%] at each load" if column == "force" else "RMS [mm] at each load" if column else ""
-        lines += [f"**{case}**: {TITLES[case]}" + (f"; last columns: {what}" if what else ""), "",
-                  "| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-        for p in here:
-            error, error_scale, _ = ERRORS[case]
-            row = [p["model"], f"{p['level']:g}", f"{nodes_of(p):g}", cell(p["cost_s_per_s"]),
-                   "diverged" if p["diverged"] else cell(p[error], error_scale),
-                   cell(p["shape_error_m"], 1e3), cell(p["field_error_m"], 1e3), cell(p["volume_error"], 1, 2)]
-            mine = {s["load"]: s for s in samples if (s["case"], s["model"], s["level"], s["rate_hz"]) ==
-                    (case, p["model"], p["level"], p["rate_hz"])}
-            for load in loads if column else []:
-                s = mine.get(load)
-                if s is None:
-                    row.append("–")
-                elif column == "force":
-                    ratio = s["force"] / s["reference_force"] - 1 if s["reference_force"] else math.nan
-                    row.append(f"{100 * ratio:+.1f}" if math.isfinite(ratio) else "–")
-                else:
-                    row.append(cell(s["field_error_m"], 1e3))
-            lines.append("| " + " | ".join(row) + " |")
-        lines.append("")
-    (folder / "results.md").write_text("\n".join(lines), encoding="utf-8")
+def draw_profile(folder, profiles):
+    """The surface beside the indenter, at the smallest and the largest depth, on each model's finest mesh."""
+    here = [p for p in profiles if p["case"] == "indent" and not p["iterations"]]
+    loads = sorted({p["load"] for p in here})
+    figure, axes = plt.subplots(1, 2, figsize=(12, 4.4))
+    for axis, load in zip(axes, (loads[0], loads[-1])):
+        at = [p for p in here if p["load"] == load]
+        truth = sorted({(p["distance_m"], p["reference_m"]) for p in at if math.isfinite(p["reference_m"])})
+        axis.plot([1e3 * t[0] for t in truth], [1e3 * t[1] for t in truth], "k--", label="quadratic elements at rest")
+        for model, color in COLORS.items():
+            mine = [p for p in at if p["model"] == model]
+            if not mine:
+                continue
+            finest = max((p["level"], -p["rate_hz"]) for p in mine)
+            line = sorted((p["distance_m"], p["displacement_m"]) for p in mine
+                          if (p["level"], -p["rate_hz"]) == finest)
+            axis.plot([1e3 * x for x, _ in line], [1e3 * u for _, u in line], marker="o", markersize=3, color=color,
+                      label=model)
+        axis.set_title(f"{1e3 * load:g} mm deep", fontsize=9)
+        axis.set_xlabel("distance from the axis [mm]")
+        axis.set_ylabel("displacement along the axis [mm]")
+    axes[0].legend(fontsize=7, frameon=False)
+    figure.suptitle("block under a sphere of 5 mm: the surface beside it", fontsize=10)
+    figure.tight_layout()
+    figure.savefig(folder / "accuracy_profile.png", dpi=110)
+    plt.close(figure)
 
 
 def compare_bullet(bullet):
@@ -296,18 +265,6 @@ def compare_bullet(bullet):
                 left.append(r["setting"])
         print(f"Bullet, {nodes:g} nodes: {len(here) - len(left)} of {len(here)} stable settings are slower and keep the "
               f"volume worse than one of ours" + (f"; not: {', '.join(left)}" if left else ""))
-
-
-def put_into_docs(folder, docs):
-    for name in PICTURES:
-        shutil.copyfile(folder / name, docs / "images" / name)
-    page = docs / "accuracy.md"
-    text = page.read_text(encoding="utf-8")
-    begin, end = "<!-- begin of results.md -->\n", "<!-- end of results.md -->"
-    head, rest = text.split(begin)
-    tail = rest.split(end)[1]
-    results = (folder / "results.md").read_text(encoding="utf-8")
-    page.write_text(head + begin + "\n" + results + "\n" + end + tail, encoding="utf-8")
 
 
 def main():
@@ -330,6 +287,9 @@ def main():
         draw_volume(folder, points, bullet)
         compare_bullet(bullet)
         draw_curves(folder, samples)
+        draw_iterations(folder, points)
+    if "indent" in cases:
+        draw_profile(folder, rows_of(folder / "profiles.csv"))
     if arguments.docs:
         put_into_docs(folder, arguments.docs)
 

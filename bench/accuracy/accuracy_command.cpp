@@ -6,11 +6,11 @@
 #include <cmath>
 #include <ostream>
 
+#include "bench/accuracy/accuracy_tables.h"
 #include "bench/accuracy/truth_cube.h"
 #include "bench/report/measures.h"
 #include "bench/report/plot_script.h"
 #include "bench/report/progress.h"
-#include "bench/report/table_file.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/schema.h"
@@ -59,60 +59,12 @@ Source find_source(const AccuracyOptions& options) {
   return source;
 }
 
-std::string number(double value, const char* format = "{:.3g}") {
-  return std::isnan(value) ? "" : fmt::format(fmt::runtime(format), value);
-}
-
-void write_points(const std::vector<Point>& points, const std::filesystem::path& file) {
-  bench::TableFile table(file, {"case", "model", "level", "rate_hz", "surface_nodes", "inner_nodes",
-                                "tetrahedra", "step_s", "cost_s_per_s", "force_error",
-                                "shape_error_m", "field_error_m", "volume_error", "diverged"});
-  for (const Point& p : points) {
-    const Measurement& m = p.measurement;
-    table.write_row(std::vector<std::string>{
-        p.of.name, scene::word_of(p.setting.model), std::to_string(p.setting.level),
-        number(p.setting.rate, "{:g}"), std::to_string(m.surface_nodes),
-        std::to_string(m.inner_nodes), std::to_string(m.tetrahedra), number(m.step, "{:.6g}"),
-        number(m.cost, "{:.6g}"), number(force_error(m), "{:.6g}"),
-        number(shape_error(m), "{:.6g}"), number(field_error(m), "{:.6g}"),
-        number(m.volume_error, "{:.6g}"), m.diverged ? "1" : "0"});
+std::string line_of(const Outlook& outlook) {
+  std::string line = fmt::format("{} of {}: {}", outlook.done + 1, outlook.total, outlook.job);
+  if (!std::isnan(outlook.seconds_left)) {
+    line += fmt::format("; about {:.0f} min left", std::ceil(outlook.seconds_left / 60));
   }
-  table.finish();
-}
-
-void write_samples(const std::vector<Point>& points, const std::filesystem::path& file) {
-  bench::TableFile table(
-      file, {"case", "model", "level", "rate_hz", "load", "force", "reference_force", "shape_m",
-             "reference_shape_m", "field_error_m"});
-  for (const Point& p : points) {
-    for (const Sample& s : p.measurement.samples) {
-      table.write_row(std::vector<std::string>{
-          p.of.name, scene::word_of(p.setting.model), std::to_string(p.setting.level),
-          number(p.setting.rate, "{:g}"), number(s.load, "{:.6g}"), number(s.force, "{:.8g}"),
-          number(s.reference_force, "{:.8g}"), number(s.shape, "{:.8g}"),
-          number(s.reference_shape, "{:.8g}"), number(s.field_error, "{:.8g}")});
-    }
-  }
-  table.finish();
-}
-
-void print(const std::vector<Point>& points, std::ostream& out) {
-  out << fmt::format("{:<10} {:<19} {:>5} {:>6} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
-                     "case", "model", "level", "[Hz]", "nodes", "h [ms]", "cost/s", "force",
-                     "shape[mm]", "field[mm]", "volume");
-  for (const Point& p : points) {
-    const Measurement& m = p.measurement;
-    const double force = force_error(m);
-    out << fmt::format(
-        "{:<10} {:<19} {:>5} {:>6g} {:>7} {:>8.3g} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", p.of.name,
-        scene::word_of(p.setting.model), p.setting.level, p.setting.rate,
-        m.surface_nodes + m.inner_nodes, 1e3 * m.step, number(m.cost),
-        std::isnan(force) ? "" : fmt::format("{:.2f} %", 100 * force), number(1e3 * shape_error(m)),
-        number(1e3 * field_error(m)), number(m.volume_error, "{:.1e}"),
-        m.diverged ? "  diverged" : "");
-  }
-  out << "cost: processor seconds of one core per simulated second; force: root mean square over "
-         "the loads of the relative error; shape and field: root mean square in mm.\n";
+  return line;
 }
 
 /// How well the beads of the Truth Cube themselves are known.
@@ -157,21 +109,18 @@ int run_accuracy(const AccuracyOptions& options, std::ostream& out, std::ostream
     if (stop.requested()) throw bench::Stopped{};
   };
   try {
-    const auto points = sweep(
+    const auto result = sweep(
         of, options.extent, models, source, store,
-        [&](const std::string& what, int done, int total) {
-          log << fmt::format("{} of {}: {}", done + 1, total, what) << std::endl;
-        },
-        keep_going);
-    write_points(points, options.out / "points.csv");
-    write_samples(points, options.out / "samples.csv");
-    print(points, out);
+        [&](const Outlook& outlook) { log << line_of(outlook) << std::endl; }, keep_going);
+    write_tables(result, options.out);
+    print(result, out);
     print_noise(of, source, out);
     if (options.peers) measure_peers(options, log);
     out << "on " << bench::machine_name() << '\n';
     bench::draw_figures(options.root / "scripts/plot_accuracy.py", options.out);
     out << "in " << options.out.string()
-        << ": the charts, points.csv, samples.csv, bullet.csv; points/ is what a next run starts "
+        << ": the charts, points.csv, samples.csv, profiles.csv, truths.csv, bullet.csv; points/ "
+           "is what a next run starts "
            "from\n";
     return kExitDone;
   } catch (const bench::Stopped&) {

@@ -10,13 +10,13 @@
 namespace palpate::accuracy {
 namespace {
 
-constexpr double kRadius = 0.05;      // [m]
+constexpr double kRadius = kBallRadius;
 constexpr double kPlateSpeed = 0.02;  // [m/s]
 /// About critical for the ball's slowest mode, the one the plates excite [1/s].
 constexpr double kDrag = 60;
 
-/// Surface nodes 162, 642, 2,562 for every model: a quadratic one has the corners of the level
-/// before, and its surface lies on the sphere.
+}  // namespace
+
 geometry::OrganShape ball_shape(const Setting& setting) {
   const bool quadratic = scene::is_quadratic(setting.model);
   const auto surface = geometry::make_ball(kRadius, setting.level + (quadratic ? 1 : 2));
@@ -37,6 +37,15 @@ scene::Scene ball_scene(const Setting& setting, double drag) {
   scene.rates.deformation = setting.rate;
   return scene;
 }
+
+std::vector<Pose> add_plates(scene::Scene& scene) {
+  for (const char* name : {"upper_plate", "lower_plate"}) {
+    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
+  }
+  return {plate(kRadius, false), plate(-kRadius, true)};
+}
+
+namespace {
 
 /// Mean distance from the z axis where surface edges cross z = 0 [m].
 double equatorial_radius(const Stage& stage) {
@@ -86,10 +95,7 @@ Measurement measure_ball(const Setting& setting, const Source& source,
   const ReferenceTable truth(source.references / "A_ball_plates.csv");
   const auto shape = ball_shape(setting);
   scene::Scene scene = ball_scene(setting, kDrag);
-  for (const char* name : {"upper_plate", "lower_plate"}) {
-    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
-  }
-  std::vector<Pose> poses{plate(kRadius, false), plate(-kRadius, true)};
+  std::vector<Pose> poses = add_plates(scene);
   Stage stage(scene, shape, poses);
   const double rest_radius = equatorial_radius(stage);
   std::vector<Sample> samples;
@@ -104,6 +110,9 @@ Measurement measure_ball(const Setting& setting, const Source& source,
     // The mesh's own radius is a little less than the ball's: growth is compared.
     sample.shape = equatorial_radius(stage) / rest_radius * kRadius - kRadius;
     sample.reference_shape = 1e-3 * truth.at("equatorial_radius_mm_nu0.499", row) - kRadius;
+    sample.contact_radius =
+        contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
+    sample.reference_contact_radius = 1e-3 * truth.at("contact_radius_mm_nu0.499", row);
     samples.push_back(sample);
     if (stage.diverged()) break;
   }

@@ -5,7 +5,9 @@
 
 #include "bench/accuracy/case_parts.h"
 #include "bench/accuracy/displacement_field.h"
+#include "bench/accuracy/equilibria.h"
 #include "bench/accuracy/truth_cube.h"
+#include "bench/accuracy/truths.h"
 #include "modules/core/error.h"
 #include "modules/geometry/gmsh_tool.h"
 
@@ -42,6 +44,15 @@ scene::Scene block_scene(const Setting& setting) {
   scene.rates.deformation = setting.rate;
   return scene;
 }
+
+/// A sphere presses the middle of the block's top.
+constexpr double kTip = 5e-3, kTipSpeed = 4e-3;  // [m], [m/s]
+constexpr std::array kTipDepths{2e-3, 4e-3, 6e-3, 8e-3};
+
+/// A beam along x, held at x = 0.
+constexpr double kLength = 0.1, kWidth = 0.02, kStiff = 200e3;  // [m], [m], [Pa]
+const Vec3 kBeamLow(0, -kWidth / 2, -kWidth / 2), kBeamHigh(kLength, kWidth / 2, kWidth / 2);
+const Vec3 kWeight(0, 0, -9.81);
 
 Vec3 displacement(const Stage& stage, const NodeWeights& weights) {
   Vec3 sum = Vec3::Zero();
@@ -145,17 +156,16 @@ Measurement measure_truth_cube(const Setting& setting, const Source& source,
 }
 
 Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing& keep_going) {
-  constexpr double kLength = 0.1, kWidth = 0.02, kStiff = 200e3, kLongest = 5;
+  constexpr double kLongest = 5;  // [s]
   constexpr std::array kSizes{0.01, 0.0067, 0.004};
-  const auto shape =
-      block_shape(setting, {0, -kWidth / 2, -kWidth / 2}, {kLength, kWidth / 2, kWidth / 2},
-                  kSizes[static_cast<std::size_t>(setting.level)], " + 0*x");
+  const auto shape = block_shape(setting, kBeamLow, kBeamHigh,
+                                 kSizes[static_cast<std::size_t>(setting.level)], " + 0*x");
   scene::Scene scene;
   const double radius = std::cbrt(3 * kLength * kWidth * kWidth / (4 * M_PI));
   scene.organs.push_back(solid_organ(setting, radius, kVirtualNodes, kStiff, kDensity));
   scene.organs[0].tissue.drag = 20;
   scene.organs[0].fixed.push_back(scene::BoxRegion{{-1, -1, -1}, {1e-6, 1, 1}});
-  scene.gravity = Vec3(0, 0, -9.81);
+  scene.gravity = kWeight;
   scene.rates.deformation = setting.rate;
   Stage stage(scene, shape, {});
   const auto tip = weights_at(shape, {kLength, 0, 0});
@@ -163,15 +173,29 @@ Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing&
   stage.settle(kLongest);
   Measurement result = summary(stage, shape);
   Sample sample;
-  sample.load = 9.81;
+  sample.load = kWeight.norm();
   sample.shape = -displacement(stage, tip).z();
   result.samples.push_back(sample);
   return result;
 }
 
+Measurement bend_beam(int level, const Source&, const KeepGoing& keep_going) {
+  constexpr std::array kSizes{"0.007", "0.005"};
+  const elements::MixedSolid solid(
+      elements::make_quadratic(
+          geometry::mesh_block(kBeamLow, kBeamHigh, kSizes[static_cast<std::size_t>(level)])),
+      elements::NeoHookean::from_engineering(kStiff, kPoissonRatio), kDensity);
+  std::vector<char> held;
+  for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
+  Measurement result = summary(solid);
+  Sample& sample = result.samples.emplace_back();
+  sample.load = kWeight.norm();
+  sample.shape = -sag_at_rest(solid, held, kWeight, {{kLength, 0, 0}}, keep_going)[0].z();
+  return result;
+}
+
 Measurement measure_indent(const Setting& setting, const Source& source,
                            const KeepGoing& keep_going) {
-  constexpr double kTip = 5e-3, kSpeed = 4e-3;         // [m], [m/s]
   constexpr std::array kSizes{2e-3, 0.93e-3, 0.6e-3};  // under the tip
   const ReferenceTable truth(source.references / "D_indent_force_depth.csv");
   const double size = kSizes[static_cast<std::size_t>(setting.level)];
@@ -185,19 +209,61 @@ Measurement measure_indent(const Setting& setting, const Source& source,
   std::vector<Pose> poses(1);
   poses[0].position = Vec3(0, 0, kHeight + kTip + 1e-4);
   Stage stage(scene, shape, poses);
+  std::vector<NodeWeights> places;
+  places.reserve(kProfilePlaces.size());
+  for (const double place : kProfilePlaces)
+    places.push_back(weights_at(shape, {place, 0, kHeight}));
   std::vector<Sample> samples;
-  for (const double depth : {2e-3, 4e-3, 6e-3, 8e-3}) {
-    move_and_settle(stage, poses, {{0, 0, kHeight + kTip - depth}}, kSpeed, keep_going);
+  for (const double depth : kTipDepths) {
+    move_and_settle(stage, poses, {{0, 0, kHeight + kTip - depth}}, kTipSpeed, keep_going);
     const std::size_t row = truth.row_of("depth_mm", std::round(1e3 * depth));
     Sample sample;
     sample.load = depth;
     sample.force = stage.force(0).z();
     sample.reference_force = truth.at("F_block_N", row);
+    sample.contact_radius = contact_radius(
+        stage, Vec3::UnitZ(), [&](const Vec3& x) { return (x - poses[0].position).norm() - kTip; });
+    sample.reference_contact_radius = 1e-3 * truth.at("contact_radius_mm", row);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      sample.profile[i] = displacement(stage, places[i]).z();
+    }
     samples.push_back(sample);
     if (stage.diverged()) break;
   }
   Measurement result = summary(stage, shape);
   result.samples = samples;
+  return result;
+}
+
+/// A quarter of the block, as in case D of bench/elements.
+Measurement press_block(int level, const Source&, const KeepGoing& keep_going) {
+  constexpr std::array kSizes{0.4, 0.28};  // of the tip's radius
+  std::ostringstream size;
+  size << kSizes[static_cast<std::size_t>(level)] * kTip
+       << " + 0.012*((x*x+y*y+(z-0.08)^2)/(x*x+y*y+(z-0.08)^2+0.0004))^2";
+  const elements::MixedSolid solid(
+      elements::make_quadratic(
+          geometry::mesh_block(Vec3::Zero(), {kHalf, kHalf, kHeight}, size.str())),
+      elements::NeoHookean::from_engineering(kYoungsModulus, kPoissonRatio), kDensity);
+  std::vector<char> held;
+  held.reserve(solid.displacement_count());
+  for (const Vec3& node : solid.mesh().nodes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      held.push_back(node.z() == 0 || (axis < 2 && node[axis] == 0));
+    }
+  }
+  Press press{{0, 0, kHeight}, -Vec3::UnitZ(), kTip, {kTipDepths.begin(), kTipDepths.end()}, {}};
+  for (const double place : kProfilePlaces) press.marks.emplace_back(place, 0, kHeight);
+  Measurement result = summary(solid);
+  const auto answers = press_at_rest(solid, held, press, keep_going);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    Sample& sample = result.samples.emplace_back();
+    sample.load = kTipDepths[i];
+    sample.force = 4 * answers[i].force;
+    for (std::size_t k = 0; k < kProfilePlaces.size(); ++k) {
+      sample.profile[k] = answers[i].displacements[k].z();
+    }
+  }
   return result;
 }
 

@@ -1,60 +1,8 @@
 #include "bench/accuracy/case_parts.h"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <cmath>
-#include <fstream>
-#include <sstream>
-
-#include "modules/core/error.h"
 
 namespace palpate::accuracy {
-namespace {
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-}  // namespace
-
-ReferenceTable::ReferenceTable(const std::filesystem::path& file) : file_(file) {
-  std::ifstream stream(file);
-  std::string line;
-  if (!std::getline(stream, line)) {
-    throw InputError(fmt::format("{}: no such reference table", file.string()));
-  }
-  const auto names = cells_of(line);
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
-    const auto cells = cells_of(line);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      char* end = nullptr;
-      const std::string cell = i < cells.size() ? cells[i] : "";
-      const double value = std::strtod(cell.c_str(), &end);
-      // Words, as of mode families, stay out of reach as numbers that are none.
-      columns_[names[i]].push_back(end == cell.c_str() ? kUnknown : value);
-    }
-    ++rows_;
-  }
-}
-
-double ReferenceTable::at(const std::string& column, std::size_t row) const {
-  const auto found = columns_.find(column);
-  if (found == columns_.end()) {
-    throw InputError(fmt::format("{}:1: column '{}' is missing", file_.string(), column));
-  }
-  return found->second.at(row);
-}
-
-std::size_t ReferenceTable::row_of(const std::string& column, double value) const {
-  for (std::size_t row = 0; row < rows_; ++row) {
-    if (std::abs(at(column, row) - value) < 1e-9) return row;
-  }
-  throw InputError(fmt::format("{}: no row with {} = {:g}", file_.string(), column, value));
-}
-
 Pose plate(double height, bool facing_up) {
   Pose pose;
   pose.position = Vec3(0, 0, height);
@@ -91,6 +39,31 @@ Measurement summary(const Stage& stage, const geometry::OrganShape& shape) {
   result.volume_error = stage.volume_error();
   result.diverged = stage.diverged();
   return result;
+}
+
+Measurement summary(const elements::MixedSolid& solid) {
+  const auto& mesh = solid.mesh();
+  std::vector<char> on_surface(mesh.nodes.size(), 0);
+  for (const auto& face : mesh.faces) {
+    for (int k = 0; k < elements::kFaceNodes; ++k) on_surface[mesh.face_node(face, k)] = 1;
+  }
+  Measurement result;
+  for (const char on : on_surface) (on ? result.surface_nodes : result.inner_nodes) += 1;
+  result.tetrahedra = mesh.elements.size();
+  return result;
+}
+
+double contact_radius(const Stage& stage, const Vec3& normal,
+                      const std::function<double(const Vec3&)>& outside) {
+  double area = 0;
+  for (const auto& triangle : stage.topology().triangles) {
+    const Vec3 a = stage.position(triangle[0]), b = stage.position(triangle[1]),
+               c = stage.position(triangle[2]);
+    int touching = 0;
+    for (const Vec3& corner : {a, b, c}) touching += outside(corner) < kTouchDistance;
+    area += touching / 3.0 * std::abs(normal.dot((b - a).cross(c - a))) / 2;
+  }
+  return std::sqrt(area / M_PI);
 }
 
 }  // namespace palpate::accuracy

@@ -2,28 +2,31 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+
 #include "modules/scene/schema.h"
 
 namespace palpate::accuracy {
 namespace {
 
-/// Linear tetrahedra without averaged pressures lock at tissue's 0.499 (docs/accuracy.md).
-constexpr double kUnlocked = 0.45;
-
-bool locks(scene::Model model) {
-  return model == scene::Model::kCorotational || model == scene::Model::kXpbdTetrahedra;
-}
-
 constexpr double kSolidWall = 0.16, kSolidInnerRatio = 10;  // docs/calibration.md
 
 }  // namespace
 
+double unlocked_poisson_ratio(scene::Model model, double wanted) {
+  constexpr double kUnlocked = 0.45;
+  const bool locks = model == scene::Model::kCorotational || model == scene::Model::kXpbdTetrahedra;
+  return locks ? std::min(wanted, kUnlocked) : wanted;
+}
+
 std::string Setting::name() const {
-  return fmt::format("{}, level {}, {:g} Hz", scene::word_of(model), level, rate);
+  return fmt::format("{}, level {}, {:g} Hz", scene::word_of(model), level, rate) +
+         (iterations > 0 ? fmt::format(", {} iterations", iterations) : "");
 }
 
 std::string Setting::key() const {
-  return fmt::format("{}-{}-{:g}", scene::word_of(model), level, rate);
+  return fmt::format("{}-{}-{:g}", scene::word_of(model), level, rate) +
+         (iterations > 0 ? fmt::format("-{}", iterations) : "");
 }
 
 std::vector<scene::Model> ladder() {
@@ -39,12 +42,13 @@ scene::Organ solid_organ(const Setting& setting, double radius, std::size_t virt
   scene::Organ organ;
   organ.name = "solid";
   organ.model = setting.model;
+  organ.iterations = setting.iterations;
   organ.tissue.youngs_modulus = youngs_modulus;
   organ.tissue.density = density;
   organ.tissue.wall_thickness = kSolidWall * radius;
   organ.springs.inner_ratio = kSolidInnerRatio;
   organ.springs.virtual_nodes = virtual_nodes;
-  if (locks(setting.model)) organ.solid.poisson_ratio = kUnlocked;
+  organ.solid.poisson_ratio = unlocked_poisson_ratio(setting.model, organ.solid.poisson_ratio);
   return organ;
 }
 

@@ -12,15 +12,19 @@ namespace palpate::accuracy {
 /// A model at one mesh size and step: one point of a chart.
 struct Setting {
   scene::Model model = scene::Model::kImplicitVolume;
-  int level = 1;      ///< of the mesh, 0 coarse; each level halves the edges
-  double rate = 250;  ///< steps asked for per simulated second [Hz]; a model may sub-step
+  int level = 1;               ///< of the mesh, 0 coarse; each level halves the edges
+  double rate = 250;           ///< steps asked for per simulated second [Hz]; a model may sub-step
+  std::size_t iterations = 0;  ///< scene key of this name; 0: as many as the model has
 
-  std::string name() const;  ///< "corotational, level 1, 250 Hz"
-  std::string key() const;   ///< the same for file names: "corotational-1-250"
+  std::string name() const;  ///< "corotational, level 1, 250 Hz, 10 iterations"
+  std::string key() const;   ///< the same for file names: "corotational-1-250-10"
 };
 
 /// The models of the chart, plain springs first, the accurate rung last.
 std::vector<scene::Model> ladder();
+
+/// Linear tetrahedra without averaged pressures lock near ½: at most 0.45 for them, else as wanted.
+double unlocked_poisson_ratio(scene::Model model, double wanted);
 
 /// A filled solid of `radius` (of the ball of equal volume) as a scene would have it, with the
 /// springs calibrated for solids (docs/calibration.md) where the model has springs.

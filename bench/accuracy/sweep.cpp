@@ -3,31 +3,25 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
-#include "bench/report/measures.h"
-#include "bench/report/table_file.h"
+#include "bench/accuracy/truths.h"
 #include "modules/scene/schema.h"
 
 namespace palpate::accuracy {
 namespace {
 
-/// Of what is stored; raised when a case, a model or its constants change.
-constexpr int kVersion = 2;
-
-/// Neither the usual chart nor the quick one waits for these.
-bool is_slow(const Setting& setting) { return setting.model == scene::Model::kQuadraticElements; }
+bool is_slow(scene::Model model) { return model == scene::Model::kQuadraticElements; }
 
 bool wanted(const Case& of, const Setting& setting, Extent extent) {
-  if (of.truth_is_finest && extent == Extent::kQuick) return false;
-  // Under a small sphere its contacts take hundreds of factorizations per step.
-  if (is_slow(setting) && std::string(of.name) == "indent" && extent != Extent::kFull) return false;
   const int finest = extent == Extent::kQuick ? 0 : extent == Extent::kUsual ? 1 : 2;
   if (setting.level > std::min(finest, of.level_count - 1)) return false;
-  if (extent == Extent::kFull) return true;
-  return !is_slow(setting) || setting.rate < 101;
+  if (extent == Extent::kFull || !is_slow(setting.model)) return true;
+  // What takes longer than all other models together is left to --full.
+  const std::string name = of.name;
+  if (name == "indent" && (extent == Extent::kQuick || setting.level > 0)) return false;
+  return setting.rate < 101;
 }
 
 std::vector<double> rates_of(Extent extent) {
@@ -36,135 +30,142 @@ std::vector<double> rates_of(Extent extent) {
   return {50, 100, 250, 1000};
 }
 
-std::vector<double> numbers_of(const Measurement& m, const Sample& s) {
-  return {double(m.surface_nodes),
-          double(m.inner_nodes),
-          double(m.tetrahedra),
-          m.step,
-          m.cost,
-          m.volume_error,
-          double(m.diverged),
-          s.load,
-          s.force,
-          s.reference_force,
-          s.shape,
-          s.reference_shape,
-          s.field_error};
+/// Beside the model's own count: fewer and more.
+std::vector<std::size_t> iterations_of(scene::Model model) {
+  if (!scene::has_iterations(model)) return {};
+  const bool xpbd = model == scene::Model::kXpbdSprings || model == scene::Model::kXpbdTetrahedra;
+  return xpbd ? std::vector<std::size_t>{2, 4, 8} : std::vector<std::size_t>{5, 10, 80};
 }
 
-const std::vector<std::string>& store_columns() {
-  static const std::vector<std::string> kColumns{
-      "surface_nodes", "inner_nodes",       "tetrahedra",   "step_s", "cost_s_per_s",
-      "volume_error",  "diverged",          "load",         "force",  "reference_force",
-      "shape_m",       "reference_shape_m", "field_error_m"};
-  return kColumns;
+/// Usually on one mesh of one case, where all else is the model's own.
+bool sweeps_iterations(const Case& of, const Setting& setting, Extent extent) {
+  if (extent == Extent::kFull) return true;
+  return extent == Extent::kUsual && std::string(of.name) == "ball" && setting.level == 0 &&
+         setting.rate < 51;
 }
 
-void take(const std::vector<double>& n, Measurement& m) {
-  m.surface_nodes = static_cast<std::size_t>(n[0]);
-  m.inner_nodes = static_cast<std::size_t>(n[1]);
-  m.tetrahedra = static_cast<std::size_t>(n[2]);
-  m.step = n[3];
-  m.cost = n[4];
-  m.volume_error = n[5];
-  m.diverged = n[6] != 0;
-  m.samples.push_back({n[7], n[8], n[9], n[10], n[11], n[12]});
+bool is_wanted(const std::vector<scene::Model>& models, scene::Model model) {
+  return std::find(models.begin(), models.end(), model) != models.end();
 }
 
-/// The truth's answers become the reference.
-void refer(const Measurement& truth, Measurement& measurement) {
-  for (std::size_t i = 0; i < std::min(truth.samples.size(), measurement.samples.size()); ++i) {
-    measurement.samples[i].reference_force = truth.samples[i].force;
-    measurement.samples[i].reference_shape = truth.samples[i].shape;
+/// How much is left, from what the points of this run took.
+class Pace {
+ public:
+  void begin() { start_ = Clock::now(); }
+  void finish(double weight) {
+    seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+    weight_ += weight;
+  }
+  double seconds_for(double weight) const {
+    return weight_ > 0 ? seconds_ / weight_ * weight : kUnknown;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_;
+  double seconds_ = 0, weight_ = 0;
+};
+
+/// One thing to measure, and where its result goes.
+struct Job {
+  std::string name;
+  Case of;
+  std::string key;
+  double weight = 1;
+  std::function<Measurement()> measure;
+  Measurement* result = nullptr;
+};
+
+void run(std::vector<Job>& jobs, const PointStore& store,
+         const std::function<void(const Outlook&)>& begin) {
+  double left = 0;
+  for (const Job& job : jobs) {
+    if (!store.read(job.of, job.key, *job.result)) left += job.weight;
+  }
+  Pace pace;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (!jobs[i].result->samples.empty()) continue;
+    begin(
+        {jobs[i].name, static_cast<int>(i), static_cast<int>(jobs.size()), pace.seconds_for(left)});
+    pace.begin();
+    *jobs[i].result = jobs[i].measure();
+    store.write(jobs[i].of, jobs[i].key, *jobs[i].result);
+    pace.finish(jobs[i].weight);
+    left -= jobs[i].weight;
   }
 }
 
 }  // namespace
 
-Setting truth_setting(const Case& of, Extent extent) {
-  return {scene::Model::kQuadraticElements, extent == Extent::kFull ? of.level_count - 1 : 1, 50};
+// Steps per second grow with the rate, and cost per step with nodes: eight times per level, more
+// for direct solvers; fitted to the usual chart, good to a factor of two or three.
+double weight_of(const Setting& setting) {
+  const bool springs = setting.model < scene::Model::kXpbdSprings;
+  const bool implicit = setting.model == scene::Model::kCorotational ||
+                        setting.model == scene::Model::kNodalPressure || is_slow(setting.model);
+  const double model = is_slow(setting.model) ? 12 : springs ? 0.3 : 1;
+  const double growth = is_slow(setting.model) ? 20 : 7;
+  return model * std::pow(growth, setting.level) * (implicit ? setting.rate / 100 : 1);
 }
 
 std::vector<Setting> settings_of(const Case& of, Extent extent) {
   std::vector<Setting> settings;
-  if (of.truth_is_finest && extent != Extent::kQuick) settings.push_back(truth_setting(of, extent));
+  if (of.truth == Truth::kOwn && extent == Extent::kQuick) return settings;  // truths take minutes
   for (const scene::Model model : ladder()) {
     for (int level = 0; level < of.level_count; ++level) {
       for (const double rate : rates_of(extent)) {
-        const Setting setting{model, level, rate};
+        Setting setting{model, level, rate};
         if (!wanted(of, setting, extent)) continue;
-        if (settings.empty() || settings[0].key() != setting.key()) settings.push_back(setting);
+        settings.push_back(setting);
+        if (!sweeps_iterations(of, setting, extent)) continue;
+        for (const std::size_t count : iterations_of(model)) {
+          setting.iterations = count;
+          settings.push_back(setting);
+        }
       }
     }
   }
   return settings;
 }
 
-PointStore::PointStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  bench::make_out_folder(folder_);
-}
-
-std::filesystem::path PointStore::file_of(const Case& of, const Setting& setting) const {
-  return folder_ / fmt::format("{}-{}-v{}.csv", of.name, setting.key(), kVersion);
-}
-
-bool PointStore::read(const Case& of, const Setting& setting, Measurement& out) const {
-  std::ifstream stream(file_of(of, setting));
-  std::string line;
-  if (!std::getline(stream, line)) return false;
-  out = {};
-  while (std::getline(stream, line)) {
-    std::vector<double> numbers;
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) {
-      numbers.push_back(std::strtod(cell.c_str(), nullptr));
-    }
-    if (numbers.size() != store_columns().size()) return false;
-    take(numbers, out);
-  }
-  return !out.samples.empty();
-}
-
-void PointStore::write(const Case& of, const Setting& setting,
-                       const Measurement& measurement) const {
-  bench::TableFile table(file_of(of, setting), store_columns());
-  for (const Sample& sample : measurement.samples) {
-    table.write_row(std::span<const double>(numbers_of(measurement, sample)));
-  }
-  table.finish();
-}
-
-std::vector<Point> sweep(const std::vector<Case>& of, Extent extent,
-                         const std::vector<scene::Model>& models, const Source& source,
-                         const PointStore& store,
-                         const std::function<void(const std::string&, int, int)>& begin,
-                         const KeepGoing& keep_going) {
-  std::vector<Point> points;
+SweepResult sweep(const std::vector<Case>& of, Extent extent,
+                  const std::vector<scene::Model>& models, const Source& source,
+                  const PointStore& store, const std::function<void(const Outlook&)>& begin,
+                  const KeepGoing& keep_going) {
+  SweepResult result;
   for (const Case& each : of) {
     for (const Setting& setting : settings_of(each, extent)) {
-      const bool is_truth =
-          each.truth_is_finest && setting.key() == truth_setting(each, extent).key();
-      if (!is_truth && std::find(models.begin(), models.end(), setting.model) == models.end())
-        continue;
-      points.push_back({each, setting, {}});
+      if (is_wanted(models, setting.model)) result.points.push_back({each, setting, {}});
+    }
+    if (each.truth != Truth::kReference && extent != Extent::kQuick) {
+      result.truths.push_back({each, std::vector<Measurement>(kTruthLevels)});
     }
   }
-  int done = 0;
-  for (Point& point : points) {
-    begin(fmt::format("{}: {}", point.of.name, point.setting.name()), done++,
-          static_cast<int>(points.size()));
-    if (store.read(point.of, point.setting, point.measurement)) continue;
-    point.measurement = measure(point.of, point.setting, source, keep_going);
-    store.write(point.of, point.setting, point.measurement);
-  }
-  for (Point& point : points) {
-    if (!point.of.truth_is_finest) continue;
-    Measurement truth;
-    if (store.read(point.of, truth_setting(point.of, extent), truth)) {
-      refer(truth, point.measurement);
+  constexpr double kTruthWeight = 100;
+  std::vector<Job> jobs;
+  for (TruthPoint& truth : result.truths) {
+    for (int level = 0; level < kTruthLevels; ++level) {
+      jobs.push_back({fmt::format("{}: truth, level {}", truth.of.name, level), truth.of,
+                      truth_key(level), kTruthWeight,
+                      [&, level] { return measure_truth(truth.of, level, source, keep_going); },
+                      &truth.levels[static_cast<std::size_t>(level)]});
     }
   }
-  return points;
+  for (Point& point : result.points) {
+    jobs.push_back({fmt::format("{}: {}", point.of.name, point.setting.name()), point.of,
+                    point.setting.key(), weight_of(point.setting),
+                    [&] { return measure(point.of, point.setting, source, keep_going); },
+                    &point.measurement});
+  }
+  run(jobs, store, begin);
+  for (Point& point : result.points) {
+    for (const TruthPoint& truth : result.truths) {
+      if (std::string(truth.of.name) == point.of.name) {
+        refer(truth.levels.back(), point.measurement);
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace palpate::accuracy

@@ -17,9 +17,11 @@ class LoadPath {
            elements::RigidContact* contact, const Setting& setting);
 
   void set_longest_stride(double stride) { longest_stride_ = stride; }
+  void set_most_halvings(int count) { most_halvings_ = count; }
 
   /// Equal strides up to `load`, halved after a failure.
-  /// @returns false if even 1/64 of the longest stride fails; the state is the last equilibrium.
+  /// @returns false if the longest stride fails even when halved that often; the state is the last
+  ///          equilibrium.
   /// @throws Stopped
   bool advance_to(double load, const Apply& apply);
 
@@ -34,7 +36,7 @@ class LoadPath {
   const Setting& setting_;
   elements::SolidState state_;
   double load_ = 0, longest_stride_ = 0.1;
-  int iterations_ = 0;
+  int most_halvings_ = 6, iterations_ = 0;
 };
 
 }  // namespace palpate::elements_bench

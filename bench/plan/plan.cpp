@@ -7,6 +7,7 @@
 #include <set>
 
 #include "bench/accuracy/displacement_field.h"
+#include "bench/accuracy/rungs.h"
 #include "bench/accuracy/stage.h"
 #include "haptics/device.h"
 #include "modules/scene/assets.h"
@@ -17,8 +18,7 @@ namespace {
 
 constexpr std::size_t kMarks = 60;
 constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
-constexpr double kTruthRateOfFluid = 500, kTruthRateOfSolid = 50;  // [Hz]
-constexpr std::size_t kMostTruthCorners = 150;
+constexpr double kTruthRateOfFluid = 500, kTruthRateOfSolid = 200;  // [Hz]
 
 std::vector<scene::Model> models_for(scene::Needs::Contents contents) {
   using scene::Model;
@@ -40,6 +40,7 @@ std::size_t nodes_of(const scene::Scene& scene) {
 std::vector<accuracy::NodeWeights> find_marks(const geometry::OrganShape& shape,
                                               const std::vector<Vec3>& marks) {
   std::vector<accuracy::NodeWeights> found;
+  found.reserve(marks.size());
   constexpr double kAnyDistance = 1;  // [m]: the nearest point of this surface stands for it
   for (const Vec3& mark : marks) found.push_back(accuracy::weights_at(shape, mark, kAnyDistance));
   return found;
@@ -95,8 +96,7 @@ std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface) {
 Candidate truth_of(const scene::Scene& scene) {
   const std::size_t nodes = nodes_of(scene);
   if (scene.needs.contents == scene::Needs::Contents::kSolid) {
-    return {scene::Model::kQuadraticElements, std::min(nodes, kMostTruthCorners),
-            kTruthRateOfSolid};
+    return {scene::Model::kNodalPressure, nodes, kTruthRateOfSolid};
   }
   return {scene::Model::kImplicitVolume, std::min(4 * nodes, kMostNodes), kTruthRateOfFluid,
           scene::Integrator::kSymplecticEuler};
@@ -107,7 +107,9 @@ std::vector<Candidate> candidates_of(const scene::Scene& scene) {
   const double least = scene.needs.step_rate;
   std::vector<Candidate> candidates;
   for (const scene::Model model : models_for(scene.needs.contents)) {
-    for (const std::size_t count : {nodes / 4, nodes / 2, nodes, 2 * nodes}) {
+    for (std::size_t count : {nodes / 4, nodes / 2, nodes, 2 * nodes}) {
+      // Of a quadratic mesh these are corners: a quarter of them makes as many nodes.
+      if (scene::is_quadratic(model)) count /= 4;
       for (const double rate : {least, 2 * least}) {
         if (count < kLeastNodes || count > kMostNodes || rate > 2000) continue;
         candidates.push_back({model, count, rate});
@@ -122,6 +124,9 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   scene::Organ& organ = changed.organs[0];
   organ.model = candidate.model;
   organ.integrator = candidate.integrator;
+  organ.iterations = 0;
+  organ.solid.poisson_ratio =
+      accuracy::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
   organ.mesh.nodes = candidate.nodes;
   if (candidate.rate > 0) changed.rates.deformation = candidate.rate;
   changed.rates.collision = std::max(changed.rates.collision, changed.rates.deformation);
@@ -129,9 +134,9 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   return changed;
 }
 
-Course run_course(const scene::Scene& scene, const std::vector<Vec3>& marks, double duration,
+Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
+                  const std::vector<Vec3>& marks, double duration,
                   const std::function<void()>& keep_going) {
-  const auto shape = scene::load_organ(scene.organs[0]);
   std::vector<std::unique_ptr<haptics::Device>> devices;
   std::vector<Pose> poses;
   std::vector<std::string> warnings;

@@ -58,8 +58,9 @@ inline constexpr double kHapticTick = 20e-6;
 /// Points of the rest surface, in W, at which courses are compared; the same for all meshes [m].
 std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface);
 
-/// Where the truth comes from: finite elements for a solid; for a wall filled with fluid, springs
-/// and the implicit volume on four times the nodes, in small steps.
+/// Where the truth comes from: for a solid, tetrahedra with averaged pressures on a mesh refined
+/// where the probes go (solid_truth.h); for a wall filled with fluid, springs and the implicit
+/// volume on four times the nodes; both in small steps.
 Candidate truth_of(const scene::Scene& scene);
 
 /// All that are tried, on a quarter, half, once and twice the scene's nodes, at the least rate and
@@ -71,7 +72,8 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate);
 
 /// Runs the scene's first `duration` seconds. @param keep_going  asked often; may throw
 /// @throws InputError if the candidate cannot run it
-Course run_course(const scene::Scene& scene, const std::vector<Vec3>& marks, double duration,
+Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
+                  const std::vector<Vec3>& marks, double duration,
                   const std::function<void()>& keep_going);
 
 Errors compare(const Course& course, const Course& truth);

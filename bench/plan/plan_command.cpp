@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "bench/plan/plan.h"
+#include "bench/plan/solid_truth.h"
 #include "bench/report/measures.h"
 #include "bench/report/progress.h"
 #include "modules/core/error.h"
@@ -79,15 +80,20 @@ std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& o
   const auto truth_candidate = truth_of(scene);
   log << "truth: " << truth_candidate.name() << std::endl;
   const auto truth_scene = scene_with(scene, truth_candidate);
-  const auto marks = marks_on(scene::load_organ(truth_scene.organs[0]).surface);
-  const Course truth = run_course(truth_scene, marks, options.seconds, keep_going);
+  const bool solid = scene.needs.contents == scene::Needs::Contents::kSolid;
+  const auto truth_shape = solid ? solid_truth_shape(truth_scene, options.seconds)
+                                 : scene::load_organ(truth_scene.organs[0]);
+  log << "its mesh: " << truth_shape.node_count() << " nodes" << std::endl;
+  const auto marks = marks_on(scene::load_organ(scene.organs[0]).surface);
+  const Course truth = run_course(truth_scene, truth_shape, marks, options.seconds, keep_going);
   if (truth.diverged) throw std::runtime_error("the truth diverged on this scene: no plan");
   std::vector<Verdict> verdicts;
   const auto candidates = candidates_of(scene);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     log << fmt::format("{} of {}: {}", i + 1, candidates.size(), candidates[i].name()) << std::endl;
-    const Course course =
-        run_course(scene_with(scene, candidates[i]), marks, options.seconds, keep_going);
+    const auto candidate_scene = scene_with(scene, candidates[i]);
+    const auto shape = scene::load_organ(candidate_scene.organs[0]);
+    const Course course = run_course(candidate_scene, shape, marks, options.seconds, keep_going);
     verdicts.push_back(judge(scene.needs, candidates[i], course, truth));
   }
   std::stable_sort(verdicts.begin(), verdicts.end(),

@@ -20,7 +20,8 @@ void free_flight(const OrganModel& model, double h, const OrganState& state,
 StepReport XpbdSprings::step(double h, std::span<ContactRow> rows, OrganState& state) {
   // 1. where all would fly alone; 2. springs
   free_flight(model_, h, state, positions_);
-  relax_springs(h, state.positions);
+  multipliers_.assign(model_.network.springs.size(), 0);
+  for (int k = 0; k < iterations_; ++k) relax_springs(h, state.positions);
 
   // 3. volume, as it would be there, and contacts
   velocities_.resize(positions_.size());
@@ -60,8 +61,10 @@ void XpbdSprings::relax_springs(double h, const std::vector<Vec3>& start) {
     const double compliance = 1 / (spring.stiffness * h * h);
     const double damping = model_.spring_damping[s] / (spring.stiffness * h);
     const double closing = u.dot(arm - (start[b] - start[a]));
-    const double lambda = -(length - spring.rest_length + damping * closing) /
-                          ((1 + damping) * inverse_mass + compliance);
+    const double lambda =
+        -(length - spring.rest_length + damping * closing + compliance * multipliers_[s]) /
+        ((1 + damping) * inverse_mass + compliance);
+    multipliers_[s] += lambda;
     positions_[a] -= model_.inverse_masses[a] * lambda * u;
     positions_[b] += model_.inverse_masses[b] * lambda * u;
   }

@@ -3,15 +3,18 @@
 //   Dynamics", MIG 2016;  M. Macklin et al., "Small Steps in Physics Simulation", SCA 2019: many
 //   short steps of one iteration.
 //
-// From the free flight x = xₙ + h (v + h·gravity)/(1 + h·drag), every spring once, in order, with
-// C = |x_b − x_a| − l₀, α = 1/(k h²), γ = c/(k h) (its damping), w = 1/m_a + 1/m_b:
-//   λ = −(C + γ u·(Δx_b − Δx_a)) / ((1 + γ) w + α),    x ← x + M⁻¹∇Cᵀλ,   Δx = x − xₙ
+// From the free flight x = xₙ + h (v + h·gravity)/(1 + h·drag), every spring, in order, with
+// C = |x_b − x_a| − l₀, α = 1/(k h²), γ = c/(k h) (its damping), w = 1/m_a + 1/m_b, λ at first 0:
+//   Δλ = −(C + γ u·(Δx_b − Δx_a) + α λ) / ((1 + γ) w + α),  λ ← λ + Δλ,  x ← x + M⁻¹∇CᵀΔλ,
+//   Δx = x − xₙ
 // The volume and the contacts, constraints of no compliance, follow together, solved to the end
 // (contact_solve.h) on the velocities (x − xₙ)/h: the contents are kept whatever the springs do.
 //
-// One visit meets a spring as if alone in the world: the answer to a sum of springs comes out
-// softer, for short steps by about h²ω² of the local frequency ω. The number of passes over the
-// springs per second is that of an explicit method; but no stiffness is too much.
+// once, or as many times as the scene's `iterations` says: then backward Euler's step is
+// approached, at the price of as many passes. One visit meets a spring as if alone in the world:
+// the answer to a sum of springs comes out softer, for short steps by about h²ω² of the local
+// frequency ω. The number of passes over the springs per second is that of an explicit method; but
+// no stiffness is too much.
 #pragma once
 
 #include <span>
@@ -28,7 +31,9 @@ class XpbdSprings : public OrganDynamics {
   static constexpr double kStep = 5e-4;
 
   /// @param model  of springs, outlives this
-  explicit XpbdSprings(const OrganModel& model) : model_(model) {}
+  /// @param iterations  passes over the springs in each step, ≥ 1
+  explicit XpbdSprings(const OrganModel& model, int iterations = 1)
+      : model_(model), iterations_(iterations) {}
 
   double largest_step() const override { return kStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
@@ -38,6 +43,8 @@ class XpbdSprings : public OrganDynamics {
   void relax_springs(double h, const std::vector<Vec3>& start);
 
   const OrganModel& model_;
+  int iterations_;
+  std::vector<double> multipliers_;  ///< λ [kg m]  (spring_count)
   std::vector<Vec3> positions_, velocities_;
   VolumeGradient volume_;
 };

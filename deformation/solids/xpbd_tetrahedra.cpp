@@ -24,8 +24,8 @@ Gradients by_corners(const Mat3& by_gradient, const Mat3& inverse_edges) {
 
 }  // namespace
 
-XpbdTetrahedra::XpbdTetrahedra(const OrganModel& model)
-    : model_(model), velocities_(model.node_count()) {
+XpbdTetrahedra::XpbdTetrahedra(const OrganModel& model, int iterations)
+    : model_(model), iterations_(iterations), velocities_(model.node_count()) {
   const SolidElements& solid = model.solid;
   PALPATE_DEMAND(!solid.tetrahedra.empty() && solid.poisson_ratio < 0.5);
   const double nu = solid.poisson_ratio;
@@ -69,7 +69,10 @@ StepReport XpbdTetrahedra::step(double h, std::span<ContactRow> rows, OrganState
   // 1. where all would fly alone; 2. tetrahedra
   free_flight(model_, h, state, positions_);
   double stress = 0;
-  for (std::size_t e = 0; e < elements_.size(); ++e) stress += relax(e, h);
+  multipliers_.assign(elements_.size(), {0, 0});
+  for (int k = 0; k < iterations_; ++k) {
+    for (std::size_t e = 0; e < elements_.size(); ++e) stress += relax(e, h);
+  }
 
   // 3. contacts
   for (std::size_t i = 0; i < positions_.size(); ++i) {
@@ -86,18 +89,22 @@ StepReport XpbdTetrahedra::step(double h, std::span<ContactRow> rows, OrganState
   return {};
 }
 
-// [∇C_i·M⁻¹∇C_j + α_ij] Δλ = −C,   Δx = M⁻¹ ∇Cᵀ Δλ
+// [∇C_i·M⁻¹∇C_j + α_ij] Δλ = −C − α λ,   Δx = M⁻¹ ∇Cᵀ Δλ
 double XpbdTetrahedra::relax(std::size_t element, double h) {
   const auto& nodes = model_.solid.tetrahedra[element];
   const auto& [inverse_edges, volume] = elements_[element];
   const Mat3 F = deformation_gradient(element, positions_);
-  const double shape = F.norm();  // C_D
-  if (shape == 0) return 0;       // shrunk to a point: no direction to grow in
-  const double bulk = F.determinant() - 1 - shear_modulus_ / lame_;  // C_H
-  const Gradients of_shape = by_corners(F / shape, inverse_edges);
+  const double size = F.norm();  // C_D
+  if (size == 0) return 0;       // shrunk to a point: no direction to grow in
+  const double shape_compliance = 1 / (shear_modulus_ * volume * h * h);
+  const double bulk_compliance = 1 / (lame_ * volume * h * h);
+  auto& [shape_multiplier, bulk_multiplier] = multipliers_[element];
+  const double shape = size + shape_compliance * shape_multiplier;
+  const double bulk = F.determinant() - 1 - shear_modulus_ / lame_ +  // C_H
+                      bulk_compliance * bulk_multiplier;
+  const Gradients of_shape = by_corners(F / size, inverse_edges);
   const Gradients of_bulk = by_corners(elements::cofactor(F), inverse_edges);
-  double shapes = 1 / (shear_modulus_ * volume * h * h), bulks = 1 / (lame_ * volume * h * h);
-  double mixed = 0;
+  double shapes = shape_compliance, bulks = bulk_compliance, mixed = 0;
   for (int k = 0; k < 4; ++k) {
     const double w = model_.inverse_masses[nodes[static_cast<std::size_t>(k)]];
     shapes += w * of_shape.col(k).squaredNorm();
@@ -107,13 +114,15 @@ double XpbdTetrahedra::relax(std::size_t element, double h) {
   const double determinant = shapes * bulks - mixed * mixed;  // > 0 by the compliances
   const double shape_lambda = (-bulks * shape + mixed * bulk) / determinant;
   const double bulk_lambda = (mixed * shape - shapes * bulk) / determinant;
+  shape_multiplier += shape_lambda;
+  bulk_multiplier += bulk_lambda;
   for (int k = 0; k < 4; ++k) {
     const auto node = nodes[static_cast<std::size_t>(k)];
     positions_[node] += model_.inverse_masses[node] *
                         (shape_lambda * of_shape.col(k) + bulk_lambda * of_bulk.col(k));
   }
   // tr σ/3 of P = −(λ_D ∂C_D/∂F + λ_H ∂C_H/∂F)/(V h²) is P:F/(3J); J ≈ 1.
-  return -(shape_lambda * shape / 3 + bulk_lambda) / (h * h);
+  return -(shape_lambda * size / 3 + bulk_lambda) / (h * h);
 }
 
 double XpbdTetrahedra::elastic_energy(const OrganState& state) {

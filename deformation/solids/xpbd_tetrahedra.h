@@ -34,8 +34,9 @@ class XpbdTetrahedra : public OrganDynamics {
   /// tetrahedra and ν from 0 to 0.49 swing stably up to 1.78 … 4.3 of it.
   static constexpr double kStepOfBound = 1.5;
 
-  /// @param model  a solid of linear tetrahedra, ν < ½; outlives this
-  explicit XpbdTetrahedra(const OrganModel& model);
+  /// @param model       a solid of linear tetrahedra, ν < ½; outlives this
+  /// @param iterations  passes over the tetrahedra in each step, ≥ 1
+  explicit XpbdTetrahedra(const OrganModel& model, int iterations = 1);
 
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
@@ -54,7 +55,9 @@ class XpbdTetrahedra : public OrganDynamics {
   double relax(std::size_t element, double h);
 
   const OrganModel& model_;
-  double shear_modulus_, lame_;  ///< μ, λ [Pa]
+  int iterations_;
+  std::vector<std::array<double, 2>> multipliers_;  ///< λ_D, λ_H of this step  (tetrahedra)
+  double shear_modulus_, lame_;                     ///< μ, λ [Pa]
   double largest_step_ = kStep;
   std::vector<Element> elements_;
   std::vector<Vec3> positions_, velocities_;

@@ -72,6 +72,11 @@ constexpr bool is_solid(Model model) { return model >= Model::kXpbdTetrahedra; }
 /// Whether its tetrahedra have nodes in the middles of their edges.
 constexpr bool is_quadratic(Model model) { return model >= Model::kQuadraticElements; }
 
+/// Whether its steps iterate a number of times that can be chosen.
+constexpr bool has_iterations(Model model) {
+  return model >= Model::kXpbdSprings && model <= Model::kNodalPressure;
+}
+
 /// What models of solids need beside the tissue.
 struct Solid {
   double poisson_ratio = 0.499;  ///< `poisson_ratio` [0 … 0.5]
@@ -100,8 +105,9 @@ struct Organ {
   Tissue tissue;
   Springs springs;
   Solid solid;
-  Model model = Model::kImplicitVolume;            ///< `model`
-  std::size_t volume_corrections = 0;              ///< `volume_corrections`, Newton [0 … 5]
+  Model model = Model::kImplicitVolume;  ///< `model`
+  std::size_t volume_corrections = 0;    ///< `volume_corrections`, Newton [0 … 5]
+  std::size_t iterations = 0;            ///< `iterations` [0 … 1000]; 0: the model's own
   Integrator integrator = Integrator::kAutomatic;  ///< `integrator`
   Filling filling;                                 ///< `filling`
   std::vector<Region> fixed;                       ///< `fixed`

@@ -193,6 +193,15 @@ void describe(V& v, Organ& organ) {
   v.field("model", organ.model, plain("how its contents are modelled"));
   v.field("volume_corrections", organ.volume_corrections,
           ranged("", 0, 5, "Newton corrections of the volume in each step, of implicit_volume"));
+  v.field(
+      "iterations", organ.iterations,
+      ranged("", 0, 1000,
+             "per step: passes over the constraints of xpbd_springs (1) and xpbd_tetrahedra (1), "
+             "conjugate gradients at most of corotational (20) and nodal_pressure (40); 0 = "
+             "the model's own"));
+  v.require(organ.iterations == 0 || has_iterations(organ.model),
+            "iterations must be 0 unless model is xpbd_springs, xpbd_tetrahedra, corotational or "
+            "nodal_pressure");
   v.field("integrator", organ.integrator,
           plain("of implicit_volume and mass_spring; automatic = what costs less here"));
   v.field("filling", organ.filling, plain("the volume asked for, over the rest volume"));

@@ -3,6 +3,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "bench/plan/solid_truth.h"
+#include "haptics/device.h"
+#include "modules/scene/assets.h"
+#include "modules/scene/scene_reader.h"
+#include "tests/geometry/tetrahedra.h"
+
 namespace palpate::plan {
 namespace {
 
@@ -59,9 +65,54 @@ TEST_CASE("plan: a candidate is written into the scene explicitly") {
       scene_with(scene, {scene::Model::kNodalPressure, 500, 400, scene::Integrator::kAutomatic});
   CHECK(planned.organs[0].model == scene::Model::kNodalPressure);
   CHECK(planned.organs[0].mesh.nodes == 500);
+  CHECK(planned.organs[0].solid.poisson_ratio == 0.499);
+  CHECK(scene_with(scene, {scene::Model::kCorotational, 500, 400}).organs[0].solid.poisson_ratio ==
+        0.45);
   CHECK(planned.rates.deformation == 400);
   CHECK(planned.rates.collision == 400);
   CHECK(planned.rates.haptics == 2000);
+}
+
+TEST_CASE("plan: quadratic candidates have as many nodes as the others, not as many corners") {
+  // Oracle: the rule; the liver's surface has 544 nodes.
+  const auto scene =
+      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/liver_solid.yaml");
+  std::size_t most_linear = 0, most_corners = 0;
+  for (const Candidate& candidate : candidates_of(scene)) {
+    CHECK(candidate.nodes >= 60);
+    auto& most = scene::is_quadratic(candidate.model) ? most_corners : most_linear;
+    most = std::max(most, candidate.nodes);
+  }
+  CHECK(most_linear == 2 * 544);
+  CHECK(most_corners == 2 * 544 / 4);
+}
+
+TEST_CASE("plan: the truth of a solid is fine where the probe goes, and of the same shape") {
+  // Oracle: volume; edges touched by the probe, as the device moves it, and far from it.
+  constexpr double kDuration = 4;
+  if (geometry::testing::without_gmsh()) return;
+  auto scene =
+      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/liver_solid.yaml");
+  const auto fine = solid_truth_shape(scene, kDuration).surface;
+  scene.organs[0].model = scene::Model::kImplicitVolume;
+  const auto coarse = scene::load_organ(scene.organs[0]).surface;
+  CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==
+        Approx(geometry::enclosed_volume(coarse.nodes, coarse.triangles)).epsilon(1e-9));
+  std::vector<std::string> warnings;
+  const auto device = haptics::make_device(scene.probes[0].device, warnings);
+  double longest_near = 0, longest = 0;
+  for (const auto& [a, b] : geometry::edges_of(fine.triangles)) {
+    const Vec3 middle = (fine.nodes[a] + fine.nodes[b]) / 2;
+    const double length = (fine.nodes[a] - fine.nodes[b]).norm();
+    longest = std::max(longest, length);
+    for (double time = 0; time < kDuration; time += 0.02) {
+      const bool near = (device->read(time).pose.position - middle).norm() < 8e-3;
+      if (near) longest_near = std::max(longest_near, length);
+    }
+  }
+  CHECK(longest_near > 0);
+  CHECK(longest_near < 8e-3);  // 2 mm + 0.4 × (8 mm + half a radius between centres), and some
+  CHECK(longest > 12e-3);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ TEST_CASE("rungs: each is there once, and settings have names of their own") {
   CHECK(std::set(models.begin(), models.end()).size() == models.size());
   CHECK(Setting{scene::Model::kCorotational, 1, 250}.name() == "corotational, level 1, 250 Hz");
   CHECK(Setting{scene::Model::kCorotational, 1, 250}.key() == "corotational-1-250");
+  CHECK(Setting{scene::Model::kCorotational, 1, 250, 5}.key() == "corotational-1-250-5");
 }
 
 TEST_CASE("rungs: a mesh becomes what the model wants") {

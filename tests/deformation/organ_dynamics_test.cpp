@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "deformation/solids/xpbd_springs.h"
 #include "tests/deformation/organs.h"
 
 namespace palpate::deformation {
@@ -44,6 +45,26 @@ TEST_CASE("organ dynamics: the scene's word for the integrator counts") {
   CHECK(make_dynamics(organ, model, kPeriod)->largest_step() > stable_step_bound(model));
   organ.integrator = scene::Integrator::kSymplecticEuler;
   CHECK(make_dynamics(organ, model, kPeriod)->largest_step() < stable_step_bound(model));
+}
+
+TEST_CASE("organ dynamics: the scene's number of iterations counts, 0 is the model's own") {
+  // Oracle: the same model made by hand.
+  auto organ = testing::ball_organ();
+  organ.model = scene::Model::kXpbdSprings;
+  const auto model = testing::ball_model(2, organ);
+  const auto after = [&](OrganDynamics& dynamics) {
+    OrganState state = rest_state(model);
+    for (std::size_t i = 0; i < model.node_count(); ++i) {
+      state.velocities[i] = Vec3(state.positions[i].y(), 0, 0);
+    }
+    dynamics.step(XpbdSprings::kStep, {}, state);
+    return state.positions;
+  };
+  for (const std::size_t iterations : {std::size_t{0}, std::size_t{3}}) {
+    organ.iterations = iterations;
+    XpbdSprings wanted(model, iterations == 0 ? 1 : 3);
+    CHECK(after(*make_dynamics(organ, model, kPeriod)) == after(wanted));
+  }
 }
 
 }  // namespace

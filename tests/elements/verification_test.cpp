@@ -5,7 +5,6 @@
 
 #include "bench/elements/elements_command.h"
 #include "bench/elements/load_path.h"
-#include "bench/elements/reference_columns.h"
 #include "modules/core/error.h"
 #include "solids.h"
 

@@ -46,6 +46,7 @@ void check_same(const Organ& a, const Organ& b) {
   CHECK(a.springs.virtual_nodes == b.springs.virtual_nodes);
   CHECK(a.model == b.model);
   CHECK(a.volume_corrections == b.volume_corrections);
+  CHECK(a.iterations == b.iterations);
   CHECK(a.integrator == b.integrator);
   REQUIRE(a.filling.points.size() == b.filling.points.size());
   for (std::size_t i = 0; i < a.filling.points.size(); ++i) {

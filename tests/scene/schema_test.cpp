@@ -41,6 +41,26 @@ TEST_CASE("schema: inner springs need virtual nodes to hang on") {
   CHECK(refusal("inner_ratio: 0.7", "inner_ratio: 0") == "accepted");
 }
 
+TEST_CASE("schema: only models that iterate take a number of iterations") {
+  // Oracle: the rule of the organ's table.
+  const auto of = [](const std::string& model, const std::string& count) {
+    return refusal("model: mass_spring", "model: " + model + "\n    iterations: " + count);
+  };
+  CHECK(of("mass_spring", "0") == "accepted");
+  for (const std::string model :
+       {"xpbd_springs", "xpbd_tetrahedra", "corotational", "nodal_pressure"}) {
+    INFO(model);
+    CHECK(of(model, "8") == "accepted");
+  }
+  for (const std::string model :
+       {"mass_spring", "implicit_volume", "quadratic_elements", "modal"}) {
+    INFO(model);
+    CHECK_THAT(of(model, "8"),
+               Catch::Contains("iterations must be 0 unless model is xpbd_springs"));
+  }
+  CHECK_THAT(of("xpbd_springs", "1001"), Catch::Contains("0 and 1000"));
+}
+
 TEST_CASE("schema: a box has a lowest and a highest corner") {
   // Oracle: the rule of the box's table, broken in each axis and by a flat box.
   const std::string message =

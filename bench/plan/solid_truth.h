@@ -1,0 +1,15 @@
+// The mesh that the truth of a solid is found on.
+#pragma once
+
+#include "modules/geometry/organ_shape.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::plan {
+
+/// The scene's own surface, filled with linear tetrahedra, with edges of a quarter of a probe's
+/// radius where probes come near in the first `duration` [s]: a probe that is small beside the
+/// triangles would meet a surface several times too hard, whatever the elements.
+/// @param scene  one organ, a solid @throws InputError as scene::load_organ, or if gmsh is missing
+geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duration);
+
+}  // namespace palpate::plan
