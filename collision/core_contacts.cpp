@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 namespace palpate::collision {
@@ -194,6 +195,24 @@ std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, 
   return behind;
 }
 
+/// Whether the core, remembered to be behind a wall, is out of the organ by another way, or beyond
+/// the wall's edge: all that is nearest to it faces it, and does not face against the wall, as the
+/// far side does of an organ that was passed through.
+bool is_out(const std::vector<Candidate>& candidates) {
+  double nearest = std::numeric_limits<double>::infinity();
+  Vec3 outward = Vec3::Zero();
+  for (const Candidate& c : candidates) {
+    nearest = std::min(nearest, c.pair.distance);
+    if (c.remembered) outward += c.triangle.normal_end;
+  }
+  if (nearest <= kDirectionless) return false;
+  return std::none_of(candidates.begin(), candidates.end(), [&](const Candidate& c) {
+    const bool is_nearest = c.pair.distance <= nearest + kDirectionless;
+    const bool faces_against = c.triangle.normal_end.dot(outward) < -kSameWall * outward.norm();
+    return is_nearest && (c.side <= 0 || faces_against);
+  });
+}
+
 }  // namespace
 
 void CoreContacts::reset() {
@@ -240,7 +259,7 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
   double depth_limit = 0;
   for (const Behind& b : before) depth_limit = std::max(depth_limit, b.depth_limit);
   std::vector<Candidate> near;
-  bool is_behind = !before.empty();
+  bool crosses = false;
   for (const SweptTriangle& triangle : candidates) {
     Candidate c{triangle, closest(core, triangle.end), 0, {}, false, false};
     if (before.empty() && c.gap(core) > std::max(step.margin, triangle.travel)) continue;
@@ -249,10 +268,10 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
                                [&](const Behind& b) { return b.triangle == triangle.index; });
     c.crossing = crossed_inward(step, core, triangle, c.pair.distance);
     if (c.crossing) depth_limit = std::max(depth_limit, step.depth_limit);
-    is_behind = is_behind || c.crossing;
+    crosses = crosses || c.crossing;
     near.push_back(c);
   }
-  if (is_behind) {
+  if (crosses || (!before.empty() && !is_out(near))) {
     for (const std::uint32_t triangle : append_wall(step, core, depth_limit, near, found)) {
       now_.push_back({step.organ_index, core.index, triangle, depth_limit});
     }
@@ -261,7 +280,7 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
   for (const Candidate& c : near) {
     if (c.side > 0 && c.gap(core) <= step.margin) {
       append_front(step, core, c, found);
-    } else {
+    } else if (before.empty()) {  // who has just left touched walls from behind
       append_graze(step, core, c, found);
     }
   }

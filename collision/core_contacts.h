@@ -5,9 +5,10 @@
 // wall, seen from inside) are not. Once continuous collision detection finds that a core went
 // through a triangle from its front, the core is *behind* that wall: the wall keeps its side, so
 // its triangles push the core back out the way it came, until the core is in front of it again, has
-// slid off it, or is deeper than OrganStep::depth_limit (then it counts as outside again). While it
-// is behind, only the part of the surface connected with the crossed triangles and facing the same
-// way takes part; it is followed as the core slides.
+// slid off it, has left the organ elsewhere (but for the far side), or is deeper than
+// OrganStep::depth_limit (then it counts as outside again). While it is behind, only the part of
+// the surface connected with the crossed triangles and facing the same way takes part; it is
+// followed as the core slides.
 #pragma once
 
 #include <span>

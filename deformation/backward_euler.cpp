@@ -1,6 +1,7 @@
 #include "deformation/backward_euler.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace palpate::deformation {
 namespace {
@@ -33,6 +34,22 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   linearise_springs(h, state);
   report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
 
+  // 2.-4. contacts, springs and volume
+  solve(h, rows, state);
+  if (std::abs(volume_impulse_) > h * state.pressure_limit) {
+    push_with(std::copysign(h * state.pressure_limit, volume_impulse_), h, rows, state);
+    report.pressure_capped = true;
+  }
+
+  // 5. the new state, and what the linearisation of the volume left
+  add(1, change_, state.velocities);
+  add(h, state.velocities, state.positions);
+  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
+  state.pressure = -volume_impulse_ / h;
+  return report;
+}
+
+void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   // 2. which contacts close, which slide
   volume_impulse_ = 0;
   solve_impulses(h, rows, state, StartImpulses::kToApply);
@@ -44,13 +61,19 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   // 4. what opened, closed or began to slide meanwhile
   solve_impulses(h, rows, state, StartImpulses::kApplied);
   keep_momentum(h, rows, state);
+}
 
-  // 5. the new state, and what the linearisation of the volume left
-  add(1, change_, state.velocities);
-  add(h, state.velocities, state.positions);
-  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
-  state.pressure = -volume_impulse_ / h;
-  return report;
+/// Solves with a given impulse of the contents, which is one more outside force.
+void BackwardEuler::push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                              const OrganState& state) {
+  linearise_springs(h, state);
+  volume_row_.reset();
+  const auto& gradient = free_.volume.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    if (model_.inverse_masses[i] > 0) residual_[i] -= volume_impulse * gradient[i];
+  }
+  solve(h, rows, state);
+  volume_impulse_ = volume_impulse;
 }
 
 void BackwardEuler::linearise_springs(double h, const OrganState& state) {
@@ -75,9 +98,11 @@ bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradi
   if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
   double rate = (volume.volume - target_volume) / h;
   volume.denominator = 0;  // of these mobilities from here on
+  volume_answers_.resize(volume.gradient.size());
   for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
     rate -= volume.gradient[i].dot(velocities[i]);
-    volume.denominator += volume.gradient[i].dot(mobilities_[i] * volume.gradient[i]);
+    volume_answers_[i] = mobilities_[i] * volume.gradient[i];
+    volume.denominator += volume.gradient[i].dot(volume_answers_[i]);
   }
   volume_row_.emplace(VolumeRow{volume, rate});
   return true;
@@ -88,10 +113,22 @@ void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const O
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     trial_[i] = state.velocities[i] + change_[i] + mobilities_[i] * residual_[i];
   }
-  volume_impulse_ += solve_contacts_and_volume(mobilities_, volume_row_ ? &*volume_row_ : nullptr,
-                                               h, rows, trial_, start)
-                         .volume_impulse;
+  hold_rows(h, rows, start);
   for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+}
+
+void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, StartImpulses start) {
+  const VolumeRow* const volume = volume_row_ ? &*volume_row_ : nullptr;
+  double volume_velocity = 0;
+  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
+    volume_velocity += volume->at.gradient[i].dot(trial_[i]);
+  }
+  const double sigma =
+      solve_contacts(mobilities_, volume, volume_velocity, h, rows, trial_, start).volume_impulse;
+  volume_impulse_ += sigma;
+  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
+    trial_[i] -= sigma * volume_answers_[i];
+  }
 }
 
 void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
@@ -164,9 +201,7 @@ void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganSt
   evaluate_volume(model_, state.positions, free_.volume);
   if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
   trial_ = state.velocities;
-  volume_impulse_ += solve_contacts_and_volume(mobilities_, &*volume_row_, h, rows, trial_,
-                                               StartImpulses::kApplied)
-                         .volume_impulse;
+  hold_rows(h, rows, StartImpulses::kApplied);
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     state.positions[i] += h * (trial_[i] - state.velocities[i]);
   }

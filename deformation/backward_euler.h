@@ -53,6 +53,9 @@ class BackwardEuler : public OrganDynamics {
   int iterations_used() const { return iterations_used_; }
 
  private:
+  void solve(double h, std::span<ContactRow> rows, const OrganState& state);
+  void push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                 const OrganState& state);
   void linearise_springs(double h, const OrganState& state);
   /// Φ + h g·(v⁺ − velocities) = 0 with `volume` as it would be by these velocities.
   /// @returns false if g vanished
@@ -61,6 +64,8 @@ class BackwardEuler : public OrganDynamics {
   /// Δv ← Δv + W r and impulses on top of it.
   void solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
                       StartImpulses start);
+  /// Turns the unconstrained velocities in trial_ into v⁺, and adds σ to the volume's impulse.
+  void hold_rows(double h, std::span<ContactRow> rows, StartImpulses start);
   /// r −= A Δv + Bᵀ (impulses)
   void update_residual(std::span<const ContactRow> rows);
   void relax_springs(std::span<ContactRow> rows);
@@ -79,6 +84,7 @@ class BackwardEuler : public OrganDynamics {
   std::optional<VolumeRow> volume_row_;  ///< none: contents not kept, or g vanished
   double volume_impulse_ = 0;            ///< σ [Pa·s]
   std::vector<Mat3> mobilities_;         ///< W [1/kg]
+  std::vector<Vec3> volume_answers_;     ///< W g [m²/kg]
   std::vector<Vec3> change_;             ///< Δv [m/s]
   std::vector<Vec3> residual_;           ///< r [N·s]
   std::vector<Vec3> trial_;

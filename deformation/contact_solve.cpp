@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/independent_contacts.h"
+
 namespace palpate::deformation {
 namespace {
 
@@ -13,58 +15,6 @@ constexpr double kVelocityTolerance = 1e-9;  // [m/s]
 constexpr int kMaxSweeps = 60;
 constexpr int kNewtonSweeps = 10;
 constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly all of the surface
-
-/// Nodes answer impulses by their mass.
-class MassMobility {
- public:
-  explicit MassMobility(const OrganModel& model) : inverse_masses_(model.inverse_masses) {}
-
-  /// Velocity that node takes from scale · impulse.
-  Vec3 answer(std::size_t node, double scale, const Vec3& impulse) const {
-    return (scale * inverse_masses_[node]) * impulse;
-  }
-  /// Σ b² W along n, and the most it is across n [1/kg]
-  std::array<double, 2> along_and_across(const ContactRow& row) const {
-    double inverse_mass = 0;
-    for (int k = 0; k < 3; ++k) {
-      inverse_mass += row.weights[k] * (row.weights[k] * inverse_masses_[row.nodes[k]]);
-    }
-    return {inverse_mass, inverse_mass};
-  }
-
- private:
-  const std::vector<double>& inverse_masses_;
-};
-
-/// Nodes answer impulses by a symmetric matrix W each.
-class BlockMobility {
- public:
-  explicit BlockMobility(std::span<const Mat3> mobilities) : mobilities_(mobilities) {}
-
-  Vec3 answer(std::size_t node, double scale, const Vec3& impulse) const {
-    return scale * (mobilities_[node] * impulse);
-  }
-  std::array<double, 2> along_and_across(const ContactRow& row) const {
-    Mat3 sum = Mat3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      sum += (row.weights[k] * row.weights[k]) * mobilities_[row.nodes[k]];
-    }
-    const Vec3 t = row.normal.unitOrthogonal(), s = row.normal.cross(t);
-    const double tt = t.dot(sum * t), ss = s.dot(sum * s), ts = t.dot(sum * s);
-    return {row.normal.dot(sum * row.normal), (tt + ss + std::hypot(tt - ss, 2 * ts)) / 2};
-  }
-
- private:
-  std::span<const Mat3> mobilities_;
-};
-
-/// The node a row acts on, or -1 if it acts on more than one.
-int only_node(const ContactRow& row) {
-  for (int k = 0; k < 3; ++k) {
-    if (row.weights[k] == 1 && row.weights.cwiseAbs().sum() == 1) return k;
-  }
-  return -1;
-}
 
 /// A row with what Gauss–Seidel needs at every visit.
 struct PreparedRow {
@@ -129,7 +79,7 @@ class Solver {
         if (row.weights[k] == 0) continue;
         const std::uint32_t node = row.nodes[k];
         prepared.volume_coupling +=
-            mobility_.answer(node, row.weights[k], volume_->at.gradient[node]);
+            mobility_.answer(node, row.weights[k] * volume_->at.gradient[node]);
       }
       const double coupling = row.normal.dot(prepared.volume_coupling);
       prepared.normal_coupling = coupling;
@@ -141,8 +91,7 @@ class Solver {
           std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
     }
     prepared.tangential_mobility = across;
-    prepared.allowed_approach =
-        std::max(row.gap / h, -kMaxSeparationSpeed) + row.normal.dot(row.probe_velocity);
+    prepared.allowed_approach = allowed_approach(row, h) + row.normal.dot(row.probe_velocity);
   }
 
   static void clamp_to_cone(ContactRow& row) {
@@ -182,7 +131,7 @@ class Solver {
   void add_impulse(std::size_t r, const Vec3& impulse, double coupling) {
     const ContactRow& row = rows_[r];
     for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
-      velocities_[row.nodes[k]] += mobility_.answer(row.nodes[k], row.weights[k], impulse);
+      velocities_[row.nodes[k]] += mobility_.answer(row.nodes[k], row.weights[k] * impulse);
     }
     volume_velocity_ += coupling;
     if (!sigma_is_held_) sigma_ = volume_impulse();
@@ -235,12 +184,23 @@ ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, doub
                          double h, std::span<ContactRow> rows, std::vector<Vec3>& velocities,
                          StartImpulses start) {
   ContactSolveReport report;
-  Solver solver(mobility, volume, volume_velocity, h, rows, velocities, start);
-  if (!rows.empty()) {
-    while (solver.sweep() > kVelocityTolerance && solver.sweeps() < kMaxSweeps) {
+  if (rows.empty()) {
+    if (volume != nullptr) {
+      report.volume_impulse = (volume->rate + volume_velocity) / volume->at.denominator;
     }
-    report.sweeps = solver.sweeps();
+    return report;
   }
+  if (auto contacts =
+          IndependentContacts<Mobility>::take(mobility, volume, h, rows, velocities, start)) {
+    if (volume != nullptr) report.volume_impulse = contacts->solve_volume(*volume, volume_velocity);
+    contacts->apply(mobility, start, rows, velocities);
+    report.sweeps = contacts->steps();
+    return report;
+  }
+  Solver solver(mobility, volume, volume_velocity, h, rows, velocities, start);
+  while (solver.sweep() > kVelocityTolerance && solver.sweeps() < kMaxSweeps) {
+  }
+  report.sweeps = solver.sweeps();
   report.volume_impulse = solver.volume_impulse();
   return report;
 }
@@ -257,7 +217,7 @@ ContactSolveReport solve_all(const Mobility& mobility, const VolumeRow* volume, 
     volume_velocity += gradient[i].dot(velocities[i]);
   const auto report = solve(mobility, volume, volume_velocity, h, rows, velocities, start);
   for (std::size_t i = 0; i < gradient.size(); ++i) {
-    velocities[i] -= mobility.answer(i, report.volume_impulse, gradient[i]);
+    velocities[i] -= mobility.answer(i, report.volume_impulse * gradient[i]);
   }
   return report;
 }
@@ -289,11 +249,10 @@ ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volu
   return report;
 }
 
-ContactSolveReport solve_contacts_and_volume(std::span<const Mat3> mobilities,
-                                             const VolumeRow* volume, double h,
-                                             std::span<ContactRow> rows,
-                                             std::vector<Vec3>& velocities, StartImpulses start) {
-  return solve_all(BlockMobility(mobilities), volume, h, rows, velocities, start);
+ContactSolveReport solve_contacts(std::span<const Mat3> mobilities, const VolumeRow* volume,
+                                  double volume_velocity, double h, std::span<ContactRow> rows,
+                                  std::vector<Vec3>& velocities, StartImpulses start) {
+  return solve(BlockMobility(mobilities), volume, volume_velocity, h, rows, velocities, start);
 }
 
 }  // namespace palpate::deformation

@@ -8,10 +8,12 @@
 //     non-penetration:  n·(v_c − Σ b_k v⁺_k) ≥ −gap/h                    (n from tissue to probe)
 // Projected Gauss–Seidel runs on the contacts alone, with σ eliminated exactly (a rank-one update
 // of each contact's inverse mass); or, where each contact acts on one node, with σ held during a
-// sweep and found by Newton between sweeps. σ is taken last, from the impulses there are: so the
+// sweep and found by Newton between sweeps. Contacts without friction on a node each need no sweeps
+// (independent_contacts.h). σ is taken last, from the impulses there are: so the
 // linearised volume holds however few sweeps were made; they only sharpen the contact impulses.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -50,6 +52,11 @@ struct ContactSolveReport {
 /// tissue away; the remaining depth follows in the next steps.
 inline constexpr double kMaxSeparationSpeed = 1.0;
 
+/// How fast tissue may come nearer to the probe in a step of h [s] [m/s].
+inline double allowed_approach(const ContactRow& row, double h) {
+  return std::max(row.gap / h, -kMaxSeparationSpeed);
+}
+
 /// Whether the impulses the rows bring are already in the velocities.
 enum class StartImpulses { kToApply, kApplied };
 
@@ -66,13 +73,11 @@ ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volu
                                   double volume_velocity, double h, std::span<ContactRow> rows,
                                   std::vector<Vec3>& velocities);
 
-/// solve_contacts_and_volume() where a node answers an impulse not by M⁻¹ but by its mobility, as
-/// in implicit steps.
-/// @param mobilities  symmetric, positive; zero for fixed nodes [1/kg]  (node_count)
-/// @param volume      with gᵀWg of these mobilities W as denominator, not vanished; or null
-ContactSolveReport solve_contacts_and_volume(std::span<const Mat3> mobilities,
-                                             const VolumeRow* volume, double h,
-                                             std::span<ContactRow> rows,
-                                             std::vector<Vec3>& velocities, StartImpulses start);
+/// The same where a node answers an impulse not by M⁻¹ but by its mobility, as in implicit steps.
+/// @param mobilities  W, symmetric, positive; zero for fixed nodes [1/kg]  (node_count)
+/// @param volume      with gᵀWg of these as denominator, not vanished; or null
+ContactSolveReport solve_contacts(std::span<const Mat3> mobilities, const VolumeRow* volume,
+                                  double volume_velocity, double h, std::span<ContactRow> rows,
+                                  std::vector<Vec3>& velocities, StartImpulses start);
 
 }  // namespace palpate::deformation

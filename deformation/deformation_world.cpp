@@ -55,7 +55,8 @@ double mean_edge_length(const geometry::TriangleSurface& surface) {
 }
 
 WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
-                      double period, const geometry::OrganShape& shape, ChunkRunner* runner) {
+                      double period, const geometry::OrganShape& shape, ChunkRunner* runner,
+                      Guarding guarding) {
   auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
   auto dynamics = make_dynamics(organ, *model, period, runner);
   if (dynamics->largest_step() < kLeastStep) {
@@ -67,7 +68,7 @@ WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3
   }
   const IntegratorChoice integrator = choose_integrator(organ, *model, period);
   SurfaceTopology topology = make_topology(organ, index, *model);
-  return {SimulatedOrgan(organ, std::move(model), std::move(dynamics)),
+  return {SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
           integrator,
           std::move(topology),
           {},
@@ -137,12 +138,13 @@ struct DeformationWorld::Impl {
 
 DeformationWorld::DeformationWorld(const scene::Scene& scene,
                                    std::vector<geometry::OrganShape> rest_shapes,
-                                   ChunkRunner* runner)
+                                   ChunkRunner* runner, Guarding guarding)
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
     impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
-                                       1 / scene.rates.deformation, rest_shapes[i], runner));
+                                       1 / scene.rates.deformation, rest_shapes[i], runner,
+                                       guarding));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }

@@ -20,7 +20,7 @@ class DeformationWorld {
   ///         below 1 µs, …)
   /// @param runner  outlives the world; none: the calling thread alone. The bits are the same
   DeformationWorld(const scene::Scene& scene, std::vector<geometry::OrganShape> rest_shapes,
-                   ChunkRunner* runner = nullptr);
+                   ChunkRunner* runner = nullptr, Guarding guarding = Guarding::kOn);
   ~DeformationWorld();
   DeformationWorld(DeformationWorld&&) noexcept;
 

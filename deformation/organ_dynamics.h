@@ -12,7 +12,8 @@ namespace palpate::deformation {
 
 /// What one step did beyond stepping.
 struct StepReport {
-  bool volume_skipped = false;  ///< gᵀM⁻¹g vanished: the volume was not corrected
+  bool volume_skipped = false;   ///< gᵀM⁻¹g vanished: the volume was not corrected
+  bool pressure_capped = false;  ///< state.pressure_limit was pushed with; the volume is not V*
 };
 
 /// Keeps its large buffers between steps; only a solve for contacts takes memory for their number.

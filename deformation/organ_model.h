@@ -1,6 +1,7 @@
 // One organ: what is constant while it deforms, and its state.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "deformation/spring_network.h"
@@ -44,7 +45,10 @@ struct OrganState {
   std::vector<Vec3> velocities;  ///< [m/s]
   double volume = 0;             ///< of the positions [m³]
   double target_volume = 0;      ///< V* [m³]
-  double pressure = 0;           ///< p = −λ of the last step [Pa]
+  /// A kept volume is let go for a step that would need |p| above this [Pa]: the contents then push
+  /// with just so much, and the volume becomes what it becomes. Not below 0.
+  double pressure_limit = std::numeric_limits<double>::infinity();
+  double pressure = 0;  ///< p = −λ of the last step [Pa]
 };
 
 /// The organ's total mass is density × enclosed volume (filled organ), spread over the surface

@@ -22,13 +22,15 @@ constexpr int kAdvancesToShow = 4;
 }  // namespace
 
 SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
-                               std::unique_ptr<OrganDynamics> dynamics)
+                               std::unique_ptr<OrganDynamics> dynamics, Guarding guarding)
     : model_(std::move(model)),
       dynamics_(std::move(dynamics)),
       target_volume_(organ.filling),
       guard_(*model_, knows_energy(organ.model)),
+      guarding_(guarding),
       holds_volume_(organ.model == scene::Model::kImplicitVolume),
-      pressure_cap_(pressure_cap(organ.tissue, model_->rest_volume)) {
+      pressure_limit_(holds_volume_ ? pressure_cap(organ.tissue, model_->rest_volume)
+                                    : std::numeric_limits<double>::infinity()) {
   reset();
 }
 
@@ -50,7 +52,7 @@ void SimulatedOrgan::reset() {
   state_ = last_good_ = rest_state(*model_);
   guard_.begin(state_, dynamics_->elastic_energy(state_));
   halvings_ = failures_ = advances_ = 0;
-  collapsed_time_ = aloof_time_ = 0;
+  collapsed_time_ = aloof_time_ = gentle_time_ = 0;
   quiet_time_ = kQuietTime;
 }
 
@@ -58,6 +60,10 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
                           AdvanceReport& report) {
   const double before = state_.target_volume;
   state_.target_volume = model_->rest_volume * target_volume_.follow(time, h);
+  state_.pressure_limit = pressure_limit_;
+  if (gentle_time_ > 0) {
+    for (ContactRow& row : rows) row.gap = std::max(row.gap, -kGentleSpeed * h);
+  }
   const StepReport stepped = dynamics_->step(h, rows, state_);
   guard_.add_work(h, rows, state_.target_volume - before, state_);
   if (stepped.volume_skipped) {
@@ -65,16 +71,17 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
     advances_ = kThoroughLookEvery;
   }
   collapsed_time_ = stepped.volume_skipped && rows.empty() ? collapsed_time_ + h : 0;
-  if (!holds_volume_ || !(std::abs(state_.pressure) > pressure_cap_)) return;
+  if (!stepped.pressure_capped) return;
   report.pressure_capped = true;
-  state_.pressure = std::copysign(pressure_cap_, state_.pressure);
   release_volume();
   advances_ = kThoroughLookEvery;
 }
 
 bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
+  if (guarding_ == Guarding::kOff) return true;
   const bool thorough = ++advances_ >= kThoroughLookEvery;
-  Disbelief seen = thorough ? guard_.look_thoroughly(state_, *dynamics_) : guard_.look(state_);
+  Disbelief seen =
+      thorough ? guard_.look_thoroughly(state_, period, *dynamics_) : guard_.look(state_, period);
   if (collapsed_time_ > kCollapsedTime) seen = Disbelief::kCollapsed;
   if (seen != Disbelief::kNone) {
     recover(seen, report);
@@ -109,10 +116,12 @@ bool SimulatedOrgan::volume_is_far() const {
 void SimulatedOrgan::recover(Disbelief reason, AdvanceReport& report) {
   report.diverged = report.step_reduced = true;
   report.reason = reason;
+  gentle_time_ = kQuietTime;
   if (++failures_ > kMostFailures) {
     report.back_to_rest = true;
     last_good_ = rest_state(*model_);
     aloof_time_ = kQuietTime;
+    gentle_time_ += kQuietTime;
   }
   put(last_good_);
   std::fill(state_.velocities.begin(), state_.velocities.end(), Vec3::Zero());
@@ -127,6 +136,7 @@ void SimulatedOrgan::shorten_steps() {
 
 void SimulatedOrgan::lengthen_steps(double period) {
   aloof_time_ -= period;
+  gentle_time_ -= period;
   quiet_time_ += period;
   if (halvings_ == 0 || quiet_time_ < kQuietTime) return;
   --halvings_;

@@ -3,7 +3,8 @@
 //
 // From mild to harsh, each seen in AdvanceReport:
 //   1. suspicious energy: the next steps are halved, quartered, … down to 1/2^kMostHalvings
-//   2. not believed: back to the last good state, at rest, with halved steps
+//   2. not believed: back to the last good state, at rest, with halved steps; where that is inside
+//      a probe, contacts push it out at kGentleSpeed for kQuietTime
 //   3. not believed for the fourth time: back to the rest state, and no contacts for kQuietTime
 // kQuietTime without any of them doubles the steps again and forgives a failure. Each advance ends
 // in a state that was looked at; none is computed twice.
@@ -24,7 +25,7 @@ struct AdvanceReport {
   Disbelief reason = Disbelief::kNone;  ///< of that
   bool back_to_rest = false;            ///< replaced by the rest state, not the last good one
   bool step_reduced = false;            ///< steps are shorter than stability should need
-  bool pressure_capped = false;         ///< kLeastPressureCap was met: V* follows V from there
+  bool pressure_capped = false;         ///< the cap was met: V* goes on from V
   bool volume_released = false;         ///< V was far from V*: V* follows V from there
   bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
   bool contacts_ignored = false;        ///< of an organ put back to rest, for kQuietTime
@@ -33,7 +34,8 @@ struct AdvanceReport {
 };
 
 /// Least cap of the pressure |p| of a volume constraint [Pa]: an atmosphere, five times what a
-/// cough makes. Stiff walls hold more: the cap is kPressureCapOfWall E t/R if that is larger.
+/// cough makes. Stiff walls hold more: the cap is kPressureCapOfWall E t/R if that is larger. A
+/// step that would need more is taken with the cap instead of the constraint.
 inline constexpr double kLeastPressureCap = 1e5;
 inline constexpr double kPressureCapOfWall = 10;
 /// A volume further from V* than this part of V₀ is not corrected at once: V* begins again at the
@@ -45,13 +47,18 @@ inline constexpr double kCollapsedTime = 0.5;
 inline constexpr int kMostHalvings = 3;
 inline constexpr int kMostFailures = 3;
 inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
+/// A state put back may be inside a probe. Pushed out of it in a hurry it would fail again [m/s].
+inline constexpr double kGentleSpeed = 0.05;
 /// Energy, volume and inversion are looked at in every such advance, and after any guard acted.
 inline constexpr int kThoroughLookEvery = 16;
+
+/// Off: nothing of the above is done. For measuring what it is worth (`palpate fuzz`).
+enum class Guarding : std::uint8_t { kOn, kOff };
 
 class SimulatedOrgan {
  public:
   SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
-                 std::unique_ptr<OrganDynamics> dynamics);
+                 std::unique_ptr<OrganDynamics> dynamics, Guarding guarding = Guarding::kOn);
 
   const OrganModel& model() const { return *model_; }
   OrganDynamics& dynamics() const { return *dynamics_; }
@@ -83,11 +90,13 @@ class SimulatedOrgan {
   TargetVolume target_volume_;
   StateGuard guard_;
   OrganState state_, last_good_;
+  Guarding guarding_;
   bool holds_volume_ = false;  ///< by a constraint that answers an error with an impulse
-  double pressure_cap_ = 0;    ///< [Pa]
+  double pressure_limit_ = 0;  ///< [Pa]; infinite where no constraint makes it
   int halvings_ = 0;           ///< of the step
   int failures_ = 0;           ///< states not believed, less those forgiven
   double aloof_time_ = 0;      ///< left [s]
+  double gentle_time_ = 0;     ///< left [s]
   double quiet_time_ = 0;      ///< since a guard acted [s]
   double collapsed_time_ = 0;  ///< [s]
   int advances_ = 0;           ///< since the last thorough look

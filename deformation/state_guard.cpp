@@ -57,7 +57,7 @@ StateGuard::StateGuard(const OrganModel& model, bool knows_energy)
       total_mass_(moving_mass(model)),
       largest_distance_(kMaxGrowth * largest_rest_distance(model)),
       calm_energy_(total_mass_ * kCalmSpeed * kCalmSpeed / 2),
-      largest_unpaid_(total_mass_ * kUnpaidSpeed * kUnpaidSpeed / 2) {}
+      largest_unpaid_(total_mass_ * kMaxSeparationSpeed * kMaxSeparationSpeed) {}
 
 void StateGuard::begin(const OrganState& state, double elastic_energy) {
   double kinetic = 0;
@@ -67,6 +67,7 @@ void StateGuard::begin(const OrganState& state, double elastic_energy) {
   ledger_ = kinetic + elastic_energy;
   unpaid_ = 0;
   first_moment_ = first_moment(model_, state.positions);
+  seen_ = state.positions;
   suspicious_ = false;
 }
 
@@ -84,7 +85,8 @@ void StateGuard::add_work(double h, std::span<const ContactRow> rows, double vol
   ledger_ += state.pressure * volume_change;
 }
 
-Disbelief StateGuard::look(const OrganState& state) {
+Disbelief StateGuard::look(const OrganState& state, double period) {
+  const double way = period * period * kMaxNodeSpeed * kMaxNodeSpeed;
   const double far = largest_distance_ * largest_distance_;
   const double fast = kMaxNodeSpeed * kMaxNodeSpeed;
   const Vec3 first = state.positions[0];
@@ -93,11 +95,13 @@ Disbelief StateGuard::look(const OrganState& state) {
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const double speed = state.velocities[i].squaredNorm();
     const double distance = (state.positions[i] - first).squaredNorm();
-    sound &= (speed <= fast) & (distance <= far);  // false for NaN
+    const double moved = (state.positions[i] - seen_[i]).squaredNorm();
+    sound &= (speed <= fast) & (moved <= way) & (distance <= far);  // false for NaN
     twice_energy += model_.masses[i] * speed;
   }
   suspicious_ = false;
-  if (!sound) return explain(state);
+  if (!sound) return explain(state, period);
+  seen_ = state.positions;
   kinetic_energy_ = twice_energy / 2;
   if (!model_.gravity.isZero(0)) {
     const Vec3 moment = first_moment(model_, state.positions);
@@ -107,8 +111,9 @@ Disbelief StateGuard::look(const OrganState& state) {
   return judge_energy(kinetic_energy_);
 }
 
-Disbelief StateGuard::look_thoroughly(const OrganState& state, OrganDynamics& dynamics) {
-  const Disbelief seen = look(state);
+Disbelief StateGuard::look_thoroughly(const OrganState& state, double period,
+                                      OrganDynamics& dynamics) {
+  const Disbelief seen = look(state, period);
   if (seen != Disbelief::kNone) return seen;
   const double volume = geometry::enclosed_volume(state.positions, model_.triangles);
   if (volume < -kTurnedVolume * model_.rest_volume) return Disbelief::kTurnedInside;
@@ -130,15 +135,16 @@ Disbelief StateGuard::judge_energy(double energy) {
   return shaken || energy > kEnergyGain * may_hold ? Disbelief::kEnergyGrew : Disbelief::kNone;
 }
 
-Disbelief StateGuard::explain(const OrganState& state) const {
+Disbelief StateGuard::explain(const OrganState& state, double period) const {
   bool finite = std::isfinite(state.pressure);
   double speed = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     finite &= state.positions[i].allFinite() && state.velocities[i].allFinite();
-    speed = std::max(speed, state.velocities[i].squaredNorm());
+    speed = std::max(
+        {speed, state.velocities[i].norm(), (state.positions[i] - seen_[i]).norm() / period});
   }
   if (!finite) return Disbelief::kNotFinite;
-  return speed > kMaxNodeSpeed * kMaxNodeSpeed ? Disbelief::kTooFast : Disbelief::kTooLarge;
+  return speed > kMaxNodeSpeed ? Disbelief::kTooFast : Disbelief::kTooLarge;
 }
 
 std::size_t inverted_tetrahedra(const OrganModel& model, const std::vector<Vec3>& positions) {

@@ -28,7 +28,7 @@ namespace palpate::deformation {
 enum class Disbelief : std::uint8_t {
   kNone,
   kNotFinite,     ///< a position, velocity or pressure
-  kTooFast,       ///< a node beyond kMaxNodeSpeed
+  kTooFast,       ///< a node beyond kMaxNodeSpeed, now or on the way since the last look
   kEnergyGrew,    ///< beyond kEnergyGain times what it had and was given
   kTooLarge,      ///< two nodes further apart than kMaxGrowth times any two at rest
   kTurnedInside,  ///< it encloses less than −kTurnedVolume V₀
@@ -45,10 +45,9 @@ inline constexpr double kSuspiciousGain = 2.0;
 /// from [m/s].
 inline constexpr double kCalmSpeed = 0.05;
 
-/// Unpaid energy is forgotten by 1/e in this time [s]; no more is believed at a time than moves the
-/// whole organ at this speed [m/s], unless the organ is calm.
+/// Unpaid energy is forgotten by 1/e in this time [s]; no more is believed at a time than pushes
+/// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed², unless the organ is calm.
 inline constexpr double kUnpaidMemory = 10.0;
-inline constexpr double kUnpaidSpeed = 0.5;
 /// Tissue parts from the probe faster than this where a penetration is undone in a hurry [m/s].
 inline constexpr double kPushedSpeed = 0.2;
 
@@ -71,10 +70,11 @@ class StateGuard {
                 const OrganState& state);
 
   /// One pass over the nodes, for every advance.
-  Disbelief look(const OrganState& state);
+  /// @param period  since the last look [s]
+  Disbelief look(const OrganState& state, double period);
 
   /// What look() sees, then all energy and the sign of the volume. Brings the ledger down.
-  Disbelief look_thoroughly(const OrganState& state, OrganDynamics& dynamics);
+  Disbelief look_thoroughly(const OrganState& state, double period, OrganDynamics& dynamics);
 
   /// The last look believed, but the energy was more than it should be: a step too large shows
   /// itself so before it does harm.
@@ -84,13 +84,14 @@ class StateGuard {
 
  private:
   Disbelief judge_energy(double energy);
-  Disbelief explain(const OrganState& state) const;
+  Disbelief explain(const OrganState& state, double period) const;
 
   const OrganModel& model_;
   bool knows_energy_;
   double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_unpaid_ = 0;
   double ledger_ = 0, unpaid_ = 0, kinetic_energy_ = 0;  ///< [J]
   Vec3 first_moment_ = Vec3::Zero();                     ///< Σ m x, under gravity [kg·m]
+  std::vector<Vec3> seen_;                               ///< positions of the last look [m]
   bool suspicious_ = false;
 };
 

@@ -1,5 +1,7 @@
 #include "deformation/symplectic_euler.h"
 
+#include <cmath>
+
 #include "deformation/spring_forces.h"
 
 namespace palpate::deformation {
@@ -83,6 +85,10 @@ StepReport SymplecticEuler::step(double h, std::span<ContactRow> rows, OrganStat
   // 2. contact impulses and the one volume multiplier
   auto report = solve_contacts(model_, model_.preserve_volume ? &volume : nullptr,
                                free_.volume_velocity, h, rows, free_.velocities);
+  if (std::abs(report.volume_impulse) > h * state.pressure_limit) {
+    push_with(std::copysign(h * state.pressure_limit, report.volume_impulse), h, rows, state);
+    return {.pressure_capped = true};
+  }
 
   // 3. velocities at the end of the step, positions
   kernel_.finish_step(h, report.volume_impulse, free_, state);
@@ -92,7 +98,20 @@ StepReport SymplecticEuler::step(double h, std::span<ContactRow> rows, OrganStat
     correct_volume(model_, h, rows, state, buffers_, report);
   }
   state.pressure = -report.volume_impulse / h;
-  return {report.volume_skipped};
+  return {.volume_skipped = report.volume_skipped};
+}
+
+/// The step with a given impulse of the contents, to which contacts are found anew.
+void SymplecticEuler::push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                                OrganState& state) {
+  kernel_.free_step(h, state, free_);
+  const auto& gradient = free_.volume.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    free_.velocities[i] -= model_.inverse_masses[i] * volume_impulse * gradient[i];
+  }
+  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
+  kernel_.finish_step(h, 0, free_, state);
+  state.pressure = -volume_impulse / h;
 }
 
 }  // namespace palpate::deformation

@@ -27,7 +27,8 @@ void correct_volume(const OrganModel& model, double h, std::span<ContactRow> row
                     OrganState& state, StepBuffers& buffers, ContactSolveReport& report);
 
 /// Advances the state by h [s]. Stable for h below stable_step_bound(). Contact rows must hold
-/// their gaps at the current positions. The plain code: SymplecticEuler does the same faster.
+/// their gaps at the current positions. The plain code, without a limit of the pressure:
+/// SymplecticEuler does the same faster.
 ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
                                          std::span<ContactRow> rows, OrganState& state,
                                          StepBuffers& buffers);
@@ -44,6 +45,8 @@ class SymplecticEuler : public OrganDynamics {
   }
 
  private:
+  void push_with(double volume_impulse, double h, std::span<ContactRow> rows, OrganState& state);
+
   const OrganModel& model_;
   double largest_step_;
   SpringKernel kernel_;

@@ -14,7 +14,7 @@ using elements::MixedSolid;
 using elements::SolidState;
 
 constexpr double kStride = 0.1;        // radii, of the sphere between equilibria
-constexpr int kMostHalvings = 2;         // a fold is not followed: it takes hours
+constexpr int kMostHalvings = 2;       // a fold is not followed: it takes hours
 constexpr double kReach = 4;           // radii: faces within may touch
 constexpr double kPenaltyRatio = 300;  // as in case D of bench/elements
 

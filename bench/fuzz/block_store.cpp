@@ -13,7 +13,7 @@ namespace palpate::fuzz {
 namespace {
 
 /// Raised when the generator or what counts as a failure changes.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 /// One cell: no commas, quotation marks or ends of lines.
 std::string cell_text(std::string text) {
@@ -27,6 +27,8 @@ bool parse(const std::string& line, Outcome& out) {
   std::string cell;
   if (!std::getline(cells, cell, ',')) return false;
   out.ending = static_cast<Ending>(std::atoi(cell.c_str()));
+  if (!std::getline(cells, cell, ',')) return false;
+  out.unguarded = static_cast<Unguarded>(std::atoi(cell.c_str()));
   if (!std::getline(cells, cell, ',')) return false;
   out.time = std::strtod(cell.c_str(), nullptr);
   for (auto& guard : out.guards) {
@@ -60,12 +62,13 @@ bool BlockStore::read(std::uint64_t first, std::size_t count, std::vector<Outcom
 }
 
 void BlockStore::write(std::uint64_t first, const std::vector<Outcome>& outcomes) const {
-  std::vector<std::string> columns{"ending", "time_s"};
+  std::vector<std::string> columns{"ending", "unguarded", "time_s"};
   columns.insert(columns.end(), kGuardNames.begin(), kGuardNames.end());
   columns.push_back("what");
   bench::TableFile table(file_of(first, outcomes.size()), columns);
   for (const Outcome& outcome : outcomes) {
     std::vector<std::string> cells{std::to_string(int(outcome.ending)),
+                                   std::to_string(int(outcome.unguarded)),
                                    fmt::format("{:.6g}", outcome.time)};
     for (const auto guard : outcome.guards) cells.push_back(std::to_string(guard));
     cells.push_back(cell_text(outcome.what));

@@ -10,6 +10,7 @@
 #include "bench/fuzz/lockstep.h"
 #include "bench/fuzz/minimise.h"
 #include "bench/fuzz/scene_files.h"
+#include "bench/fuzz/tally.h"
 #include "bench/report/progress.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
@@ -19,43 +20,6 @@ namespace {
 
 /// Minimising a scene runs it a hundred times; more of one kind say no more.
 constexpr std::size_t kKeptOfAKind = 3;
-
-struct Tally {
-  std::uint64_t scenes = 0, refused = 0, failed = 0, guarded = 0;
-  std::array<std::uint64_t, kGuardCount> guards{};             ///< scenes in which each acted
-  std::map<std::string, std::vector<std::uint64_t>> failures;  ///< scenes of each kind
-
-  void add(std::uint64_t number, const Outcome& outcome) {
-    ++scenes;
-    refused += outcome.ending == Ending::kRefused;
-    bool any = false;
-    for (std::size_t g = 0; g < kGuardCount; ++g) {
-      guards[g] += outcome.guards[g] > 0;
-      any |= outcome.guards[g] > 0;
-    }
-    guarded += any;
-    if (outcome.ending != Ending::kFailed) return;
-    ++failed;
-    failures[outcome.kind()].push_back(number);
-  }
-};
-
-void print(const Tally& tally, std::ostream& out) {
-  out << fmt::format("{} scenes: {} ran, {} refused with a message, {} failed unguarded\n",
-                     tally.scenes, tally.scenes - tally.refused - tally.failed, tally.refused,
-                     tally.failed);
-  out << fmt::format("guards acted in {} scenes:\n", tally.guarded);
-  for (std::size_t g = 0; g < kGuardCount; ++g) {
-    out << fmt::format("  {:<17} {}\n", kGuardNames[g], tally.guards[g]);
-  }
-  for (const auto& [kind, numbers] : tally.failures) {
-    out << fmt::format(
-        "FAILED {}: {} scenes, k = {}\n", kind, numbers.size(),
-        fmt::join(numbers.begin(),
-                  numbers.begin() + std::ptrdiff_t(std::min<std::size_t>(numbers.size(), 10)),
-                  ", "));
-  }
-}
 
 /// Leaves a failing scene as simple as can be in out/scene_k.
 void keep(const FuzzOptions& options, const ShapeStore& shapes, std::uint64_t number,
@@ -75,10 +39,10 @@ int run_one(const FuzzOptions& options, const ShapeStore& shapes, std::ostream& 
   const std::uint64_t number = *options.only;
   const RandomScene scene = random_scene(options.seed, number);
   out << text_of(scene);
-  const Outcome outcome = run_apart(scene, shapes);
+  const Outcome outcome = run_and_compare(scene, shapes);
   Tally tally;
   tally.add(number, outcome);
-  print(tally, out);
+  tally.print(out);
   out << fmt::format("simulated {:.4g} s; {}\n", outcome.time,
                      outcome.what.empty() ? "ran" : outcome.what);
   if (outcome.ending != Ending::kFailed) return kExitDone;
@@ -100,7 +64,7 @@ void run_all(const FuzzOptions& options, const ShapeStore& shapes, bench::Progre
       outcomes.clear();
       for (std::uint64_t k = first; k < first + count; ++k) {
         progress.at(double(k), double(options.scenes), "scenes");
-        outcomes.push_back(run_apart(random_scene(options.seed, k), shapes));
+        outcomes.push_back(run_and_compare(random_scene(options.seed, k), shapes));
         const std::string kind = outcomes.back().kind();
         if (outcomes.back().ending != Ending::kFailed || ++kept[kind] > kKeptOfAKind) continue;
         keep(options, shapes, k, kind, log);
@@ -123,12 +87,12 @@ int run_fuzz(const FuzzOptions& options, std::ostream& out, std::ostream& log) {
   try {
     run_all(options, shapes, progress, tally, log);
   } catch (const bench::Stopped&) {
-    print(tally, out);
+    tally.print(out);
     log << "stopped; finished blocks are not run again" << std::endl;
     return bench::kExitStopped;
   }
-  print(tally, out);
-  return tally.failed == 0 ? kExitDone : kExitFailed;
+  tally.print(out);
+  return tally.failed() == 0 ? kExitDone : kExitFailed;
 }
 
 }  // namespace palpate::fuzz

@@ -2,10 +2,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "bench/fuzz/insults.h"
+#include "bench/fuzz/organ_watch.h"
+#include "bench/fuzz/scene_shapes.h"
 #include "collision/contact_finder.h"
 #include "collision/contact_margin.h"
 #include "deformation/deformation_world.h"
@@ -18,7 +19,6 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr double kNodeSteps = 4e5;  // that a scene may cost
-constexpr double kFarthest = 1000;  // [m]
 
 /// Of a node's step, over one of springs; measured, to one digit.
 double cost_of(scene::Model model) {
@@ -27,11 +27,6 @@ double cost_of(scene::Model model) {
   if (model == scene::Model::kXpbdTetrahedra) return 10;
   return model == scene::Model::kElementVolume ? 5 : 1;
 }
-
-/// A failure found in a message.
-struct Failure {
-  std::string what;
-};
 
 struct Clock {
   std::int64_t period_ns, next_ns = 0;
@@ -54,55 +49,16 @@ struct ProbeRun {
   HapticForce force;
 };
 
-struct OrganRun {
-  NodePositions nodes;
-  std::vector<float> last;
-  std::vector<Vec3> seen;
-  double away = 0;  ///< largest way from rest when last looked at [m]
-};
-
-std::vector<geometry::OrganShape> shapes_in_world(const RandomScene& scene,
-                                                  const ShapeStore& store) {
-  std::vector<geometry::OrganShape> shapes;
-  for (std::size_t i = 0; i < scene.organ_shapes.size(); ++i) {
-    const scene::Organ& organ = scene.scene.organs[i];
-    shapes.push_back(store.shape(scene.organ_shapes[i], organ.model));
-    for (auto* nodes : {&shapes[i].surface.nodes, &shapes[i].inner_nodes}) {
-      for (Vec3& node : *nodes) node = organ.pose.to_world(node);
-    }
-  }
-  return shapes;
-}
-
-std::vector<std::vector<geometry::Triangle>> triangles_of(
-    const std::vector<geometry::OrganShape>& shapes) {
-  std::vector<std::vector<geometry::Triangle>> triangles;
-  for (const auto& shape : shapes) triangles.push_back(shape.surface.triangles);
-  return triangles;
-}
-
-std::vector<collision::ProbeGeometry> probe_geometry(const RandomScene& scene,
-                                                     const ShapeStore& store) {
-  std::vector<collision::ProbeGeometry> geometry;
-  for (std::size_t i = 0; i < scene.scene.probes.size(); ++i) {
-    const auto& shape = scene.scene.probes[i].shape;
-    geometry.push_back({shape, {}});
-    if (!std::holds_alternative<scene::MeshShape>(shape)) continue;
-    geometry.back().mesh = store.shape(scene.probe_shapes[i], scene::Model::kMassSpring).surface;
-  }
-  return geometry;
-}
-
 class Lockstep {
  public:
   Lockstep(const RandomScene& scene, std::vector<geometry::OrganShape> shapes,
-           const ShapeStore& store, Outcome& outcome)
+           const ShapeStore& store, deformation::Guarding guarding, Outcome& outcome)
       : scene_(scene),
         outcome_(outcome),
         insults_(scene.insults),
         finder_(triangles_of(shapes), probe_geometry(scene, store)),
-        world_(scene.scene, std::move(shapes)),
-        organs_(world_.organ_count()) {
+        world_(scene.scene, std::move(shapes), nullptr, guarding),
+        guarding_(guarding) {
     std::vector<std::string> warnings;
     const scene::Scene& s = scene.scene;
     for (const auto& probe : s.probes) {
@@ -116,7 +72,9 @@ class Lockstep {
                          {},
                          {}});
     }
-    publish_nodes({});
+    for (std::size_t i = 0; i < world_.organ_count(); ++i) {
+      organs_.emplace_back(world_, i, scene.organ_shapes[i].size.maxCoeff(), period());
+    }
   }
 
   void run() {
@@ -131,9 +89,13 @@ class Lockstep {
       if (collision.take(now)) search();
       if (deformation.take(now)) advance();
     }
+    if (guarding_ == deformation::Guarding::kOn) return;
+    for (const OrganWatch& organ : organs_) organ.look_last();
   }
 
  private:
+  double period() const { return 1 / scene_.scene.rates.deformation; }
+
   void count(Guard guard, bool acted = true) {
     outcome_.guards[static_cast<std::size_t>(guard)] += acted;
   }
@@ -181,7 +143,7 @@ class Lockstep {
   bool is_known(std::uint32_t i) const { return (known_ >> i & 1) != 0; }
 
   void search() {
-    for (std::size_t i = 0; i < organs_.size(); ++i) finder_.update_organ(i, organs_[i].seen);
+    for (std::size_t i = 0; i < organs_.size(); ++i) finder_.update_organ(i, organs_[i].seen());
     for (std::uint32_t i = 0; i < probes_.size(); ++i) {
       if (!is_known(i)) continue;
       ProbeRun& probe = probes_[i];
@@ -203,14 +165,13 @@ class Lockstep {
     for (std::uint32_t i = 0; i < probes_.size(); ++i) {
       if (is_known(i)) world_.set_probe(probes_[i].known);
     }
-    const double period = 1 / scene_.scene.rates.deformation;
     for (std::size_t i = 0; i < organs_.size(); ++i) {
-      cost_ += double(world_.substeps(i, period)) * double(organs_[i].seen.size()) *
+      cost_ += double(world_.substeps(i, period())) * double(organs_[i].seen().size()) *
                cost_of(scene_.scene.organs[i].model);
     }
-    const deformation::AdvanceReport report = world_.advance(period);
+    const deformation::AdvanceReport report = world_.advance(period());
     count_guards(report);
-    publish_nodes(report);
+    for (OrganWatch& organ : organs_) organ.look(report.diverged);
     for (std::uint32_t i = 0; i < probes_.size(); ++i) publish_model(i);
     pending_.clear();
   }
@@ -224,49 +185,6 @@ class Lockstep {
     ContactModel message = probe.model;
     if (passes(i, message)) probe.renderer.update_model(message, time_);
     count(Guard::kModelRefused, probe.renderer.refused_models() > 0);
-  }
-
-  void publish_nodes(const deformation::AdvanceReport& report) {
-    for (std::size_t i = 0; i < organs_.size(); ++i) {
-      OrganRun& organ = organs_[i];
-      organ.last = organ.nodes.positions;
-      world_.write_node_positions(i, organ.nodes);
-      if (const char* field = refusal(organ.nodes)) {
-        throw Failure{
-            fmt::format("node positions not sound ({}): of organ {}, energies {} J and {} J", field,
-                        i, organ.nodes.kinetic_energy, organ.nodes.elastic_energy)};
-      }
-      const auto& xyz = organ.nodes.positions;
-      organ.seen.resize(xyz.size() / 3);
-      for (std::size_t n = 0; n < organ.seen.size(); ++n) {
-        organ.seen[n] = Eigen::Map<const Eigen::Vector3f>(&xyz[3 * n]).cast<double>();
-      }
-      look(i, report.diverged);
-    }
-  }
-
-  /// Far nodes, fast ones, and an organ that is back at rest without a word.
-  void look(std::size_t index, bool replaced) {
-    OrganRun& organ = organs_[index];
-    const auto& rest = world_.topology(index).rest_positions;
-    double fastest = 0, farthest = 0, away = 0;
-    for (std::size_t n = 0; n < organ.seen.size(); ++n) {
-      const auto at = [n](const std::vector<float>& xyz) -> Vec3 {
-        return Eigen::Map<const Eigen::Vector3f>(&xyz[3 * n]).cast<double>();
-      };
-      farthest = std::max(farthest, organ.seen[n].norm());
-      away = std::max(away, (organ.seen[n] - at(rest)).norm());
-      if (!organ.last.empty()) fastest = std::max(fastest, (organ.seen[n] - at(organ.last)).norm());
-    }
-    const double size = scene_.organ_shapes[index].size.maxCoeff();
-    const double way = deformation::kMaxNodeSpeed / scene_.scene.rates.deformation + 0.1 * size;
-    if (farthest > kFarthest) throw Failure{fmt::format("node far away: {} m", farthest)};
-    if (!replaced && fastest > way) {
-      throw Failure{fmt::format("node too fast: {} m in a period of {} s", fastest,
-                                1 / scene_.scene.rates.deformation)};
-    }
-    if (!replaced && away == 0 && organ.away > 0.01 * size) throw Failure{"silent reset: organ"};
-    organ.away = away;
   }
 
   void count_guards(const deformation::AdvanceReport& r) {
@@ -286,7 +204,8 @@ class Lockstep {
   std::vector<TimedInsult> insults_, pending_;
   collision::ContactFinder finder_;
   deformation::DeformationWorld world_;
-  std::vector<OrganRun> organs_;
+  deformation::Guarding guarding_;
+  std::vector<OrganWatch> organs_;
   std::vector<ProbeRun> probes_;
   std::uint64_t known_ = 0;  ///< bit i: a pose of probe i has come
   double time_ = 0, cost_ = 0;
@@ -294,11 +213,12 @@ class Lockstep {
 
 }  // namespace
 
-Outcome run_lockstep(const RandomScene& scene, const ShapeStore& shapes) {
+Outcome run_lockstep(const RandomScene& scene, const ShapeStore& shapes,
+                     deformation::Guarding guarding) {
   Outcome outcome;
   bool runs = false;
   try {
-    Lockstep lockstep(scene, shapes_in_world(scene, shapes), shapes, outcome);
+    Lockstep lockstep(scene, shapes_in_world(scene, shapes), shapes, guarding, outcome);
     runs = true;
     lockstep.run();
   } catch (const Failure& failure) {

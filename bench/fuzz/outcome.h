@@ -35,11 +35,31 @@ inline constexpr std::array<const char*, kGuardCount> kGuardNames{
     "pressure_capped", "volume_released", "volume_skipped",  "contacts_ignored",
     "tissue_inverted", "probe_jumped",    "message_refused", "model_refused"};
 
+/// What became of a scene in which a guard of the state acted (acts_on_state()) without any.
+enum class Unguarded : std::uint8_t { kNotTried, kFine, kFailed };
+
+/// Whether it changes what an organ does: its state, its steps or its V*. The others only say what
+/// is, refuse a message, or drop contacts.
+inline bool acts_on_state(Guard guard) { return guard <= Guard::kVolumeReleased; }
+
+/// Of what a module publishes.
+struct Failure {
+  std::string what;  ///< "kind: details"
+};
+
 struct Outcome {
   Ending ending = Ending::kRan;
+  Unguarded unguarded = Unguarded::kNotTried;
   std::array<std::uint32_t, kGuardCount> guards{};  ///< advances in which each acted
   double time = 0;                                  ///< simulated [s]
   std::string what;  ///< "kind: details" of a failure; the message of a refusal
+
+  bool any_guard_of_state() const {
+    for (std::size_t g = 0; g < kGuardCount; ++g) {
+      if (guards[g] > 0 && acts_on_state(static_cast<Guard>(g))) return true;
+    }
+    return false;
+  }
 
   /// Of a failure: what stands before the colon.
   std::string kind() const { return what.substr(0, what.find(':')); }

@@ -20,11 +20,12 @@ struct Sent {
   double time;
 };
 
-[[noreturn]] void run_as_child(const RandomScene& scene, const ShapeStore& shapes, int pipe) {
+[[noreturn]] void run_as_child(const RandomScene& scene, const ShapeStore& shapes,
+                               deformation::Guarding guarding, int pipe) {
   for (const int signal : {SIGALRM, SIGABRT, SIGSEGV, SIGFPE, SIGILL}) std::signal(signal, SIG_DFL);
   ::alarm(kHungAfter);
   ::dup2(pipe, STDERR_FILENO);  // the last words of a crash
-  const Outcome outcome = run_lockstep(scene, shapes);
+  const Outcome outcome = run_lockstep(scene, shapes, guarding);
   const Sent sent{outcome.ending, outcome.guards, outcome.time};
   std::string bytes(reinterpret_cast<const char*>(&sent), sizeof sent);
   bytes += outcome.what.substr(0, 1000);  // less than a pipe holds: one write
@@ -51,12 +52,13 @@ int wait_for(pid_t child) {
 
 }  // namespace
 
-Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes) {
+Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes,
+                  deformation::Guarding guarding) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe to a child process");
   const pid_t child = ::fork();
   if (child < 0) throw std::runtime_error("no child process can be started");
-  if (child == 0) run_as_child(scene, shapes, ends[1]);
+  if (child == 0) run_as_child(scene, shapes, guarding, ends[1]);
   ::close(ends[1]);
   const std::string bytes = read_all(ends[0]);
   ::close(ends[0]);
@@ -71,7 +73,19 @@ Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes) {
   }
   Sent sent;
   std::memcpy(&sent, bytes.data(), sizeof sent);
-  return {sent.ending, sent.guards, sent.time, bytes.substr(sizeof sent)};
+  outcome.ending = sent.ending;
+  outcome.guards = sent.guards;
+  outcome.time = sent.time;
+  outcome.what = bytes.substr(sizeof sent);
+  return outcome;
+}
+
+Outcome run_and_compare(const RandomScene& scene, const ShapeStore& shapes) {
+  Outcome outcome = run_apart(scene, shapes);
+  if (outcome.ending != Ending::kRan || !outcome.any_guard_of_state()) return outcome;
+  const Outcome bare = run_apart(scene, shapes, deformation::Guarding::kOff);
+  outcome.unguarded = bare.ending == Ending::kRan ? Unguarded::kFine : Unguarded::kFailed;
+  return outcome;
 }
 
 }  // namespace palpate::fuzz

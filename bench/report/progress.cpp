@@ -24,8 +24,8 @@ void Progress::at(double done, double total, const char* unit) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_line_) return;
   next_line_ = now + kLineEvery;
-  log_ << job_ << ": " << std::fixed << std::setprecision(1) << done << " of " << total << ' '
-       << unit << std::endl;
+  log_ << job_ << ": " << std::fixed << std::setprecision(total < 100 ? 1 : 0) << done << " of "
+       << total << ' ' << unit << std::endl;
 }
 
 }  // namespace palpate::bench

@@ -113,6 +113,7 @@ void ColumnStore::write(const Map& map, const Column& column) const {
 
 std::vector<double> geometric(double low, double high, int count) {
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     values.push_back(low * std::pow(high / low, double(i) / (count - 1)));
   }

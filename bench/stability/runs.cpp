@@ -1,5 +1,6 @@
 #include "bench/stability/runs.h"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -23,19 +24,24 @@ constexpr double kSphere = 0.02, kDepth = 0.02;    // [m]
 
 double random_share(std::mt19937& random) { return random() / double(random.max()) - 0.5; }
 
-/// Share of what faces inwards.
-double inverted_share(const OrganModel& model, const std::vector<Vec3>& x) {
-  if (!model.solid.tetrahedra.empty()) {
-    return double(deformation::inverted_tetrahedra(model, x)) /
-           double(model.solid.tetrahedra.size());
-  }
+/// The rotation that fits the surface's rest positions to `x` best (Kabsch); none if x is no
+/// number.
+Mat3 best_rotation(const OrganModel& model, const std::vector<Vec3>& x) {
   const auto& rest = model.network.rest_positions;
-  std::size_t turned = 0;
-  for (const auto& [a, b, c] : model.triangles) {
-    const Vec3 now = (x[b] - x[a]).cross(x[c] - x[a]);
-    turned += !(now.dot((rest[b] - rest[a]).cross(rest[c] - rest[a])) > 0);
+  const std::size_t count = model.surface_node_count();
+  Vec3 rest_mean = Vec3::Zero(), mean = Vec3::Zero();
+  for (std::size_t i = 0; i < count; ++i) {
+    rest_mean += rest[i] / static_cast<double>(count);
+    mean += x[i] / static_cast<double>(count);
   }
-  return double(turned) / double(model.triangles.size());
+  Mat3 covariance = Mat3::Zero();
+  for (std::size_t i = 0; i < count; ++i) {
+    covariance += (x[i] - mean) * (rest[i] - rest_mean).transpose();
+  }
+  if (!covariance.allFinite()) return Mat3::Identity();
+  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double turn = svd.matrixU().determinant() * svd.matrixV().determinant();
+  return svd.matrixU() * Vec3(1, 1, turn < 0 ? -1 : 1).asDiagonal() * svd.matrixV().transpose();
 }
 
 /// Of a node on the obstacle's free side, and the normal from tissue to probe.
@@ -59,6 +65,37 @@ Yardstick driven(const Subject& subject, const Specimen& specimen, double speed)
   const double fastest = speed + kHonestSpeed;
   return {0.5 * specimen.mass() * fastest * fastest, kAnything,
           subject.keeps_volume ? kVolumeDrift : kAnything};
+}
+
+/// How a free ball's motion is judged.
+struct Swing {
+  Yardstick yardstick;
+  Energy energy = Energy::kMidway;
+};
+
+/// Sets the specimen swinging.
+Swing swing_of(const Subject& subject, double youngs_modulus, Specimen& specimen) {
+  // The ellipsoid mode of this ball swings at about 30 rad/s at 10 kPa; solid ones a little faster.
+  const double frequency = 30 * std::sqrt(youngs_modulus / 10e3);
+  std::mt19937 random(1);
+  auto& state = specimen.state();
+  for (std::size_t i = 0; i < state.velocities.size(); ++i) {
+    const Vec3& p = state.positions[i];
+    const double stir = kStir * kRadius;
+    const Vec3 any(random_share(random), random_share(random), random_share(random));
+    state.velocities[i] = kSwing * frequency * (Vec3(p.x(), p.y(), -2 * p.z()) + stir * any);
+  }
+  const double volume_drift = subject.keeps_volume ? kVolumeDrift : kAnything;
+  if (subject.model == scene::Model::kChainMail) {
+    for (std::size_t i = 0; i < state.positions.size(); ++i) {
+      state.positions[i] += state.velocities[i] / frequency;
+    }
+    const double energy = specimen.dynamics().elastic_energy(state);
+    return {{energy, kAnything, volume_drift}, Energy::kElastic};
+  }
+  const double energy = deformation::kinetic_energy(specimen.model(), state.velocities);
+  const bool exact = subject.model == scene::Model::kModal;
+  return {{energy, kEnergyDrift, volume_drift, exact}, exact ? Energy::kTotal : Energy::kMidway};
 }
 
 }  // namespace
@@ -86,9 +123,9 @@ void Touch::step(std::span<const Obstacle> obstacles, double h, Specimen& specim
   for (std::size_t r = 0; r < rows_.size(); ++r) impulses_[slots_[r]] = rows_[r].normal_impulse;
 }
 
-Watch::Watch(const Specimen& specimen, const Yardstick& yardstick, bool conservative)
+Watch::Watch(const Specimen& specimen, const Yardstick& yardstick, Energy energy)
     : yardstick_(yardstick),
-      conservative_(conservative),
+      energy_(energy),
       rest_(specimen.state().positions),
       before_(specimen.state().velocities) {}
 
@@ -96,7 +133,7 @@ bool Watch::see(Specimen& specimen) {
   const OrganModel& model = specimen.model();
   const auto& state = specimen.state();
   double together = 0, now = 0, then = 0, farthest = 0;
-  auto mean = state.velocities;
+  auto mean = state.velocities;  // midway
   for (std::size_t i = 0; i < mean.size(); ++i) {
     together += model.masses[i] * before_[i].dot(state.velocities[i]);
     then += model.masses[i] * before_[i].squaredNorm();
@@ -108,19 +145,35 @@ bool Watch::see(Specimen& specimen) {
   const double product = std::sqrt(now * then);
   signals_.turning.push_back(product > 0 ? -together / product : 0);
   signals_.kinetic.push_back(now / 2);
-  // Velocities of symplectic Euler belong to the middle of a step: at its ends, the mean.
-  signals_.energy.push_back(conservative_ ? deformation::kinetic_energy(model, mean) +
-                                                specimen.dynamics().elastic_energy(state)
-                                          : now / 2);
+  double energy = energy_ == Energy::kElastic ? 0 : now / 2;
+  if (energy_ == Energy::kMidway) energy = deformation::kinetic_energy(model, mean);
+  if (energy_ != Energy::kKinetic) energy += specimen.dynamics().elastic_energy(state);
+  signals_.energy.push_back(energy);
   const double volume = geometry::enclosed_volume(state.positions, model.triangles);
   signals_.volume_error.push_back(std::abs(volume / model.rest_volume - 1));
   signals_.displacement.push_back(farthest / kRadius);
   // An implicit step of any length begins with a free flight: the energy that stores was there.
-  if (conservative_ && signals_.energy.size() == 1 && std::isfinite(signals_.energy[0])) {
+  if (energy_ != Energy::kKinetic && signals_.energy.size() == 1 &&
+      std::isfinite(signals_.energy[0])) {
     yardstick_.energy = std::max(yardstick_.energy, signals_.energy[0]);
   }
   before_ = state.velocities;
   return !is_lost(signals_, yardstick_);
+}
+
+double inverted_share(const OrganModel& model, const std::vector<Vec3>& x) {
+  if (!model.solid.tetrahedra.empty()) {
+    return double(deformation::inverted_tetrahedra(model, x)) /
+           double(model.solid.tetrahedra.size());
+  }
+  const Mat3 rotation = best_rotation(model, x);
+  const auto& rest = model.network.rest_positions;
+  std::size_t turned = 0;
+  for (const auto& [a, b, c] : model.triangles) {
+    const Vec3 now = (x[b] - x[a]).cross(x[c] - x[a]);
+    turned += !(now.dot(rotation * (rest[b] - rest[a]).cross(rest[c] - rest[a])) > 0);
+  }
+  return double(turned) / double(model.triangles.size());
 }
 
 Verdict Watch::judge(const Specimen& specimen) {
@@ -131,22 +184,11 @@ Verdict Watch::judge(const Specimen& specimen) {
 Verdict swing(const Subject& subject, const geometry::OrganShape& shape, double youngs_modulus,
               double h, const KeepGoing& keep_going) {
   Specimen specimen(organ_of(subject, youngs_modulus), shape);
-  // The ellipsoid mode of this ball swings at about 30 rad/s at 10 kPa; solid ones a little faster.
-  const double rate = kSwing * 30 * std::sqrt(youngs_modulus / 10e3);
-  std::mt19937 random(1);
-  auto& state = specimen.state();
-  for (std::size_t i = 0; i < state.velocities.size(); ++i) {
-    const Vec3& p = state.positions[i];
-    const double stir = kStir * kRadius;
-    const Vec3 any(random_share(random), random_share(random), random_share(random));
-    state.velocities[i] = rate * (Vec3(p.x(), p.y(), -2 * p.z()) + stir * any);
-  }
-  const double energy = deformation::kinetic_energy(specimen.model(), state.velocities);
-  Watch watch(specimen, {energy, kEnergyDrift, subject.keeps_volume ? kVolumeDrift : kAnything},
-              true);
+  const Swing swing = swing_of(subject, youngs_modulus, specimen);
+  Watch watch(specimen, swing.yardstick, swing.energy);
   for (int s = 0; s < kSwingSteps; ++s) {
     if (s % 50 == 0) keep_going();
-    specimen.dynamics().step(h, {}, state);
+    specimen.dynamics().step(h, {}, specimen.state());
     if (!watch.see(specimen)) break;
   }
   return watch.judge(specimen);
@@ -162,7 +204,8 @@ scene::Organ squeezed_organ(const Subject& subject) {
 Verdict squeeze(const Subject& subject, const geometry::OrganShape& shape, double squeeze, double h,
                 const KeepGoing& keep_going, std::unique_ptr<Specimen>* end) {
   auto specimen = std::make_unique<Specimen>(squeezed_organ(subject), shape);
-  Watch watch(*specimen, driven(subject, *specimen, 2 * squeeze * kRadius / kClosing), false);
+  Watch watch(*specimen, driven(subject, *specimen, 2 * squeeze * kRadius / kClosing),
+              Energy::kKinetic);
   Touch touch;
   const int steps = static_cast<int>(std::ceil((kClosing + kHolding) / h));
   double height = kRadius;
@@ -190,7 +233,7 @@ scene::Organ poked_organ(const Subject& subject) {
 Verdict poke(const Subject& subject, const geometry::OrganShape& shape, double speed, double h,
              const KeepGoing& keep_going) {
   Specimen specimen(poked_organ(subject), shape);
-  Watch watch(specimen, driven(subject, specimen, speed), false);
+  Watch watch(specimen, driven(subject, specimen, speed), Energy::kKinetic);
   Touch touch;
   const double way = kDepth / speed;
   const int steps = static_cast<int>(std::ceil((2 * way + kHolding) / h));

@@ -30,12 +30,21 @@ class Touch {
   std::vector<double> impulses_;    ///< [obstacle · nodes + node] [N·s]
 };
 
+/// What of a specimen must not grow.
+enum class Energy {
+  kKinetic,
+  kTotal,   ///< and elastic
+  kMidway,  ///< the same by the mean velocity of two steps: those of symplectic Euler belong to the
+            ///< middle of a step, the elastic energy to its end
+  kElastic,  ///< of a kinematic model, whose velocities are moves per step
+};
+
 /// Writes down what a specimen does, step by step.
 class Watch {
  public:
-  /// @param conservative  energy counts with the elastic one, against the yardstick's or what it
-  ///                      is after the first step if that is more; else kinetic alone
-  Watch(const Specimen& specimen, const Yardstick& yardstick, bool conservative);
+  /// @param energy  but for kKinetic, against the yardstick's or what it is after the first step if
+  ///                that is more
+  Watch(const Specimen& specimen, const Yardstick& yardstick, Energy energy);
 
   /// After a step. @returns false when the rest need not be looked at
   bool see(Specimen& specimen);
@@ -43,15 +52,19 @@ class Watch {
 
  private:
   Yardstick yardstick_;
-  bool conservative_;
+  Energy energy_;
   Signals signals_;
   std::vector<Vec3> rest_, before_;  ///< positions at the start, velocities before [m], [m/s]
 };
 
+/// Share of what is inside out: of a solid's tetrahedra, of a surface's triangles whose normal
+/// points away from that at rest, turned as the surface turned as a whole.
+double inverted_share(const deformation::OrganModel& model, const std::vector<Vec3>& positions);
+
 inline constexpr int kSwingSteps = 400;
 
 /// Set swinging as an ellipsoid by about 1e-3 of its radius, all other motions stirred by 1e-3 of
-/// that, for kSwingSteps steps.
+/// that, for kSwingSteps steps. ChainMail, which knows no velocities, is let go from there.
 /// @param youngs_modulus  by which the swing's speed is chosen [Pa]
 Verdict swing(const Subject& subject, const geometry::OrganShape& shape, double youngs_modulus,
               double h, const KeepGoing& keep_going);

@@ -22,8 +22,8 @@ constexpr int kLevels = 2;
 
 /// Whether a step is symplectic Euler of the springs, so that their frequencies end it.
 bool is_explicit(const Subject& subject) {
-  return !scene::is_solid(subject.model) && subject.model != Model::kXpbdSprings &&
-         subject.integrator == Integrator::kSymplecticEuler;
+  return subject.model != Model::kChainMail && !scene::is_solid(subject.model) &&
+         subject.model != Model::kXpbdSprings && subject.integrator == Integrator::kSymplecticEuler;
 }
 
 Contents contents_of(const Subject& subject, const deformation::OrganModel& model) {
@@ -37,6 +37,16 @@ Contents contents_of(const Subject& subject, const deformation::OrganModel& mode
     default:
       return {true, 0};
   }
+}
+
+/// With tetrahedra as large as its triangles.
+geometry::OrganShape filled_ball(int levels) {
+  const auto surface = geometry::make_ball(kRadius, levels);
+  const auto edges = geometry::edges_of(surface.triangles);
+  double sum = 0;
+  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
+  return geometry::shape_of(
+      geometry::fill_surface(surface, sum / static_cast<double>(edges.size())));
 }
 
 /// Of Φ̈ + 2a Φ̇ + b² Φ = 0 alone, whatever the springs: b² h² + 4 a h = 4.
@@ -65,7 +75,10 @@ const std::vector<Subject>& subjects() {
       {"xpbd_springs", Model::kXpbdSprings, kOwn, true, true},
       {"xpbd_tetrahedra", Model::kXpbdTetrahedra, kOwn, false, false},
       {"corotational", Model::kCorotational, kOwn, true, false},
-      {"nodal_pressure", Model::kNodalPressure, kOwn, false, false}};
+      {"nodal_pressure", Model::kNodalPressure, kOwn, false, false},
+      {"quadratic_elements", Model::kQuadraticElements, kOwn, false, false},
+      {"modal", Model::kModal, kOwn, false, false},
+      {"chainmail", Model::kChainMail, kOwn, false, false}};
   return kAll;
 }
 
@@ -89,17 +102,16 @@ scene::Organ organ_of(const Subject& subject, double youngs_modulus) {
 }
 
 const geometry::OrganShape& Shapes::shape_for(const Subject& subject) {
-  if (!surface_) surface_ = geometry::make_ball(kRadius, kLevels);
-  if (!scene::is_solid(subject.model)) return *surface_;
-  if (!solid_) {
-    const auto& surface = surface_->surface;
-    const auto edges = geometry::edges_of(surface.triangles);
-    double sum = 0;
-    for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
-    solid_ = geometry::shape_of(
-        geometry::fill_surface(surface, sum / static_cast<double>(edges.size())));
-  }
-  return *solid_;
+  const bool solid = scene::is_solid(subject.model);
+  auto& shape = subject.model == Model::kModal               ? modal_
+                : subject.model == Model::kQuadraticElements ? quadratic_
+                : solid                                      ? solid_
+                                                             : surface_;
+  if (shape) return *shape;
+  if (!solid) return shape.emplace(geometry::make_ball(kRadius, kLevels));
+  shape = filled_ball(&shape == &modal_ ? 1 : &shape == &quadratic_ ? 0 : kLevels);
+  if (scene::is_quadratic(subject.model)) shape = geometry::with_edge_nodes(*shape);
+  return *shape;
 }
 
 geometry::OrganShape ball_with_sliver(double ratio) {

@@ -22,7 +22,7 @@ struct Subject {
   bool keeps_volume;  ///< to some per mille, if all is well
 };
 
-/// All that step in time; modal motion is exact for any step, quadratic_elements as corotational.
+/// Every model, and both integrators of those that have a choice.
 const std::vector<Subject>& subjects();
 /// @pre there is one of that name
 const Subject& subject_named(const std::string& name);
@@ -32,13 +32,15 @@ const Subject& subject_named(const std::string& name);
 scene::Organ organ_of(const Subject& subject, double youngs_modulus);
 
 /// The ball's mesh, 162 nodes on the surface; filled with tetrahedra at the first call that asks.
+/// Quadratic models factorize matrices, or look for modes: 42 nodes for modal, 12 for
+/// quadratic_elements.
 class Shapes {
  public:
   /// @throws InputError if the ball cannot be filled (Gmsh is missing)
   const geometry::OrganShape& shape_for(const Subject& subject);
 
  private:
-  std::optional<geometry::OrganShape> surface_, solid_;
+  std::optional<geometry::OrganShape> surface_, solid_, modal_, quadratic_;
 };
 
 /// The ball with one triangle more and more of a sliver: a node at 1/ratio of an edge's length

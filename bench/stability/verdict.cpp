@@ -72,7 +72,8 @@ Verdict judge(const Signals& signals, const Yardstick& yardstick) {
   if (is_lost(signals, yardstick) || !(verdict.energy <= kDivergedGain) ||
       verdict.inverted > kDivergedInversion) {
     verdict.state = State::kDiverged;
-  } else if (late(signals.kinetic) > kStill * yardstick.energy && late(signals.turning) > 0) {
+  } else if (!yardstick.may_turn && late(signals.kinetic) > kStill * yardstick.energy &&
+             late(signals.turning) > 0) {
     verdict.state = State::kOscillating;
   } else if (drifts(signals, yardstick)) {
     verdict.state = State::kDrifting;

@@ -33,6 +33,8 @@ struct Yardstick {
   double energy = 0;        ///< the most an honest run has [J]
   double energy_drift = 0;  ///< of the last tenth's mean against the first's, allowed
   double volume_drift = 0;  ///< mean of the last tenth, allowed
+  bool may_turn = false;    ///< turning round in every step is no fault: exact motion does where a
+                            ///< step is about half a period
 };
 inline constexpr double kAnything = 1e300;
 

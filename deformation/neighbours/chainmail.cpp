@@ -44,7 +44,8 @@ void ChainMail::relax(OrganState& state) {
 void ChainMail::push(double h, ContactRow& row, std::vector<Vec3>& positions) {
   row.normal_impulse = 0;
   row.tangential_impulse = Vec3::Zero();
-  double gap = row.gap + h * row.normal.dot(row.probe_velocity), squared_weights = 0;
+  double gap = std::max(row.gap, -kMaxSeparationSpeed * h) + h * row.normal.dot(row.probe_velocity),
+         squared_weights = 0;
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t node = row.nodes[k];
     gap -= row.weights[k] * row.normal.dot(positions[node] - old_positions_[node]);

@@ -9,7 +9,7 @@
 // Here: links are the mesh edges and the inner springs to the axis, bounded by length,
 // kShortest l₀ ≤ ‖x_b − x_a‖ ≤ kLongest l₀. One step:
 //   1. relaxation, one Jacobi step to the springs' equilibrium: x_i += r F_i / Σ_j k_ij
-//   2. contacts push their nodes out of the probe (no friction)
+//   2. contacts push their nodes out of the probe, no faster than kMaxSeparationSpeed (no friction)
 //   3. the chain: from the pushed nodes outwards, first come first served, each node once
 //   4. loops of the mesh that 3 left out of bounds: sweeps over all links, both ends sharing
 // There is no mass, gravity, volume or time: each step relaxes by the same part, however long.

@@ -123,19 +123,33 @@ void NodalPressure::add_tetrahedron(std::size_t e, const std::vector<Vec3>& posi
     scaled[a] = own * areas[a];
     for (std::size_t b = 0; b < 4; ++b) volume_rows_[pairs[4 * b + a]] += areas[a];
   }
-  for (std::size_t a = 0; a < 4; ++a) {
-    matrix_.add(pairs[5 * a], outer(scaled[a], areas[a]));
-  }
   const double stretch = largest_stretch(tetrahedra_.deformation_gradient(e, positions));
-  const double limit = std::min(mu_ / stretch, alpha_ * std::max(J, 0.0));
-  const double turning = h2 / 6 * std::clamp(pull, -limit, 0.0);
+  const double kept = kept_turning(pull, stretch, J);
+  const double made_up = 2 * stretch * std::abs(pull - kept) * tetrahedra_.volumes[e];
+  const Eigen::Matrix4d shape =
+      h2 * made_up * tetrahedra_.gradients[e].transpose() * tetrahedra_.gradients[e];
+  const auto add_shape = [&](std::size_t a, std::size_t b, Block4f block) {
+    const auto own_shape = static_cast<float>(shape(static_cast<int>(a), static_cast<int>(b)));
+    for (int k = 0; k < 3; ++k) block[static_cast<std::size_t>(k)][k] += own_shape;
+    matrix_.add(pairs[4 * a + b], block);
+  };
+  for (std::size_t a = 0; a < 4; ++a) add_shape(a, a, outer(scaled[a], areas[a]));
   for (auto [a, b, c, d] : kOppositeEdges) {
     if (corners[a] > corners[b]) std::swap(a, b), std::swap(c, d);
     Block4f block = outer(scaled[a], areas[b]);
-    const Block4f turn = skew(wide(turning * (positions[corners[c]] - positions[corners[d]])));
+    const Vec3 edge = positions[corners[c]] - positions[corners[d]];
+    const Block4f turn = skew(wide(h2 / 6 * kept * edge));
     for (std::size_t k = 0; k < 3; ++k) block[k] += turn[k];
-    matrix_.add(pairs[4 * a + b], block);
+    add_shape(a, b, block);
   }
+}
+
+/// Not above μ/σ for shears and rotations; for the three stretches σ_i, after scaling by them,
+/// from (t − αJ) J Σ 1/(μσ_i² + tJ) ≤ 1 with σ_i ≥ J/σ² and t = −c'.
+double NodalPressure::kept_turning(double c, double stretch, double J) const {
+  const double fourth = std::pow(stretch, 4);
+  const double limit = std::min(mu_ / stretch, std::max(J, 0.0) * (3 * alpha_ + mu_ / fourth) / 2);
+  return std::clamp(c, -limit, 0.0);
 }
 
 /// Scales the volumes' gradients, and takes the diagonal.

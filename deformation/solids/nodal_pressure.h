@@ -13,8 +13,12 @@
 // With b_a = ∂v_e/∂x_a and c_e = α (J_e − 1) − μ + Σ_{a∈e} κ' (J_a − 1)/4:
 //   F_a = −μ Σ_e V_e (g_a·g_b) x_b − Σ_e c_e b_a
 //   K   = μ Σ_e V_e (g_a·g_b) I + Σ_e (α/V_e b bᵀ + c_e ∂²v_e/∂x²) + Σ_a κ'/V_a (∂v_a)(∂v_a)ᵀ
-// c_e is limited in K so that K stays positive: for a tetrahedron of largest stretch σ, to
-// −min(μ/σ, α J_e) … 0. The last sum couples neighbours of neighbours; it is not assembled.
+// ∂²v/∂x² pushes as much as it pulls, −σ … 2σ of a tetrahedron's shape term for its largest stretch
+// σ. In the matrix of a step c_e is limited to c' in −min(μ/σ, J (3α + μ/σ⁴)/2) … 0, which keeps K
+// positive, and what that takes off is made up for by a shape term of θ = 2σ |c_e − c'|: then the
+// matrix is no smaller than the forces' derivative in any direction, and Newton's iteration, one to
+// a step, comes to rest. Limited only, it overshot under small indenters, and forces trembled. The
+// last sum of K couples neighbours of neighbours; it is not assembled.
 #pragma once
 
 #include "deformation/solids/implicit_solid.h"
@@ -25,7 +29,7 @@ namespace palpate::deformation {
 
 /// What the method leaves open.
 struct NodalPressureSettings {
-  double stabilisation = 1;           ///< α/μ ≥ 1/3
+  double stabilisation = 0.5;         ///< α/μ ≥ 1/3
   double largest_bulk_modulus = 100;  ///< κ/μ is not taken above this: 100 is ν = 0.495
 };
 
@@ -46,6 +50,8 @@ class NodalPressure : public ImplicitTissue {
   void take_volumes(const std::vector<Vec3>& positions);
   void add_shape_forces(const std::vector<Vec3>& positions);
   void add_tetrahedron(std::size_t e, const std::vector<Vec3>& positions, double h2);
+  /// c' of c. @param stretch  σ. @param J  v/V
+  double kept_turning(double c, double stretch, double J) const;
   void add_pressures(double h2);
 
   const OrganModel& model_;

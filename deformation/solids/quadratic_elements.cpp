@@ -42,7 +42,7 @@ StepReport QuadraticElements::step(double h, std::span<ContactRow> rows, OrganSt
   iterations_used_ = 0;
   if (end_.positions != state.positions) end_.pressures.setZero();
   contact_.take(rows, h, state.positions);
-  for (int parts = 1; parts <= kMostParts; parts *= 2) {
+  for (int parts = 1; parts <= kMostParts && !gives_up(); parts *= 2) {
     if (advance(h, parts, rows, state)) return {};
   }
   for (ContactRow& row : rows) {
@@ -90,6 +90,7 @@ bool QuadraticElements::solve(const elements::Inertia& inertia, const std::vecto
                               double h) {
   const Eigen::VectorXd pressures = end_.pressures;
   for (const int from : {0, 1, 2}) {
+    if (gives_up()) break;
     end_ = from == 2 ? solid_.rest_state() : elements::SolidState{trial_.positions, pressures};
     for (std::size_t i = 0; from == 1 && i < velocities.size(); ++i) {
       end_.positions[i] += h * velocities[i];

@@ -38,6 +38,9 @@ class QuadraticElements : public OrganDynamics {
   /// Contacts are taken as flat over a step [s].
   static constexpr double kLargestStep = 0.01;
   static constexpr int kMostParts = 8;
+  /// A step that has used up as many factorizations begins no further try: solvable ones need 3 to
+  /// 30, and a loop that steps must not wait for what will not converge.
+  static constexpr int kMostIterations = 100;
 
   /// @param model  outlives this, quadratic
   explicit QuadraticElements(const OrganModel& model);
@@ -52,6 +55,7 @@ class QuadraticElements : public OrganDynamics {
  private:
   bool advance(double h, int parts, std::span<ContactRow> rows, OrganState& state);
   bool solve(const elements::Inertia& inertia, const std::vector<Vec3>& velocities, double h);
+  bool gives_up() const { return iterations_used_ >= kMostIterations; }
   double mean_pressure() const;
 
   const OrganModel& model_;

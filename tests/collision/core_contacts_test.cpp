@@ -91,6 +91,25 @@ TEST_CASE("core contacts: out again, the wall is in front and nothing is remembe
   CHECK(remembered.empty());
 }
 
+TEST_CASE(
+    "core contacts: out through another side nothing is remembered, out of the far side all is") {
+  // Oracle: definition. In through the top; then the box moves away sideways, or further up.
+  // Before, a needle pulled out beside its hole went on pulling at the hole's wall.
+  for (const bool sideways : {true, false}) {
+    CoreContacts cores;
+    find(cores, StepScene(box_at({0, 0, 0.2}, {4, 4, 1}, 2), {0, 0, 3}), kSphere);
+    const Vec3 way = sideways ? Vec3(-4, 0, 0) : Vec3(0, 0, 1.5);
+    const auto found =
+        find(cores, StepScene(box_at(Vec3(0, 0, 0.2) + way, {4, 4, 1}, 2), way), kSphere);
+    CHECK(found.empty() == sideways);
+    std::vector<std::uint32_t> remembered;
+    double depth_limit = 0;
+    cores.begin_step();
+    cores.append_remembered(0, remembered, depth_limit);
+    CHECK(remembered.empty() == sideways);
+  }
+}
+
 TEST_CASE("core contacts: each core remembers for itself, and for each organ") {
   // Oracle: invariant.
   const StepScene scene(box_at({0, 0, 0.2}, {4, 4, 1}, 2), {0, 0, 3});

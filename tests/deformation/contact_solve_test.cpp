@@ -54,6 +54,22 @@ double volume_rate(const Case& c, const std::vector<Vec3>& velocities) {
   return rate;
 }
 
+/// Contacts, and the volume's impulse, for nodes that answer by W.
+void solve_blocks(const std::vector<Mat3>& mobilities, const VolumeRow* volume, double h,
+                  std::vector<ContactRow>& rows, std::vector<Vec3>& velocities,
+                  StartImpulses start) {
+  double volume_velocity = 0;
+  for (std::size_t i = 0; volume != nullptr && i < volume->at.gradient.size(); ++i) {
+    volume_velocity += volume->at.gradient[i].dot(velocities[i]);
+  }
+  const double sigma =
+      solve_contacts(mobilities, volume, volume_velocity, h, rows, velocities, start)
+          .volume_impulse;
+  for (std::size_t i = 0; volume != nullptr && i < volume->at.gradient.size(); ++i) {
+    velocities[i] -= sigma * (mobilities[i] * volume->at.gradient[i]);
+  }
+}
+
 TEST_CASE("contact solve: without contacts it is the scalar division") {
   // Oracle: analytic, σ = (rate + g·v̂)/gᵀM⁻¹g.
   auto c = random_case(1, 0, 0);
@@ -87,14 +103,16 @@ TEST_CASE("contact solve: frictionless contacts satisfy their complementarity co
   }
 }
 
-/// The same with each row on one node, as a plate's; every second node of the ball is touched, and
-/// some of them twice.
-Case node_case(unsigned seed, double friction) {
+enum class Touched { kOnce, kSomeTwice };
+
+/// The same with each row on one node, as a plate's; every second node of the ball is touched.
+Case node_case(unsigned seed, double friction, Touched touched = Touched::kSomeTwice) {
   auto c = random_case(seed, 0, friction);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (std::uint32_t node = 0; node < c.at.gradient.size(); ++node) {
-    for (std::uint32_t k = 0; k < (node % 2 == 0 ? 0 : node % 5 == 0 ? 2 : 1); ++k) {
+    const bool twice = touched == Touched::kSomeTwice && node % 5 == 0;
+    for (std::uint32_t k = 0; k < (node % 2 == 0 ? 0 : twice ? 2 : 1); ++k) {
       ContactRow row;
       row.nodes = {node, node, node};
       row.weights = Vec3::UnitX();
@@ -132,6 +150,43 @@ TEST_CASE("contact solve: rows of one node each satisfy the same conditions in f
   CHECK(pressed > 0);
 }
 
+TEST_CASE("contact solve: contacts without friction on a node each are solved as by sweeps") {
+  // Oracle: the sweeps, to their 1e-9 m/s; friction of 1e-300 is none, but makes them be used.
+  // Blocks I/m answer as masses do; impulses brought and already in the velocities change nothing.
+  const auto seed = GENERATE(range(1u, 9u));
+  const bool keeps_volume = GENERATE(true, false);
+  auto at_once = node_case(seed, 0, Touched::kOnce),
+       swept = node_case(seed, 1e-300, Touched::kOnce);
+  const VolumeRow row{at_once.at, 1e-6};
+  const VolumeRow* const volume = keeps_volume ? &row : nullptr;
+  auto velocities = at_once.free_velocities, expected = velocities;
+  const auto report =
+      solve_contacts_and_volume(at_once.model, volume, 1e-3, at_once.rows, velocities);
+  solve_contacts_and_volume(swept.model, volume, 1e-3, swept.rows, expected);
+  if (keeps_volume) CHECK(volume_rate(at_once, velocities) == Approx(-1e-6).margin(1e-15));
+  CHECK(report.sweeps <= 5);
+  std::vector<Mat3> mobilities;
+  for (const double inverse_mass : swept.model.inverse_masses) {
+    mobilities.emplace_back(inverse_mass * Mat3::Identity());
+  }
+  auto started = swept;
+  auto again = swept.free_velocities;
+  for (auto& contact : started.rows) {
+    contact.friction = 0;
+    contact.normal_impulse = 1e-4;
+    again[contact.nodes[0]] -=
+        contact.normal_impulse * (mobilities[contact.nodes[0]] * contact.normal);
+  }
+  solve_blocks(mobilities, volume, 1e-3, started.rows, again, StartImpulses::kApplied);
+  double pressed = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    REQUIRE((velocities[i] - expected[i]).norm() < 1e-8);
+    REQUIRE((again[i] - expected[i]).norm() < 1e-8);
+  }
+  for (const auto& contact : at_once.rows) pressed += contact.normal_impulse;
+  CHECK(pressed > 0);
+}
+
 TEST_CASE("contact solve: nodes that answer by 3×3 blocks do as those that answer by their mass") {
   // Oracle: the scalar form, with blocks I/m; both solve to 1e-9 m/s.
   for (const bool on_nodes : {false, true}) {
@@ -143,8 +198,7 @@ TEST_CASE("contact solve: nodes that answer by 3×3 blocks do as those that answ
     const VolumeRow volume{by_mass.at, 1e-6};
     auto expected = by_mass.free_velocities, velocities = expected;
     solve_contacts_and_volume(by_mass.model, &volume, 1e-3, by_mass.rows, expected);
-    solve_contacts_and_volume(mobilities, &volume, 1e-3, by_block.rows, velocities,
-                              StartImpulses::kToApply);
+    solve_blocks(mobilities, &volume, 1e-3, by_block.rows, velocities, StartImpulses::kToApply);
     double difference = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
       difference = std::max(difference, (velocities[i] - expected[i]).norm());

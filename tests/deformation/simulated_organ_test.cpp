@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "deformation/backward_euler.h"
+#include "tests/deformation/neighbours/method_checks.h"
 #include "tests/stability/organs_under_test.h"
 #include "tests/stability/overstated_step.h"
 
@@ -139,6 +141,76 @@ TEST_CASE("simulated organ: the pressure of a volume that cannot be held is capp
   CHECK(after.finite);
   CHECK(after.replaced == 0);
   CHECK(testing::volume_error(organ) < 1e-4);
+}
+
+TEST_CASE(
+    "simulated organ: a volume that would need more than the limit is pushed with the limit") {
+  // Oracle: p g h of a ball at rest, whose springs give nothing: the momentum of an explicit step,
+  // more than that of an implicit one, whose springs resist as it swells.
+  const double limit = 1e3, h = 1e-3;
+  const auto model =
+      testing::ball_model(2, testing::undamped_ball_with(scene::Model::kImplicitVolume));
+  VolumeGradient volume;
+  evaluate_volume(model, model.network.rest_positions, volume);
+  const auto outward = [&](OrganDynamics& dynamics, double target) {
+    OrganState state = rest_state(model);
+    state.pressure_limit = limit;
+    state.target_volume = target * model.rest_volume;
+    CHECK(dynamics.step(h, {}, state).pressure_capped == (target != 1));
+    if (target != 1) CHECK(state.pressure == Approx(std::copysign(limit, target - 1)));
+    double momentum = 0, expected = 0;
+    for (std::size_t i = 0; i < model.surface_node_count(); ++i) {
+      momentum += model.masses[i] * state.velocities[i].dot(volume.gradient[i].normalized());
+      expected += limit * h * volume.gradient[i].norm();
+    }
+    return momentum / expected;
+  };
+  SymplecticEuler explicit_steps(model);
+  BackwardEuler implicit_steps(model);
+  CHECK(outward(explicit_steps, 1) == Approx(0).margin(1e-6));
+  CHECK(outward(explicit_steps, 1.5) == Approx(1).epsilon(1e-4));
+  CHECK(outward(explicit_steps, 0.5) == Approx(-1).epsilon(1e-4));
+  const double swollen = outward(implicit_steps, 1.5);
+  CHECK(swollen > 0.5);
+  CHECK(swollen <= 1);
+}
+
+TEST_CASE("simulated organ: a state put back inside a probe is pushed out gently") {
+  // Oracle: kGentleSpeed; without the failure before, kMaxSeparationSpeed.
+  for (const bool failed : {false, true}) {
+    auto organ = testing::simulated_ball(2);
+    AdvanceReport report;
+    if (failed) {
+      OrganState state = organ.state();
+      state.velocities[0].x() = std::nan("");
+      organ.put(state);
+      REQUIRE_FALSE(organ.finish(kPeriod, report));
+    }
+    ContactRow row;
+    row.weights = Vec3(1, 0, 0);
+    row.normal = organ.model().network.rest_positions[0].normalized();
+    row.gap = -0.01;
+    const Vec3 before = organ.state().positions[0];
+    const double h = kPeriod / organ.substeps(kPeriod);
+    organ.step(h, h, std::span(&row, 1), report);
+    const double speed = row.normal.dot(before - organ.state().positions[0]) / h;
+    CHECK(speed == Approx(failed ? kGentleSpeed : kMaxSeparationSpeed).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("simulated organ: without guarding nothing is replaced") {
+  // Oracle: definition.
+  auto model = std::make_unique<const OrganModel>(testing::ball_model(2));
+  auto dynamics = make_dynamics(testing::ball_organ(), *model, kPeriod);
+  SimulatedOrgan organ(testing::ball_organ(), std::move(model), std::move(dynamics),
+                       Guarding::kOff);
+  OrganState state = organ.state();
+  state.velocities[0].x() = std::nan("");
+  organ.put(state);
+  AdvanceReport report;
+  CHECK(organ.finish(kPeriod, report));
+  CHECK_FALSE(report.diverged);
+  CHECK(std::isnan(organ.state().velocities[0].x()));
 }
 
 }  // namespace

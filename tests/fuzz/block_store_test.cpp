@@ -13,12 +13,14 @@ TEST_CASE("block store: what was written is read back, blocks of other seeds are
   const BlockStore store(folder.path, 1);
   std::vector<Outcome> outcomes(2), back;
   outcomes[0].guards[3] = 17;
+  outcomes[0].unguarded = Unguarded::kFailed;
   outcomes[0].time = 0.25;
   outcomes[1].ending = Ending::kFailed;
   outcomes[1].what = "crash: a,b \"c\"\nd";
   store.write(100, outcomes);
   REQUIRE(store.read(100, 2, back));
   CHECK(back[0].guards == outcomes[0].guards);
+  CHECK(back[0].unguarded == Unguarded::kFailed);
   CHECK(back[0].time == 0.25);
   CHECK(back[1].ending == Ending::kFailed);
   CHECK(back[1].what == "crash: a b  c  d");

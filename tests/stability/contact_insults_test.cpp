@@ -168,6 +168,9 @@ TEST_CASE("contact insults: a dropped organ lands on a plate and rests there") {
 }
 
 /// A capsule pushed along z through the middle of a ball and pulled out again.
+constexpr double kNeedleWay = 0.19;  // [m]
+
+/// From 10 cm over a ball to 9 cm below its top, and back.
 scene::Scene needle_scene(double radius, double speed) {
   scene::Scene scene;
   auto organ = ball_organ();
@@ -176,26 +179,27 @@ scene::Scene needle_scene(double radius, double speed) {
   scene.organs.push_back(organ);
   constexpr double kHalf = 0.1;
   scene::ScriptedDevice device;
-  device.start = Vec3(0.003, 0.001, kBallRadius + kHalf + 0.01);
-  const Vec3 through = device.start - Vec3(0, 0, 0.1);
-  const double seconds = 0.1 / speed;
+  device.start = Vec3(0.003, 0.001, kBallRadius + kHalf + 0.1);
+  const Vec3 through = device.start - Vec3(0, 0, kNeedleWay);
+  const double seconds = kNeedleWay / speed;
   device.moves = {{through, seconds}, {device.start, seconds}};
   scene.probes.push_back({"needle", scene::CapsuleShape{radius, 2 * kHalf}, 0.1, device});
   return scene;
 }
 
 TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor shakes the hand") {
-  // Oracle: limits; after it was pulled out the wall heals to its shape.
+  // Oracle: limits; in the 8 s after it was pulled out the wall slips off it and swings out. (A
+  // needle left 1 cm over the ball may keep hold of the wall: that is a contact, not a failure.)
   const double radius = GENERATE(1e-3, 2e-4);
   const double speed = GENERATE(0.02, 0.5);
   const auto scene = needle_scene(radius, speed);
   pipeline::Pipeline pipeline(scene, {geometry::make_ball(kBallRadius, 2)},
                               {geometry::TriangleSurface{}});
-  const double end = 0.2 / speed;
+  const double end = 2 * kNeedleWay / speed;
   INFO("radius " << radius << ", speed " << speed);
   bool finite = true;
   double largest = 0;
-  while (pipeline.time() < end + 6) {
+  while (pipeline.time() < end + 8) {
     pipeline.tick();
     const auto& force = pipeline.haptic_force(0).force;
     finite &= force.allFinite();
@@ -203,7 +207,7 @@ TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor
     for (const float x : pipeline.node_positions(0).positions) finite &= std::isfinite(x);
   }
   CHECK(finite);
-  CHECK(largest <= scene.haptics.max_force);
+  CHECK(largest <= scene.haptics.max_force * (1 + 1e-12));
   const auto& nodes = pipeline.node_positions(0);
   CHECK(std::abs(nodes.volume / nodes.target_volume - 1) < 1e-4);
   double farthest = 0;

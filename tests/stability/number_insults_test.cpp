@@ -84,19 +84,18 @@ void check_recovers(DeformationWorld& world, Exit& exit) {
   for (int k = 0; k < 750; ++k) exit.check(world, 1 + k * kPeriod);
   CHECK(std::abs(exit.nodes.volume / exit.nodes.target_volume - 1) < 1e-9);
   const auto& rest = world.topology(0).rest_positions;
+  // Of the surface. A virtual node is held by a ring of nodes in a plane across the axis, and is as
+  // well at rest mirrored in it: in two of these cases one is 10.3 mm from where it began.
   float farthest = 0;
-  for (std::size_t i = 0; i < rest.size(); ++i) {
+  for (std::size_t i = 0; i < 3 * world.topology(0).surface_node_count; ++i) {
     farthest = std::max(farthest, std::abs(exit.nodes.positions[i] - rest[i]));
   }
-  // Put back to rest under the plate, the pole of this coarse ball is snapped through by it:
-  // another equilibrium of its springs, 10.3 mm away, 6.5 mm after these 3 s. Others are below 2
-  // mm.
-  CHECK(farthest < 10e-3f);
+  CHECK(farthest < 1e-3f);
   CHECK(exit.nodes.kinetic_energy < 1e-6);
 }
 
 TEST_CASE("number insults: a bad number in any field of contacts or pose stays inside") {
-  // Oracle: finiteness, the force limit, and within 10 mm of rest 3 s later.
+  // Oracle: finiteness, the force limit, and a surface within 1 mm of rest 3 s later.
   const auto integrator =
       GENERATE(scene::Integrator::kSymplecticEuler, scene::Integrator::kBackwardEuler);
   using Place = std::function<double&(ProbeState&, Contacts&)>;

@@ -1,6 +1,8 @@
 #include "bench/stability/runs.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <iostream>
 
 #include "bench/stability/maps.h"
@@ -58,6 +60,40 @@ TEST_CASE("runs: implicit steps stand at any size, explicit ones do not, and say
   const Verdict verdict = swing(subject, shapes.shape_for(subject), 1e6, 0.05, kOn);
   CHECK(verdict.state == State::kDiverged);
   CHECK_FALSE(verdict.energy < kDivergedGain);
+}
+
+TEST_CASE("runs: modal motion and ChainMail stand at any step, being exact or no motion at all") {
+  // Oracle: an oscillator's exact solution keeps its energy; a Jacobi step of r = ½ only loses it.
+  Shapes shapes;
+  for (const char* name : {"modal", "chainmail"}) {
+    const Subject& subject = subject_named(name);
+    INFO(name);
+    for (const double h : {1e-4, 1e-2, 0.1}) {
+      const Verdict verdict = swing(subject, shapes.shape_for(subject), 1e5, h, kOn);
+      CHECK(verdict.state == State::kStable);
+      CHECK(verdict.energy < 1.5);
+    }
+  }
+}
+
+TEST_CASE("runs: triangles are inverted where they face inwards, however the ball is turned") {
+  // Oracle: none of a turned ball; some around a node drawn sideways over its neighbours. The best
+  // rotation of an everted ball is half a turn about any axis a: those normals with (a·n)² < ½.
+  Shapes shapes;
+  const Subject& subject = subject_named("implicit_volume");
+  const Specimen specimen(organ_of(subject, 1e4), shapes.shape_for(subject));
+  const auto& model = specimen.model();
+  auto x = specimen.state().positions;
+  const Eigen::AngleAxisd turn(3, Vec3(1, 2, -1).normalized());
+  for (Vec3& p : x) p = turn * p;
+  CHECK(inverted_share(model, x) == 0);
+  auto folded = x;
+  folded[0] += kRadius * x[0].unitOrthogonal();
+  const double around = inverted_share(model, folded) * double(model.triangles.size());
+  CHECK(around >= 1);
+  CHECK(around <= 6);
+  for (Vec3& p : x) p = -p;
+  CHECK(inverted_share(model, x) == Approx(std::sqrt(0.5)).margin(0.02));
 }
 
 TEST_CASE("runs: a squeezed ball touches the plates, keeps its volume, and stands at small steps") {

@@ -56,7 +56,8 @@ TEST_CASE("subjects: theory is given for explicit springs, and not for implicit 
     CHECK(prediction.exact);
     CHECK(prediction.value > prediction.given);
   }
-  for (const char* name : {"implicit_volume_backward", "xpbd_springs", "zordan", "corotational"}) {
+  for (const char* name : {"implicit_volume_backward", "xpbd_springs", "zordan", "corotational",
+                           "quadratic_elements", "modal", "chainmail"}) {
     const Subject& subject = subject_named(name);
     Specimen specimen(organ_of(subject, kYoungsModulus), shapes.shape_for(subject));
     const Prediction prediction = predict(subject, specimen);

@@ -64,6 +64,9 @@ TEST_CASE("verdict: velocities that turn round in every step oscillate, unless t
   auto signals = calm();
   signals.turning.assign(kSteps, 1);
   CHECK(state_of(signals) == State::kOscillating);
+  Yardstick lenient = kYardstick;
+  lenient.may_turn = true;
+  CHECK(judge(signals, lenient).state == State::kStable);
   signals.kinetic.assign(kSteps, 0.1 * kStill);
   CHECK(state_of(signals) == State::kStable);
   signals = calm();

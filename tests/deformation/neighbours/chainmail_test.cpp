@@ -87,6 +87,19 @@ TEST_CASE("ChainMail: within its bounds it settles to the springs' shape and the
   CHECK(forces[0] == Approx(forces[1]).epsilon(0.01));
 }
 
+TEST_CASE("ChainMail: a probe that appears deep inside pushes no faster than it moves and 1 m/s") {
+  // Oracle: kMaxSeparationSpeed, as in contact_solve.h.
+  const auto model = testing::ball_model(2);
+  ChainMail chain(model);
+  OrganState state = rest_state(model);
+  auto rows = press_top(model, state, 0);
+  rows[0].probe_velocity = -0.2 * rows[0].normal;
+  const auto top = rows[0].nodes[0];
+  const double height = state.positions[top].z();
+  chain.step(1e-3, rows, state);
+  CHECK(height - state.positions[top].z() == Approx(1e-3 * (kMaxSeparationSpeed + 0.2)));
+}
+
 TEST_CASE("ChainMail: fixed nodes hold the chain") {
   // Oracle: invariant.
   auto organ = testing::ball_organ();

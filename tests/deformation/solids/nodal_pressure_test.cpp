@@ -1,5 +1,6 @@
 #include "deformation/solids/nodal_pressure.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "tests/deformation/solids/tissue_checks.h"
@@ -53,6 +54,50 @@ TEST_CASE("nodal pressure: the matrix stays positive however tetrahedra are defo
     }
     tissue.apply(direction, product);
     CHECK(dot(direction, product) > 0);
+  }
+}
+
+TEST_CASE("nodal pressure: the matrix is no smaller than the forces' derivative") {
+  // Oracle: the least eigenvalue of their difference, the derivative by finite differences of a
+  // polynomial. Nodes off by up to half an edge; and all of it pressed into 0.8 of its size, where
+  // pressures are many times μ.
+  const auto model = small_cube(0.5);
+  NodalPressure tissue(model);
+  const double h = 0.02, apart = 1e-6;
+  const auto n = static_cast<Eigen::Index>(3 * model.node_count());
+  std::vector<Vec4f> unit(model.node_count()), product(model.node_count());
+  for (const double size : {1.0, 0.8}) {
+    for (const double by : {1e-4, 3e-3, 1.5e-2}) {
+      auto positions = shaken(model, by);
+      for (Vec3& x : positions) x *= size;
+      Eigen::MatrixXd excess(n, n);
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const auto node = static_cast<std::size_t>(k / 3);
+        const auto axis = static_cast<int>(k % 3);
+        std::fill(unit.begin(), unit.end(), Vec4f::Zero());
+        unit[node][axis] = 1;
+        tissue.linearise(positions, h);
+        tissue.apply(unit, product);
+        auto moved = positions;
+        moved[node][axis] += apart;
+        tissue.linearise(moved, h);
+        const auto ahead = tissue.forces();
+        moved[node][axis] -= 2 * apart;
+        tissue.linearise(moved, h);
+        for (std::size_t i = 0; i < model.node_count(); ++i) {
+          const Vec3 derivative = h * h / (2 * apart) * (tissue.forces()[i] - ahead[i]);
+          excess.block<3, 1>(static_cast<Eigen::Index>(3 * i), k) =
+              product[i].head<3>().cast<double>() - derivative;
+        }
+        excess(k, k) -= (1 + h * model.drag) * model.masses[node];
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+          0.5 * (excess + excess.transpose()), Eigen::EigenvaluesOnly);
+      CAPTURE(size, by, solver.eigenvalues().maxCoeff());
+      double largest = 0;
+      for (const Mat3& block : tissue.diagonal()) largest = std::max(largest, block.trace());
+      CHECK(solver.eigenvalues().minCoeff() > -1e-5 * largest);  // the matrix is in float
+    }
   }
 }
 

@@ -1,0 +1,21 @@
+// What a random scene's organs and probes are made of, in the forms the processes take.
+#pragma once
+
+#include "bench/fuzz/random_scene.h"
+#include "bench/fuzz/shape_store.h"
+#include "collision/contact_finder.h"
+
+namespace palpate::fuzz {
+
+/// One per organ, in W [m].
+std::vector<geometry::OrganShape> shapes_in_world(const RandomScene& scene,
+                                                  const ShapeStore& store);
+
+std::vector<std::vector<geometry::Triangle>> triangles_of(
+    const std::vector<geometry::OrganShape>& shapes);
+
+/// One per probe.
+std::vector<collision::ProbeGeometry> probe_geometry(const RandomScene& scene,
+                                                     const ShapeStore& store);
+
+}  // namespace palpate::fuzz
