@@ -48,7 +48,7 @@ inline Contacts plate_contacts(const DeformationWorld& world, std::uint32_t prob
   std::vector<bool> done(topology.surface_node_count, false);
   for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
     for (int corner = 0; corner < 3; ++corner) {
-      const std::uint32_t node = topology.triangles[t][static_cast<std::size_t>(corner)];
+      const std::size_t node = topology.triangles[t][static_cast<std::size_t>(corner)];
       const Vec3 p(nodes.positions[3 * node], nodes.positions[3 * node + 1],
                    nodes.positions[3 * node + 2]);
       const double gap = side * (height - p.z());

@@ -87,7 +87,7 @@ void check_recovers(DeformationWorld& world, Exit& exit) {
   // Of the surface. A virtual node is held by a ring of nodes in a plane across the axis, and is as
   // well at rest mirrored in it: in two of these cases one is 10.3 mm from where it began.
   float farthest = 0;
-  for (std::size_t i = 0; i < 3 * world.topology(0).surface_node_count; ++i) {
+  for (std::size_t i = 0; i < std::size_t{3} * world.topology(0).surface_node_count; ++i) {
     farthest = std::max(farthest, std::abs(exit.nodes.positions[i] - rest[i]));
   }
   CHECK(farthest < 1e-3f);

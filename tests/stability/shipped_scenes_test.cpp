@@ -18,7 +18,7 @@ TEST_CASE("shipped scenes: no organ is put back and no step shortened") {
         scene::load_scene(std::string(PALPATE_SOURCE_DIR "/scenes/") + name + ".yaml");
     auto pipeline = pipeline::load_pipeline(scene);
     const double period = 1 / scene.rates.deformation;
-    const bool large = pipeline.node_positions(0).positions.size() > 3 * 5000;
+    const bool large = pipeline.node_positions(0).positions.size() > 15000;
     std::vector<int> usual;
     for (std::size_t organ = 0; organ < scene.organs.size(); ++organ) {
       usual.push_back(pipeline.world().substeps(organ, period));

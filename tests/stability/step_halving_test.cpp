@@ -39,6 +39,7 @@ double distance(const Result& a, const Result& b) {
 template <class Dynamics>
 void check_first_order(Dynamics& dynamics, const OrganModel& model, int coarsest) {
   std::vector<Result> results;
+  results.reserve(5);
   for (int k = 0; k < 5; ++k) results.push_back(let_go(dynamics, model, coarsest << k));
   for (std::size_t k = 1; k + 1 < results.size(); ++k) {
     const double ratio =
