@@ -199,22 +199,27 @@ template <class Floats, class Doubles>
 struct Kernel {
   using Nodes = Vector3<Doubles>;
 
-  /// 6 g of kWidth rows: Σ d_j × d_j+1 around the ring.
+  /// 6 g of kWidth rows: Σ d_j × d_j+1 around the ring, two at a time,
+  /// d_1 × d_2 + d_2 × d_3 = d_2 × (x_3 − x_1).
   static Nodes ring_sum(const Layout& layout, const Step& step, const RingSlice& slice,
                         std::size_t lane) {
-    const std::uint32_t* slot = layout.ring_nodes + slice.first_slot * kRingLanes + lane;
-    const std::uint32_t* const end = slot + slice.slots * kRingLanes;
-    const Nodes here = Doubles::load_nodes(step.positions, slot);
-    Nodes sum = no_vectors<Doubles>();
-    slot += kRingLanes;
-    const Nodes first = Doubles::load_nodes(step.positions, slot) - here;
-    Nodes last = first;
-    for (slot += kRingLanes; slot < end; slot += kRingLanes) {
-      const Nodes d = Doubles::load_nodes(step.positions, slot) - here;
-      add_cross(sum, last, d);
-      last = d;
+    const auto* const slots = layout.ring_nodes + slice.first_slot * kRingLanes + lane;
+    const auto load = [&](std::size_t slot) {
+      return Doubles::load_nodes(step.positions, slots + slot * kRingLanes);
+    };
+    const Nodes here = load(0), first = load(1);
+    Nodes sum = no_vectors<Doubles>(), before = first;
+    std::size_t slot = 2;
+    for (; slot + 1 < slice.slots; slot += 2) {
+      const Nodes d = load(slot) - here, after = load(slot + 1);
+      add_cross(sum, d, after - before);
+      before = after;
     }
-    add_cross(sum, last, first);
+    if (slot < slice.slots) {
+      add_cross(sum, load(slot) - here, first - before);
+    } else {
+      add_cross(sum, before - here, first - here);
+    }
     return sum;
   }
 

@@ -1,6 +1,7 @@
 #include "bench/bullet/bullet_command.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <ostream>
 
@@ -59,17 +60,18 @@ std::vector<Setting> settings_for(const Ball& ball, const Squeeze& squeeze,
                           return std::make_unique<BulletBall>(ball, of_bullet);
                         }});
   }
-  const auto add = [&](const std::string& name, Integrator integrator, int corrections) {
-    settings.push_back({name, true, [&ball, integrator, corrections] {
-                          return std::make_unique<PalpateBall>(ball, integrator, corrections);
-                        }});
+  const auto add = [&](const std::string& name, const Method& method) {
+    settings.push_back(
+        {name, true, [&ball, method] { return std::make_unique<PalpateBall>(ball, method); }});
   };
-  const int substeps = PalpateBall(ball, Integrator::kSymplecticEuler, 0).substeps();
+  const int substeps = PalpateBall(ball, {}).substeps();
   const std::string steps = substeps == 1 ? "one step" : std::to_string(substeps) + " sub-steps";
-  add("symplectic Euler, " + steps, Integrator::kSymplecticEuler, 0);
-  add("symplectic Euler, " + steps + ", 1 correction", Integrator::kSymplecticEuler, 1);
-  add("backward Euler, one step", Integrator::kBackwardEuler, 0);
-  add("backward Euler, one step, 1 correction", Integrator::kBackwardEuler, 1);
+  add("symplectic Euler, " + steps, {});
+  add("symplectic Euler, " + steps + ", 1 correction", {.corrections = 1});
+  add("backward Euler, one step", {.integrator = Integrator::kBackwardEuler});
+  add("backward Euler, one step, 1 correction",
+      {.integrator = Integrator::kBackwardEuler, .corrections = 1});
+  add("XPBD springs, one step, 1 pass", {.model = scene::Model::kXpbdSprings, .one_step = true});
   settings.push_back({"whole pipeline: devices, collision, haptics", true,
                       [&ball, squeeze] { return std::make_unique<PipelineBall>(ball, squeeze); }});
   return settings;
@@ -132,13 +134,14 @@ std::vector<std::string> cells(const TableRow& row) {
           text_of("%.1f", o.us_per_step),
           text_of("%.2e", o.peak),
           text_of("%.2e", o.held),
+          std::isnan(o.pressure) ? "" : text_of("%.0f", o.pressure),
           o.verdict()};
 }
 
 const std::vector<std::string>& columns() {
   static const std::vector<std::string> names{
-      "nodes",  "solver", "setting", "us_per_step", "volume_error_peak", "volume_error_held",
-      "verdict"};
+      "nodes",       "solver", "setting", "us_per_step", "volume_error_peak", "volume_error_held",
+      "pressure_Pa", "verdict"};
   return names;
 }
 
@@ -157,9 +160,9 @@ std::vector<TableRow> compare(const BulletOptions& options, std::ostream& log,
 void print_table(const std::vector<TableRow>& rows, std::ostream& out) {
   const auto line = [&](const std::vector<std::string>& c) {
     std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), "%6s  %-7s %-46s %12s %18s %18s  %s\n", c[0].c_str(),
-                  c[1].c_str(), c[2].c_str(), c[3].c_str(), c[4].c_str(), c[5].c_str(),
-                  c[6].c_str());
+    std::snprintf(text.data(), text.size(), "%6s  %-7s %-46s %12s %18s %18s %12s  %s\n",
+                  c[0].c_str(), c[1].c_str(), c[2].c_str(), c[3].c_str(), c[4].c_str(),
+                  c[5].c_str(), c[6].c_str(), c[7].c_str());
     out << text.data();
   };
   line(columns());

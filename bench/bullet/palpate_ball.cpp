@@ -12,9 +12,14 @@ deformation::OrganModel corrected(deformation::OrganModel model, int corrections
   return model;
 }
 
-scene::Organ integrated(scene::Organ organ, scene::Integrator integrator) {
-  organ.integrator = integrator;
+scene::Organ stepped_by(const Method& method, scene::Organ organ) {
+  organ.model = method.model;
+  organ.integrator = method.integrator;
   return organ;
+}
+
+int substeps_of(const deformation::OrganDynamics& dynamics) {
+  return std::max(1, static_cast<int>(std::ceil(kStep / dynamics.largest_step())));
 }
 
 /// A plate that a device moves.
@@ -42,14 +47,14 @@ scene::Scene plates_scene(const Ball& ball, const Squeeze& squeeze) {
 
 }  // namespace
 
-PalpateBall::PalpateBall(const Ball& ball, scene::Integrator integrator, int corrections)
+PalpateBall::PalpateBall(const Ball& ball, const Method& method)
     : ball_(ball),
-      model_(corrected(ball.model, corrections)),
-      dynamics_(deformation::make_dynamics(integrated(ball.organ, integrator), model_, kStep)),
+      model_(corrected(ball.model, method.corrections)),
+      dynamics_(deformation::make_dynamics(stepped_by(method, ball.organ), model_, kStep)),
       state_(deformation::rest_state(model_)),
       corners_(model_.surface_node_count()),
       impulses_(model_.surface_node_count(), 0),
-      substeps_(std::max(1, static_cast<int>(std::ceil(kStep / dynamics_->largest_step())))) {
+      substeps_(method.one_step ? 1 : substeps_of(*dynamics_)) {
   for (const auto& t : model_.triangles) {
     for (std::size_t k = 0; k < 3; ++k) corners_[t[k]] = {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};
   }
@@ -98,5 +103,6 @@ PipelineBall::PipelineBall(const Ball& ball, const Squeeze& squeeze)
 void PipelineBall::step(double) { pipeline_.tick(); }
 
 double PipelineBall::volume() const { return pipeline_.node_positions(0).volume; }
+double PipelineBall::pressure() const { return pipeline_.node_positions(0).pressure; }
 
 }  // namespace palpate::bench

@@ -8,18 +8,26 @@
 
 namespace palpate::bench {
 
+/// How the ball's springs are stepped.
+struct Method {
+  scene::Model model = scene::Model::kImplicitVolume;
+  scene::Integrator integrator = scene::Integrator::kSymplecticEuler;
+  int corrections = 0;  ///< Newton corrections of the volume per step
+  /// One sub-step even where the method would take more for accuracy.
+  bool one_step = false;
+};
+
 /// Deformation and contacts: every node near a plate gets a contact row. In equal sub-steps as
-/// large as the integrator takes.
+/// large as the method takes.
 class PalpateBall : public Squeezer {
  public:
-  /// @param ball         outlives this
-  /// @param corrections  Newton corrections of the volume per step
-  PalpateBall(const Ball& ball, scene::Integrator integrator, int corrections);
+  /// @param ball  outlives this
+  PalpateBall(const Ball& ball, const Method& method);
 
   void step(double height) override;
   double volume() const override;
+  double pressure() const override { return state_.pressure; }
   int substeps() const { return substeps_; }
-  double pressure() const { return state_.pressure; }  ///< [Pa]
 
  private:
   void find_contacts(double height, double speed);
@@ -43,6 +51,7 @@ class PipelineBall : public Squeezer {
   PipelineBall(const Ball& ball, const Squeeze& squeeze);
   void step(double height) override;
   double volume() const override;
+  double pressure() const override;
 
  private:
   pipeline::Pipeline pipeline_;

@@ -74,6 +74,7 @@ Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void
   }
   outcome.held = std::max(std::abs(lowest - 1), std::abs(highest - 1));
   outcome.swing = highest - lowest;
+  outcome.pressure = squeezer.pressure();
   outcome.us_per_step = 1e6 * spent / steps;
   return outcome;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -32,6 +33,8 @@ class Squeezer {
   virtual void step(double height) = 0;
   /// Of the surface now, computed in double precision whatever the solver uses [m³].
   virtual double volume() const = 0;
+  /// Of the contents [Pa]; NaN where the solver has none.
+  virtual double pressure() const { return std::numeric_limits<double>::quiet_NaN(); }
 };
 
 inline constexpr double kStep = 2e-3;  ///< h [s]
@@ -48,6 +51,7 @@ struct Outcome {
   double peak = 0;         ///< largest |V−V₀|/V₀
   double held = 0;         ///< largest over the last fifth of the holding time
   double swing = 0;        ///< highest less lowest V/V₀ of that time
+  double pressure = 0;     ///< of the contents at the end, by how much the ball resists [Pa]
   bool finite = true;
   /// "stable", "swings" (the held volume by more than a twentieth) or "blew up".
   const char* verdict() const;

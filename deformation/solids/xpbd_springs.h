@@ -3,8 +3,9 @@
 //   Dynamics", MIG 2016;  M. Macklin et al., "Small Steps in Physics Simulation", SCA 2019: many
 //   short steps of one iteration.
 //
-// From the free flight x = xₙ + h (v + h·gravity)/(1 + h·drag), every spring, in order, with
-// C = |x_b − x_a| − l₀, α = 1/(k h²), γ = c/(k h) (its damping), w = 1/m_a + 1/m_b, λ at first 0:
+// From the free flight x = xₙ + h (v + h·gravity)/(1 + h·drag), every spring, one after another,
+// with C = |x_b − x_a| − l₀, α = 1/(k h²), γ = c/(k h) (its damping), w = 1/m_a + 1/m_b, λ at first
+// 0:
 //   Δλ = −(C + γ u·(Δx_b − Δx_a) + α λ) / ((1 + γ) w + α),  λ ← λ + Δλ,  x ← x + M⁻¹∇CᵀΔλ,
 //   Δx = x − xₙ
 // The volume and the contacts, constraints of no compliance, follow together, solved to the end
@@ -32,19 +33,27 @@ class XpbdSprings : public OrganDynamics {
 
   /// @param model  of springs, outlives this
   /// @param iterations  passes over the springs in each step, ≥ 1
-  explicit XpbdSprings(const OrganModel& model, int iterations = 1)
-      : model_(model), iterations_(iterations) {}
+  explicit XpbdSprings(const OrganModel& model, int iterations = 1);
 
   double largest_step() const override { return kStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
   double elastic_energy(const OrganState& state) override;
 
  private:
-  void relax_springs(double h, const std::vector<Vec3>& start);
+  struct Visit {
+    std::uint32_t node_a = 0, node_b = 0;
+    double rest_length = 0;   ///< [m]
+    double flexibility = 0;   ///< 1/k [m/N]
+    double damping_time = 0;  ///< c/k [s]
+    double multiplier = 0;    ///< λ [kg m]
+  };
+
+  static std::vector<Visit> visits_of(const OrganModel& model);
+  void visit_springs(double h, const std::vector<Vec3>& start, bool first);
 
   const OrganModel& model_;
   int iterations_;
-  std::vector<double> multipliers_;  ///< λ [kg m]  (spring_count)
+  std::vector<Visit> visits_;
   std::vector<Vec3> positions_, velocities_;
   VolumeGradient volume_;
 };
