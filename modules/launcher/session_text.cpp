@@ -38,8 +38,8 @@ std::string module_lines(const SessionTally& tally) {
       rejected += input.rejected;
     }
     text += fmt::format(
-        "{:<12} {} cycles, {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms, busy "
-        "{:.0f} %\n"
+        "{:<12} {} cycles, {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms "
+        "since its start, busy {:.0f} %\n"
         "             samples: {} taken, {} lost or overtaken by newer ones, {} refused\n",
         name, module.cycles(), 100 * module.on_time_fraction(), status.nominal_rate_hz,
         status.realtime_priority ? ", real-time priority" : "", 1e3 * status.worst_lateness,
