@@ -40,6 +40,20 @@ void check_plannable(const scene::Scene& scene) {
   }
 }
 
+/// A force error is of a force.
+void check_touched(const scene::Scene& scene, const Course& truth, double seconds) {
+  if (!scene.needs.force_error) return;
+  for (const auto& forces : truth.forces) {
+    for (const Vec3& force : forces) {
+      if (force.norm() > 0) return;
+    }
+  }
+  throw InputError(
+      fmt::format("{}: no probe touches the organ in the first {:g} s, so key 'needs.force_error' "
+                  "cannot be judged; give a longer --seconds",
+                  scene.file.string(), seconds));
+}
+
 void print(const std::vector<Verdict>& verdicts, const Verdict* chosen, std::ostream& out) {
   out << fmt::format("{:<42} {:>7} {:>7} {:>7} {:>11} {:>9}  {}\n", "candidate", "nodes", "load",
                      "force", "surface[mm]", "volume", "why not");
@@ -87,6 +101,7 @@ std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& o
   const auto marks = marks_on(scene::load_organ(scene.organs[0]).surface);
   const Course truth = run_course(truth_scene, truth_shape, marks, options.seconds, keep_going);
   if (truth.diverged) throw std::runtime_error("the truth diverged on this scene: no plan");
+  check_touched(scene, truth, options.seconds);
   std::vector<Verdict> verdicts;
   const auto candidates = candidates_of(scene);
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -233,9 +233,9 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
       print_locking(locking, out);
     }
     bench::draw_figures(options.root / "scripts/plot_stability.py", options.out);
-    out << "in " << options.out.string()
-        << ": the charts, atlas.csv, frontiers.csv, locking.csv; points/ is what a next run starts "
-           "from\n";
+    out << "in " << options.out.string() << ": the charts, atlas.csv, frontiers.csv"
+        << (wants(options, kLocking) ? ", locking.csv" : "")
+        << "; points/ is what a next run starts from\n";
     return kExitDone;
   } catch (const bench::Stopped&) {
     log << "stopped; finished points stay in " << points.string() << " and are not measured again"

@@ -1,6 +1,7 @@
 #include "modules/launcher/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -44,8 +45,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--summary", options.summary, "Text file for the summary of the end");
   command.add_option("--only", options.only, "Start only these modules, joining a running session")
       ->delimiter(',');
-  command.add_flag("!--no-visualizer", options.visualizer, "Do not start the visualizer");
-  command.add_flag("!--no-realtime", options.realtime, "Do not ask for real-time priority");
+  command.add_flag_callback(
+      "--no-visualizer", [&] { options.visualizer = false; }, "Do not start the visualizer");
+  command.add_flag_callback(
+      "--no-realtime", [&] { options.realtime = false; }, "Do not ask for real-time priority");
 }
 
 void add_run(CLI::App& app, RunOptions& options, Job& job) {
@@ -88,7 +91,8 @@ void add_mesh(CLI::App& app, geometry::MeshCommandOptions& options, Job& job) {
   auto* command = app.add_subcommand("mesh", "Check, repair, decimate or refine a surface mesh");
   command->add_option("IN", options.input, "Any surface format assimp reads")->required();
   command->add_option("-o,--output", options.output, "ply, stl, obj or off file, in metres");
-  command->add_option("--nodes", options.node_count, "Decimate or refine to this many nodes");
+  command->add_option("--nodes", options.node_count, "Decimate or refine to this many nodes")
+      ->check(CLI::Range(4, 200000));
   command->add_option("--unit", options.unit, "Unit of the input: m, dm, cm, mm, um, in")
       ->capture_default_str();
   command->final_callback(
@@ -124,6 +128,17 @@ void add_chart(CLI::App& app, Job& job) {
       become(own_program_folder() / program, words);
     };
   });
+}
+
+/// Says so where `word` is meant as a command and is none.
+bool refuse_unknown(const std::string& word, const CLI::App& app) {
+  const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+  const auto is_it = [&](const CLI::App* command) { return command->get_name() == word; };
+  if (word.starts_with('-') || std::any_of(commands.begin(), commands.end(), is_it)) return false;
+  std::cerr << "palpate: there is no command '" << word << "'; there are";
+  for (const auto* command : commands) std::cerr << ' ' << command->get_name();
+  std::cerr << '\n';
+  return true;
 }
 
 int report_failure(const Job& job) {
@@ -163,6 +178,7 @@ int palpate_command(int argc, char** argv) {
               "palpate-bench-stability", job);
   add_program(app, "fuzz", "Run random scenes, looking for one that fails without a guard noticing",
               "palpate-fuzz", job);
+  if (argc > 1 && refuse_unknown(argv[1], app)) return kExitBadInput;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -2,10 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "modules/core/units.h"
 
 namespace palpate::launcher {
+namespace {
+
+/// Without the count that a guard's text ends in from its second time on: " (3 times)".
+std::string_view without_count(std::string_view text) {
+  return text.ends_with(" times)") ? text.substr(0, text.rfind(" (")) : text;
+}
+
+}  // namespace
 
 double ModuleTally::on_time_fraction() const {
   const auto periods = static_cast<double>(cycles() + overruns());
@@ -29,6 +38,16 @@ void SessionTally::receive(const ModuleStatus& status) {
   ModuleTally& module = modules_[status.module];
   if (module.newest.process_id != status.process_id) module = {};  // started again
   module.newest = status;
+  if (!started_ || status.state != ModuleState::kDegraded || status.last_error.empty()) return;
+  const std::string text = status.module + ": " + status.last_error;
+  const auto same = std::find_if(troubles_.begin(), troubles_.end(), [&](const auto& known) {
+    return without_count(known) == without_count(text);
+  });
+  if (same == troubles_.end()) {
+    troubles_.push_back(text);
+  } else {
+    *same = text;
+  }
 }
 
 void SessionTally::receive(const NodePositions& positions) {

@@ -48,6 +48,8 @@ class SessionTally {
   const std::vector<OrganTally>& organs() const { return organs_; }
   const std::vector<ProbeTally>& probes() const { return probes_; }
   const std::map<std::string, ModuleTally>& modules() const { return modules_; }
+  /// "module: what its status said while degraded", each once, in the order of its first time.
+  const std::vector<std::string>& troubles() const { return troubles_; }
   /// nullptr if nothing was heard of it.
   const ModuleTally* module(const std::string& name) const;
   double sim_time() const { return sim_time_; }  ///< of the newest node positions [s]
@@ -59,6 +61,7 @@ class SessionTally {
   std::vector<OrganTally> organs_;
   std::vector<ProbeTally> probes_;
   std::map<std::string, ModuleTally> modules_;
+  std::vector<std::string> troubles_;
 };
 
 }  // namespace palpate::launcher

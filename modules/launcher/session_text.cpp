@@ -38,8 +38,8 @@ std::string module_lines(const SessionTally& tally) {
       rejected += input.rejected;
     }
     text += fmt::format(
-        "{:<12} {} cycles, {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms, busy "
-        "{:.0f} %\n"
+        "{:<12} {} cycles, {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms "
+        "since its start, busy {:.0f} %\n"
         "             samples: {} taken, {} lost or overtaken by newer ones, {} refused\n",
         name, module.cycles(), 100 * module.on_time_fraction(), status.nominal_rate_hz,
         status.realtime_priority ? ", real-time priority" : "", 1e3 * status.worst_lateness,
@@ -87,6 +87,9 @@ std::string summary(const SessionTally& tally, const SessionEnd& end) {
       "scene {}: {:.1f} s in {:.1f} s, {:.1f} s simulated, real-time factor {:.3f}\n", end.scene,
       end.session_time, end.wall_time, tally.sim_time(), tally.real_time_factor());
   text += organ_lines(tally) + probe_lines(tally) + module_lines(tally);
+  for (const auto& trouble : tally.troubles()) {
+    text += fmt::format("degraded for a while: {}\n", trouble);
+  }
   for (const auto& [module, words] : end.last_words) {
     if (!words.empty()) text += fmt::format("{} said at last: {}\n", module, words);
   }

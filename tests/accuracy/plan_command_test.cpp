@@ -61,5 +61,16 @@ TEST_CASE("plan command: a scene without needs is refused") {
                     Catch::Contains("key 'needs' asks for nothing"));
 }
 
+TEST_CASE("plan command: forces of probes that do not touch yet are not judged") {
+  // Oracle: the tip of 10 mm begins 62 mm from the middle of a ball of 50 mm and has moved less
+  // than its 2 mm of air after 0.1 s.
+  const accuracy::testing::WorkFolder folder;
+  std::ostringstream out, log;
+  CHECK_THROWS_WITH(
+      run_plan({write_scene(folder.path, "needs: {force_error: 5}\n"), {}, 0.1}, out, log),
+      Catch::Contains("no probe touches the organ in the first 0.1 s"));
+  CHECK_FALSE(std::filesystem::exists(folder.path / "scene.planned.yaml"));
+}
+
 }  // namespace
 }  // namespace palpate::plan

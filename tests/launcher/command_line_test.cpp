@@ -40,9 +40,12 @@ TEST_CASE("command line: --help lists every command and is no error") {
   // Oracle: the commands of the design.
   const auto help = type("palpate", {"--help"});
   CHECK(help.code == kExitDone);
-  for (const char* command : {"run", "replay", "inspect", "check", "mesh"}) {
+  for (const char* command : {"run", "replay", "inspect", "check", "mesh", "chart"}) {
     CHECK_THAT(help.said, Contains(command));
     CHECK(type("palpate", {command, "--help"}).code == kExitDone);
+  }
+  for (const char* program : {"plan", "stability", "fuzz"}) {
+    CHECK_THAT(help.said, Contains(program));
   }
 }
 
@@ -56,6 +59,8 @@ TEST_CASE("command line: what is not a command or option is bad input") {
                                                     {"check"},
                                                     {"mesh"}};
   for (const auto& arguments : wrong) CHECK(type("palpate", arguments).code == kExitBadInput);
+  CHECK_THAT(type("palpate", {"rum"}).said, Contains("no command 'rum'; there are run replay"));
+  CHECK_THAT(type("palpate", {"mesh", "a.ply", "--nodes", "-5"}).said, Contains("-5 not in range"));
 }
 
 TEST_CASE("command line: a bad scene is refused by every program with file and line") {

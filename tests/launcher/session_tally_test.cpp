@@ -89,6 +89,26 @@ TEST_CASE("session tally: a module's cycles count from the start, or from its ow
   CHECK(tally.real_time_factor() == 0.9);
 }
 
+TEST_CASE("session tally: what a status said while degraded is kept once, with its newest count") {
+  // Oracle: the statuses given.
+  auto tally = some_tally();
+  const auto say = [&](ModuleState state, const std::string& text) {
+    auto message = status("deformation", 1, 0);
+    message.state = state;
+    message.last_error = text;
+    tally.receive(message);
+  };
+  say(ModuleState::kDegraded, "before the start");
+  tally.start();
+  say(ModuleState::kDegraded, "a probe jumped");
+  say(ModuleState::kRunning, "");
+  say(ModuleState::kDegraded, "too flat");
+  say(ModuleState::kDegraded, "a probe jumped (2 times)");
+  say(ModuleState::kStopped, "said at the end");
+  CHECK(tally.troubles() ==
+        std::vector<std::string>{"deformation: a probe jumped (2 times)", "deformation: too flat"});
+}
+
 TEST_CASE("session tally: organs and probes the scene does not have change nothing") {
   // Oracle: definition.
   auto tally = some_tally();

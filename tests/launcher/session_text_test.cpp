@@ -40,6 +40,7 @@ SessionTally some_tally() {
   ModuleStatus deformation;
   deformation.module = "deformation";
   deformation.real_time_factor = 0.97;
+  deformation.state = ModuleState::kDegraded;
   deformation.last_error = "slower than real time";
   tally.receive(deformation);
   return tally;
@@ -68,9 +69,11 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
                        Contains("|V-V0|/V0 at most 5.00e-05") &&
                        Contains("force at most 0.500 N   limits that acted: slew, stale"));
   CHECK_THAT(text, Contains("11994 cycles, 99.950 % on time") &&
-                       Contains("worst lateness 2.50 ms") && Contains("real-time priority") &&
+                       Contains("worst lateness 2.50 ms since its start") &&
+                       Contains("real-time priority") &&
                        Contains("3000 taken, 17 lost or overtaken by newer ones, 1 refused"));
-  CHECK_THAT(text, Contains("[haptics] info: bye") &&
+  CHECK_THAT(text, Contains("degraded for a while: deformation: slower than real time") &&
+                       Contains("[haptics] info: bye") &&
                        Contains("FAILED: collision: killed by signal 9 (Killed)"));
 }
 
