@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "deformation/organ_dynamics.h"
+#include "deformation/solids/spring_visits.h"
 #include "deformation/volume_constraint.h"
 
 namespace palpate::deformation {
@@ -33,27 +34,17 @@ class XpbdSprings : public OrganDynamics {
 
   /// @param model  of springs, outlives this
   /// @param iterations  passes over the springs in each step, ≥ 1
-  explicit XpbdSprings(const OrganModel& model, int iterations = 1);
+  explicit XpbdSprings(const OrganModel& model, int iterations = 1)
+      : model_(model), iterations_(iterations), visits_(model) {}
 
   double largest_step() const override { return kStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
   double elastic_energy(const OrganState& state) override;
 
  private:
-  struct Visit {
-    std::uint32_t node_a = 0, node_b = 0;
-    double rest_length = 0;   ///< [m]
-    double flexibility = 0;   ///< 1/k [m/N]
-    double damping_time = 0;  ///< c/k [s]
-    double multiplier = 0;    ///< λ [kg m]
-  };
-
-  static std::vector<Visit> visits_of(const OrganModel& model);
-  void visit_springs(double h, const std::vector<Vec3>& start, bool first);
-
   const OrganModel& model_;
   int iterations_;
-  std::vector<Visit> visits_;
+  SpringVisits visits_;
   std::vector<Vec3> positions_, velocities_;
   VolumeGradient volume_;
 };
