@@ -42,10 +42,10 @@ OWN_ITERATIONS = {"xpbd_springs": 1, "xpbd_tetrahedra": 1, "corotational": 20, "
 
 
 def pareto(points, error):
-    """Cheapest first; each next one is dearer and better."""
+    """Cheapest first; each next one is dearer and better by a twentieth at least."""
     front = []
     for point in sorted(points, key=lambda p: (p["cost_s_per_s"], p[error])):
-        if not front or point[error] < front[-1][error]:
+        if not front or point[error] < 0.95 * front[-1][error]:
             front.append(point)
     return front
 
@@ -53,6 +53,14 @@ def pareto(points, error):
 def label(point):
     iterations = f", {point['iterations']:g} iterations" if point["iterations"] else ""
     return f"{point['model']}, {int(nodes_of(point))} nodes, {point['rate_hz']:g} Hz{iterations}"
+
+
+def name_front(axis, front):
+    """Below the panel, in two columns."""
+    names = [f"{k + 1} {label(point)}" for k, point in enumerate(front)]
+    half = (len(names) + 1) // 2
+    for x, column in ((-0.12, names[:half]), (0.48, names[half:])):
+        axis.text(x, -0.2, "\n".join(column), transform=axis.transAxes, va="top", fontsize=6.5, color="#333")
 
 
 def legend_of_models(figure, models):
@@ -64,10 +72,10 @@ def legend_of_models(figure, models):
                   fontsize=8)
 
 
-def panels(count):
-    columns = min(count, 5 if count > 8 else 4 if count > 4 else 2)
+def panels(count, height=3.9):
+    columns = min(count, 3 if count > 4 else 2)
     rows = math.ceil(count / columns)
-    figure, axes = plt.subplots(rows, columns, figsize=(4.6 * columns, 3.9 * rows + 0.6), squeeze=False)
+    figure, axes = plt.subplots(rows, columns, figsize=(4.9 * columns, height * rows + 0.6), squeeze=False)
     flat = list(axes.flat)
     for axis in flat[count:]:
         axis.set_visible(False)
@@ -82,7 +90,7 @@ def scatter(axis, points, x, y, scale):
 
 def draw_error_cost(folder, points, cases):
     """The main chart: error against cost with the Pareto front."""
-    figure, axes = panels(len(cases))
+    figure, axes = panels(len(cases), height=4.3)
     for axis, case in zip(axes, cases):
         error, scale, words = ERRORS[case]
         here = [p for p in points if p["case"] == case and not p["diverged"]
@@ -101,6 +109,7 @@ def draw_error_cost(folder, points, cases):
             print(f"  {point['cost_s_per_s']:10.4g} s/s  {scale * point[error]:8.3g}  {label(point)}")
             axis.annotate(str(k + 1), (point["cost_s_per_s"], scale * point[error]), fontsize=7,
                           xytext=(4, 4), textcoords="offset points")
+        name_front(axis, front)
     figure.suptitle("error against cost; right of the line: slower than real time on one core", fontsize=10)
     legend_of_models(figure, [m for m in COLORS if any(p["model"] == m for p in points)])
     figure.tight_layout(rect=(0, 0.06, 1, 0.98))
