@@ -4,7 +4,8 @@
 // A visit waits for those before it that moved a node of its own: root and division take longer
 // than all else, and done one by one, most of the time is waiting. So springs are put in an order
 // in which four at a time share no node, nor do they with the four before where that can be; four
-// are done side by side. The order is from node to node, so that memory is passed through once.
+// are done side by side. The order is from node to node, so that memory is passed through once. All
+// instruction sets give the same bits.
 #pragma once
 
 #include <vector>
