@@ -1,6 +1,7 @@
 #include "deformation/elements/rigid_contact.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "deformation/elements/quadrature.h"
 #include "modules/core/error.h"
@@ -104,11 +105,12 @@ void RigidContact::add_residual(std::size_t element, const SolidState& state,
   }
 }
 
-void RigidContact::add_tangent(std::size_t element, const SolidState& state,
-                               ElementMatrix& tangent) const {
+void RigidContact::add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent,
+                               bool positive) const {
   // After a stride of the obstacle t is far above any stress tissue bears; taken at its word, the
   // turning of the normal would make the tangent indefinite.
-  const double most_bending = kMostBending * solid_.tissue().shear_modulus;
+  const double most_bending = positive ? kMostBending * solid_.tissue().shear_modulus
+                                       : std::numeric_limits<double>::infinity();
   for (const std::size_t c : of_element_[element]) {
     const BoundaryFace& face = solid_.mesh().faces[faces_[c]];
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
