@@ -10,9 +10,8 @@ class Contact {
   virtual ~Contact() = default;
 
   /// Adds what touches this element.
-  /// @param positive  true: a tangent positive semidefinite or nearly so, to go downhill by; else
-  /// the
-  ///                  forces' derivative, without which Newton only creeps towards its end
+  /// @param positive  the tangent is to be positive semidefinite or nearly so, for a way downhill;
+  ///                  else the forces' derivative, without which Newton creeps towards its end
   virtual void add_residual(std::size_t element, const SolidState& state,
                             ElementVector& residual) const = 0;
   virtual void add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent,

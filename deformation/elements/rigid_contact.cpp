@@ -97,7 +97,7 @@ void RigidContact::add_residual(std::size_t element, const SolidState& state,
         if (at.traction == 0) continue;
         const auto shape = face_shape(six_point_rule()[q].barycentric);
         for (int a = 0; a < kFaceNodes; ++a) {
-          residual.segment<3>(3 * face.local[a]) -=
+          residual.segment<3>(Eigen::Index{3} * face.local[a]) -=
               (areas_[c][q] * at.traction * shape[a]) * at.gap.normal;
         }
       }
@@ -124,7 +124,7 @@ void RigidContact::add_tangent(std::size_t element, const SolidState& state, Ele
                             bending * at.gap.normal_derivative);
         for (int a = 0; a < kFaceNodes; ++a) {
           for (int b = 0; b < kFaceNodes; ++b) {
-            tangent.block<3, 3>(3 * face.local[a], 3 * face.local[b]) +=
+            tangent.block<3, 3>(Eigen::Index{3} * face.local[a], Eigen::Index{3} * face.local[b]) +=
                 shape[a] * shape[b] * stiffness;
           }
         }
