@@ -89,19 +89,39 @@ void write_scene(const scene::Scene& scene, const std::filesystem::path& file) {
   std::filesystem::rename(part, file);
 }
 
+/// @param coarser  of a wall half the nodes; of a solid, whose edges are refined by halving, edges
+///                 twice as long where the probes go
+Course run_truth(const scene::Scene& scene, bool coarser, const std::vector<Vec3>& marks,
+                 double duration, const std::function<void()>& keep_going) {
+  auto candidate = truth_of(scene);
+  const bool solid = scene.needs.contents == scene::Needs::Contents::kSolid;
+  if (coarser && !solid) candidate.nodes /= 2;
+  const auto truth_scene = scene_with(scene, candidate);
+  const auto shape = solid
+                         ? solid_truth_shape(truth_scene, duration, (coarser ? 2 : 1) * kTruthEdge)
+                         : scene::load_organ(truth_scene.organs[0]);
+  return run_course(truth_scene, shape, marks, duration, keep_going);
+}
+
+/// How far the truth may be off: candidates that differ less from it are not told apart.
+void print_truth(const Course& truth, const Course& coarser, std::ostream& log) {
+  const Errors errors = compare(coarser, truth);
+  log << fmt::format(
+             "truth: {} nodes; a coarser one of {} differs by {:.1f}% of the force, {:.2g} mm of "
+             "surface",
+             truth.node_count, coarser.node_count, 100 * errors.force, 1e3 * errors.surface)
+      << std::endl;
+}
+
 std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& options,
                                  std::ostream& log, const std::function<void()>& keep_going) {
-  const auto truth_candidate = truth_of(scene);
-  log << "truth: " << truth_candidate.name() << std::endl;
-  const auto truth_scene = scene_with(scene, truth_candidate);
-  const bool solid = scene.needs.contents == scene::Needs::Contents::kSolid;
-  const auto truth_shape = solid ? solid_truth_shape(truth_scene, options.seconds)
-                                 : scene::load_organ(truth_scene.organs[0]);
-  log << "its mesh: " << truth_shape.node_count() << " nodes" << std::endl;
+  log << "truth: " << truth_of(scene).name() << ", and a coarser one" << std::endl;
   const auto marks = marks_on(scene::load_organ(scene.organs[0]).surface);
-  const Course truth = run_course(truth_scene, truth_shape, marks, options.seconds, keep_going);
+  const Course truth = run_truth(scene, false, marks, options.seconds, keep_going);
   if (truth.diverged) throw std::runtime_error("the truth diverged on this scene: no plan");
   check_touched(scene, truth, options.seconds);
+  const Course coarser = run_truth(scene, true, marks, options.seconds, keep_going);
+  print_truth(truth, coarser, log);
   std::vector<Verdict> verdicts;
   const auto candidates = candidates_of(scene);
   for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -12,7 +12,7 @@
 namespace palpate::plan {
 namespace {
 
-constexpr double kFinestOfRadius = 0.25, kGrowth = 0.4;
+constexpr double kGrowth = 0.4;
 constexpr double kPathRate = 50;  // [Hz]
 
 /// What a probe touches with; nothing for what is not small.
@@ -46,7 +46,7 @@ double mean_edge(const geometry::TriangleSurface& surface) {
 
 }  // namespace
 
-geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duration) {
+geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duration, double edge) {
   scene::Organ hull = scene.organs[0];
   hull.model = scene::Model::kImplicitVolume;
   const auto coarse = scene::load_organ(hull).surface;
@@ -60,8 +60,7 @@ geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duratio
       const Vec3 at = device->read(time).pose.position;
       const Vec3 near = nearest_point(coarse, at);
       if ((near - at).norm() > 2 * radius || (near - last).norm() < radius / 2) continue;
-      surface =
-          accuracy::refine_around(std::move(surface), near, kFinestOfRadius * radius, kGrowth);
+      surface = accuracy::refine_around(std::move(surface), near, edge * radius, kGrowth);
       last = near;
     }
   }

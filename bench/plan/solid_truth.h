@@ -6,10 +6,13 @@
 
 namespace palpate::plan {
 
-/// The scene's own surface, filled with linear tetrahedra, with edges of a quarter of a probe's
-/// radius where probes come near in the first `duration` [s]: a probe that is small beside the
-/// triangles would meet a surface several times too hard, whatever the elements.
+/// Edges of the truth's triangles where probes come near, in radii of the probe.
+inline constexpr double kTruthEdge = 0.25;
+
+/// The scene's own surface, filled with linear tetrahedra, with edges of `edge` radii of a probe
+/// where probes come near in the first `duration` [s]: a probe that is small beside the triangles
+/// would meet a surface several times too hard, whatever the elements.
 /// @param scene  one organ, a solid @throws InputError as scene::load_organ, or if gmsh is missing
-geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duration);
+geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duration, double edge);
 
 }  // namespace palpate::plan

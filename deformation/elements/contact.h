@@ -9,11 +9,13 @@ class Contact {
  public:
   virtual ~Contact() = default;
 
-  /// Adds what touches this element; the tangent's part is positive semidefinite or nearly so.
+  /// Adds what touches this element.
+  /// @param positive  the tangent is to be positive semidefinite or nearly so, for a way downhill;
+  ///                  else the forces' derivative, without which Newton creeps towards its end
   virtual void add_residual(std::size_t element, const SolidState& state,
                             ElementVector& residual) const = 0;
-  virtual void add_tangent(std::size_t element, const SolidState& state,
-                           ElementMatrix& tangent) const = 0;
+  virtual void add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent,
+                           bool positive) const = 0;
 
   virtual double deepest(const SolidState& state) const = 0;  ///< penetration, ≥ 0 [m]
   /// Whether forces agree with what they were bounded by; if not, they are augmented.

@@ -69,7 +69,7 @@ bool EquilibriumSolver::factor(const SolidState& state, const std::optional<Iner
                                bool positive) {
   return factor_.factor([&](std::size_t e, ElementMatrix& matrix) {
     solid_.tangent(e, state, matrix, positive);
-    if (contact_) contact_->add_tangent(e, state, matrix);
+    if (contact_) contact_->add_tangent(e, state, matrix, positive);
     if (!inertia) return;
     for (int b = 0; b < kElementNodes; ++b) {
       for (int a = 0; a < kElementNodes; ++a) {

@@ -1,6 +1,7 @@
 #include "deformation/elements/rigid_contact.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "deformation/elements/quadrature.h"
 #include "modules/core/error.h"
@@ -96,7 +97,7 @@ void RigidContact::add_residual(std::size_t element, const SolidState& state,
         if (at.traction == 0) continue;
         const auto shape = face_shape(six_point_rule()[q].barycentric);
         for (int a = 0; a < kFaceNodes; ++a) {
-          residual.segment<3>(3 * face.local[a]) -=
+          residual.segment<3>(Eigen::Index{3} * face.local[a]) -=
               (areas_[c][q] * at.traction * shape[a]) * at.gap.normal;
         }
       }
@@ -104,11 +105,12 @@ void RigidContact::add_residual(std::size_t element, const SolidState& state,
   }
 }
 
-void RigidContact::add_tangent(std::size_t element, const SolidState& state,
-                               ElementMatrix& tangent) const {
+void RigidContact::add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent,
+                               bool positive) const {
   // After a stride of the obstacle t is far above any stress tissue bears; taken at its word, the
   // turning of the normal would make the tangent indefinite.
-  const double most_bending = kMostBending * solid_.tissue().shear_modulus;
+  const double most_bending = positive ? kMostBending * solid_.tissue().shear_modulus
+                                       : std::numeric_limits<double>::infinity();
   for (const std::size_t c : of_element_[element]) {
     const BoundaryFace& face = solid_.mesh().faces[faces_[c]];
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
@@ -122,7 +124,7 @@ void RigidContact::add_tangent(std::size_t element, const SolidState& state,
                             bending * at.gap.normal_derivative);
         for (int a = 0; a < kFaceNodes; ++a) {
           for (int b = 0; b < kFaceNodes; ++b) {
-            tangent.block<3, 3>(3 * face.local[a], 3 * face.local[b]) +=
+            tangent.block<3, 3>(Eigen::Index{3} * face.local[a], Eigen::Index{3} * face.local[b]) +=
                 shape[a] * shape[b] * stiffness;
           }
         }

@@ -57,8 +57,8 @@ class RigidContact : public Contact {
 
   void add_residual(std::size_t element, const SolidState& state,
                     ElementVector& residual) const override;
-  void add_tangent(std::size_t element, const SolidState& state,
-                   ElementMatrix& tangent) const override;
+  void add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent,
+                   bool positive) const override;
   double deepest(const SolidState& state) const override;
   /// λ ← max(0, λ − ε g)
   void augment(const SolidState& state) override;

@@ -128,7 +128,7 @@ void QuadraticElementsContact::add_residual(std::size_t element, const SolidStat
 }
 
 void QuadraticElementsContact::add_tangent(std::size_t element, const SolidState& state,
-                                           ElementMatrix& tangent) const {
+                                           ElementMatrix& tangent, bool /*positive*/) const {
   for (const std::size_t r : rows_of_element_[element]) {
     const Row& row = rows_[r];
     const Force on = force(row, state.positions);

@@ -44,7 +44,7 @@ class QuadraticElementsContact : public elements::Contact {
   void add_residual(std::size_t element, const elements::SolidState& state,
                     elements::ElementVector& residual) const override;
   void add_tangent(std::size_t element, const elements::SolidState& state,
-                   elements::ElementMatrix& tangent) const override;
+                   elements::ElementMatrix& tangent, bool positive) const override;
   double deepest(const elements::SolidState& state) const override;
   bool is_settled(const elements::SolidState& state) const override;
   void augment(const elements::SolidState& state) override;

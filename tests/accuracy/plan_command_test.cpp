@@ -43,6 +43,9 @@ TEST_CASE("plan command: it writes a scene that can be read, or says what would 
   const auto planned = scene::load_scene(folder.path / "scene.planned.yaml");
   CHECK_THAT(out.str(), Catch::Contains(std::to_string(planned.organs[0].mesh.nodes) + " nodes"));
   CHECK(planned.rates.deformation >= 50);
+  CHECK_THAT(log.str(),
+             Catch::Matches("(.|\\n)*truth: [0-9]+ nodes; a coarser one of [0-9]+ differs"
+                            " by [0-9.]+% of the force(.|\\n)*"));
 
   std::ofstream(options.scene, std::ios::app) << "\n";
   const accuracy::testing::WorkFolder strict;

@@ -93,7 +93,7 @@ TEST_CASE("plan: the truth of a solid is fine where the probe goes, and of the s
   if (geometry::testing::without_gmsh()) return;
   auto scene =
       scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/liver_solid.yaml");
-  const auto fine = solid_truth_shape(scene, kDuration).surface;
+  const auto fine = solid_truth_shape(scene, kDuration, kTruthEdge).surface;
   scene.organs[0].model = scene::Model::kImplicitVolume;
   const auto coarse = scene::load_organ(scene.organs[0]).surface;
   CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==

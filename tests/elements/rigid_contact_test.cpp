@@ -1,5 +1,7 @@
 #include "deformation/elements/rigid_contact.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
 
@@ -31,16 +33,17 @@ TEST_CASE("rigid contact: gap and normal of plane and sphere") {
 }
 
 TEST_CASE("rigid contact: the tangent is the derivative of the forces") {
-  // Oracle: central differences where no point opens or closes, and t stays below its bound of 4 μ.
+  // Oracle: central differences where no point opens or closes; t up to some 90 μ, as after a
+  // stride.
   const auto solid = testing::solid(testing::block({0.02, 0.02, 0.02}, 1, 1, 1), 0.4);
-  RigidContact contact(solid, all_faces(solid), 1e6);
+  RigidContact contact(solid, all_faces(solid), 5e7);
   contact.set_obstacles({Sphere{Vec3(0.01, 0.01, 0.05), 0.031}});
   auto state = solid.rest_state();
   contact.augment(state);  // with multipliers, too
   double checked = 0;
   for (std::size_t e = 0; e < solid.element_count(); ++e) {
     ElementMatrix tangent = ElementMatrix::Zero();
-    contact.add_tangent(e, state, tangent);
+    contact.add_tangent(e, state, tangent, false);
     for (int a = 0; a < kElementNodes; ++a) {
       for (int i = 0; i < 3; ++i) {
         double& unknown = state.positions[solid.mesh().elements[e][a]][i];
@@ -57,6 +60,26 @@ TEST_CASE("rigid contact: the tangent is the derivative of the forces") {
     checked += tangent.norm();
   }
   CHECK(checked > 0);
+}
+
+TEST_CASE(
+    "rigid contact: the tangent to go downhill by has no more than the derivative's descents") {
+  // Oracle: eigenvalues of the difference, where t is above 4 μ and where it is below.
+  const auto solid = testing::solid(testing::block({0.02, 0.02, 0.02}, 1, 1, 1), 0.4);
+  for (const double penalty : {1e6, 5e7}) {
+    RigidContact contact(solid, all_faces(solid), penalty);
+    contact.set_obstacles({Sphere{Vec3(0.01, 0.01, 0.05), 0.031}});
+    double largest = 0;
+    for (std::size_t e = 0; e < solid.element_count(); ++e) {
+      ElementMatrix derivative = ElementMatrix::Zero(), downhill = derivative;
+      contact.add_tangent(e, solid.rest_state(), derivative, false);
+      contact.add_tangent(e, solid.rest_state(), downhill, true);
+      const Eigen::SelfAdjointEigenSolver<ElementMatrix> more(downhill - derivative);
+      CHECK(more.eigenvalues()[0] >= -1e-12 * derivative.norm());
+      largest = std::max(largest, more.eigenvalues()[kElementDofs - 1]);
+    }
+    CHECK((largest > 0) == (penalty > 1e6));
+  }
 }
 
 TEST_CASE("rigid contact: a block between frictionless plates carries the uniaxial force") {

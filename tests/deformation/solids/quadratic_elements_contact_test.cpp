@@ -46,7 +46,7 @@ TEST_CASE("quadratic elements contact: the tangent is the residual's derivative"
     Eigen::VectorXd change = Eigen::VectorXd::Zero(direction.size());
     for (std::size_t e = 0; e < pressed.solid.element_count(); ++e) {
       elements::ElementMatrix tangent = elements::ElementMatrix::Zero();
-      pressed.contact.add_tangent(e, pressed.state, tangent);
+      pressed.contact.add_tangent(e, pressed.state, tangent, false);
       const auto dofs = pressed.solid.dofs(e);
       change(dofs) += tangent * direction(dofs);
     }
