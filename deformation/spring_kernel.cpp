@@ -106,7 +106,8 @@ const double* SpringKernel::readable_beyond(const std::vector<Vec3>& positions) 
   return coordinates(padded_positions_);
 }
 
-kernel::Step SpringKernel::make_step(double h, const OrganState& state, FreeStep& out) {
+kernel::Step SpringKernel::make_step(double h, const std::vector<Vec3>& positions,
+                                     const std::vector<Vec3>& velocities, FreeStep& out) {
   out.velocities.resize(model_.node_count());
   if (out.volume.gradient.size() != model_.surface_node_count()) {
     out.volume.gradient.assign(model_.surface_node_count(), Vec3::Zero());
@@ -115,9 +116,9 @@ kernel::Step SpringKernel::make_step(double h, const OrganState& state, FreeStep
   step.h = h;
   step.drag = model_.drag;
   repeat(model_.gravity, step.gravity);
-  repeat(state.positions[0], step.origin);
-  step.positions = readable_beyond(state.positions);
-  step.velocities = coordinates(state.velocities);
+  repeat(positions[0], step.origin);
+  step.positions = readable_beyond(positions);
+  step.velocities = coordinates(velocities);
   step.nodes = nodes_.data();
   step.new_velocities = coordinates(out.velocities);
   step.gradient = coordinates(out.volume.gradient);
@@ -129,11 +130,25 @@ kernel::Step SpringKernel::make_step(double h, const OrganState& state, FreeStep
 void SpringKernel::free_step(double h, const OrganState& state, FreeStep& out) {
   const kernel::Layout layout = layout_.view();
   pack(state.positions, &state.velocities);
-  const kernel::Step step = make_step(h, state, out);
+  const kernel::Step step = make_step(h, state.positions, state.velocities, out);
   const auto step_chunk =
       model_.preserve_volume ? functions_.step_chunk : functions_.step_chunk_without_volume;
   run(layout.chunk_count, [&](std::size_t chunk) { step_chunk(layout, step, chunk); });
+  sum_chunks(out);
+  finish_virtual_nodes(h, state, out);
+}
 
+void SpringKernel::evaluate_volume(const std::vector<Vec3>& positions, FreeStep& out) {
+  PALPATE_DEMAND(positions.size() == model_.node_count() &&
+                 out.velocities.size() == positions.size());
+  const kernel::Step step = make_step(0, positions, out.velocities, out);
+  if (!model_.preserve_volume) return;
+  const kernel::Layout layout = layout_.view();
+  run(layout.chunk_count, [&](std::size_t chunk) { functions_.volume_chunk(layout, step, chunk); });
+  sum_chunks(out);
+}
+
+void SpringKernel::sum_chunks(FreeStep& out) const {
   kernel::ChunkSums total;
   for (const kernel::ChunkSums& part : sums_) {
     total.volume += part.volume;
@@ -143,7 +158,6 @@ void SpringKernel::free_step(double h, const OrganState& state, FreeStep& out) {
   out.volume.volume = total.volume / 3;
   out.volume.denominator = total.denominator;
   out.volume_velocity = total.volume_velocity;
-  finish_virtual_nodes(h, state, out);
 }
 
 void SpringKernel::finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const {

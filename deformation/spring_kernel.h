@@ -45,6 +45,10 @@ class SpringKernel {
   /// at the first call only.
   void free_step(double h, const OrganState& state, FreeStep& out);
 
+  /// Of such a step the volume alone: V, g and gᵀM⁻¹g at other positions, and g·v̂ with the v̂ in
+  /// `out`  (node_count). Zeros if the model keeps no volume.
+  void evaluate_volume(const std::vector<Vec3>& positions, FreeStep& out);
+
   /// v⁺ = v̂ − M⁻¹g σ and x⁺ = x + h v⁺, taking v̂ out of `step`.
   /// @param volume_impulse  σ [Pa·s]
   void finish_step(double h, double volume_impulse, FreeStep& step, OrganState& state);
@@ -55,7 +59,9 @@ class SpringKernel {
   void run(std::size_t count, ChunkBody body);
   void pack(const std::vector<Vec3>& positions, const std::vector<Vec3>* velocities);
   const double* readable_beyond(const std::vector<Vec3>& positions);
-  kernel::Step make_step(double h, const OrganState& state, FreeStep& out);
+  kernel::Step make_step(double h, const std::vector<Vec3>& positions,
+                         const std::vector<Vec3>& velocities, FreeStep& out);
+  void sum_chunks(FreeStep& out) const;
   void finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const;
 
   const OrganModel& model_;

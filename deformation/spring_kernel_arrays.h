@@ -125,6 +125,8 @@ struct Functions {
   void (*step_chunk)(const Layout&, const Step&, std::size_t chunk);
   /// The same without volume: its gradient is neither written nor its sums.
   void (*step_chunk_without_volume)(const Layout&, const Step&, std::size_t chunk);
+  /// Volume of one chunk, its gradient and sums alone; `velocities` stand for v̂.
+  void (*volume_chunk)(const Layout&, const Step&, std::size_t chunk);
   /// Coordinates [first, last).
   void (*move)(const Move&, std::size_t first, std::size_t last);
   /// Σ ½k(l−l₀)² of one chunk's springs [J]; those between surface nodes are seen from both ends

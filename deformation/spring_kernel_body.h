@@ -238,6 +238,15 @@ struct Kernel {
     }
   }
 
+  /// 6 g of a slice, to where g will be.
+  static void ring_slice(const Layout& layout, const Step& step, std::size_t index) {
+    for (std::size_t lane = 0; lane < kLanes; lane += Doubles::kWidth) {
+      const std::size_t first = index * kLanes + lane;
+      const RingSlice& ring = layout.ring_slices[first / kRingLanes];
+      store_rows(layout, first, step.gradient, ring_sum(layout, step, ring, first % kRingLanes));
+    }
+  }
+
   /// Forces and 6 g of a slice, to where v̂ and g will be.
   template <bool kVolume>
   static void step_slice(const Layout& layout, const Step& step, std::size_t index,
@@ -249,11 +258,8 @@ struct Kernel {
       store_rows(layout, first, step.new_velocities,
                  {Doubles::widen(forces[0] + lane), Doubles::widen(forces[1] + lane),
                   Doubles::widen(forces[2] + lane)});
-      if constexpr (kVolume) {
-        const RingSlice& ring = layout.ring_slices[first / kRingLanes];
-        store_rows(layout, first, step.gradient, ring_sum(layout, step, ring, first % kRingLanes));
-      }
     }
+    if constexpr (kVolume) ring_slice(layout, step, index);
   }
 
   template <bool kVolume>
@@ -269,6 +275,13 @@ struct Kernel {
     step.sums[chunk] = finish_slices<kVolume>(layout, step, 3 * kLanes * begin, 3 * last);
   }
 
+  static void volume_chunk(const Layout& layout, const Step& step, std::size_t chunk) {
+    const auto [begin, end] = slices_of(layout, chunk);
+    for (std::size_t index = begin; index < end; ++index) ring_slice(layout, step, index);
+    const std::size_t last = end < layout.slice_count ? kLanes * end : layout.surface_node_count;
+    step.sums[chunk] = finish_volume(layout, step, 3 * kLanes * begin, 3 * last);
+  }
+
   static void pack(const Packing& packing, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       Floats::pack_node(packing.positions + 3 * i, packing.origin, packing.nodes + kNodeFloats * i);
@@ -282,7 +295,11 @@ struct Kernel {
     }
   }
 
-  static constexpr Functions functions{&pack, &step_chunk<true>, &step_chunk<false>, &move,
+  static constexpr Functions functions{&pack,
+                                       &step_chunk<true>,
+                                       &step_chunk<false>,
+                                       &volume_chunk,
+                                       &move,
                                        &Springs<Floats>::chunk_energy};
 };
 

@@ -68,6 +68,29 @@ inline ChunkSums finish_slices(const Layout& layout, const Step& step, std::size
   return {sum(sums.volume), sum(sums.denominator), sum(sums.volume_velocity)};
 }
 
+/// Where 6 g was: g, and what finish_slices() sums of the volume, with the velocities there are.
+inline ChunkSums finish_volume(const Layout& layout, const Step& step, std::size_t first,
+                               std::size_t last) {
+  CoordinateSums sums;
+  for (; first < last; first += kSliceCoordinates) {
+    const std::size_t count = last - first < kSliceCoordinates ? last - first : kSliceCoordinates;
+    const double* __restrict origin = step.origin;
+    const double* __restrict inverse_masses = layout.inverse_masses + first;
+    const double* __restrict velocities = step.velocities + first;
+    const double* __restrict positions = step.positions + first;
+    double* __restrict gradient = step.gradient + first;
+#pragma GCC ivdep
+    for (std::size_t c = 0; c < count; ++c) {
+      const double g = gradient[c] * (1.0 / 6);
+      gradient[c] = g;
+      sums.volume[c] += (positions[c] - origin[c]) * g;
+      sums.denominator[c] += g * g * inverse_masses[c];
+      sums.volume_velocity[c] += g * velocities[c];
+    }
+  }
+  return {sum(sums.volume), sum(sums.denominator), sum(sums.volume_velocity)};
+}
+
 inline void move(const Move& move, std::size_t first, std::size_t last) {
   const double* __restrict inverse_masses = move.inverse_masses;
   const double* __restrict gradient = move.gradient;

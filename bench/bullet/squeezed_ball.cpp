@@ -43,8 +43,9 @@ Ball make_bench_ball(std::size_t nodes) {
 }
 
 const char* Outcome::verdict() const {
-  constexpr double kBlownUp = 2, kSwinging = 0.05;  // of V₀
+  constexpr double kBlownUp = 2, kCollapsed = 0.5, kSwinging = 0.05;  // of V₀
   if (!finite || peak > kBlownUp) return "blew up";
+  if (held > kCollapsed) return "collapsed";
   return swing > kSwinging ? "swings" : "stable";
 }
 

@@ -53,7 +53,8 @@ struct Outcome {
   double swing = 0;        ///< highest less lowest V/V₀ of that time
   double pressure = 0;     ///< of the contents at the end, by how much the ball resists [Pa]
   bool finite = true;
-  /// "stable", "swings" (the held volume by more than a twentieth) or "blew up".
+  /// "stable", "swings" (the held volume by more than a twentieth), "collapsed" (no more than half
+  /// of the volume is left: no longer the ball of the others) or "blew up".
   const char* verdict() const;
   bool stable() const;
 };

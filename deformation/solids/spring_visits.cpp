@@ -18,10 +18,8 @@ std::uint32_t offset(std::size_t node) {
   return static_cast<std::uint32_t>(kernel::kVisitedDoubles * node);
 }
 
-void copy(const std::vector<Vec3>& from, AlignedVector<double>& to) {
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) to[offset(i) + axis] = from[i][axis];
-  }
+Eigen::Map<Vec3> place(AlignedVector<double>& nodes, std::size_t node) {
+  return Eigen::Map<Vec3>(&nodes[offset(node)]);
 }
 
 /// Springs still to visit, from the first node on.
@@ -117,10 +115,12 @@ void SpringVisits::add_batches(const OrganModel& model) {
 }
 
 void SpringVisits::relax(double h, int passes, const std::vector<Vec3>& start,
-                         std::vector<Vec3>& positions) {
-  PALPATE_DEMAND(start.size() == positions.size() && h > 0);
-  copy(start, start_);
-  copy(positions, nodes_);
+                         std::vector<Vec3>& velocities, std::vector<Vec3>& positions) {
+  PALPATE_DEMAND(start.size() == velocities.size() && h > 0);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    place(start_, i) = start[i];
+    place(nodes_, i) = start[i] + h * velocities[i];
+  }
   if (passes > 1) multipliers_.assign(kernel::kVisitLanes * batches_.size(), 0);
   const kernel::VisitPass pass{.per_h = 1 / h,
                                .batches = batches_.data(),
@@ -129,8 +129,10 @@ void SpringVisits::relax(double h, int passes, const std::vector<Vec3>& start,
                                .nodes = nodes_.data(),
                                .multipliers = passes > 1 ? multipliers_.data() : nullptr};
   for (int k = 0; k < passes; ++k) visit_(pass);
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    positions[i] = Eigen::Map<const Vec3>(&nodes_[offset(i)]);
+  positions.resize(start.size());
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    positions[i] = place(nodes_, i);
+    velocities[i] = pass.per_h * (positions[i] - start[i]);
   }
 }
 

@@ -23,10 +23,12 @@ class SpringVisits {
                         InstructionSet set = available_instruction_sets().back());
 
   /// Passes over all springs.
-  /// @param h          of the step [s]
-  /// @param start      where the step began  (node_count) [m]
-  /// @param positions  moved  (node_count) [m]
-  void relax(double h, int passes, const std::vector<Vec3>& start, std::vector<Vec3>& positions);
+  /// @param h           of the step [s]
+  /// @param start       where the step began  (node_count) [m]
+  /// @param velocities  in: those it began with; out: what takes `start` to `positions` [m/s]
+  /// @param positions   out: at its end [m]
+  void relax(double h, int passes, const std::vector<Vec3>& start, std::vector<Vec3>& velocities,
+             std::vector<Vec3>& positions);
 
   /// In the order of visits, for tests.
   const std::vector<kernel::VisitBatch>& batches() const { return batches_; }

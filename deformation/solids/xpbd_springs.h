@@ -23,7 +23,6 @@
 
 #include "deformation/organ_dynamics.h"
 #include "deformation/solids/spring_visits.h"
-#include "deformation/volume_constraint.h"
 
 namespace palpate::deformation {
 
@@ -35,7 +34,7 @@ class XpbdSprings : public OrganDynamics {
   /// @param model  of springs, outlives this
   /// @param iterations  passes over the springs in each step, ≥ 1
   explicit XpbdSprings(const OrganModel& model, int iterations = 1)
-      : model_(model), iterations_(iterations), visits_(model) {}
+      : model_(model), iterations_(iterations), visits_(model), kernel_(model) {}
 
   double largest_step() const override { return kStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
@@ -45,12 +44,13 @@ class XpbdSprings : public OrganDynamics {
   const OrganModel& model_;
   int iterations_;
   SpringVisits visits_;
-  std::vector<Vec3> positions_, velocities_;
-  VolumeGradient volume_;
+  SpringKernel kernel_;
+  FreeStep free_;
+  std::vector<Vec3> positions_;
 };
 
-/// xₙ + h (v + h·gravity)/(1 + h·drag), fixed nodes where they are  (node_count)
+/// (v + h·gravity)/(1 + h·drag), zero where nodes are fixed  (node_count)
 void free_flight(const OrganModel& model, double h, const OrganState& state,
-                 std::vector<Vec3>& positions);
+                 std::vector<Vec3>& velocities);
 
 }  // namespace palpate::deformation

@@ -104,6 +104,29 @@ void check_agrees(const OrganModel& model, const OrganState& state) {
   }
 }
 
+TEST_CASE("spring kernel: the volume alone is the one the step has, for any instruction set") {
+  // Oracle: free_step(), with the velocities it leaves.
+  const auto model = testing::ball_model(2);
+  auto state = rest_state(model);
+  for (std::size_t i = 0; i < state.positions.size(); ++i) {
+    state.positions[i] *= 1 + 0.05 * std::sin(static_cast<double>(i));
+    state.velocities[i] = Vec3(std::cos(static_cast<double>(i)), 0.3, -0.1);
+  }
+  for (const InstructionSet set : available_instruction_sets()) {
+    INFO(name_of(set));
+    SpringKernel kernel(model, nullptr, set);
+    FreeStep stepped, alone;
+    kernel.free_step(1e-4, state, stepped);
+    alone.velocities = stepped.velocities;
+    kernel.evaluate_volume(state.positions, alone);
+    CHECK(alone.volume.volume == stepped.volume.volume);
+    CHECK(alone.volume.denominator == stepped.volume.denominator);
+    CHECK(alone.volume_velocity == stepped.volume_velocity);
+    CHECK(alone.volume.gradient == stepped.volume.gradient);
+    CHECK(alone.velocities == stepped.velocities);
+  }
+}
+
 TEST_CASE("spring kernel: agrees with the plain code to rounding, whatever the mesh size") {
   // Oracle: spring_forces.h and volume_constraint.h. 12 … 642 nodes: odd ends, one and many chunks.
   const auto model = ball_model(GENERATE(0, 1, 2, 3), loaded_organ(), Vec3(1, -2, -9.81));

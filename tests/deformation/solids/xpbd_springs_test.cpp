@@ -16,16 +16,28 @@ scene::Organ spring_ball(double drag) {
   return organ;
 }
 
+/// Springs one after another on a tetrahedron, whose other nodes are held; the volume is not kept.
+OrganModel model_of_springs(const std::vector<double>& masses, std::vector<Spring> springs) {
+  OrganModel model;
+  model.network.surface_node_count = 4;
+  model.network.structural_count = 1;
+  model.network.bending_count = springs.size() - 1;
+  for (std::size_t i = 0; i < 4; ++i) {
+    model.network.rest_positions.emplace_back(0.01 * static_cast<double>(i), 0, 0);
+    model.masses.push_back(i < masses.size() ? masses[i] : 1);
+    model.inverse_masses.push_back(i < masses.size() ? 1 / masses[i] : 0);
+  }
+  model.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  model.spring_damping.assign(springs.size(), 0);
+  model.network.springs = std::move(springs);
+  model.preserve_volume = false;
+  return model;
+}
+
 TEST_CASE("XPBD springs: alone, a damped spring is stepped by backward Euler exactly") {
   // Oracle: analytic. L⁺ (1 + h²kw + hcw) = L + hL' + hcw L, L the stretch, w = 1/m_a + 1/m_b.
-  OrganModel model;
-  model.network.rest_positions = {Vec3::Zero(), Vec3(0.01, 0, 0)};
-  model.network.surface_node_count = 2;
-  model.network.springs = {{0, 1, 0.01, 400}};
-  model.masses = {0.002, 0.003};
-  model.inverse_masses = {500, 1 / 0.003};
+  OrganModel model = model_of_springs({0.002, 0.003}, {{0, 1, 0.01, 400}});
   model.spring_damping = {0.05};
-  model.preserve_volume = false;
   XpbdSprings xpbd(model);
   OrganState state = rest_state(model);
   state.positions[1].x() += 2e-3;
@@ -44,14 +56,8 @@ TEST_CASE("XPBD springs: alone, a damped spring is stepped by backward Euler exa
 
 TEST_CASE("XPBD springs: many passes make backward Euler's step of springs in a row") {
   // Oracle: analytic. (M/h² + K) Δ = M g for two springs hung up in a line, from rest.
-  OrganModel model;
-  model.network.rest_positions = {Vec3::Zero(), Vec3(0.01, 0, 0), Vec3(0.02, 0, 0)};
-  model.network.surface_node_count = 3;
-  model.network.springs = {{0, 1, 0.01, 400}, {1, 2, 0.01, 300}};
-  model.masses = {1, 0.002, 0.003};
-  model.inverse_masses = {0, 1 / 0.002, 1 / 0.003};
-  model.spring_damping = {0, 0};
-  model.preserve_volume = false;
+  OrganModel model = model_of_springs({1, 0.002, 0.003}, {{0, 1, 0.01, 400}, {1, 2, 0.01, 300}});
+  model.inverse_masses[0] = 0;
   model.gravity = Vec3(9.81, 0, 0);
   const double h = 5e-3;
   Eigen::Matrix2d matrix;
