@@ -11,11 +11,14 @@ using testing::kBallRadius;
 
 geometry::OrganShape shape_for(scene::Model model) {
   if (!scene::is_solid(model)) return geometry::make_ball(kBallRadius, 2);
-  auto shape =
-      geometry::shape_of(geometry::testing::block(Vec3::Constant(2 * kBallRadius), 3, 3, 3));
+  // quadratic_elements: 6 tetrahedra, or the test takes minutes.
+  const bool quadratic = scene::is_quadratic(model);
+  const int cells = model == scene::Model::kQuadraticElements ? 1 : quadratic ? 2 : 3;
+  auto shape = geometry::shape_of(
+      geometry::testing::block(Vec3::Constant(2 * kBallRadius), cells, cells, cells));
   for (Vec3& p : shape.surface.nodes) p -= Vec3::Constant(kBallRadius);
   for (Vec3& p : shape.inner_nodes) p -= Vec3::Constant(kBallRadius);
-  return shape;
+  return quadratic ? geometry::with_edge_nodes(shape) : shape;
 }
 
 /// Shape a model is back to 3 s after the plates opened, over the cube root of its volume. Those
