@@ -69,6 +69,19 @@ inline geometry::OrganShape lopsided_shape(scene::Model model) {
   return quadratic ? geometry::with_edge_nodes(shape) : shape;
 }
 
+/// A ball about the origin, of solids a cube as wide. Quadratic models factorize matrices: 6
+/// tetrahedra for quadratic_elements, or tests take minutes.
+inline geometry::OrganShape compact_shape(scene::Model model) {
+  if (!scene::is_solid(model)) return geometry::make_ball(kBallRadius, 2);
+  const bool quadratic = scene::is_quadratic(model);
+  const int cells = model == scene::Model::kQuadraticElements ? 1 : quadratic ? 2 : 3;
+  auto shape = geometry::shape_of(
+      geometry::testing::block(Vec3::Constant(2 * kBallRadius), cells, cells, cells));
+  for (Vec3& p : shape.surface.nodes) p -= Vec3::Constant(kBallRadius);
+  for (Vec3& p : shape.inner_nodes) p -= Vec3::Constant(kBallRadius);
+  return quadratic ? geometry::with_edge_nodes(shape) : shape;
+}
+
 inline scene::Organ organ_of(const ModelUnderTest& kind) {
   auto organ = ball_organ();
   organ.model = kind.model;
