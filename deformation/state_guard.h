@@ -32,7 +32,7 @@ enum class Disbelief : std::uint8_t {
   kEnergyGrew,    ///< beyond kEnergyGain times what it had and was given
   kTooLarge,      ///< two nodes further apart than kMaxGrowth times any two at rest
   kTurnedInside,  ///< it encloses less than −kTurnedVolume V₀
-  kCollapsed      ///< flattened to a line or point, for kCollapsedTime (simulated_organ.h)
+  kCollapsed      ///< flattened to a line or point, or a solid folded, for kCollapsedTime
 };
 
 /// Nothing soft moves faster and means it [m/s].
