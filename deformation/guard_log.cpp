@@ -28,7 +28,7 @@ constexpr std::array<Kind, GuardLog::kKinds> kKindsOfGuards{{
     {replaced<Disbelief::kTurnedInside>,
      "an organ was turned inside out: its last good state was restored, at rest"},
     {replaced<Disbelief::kCollapsed>,
-     "an organ collapsed to a line: its last good state was restored, at rest"},
+     "an organ collapsed or folded and did not unfold: its last good state was restored, at rest"},
     {replaced<Disbelief::kEnergyGrew>,
      "an organ diverged (more energy than it was given): its last good state was restored, at "
      "rest"},

@@ -44,6 +44,7 @@ void SimulatedOrgan::put(const OrganState& state) {
   release_volume();
   guard_.begin(state_, dynamics_->elastic_energy(state_));
   advances_ = kThoroughLookEvery;
+  folded_ = false;
   collapsed_time_ = 0;
 }
 
@@ -52,6 +53,7 @@ void SimulatedOrgan::reset() {
   state_ = last_good_ = rest_state(*model_);
   guard_.begin(state_, dynamics_->elastic_energy(state_));
   halvings_ = failures_ = advances_ = 0;
+  folded_ = false;
   collapsed_time_ = aloof_time_ = gentle_time_ = 0;
   quiet_time_ = kQuietTime;
 }
@@ -70,7 +72,8 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
     report.volume_skipped = true;
     advances_ = kThoroughLookEvery;
   }
-  collapsed_time_ = stepped.volume_skipped && rows.empty() ? collapsed_time_ + h : 0;
+  const bool collapsed = (stepped.volume_skipped || folded_) && rows.empty();
+  collapsed_time_ = collapsed ? collapsed_time_ + h : 0;
   if (!stepped.pressure_capped) return;
   report.pressure_capped = true;
   release_volume();
@@ -96,8 +99,10 @@ bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   const bool far = holds_volume_ && volume_is_far();
   if (far) release_volume();
   report.volume_released |= far;
-  report.tissue_inverted |= inverted_tetrahedra(*model_, state_.positions) > 0;
-  if (!guard_.suspicious() && !far && collapsed_time_ == 0) last_good_ = state_;
+  const bool inverted = inverted_tetrahedra(*model_, state_.positions) > 0;
+  report.tissue_inverted |= inverted;
+  folded_ = inverted && !has_rest_volume();
+  if (!guard_.suspicious() && !far && !folded_ && collapsed_time_ == 0) last_good_ = state_;
   return true;
 }
 
@@ -111,6 +116,11 @@ void SimulatedOrgan::release_volume() {
 bool SimulatedOrgan::volume_is_far() const {
   const double volume = geometry::enclosed_volume(state_.positions, model_->triangles);
   return std::abs(volume - state_.target_volume) > kMaxVolumeError * model_->rest_volume;
+}
+
+bool SimulatedOrgan::has_rest_volume() const {
+  const double volume = geometry::enclosed_volume(state_.positions, model_->triangles);
+  return std::abs(volume / model_->rest_volume - 1) <= kMaxVolumeError;
 }
 
 void SimulatedOrgan::recover(Disbelief reason, AdvanceReport& report) {

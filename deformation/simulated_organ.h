@@ -41,8 +41,8 @@ inline constexpr double kPressureCapOfWall = 10;
 /// A volume further from V* than this part of V₀ is not corrected at once: V* begins again at the
 /// volume there is and goes back no faster than the scene's max_rate_per_s.
 inline constexpr double kMaxVolumeError = 0.05;
-/// An organ that nothing touches and whose volume cannot be corrected for longer than this does not
-/// come back by itself [s].
+/// An organ that nothing touches and whose volume cannot be corrected, or a solid that is folded,
+/// for longer than this does not come back by itself [s].
 inline constexpr double kCollapsedTime = 0.5;
 inline constexpr int kMostHalvings = 3;
 inline constexpr int kMostFailures = 3;
@@ -81,6 +81,7 @@ class SimulatedOrgan {
  private:
   void release_volume();
   bool volume_is_far() const;
+  bool has_rest_volume() const;
   void recover(Disbelief reason, AdvanceReport& report);
   void shorten_steps();
   void lengthen_steps(double period);
@@ -98,6 +99,8 @@ class SimulatedOrgan {
   double aloof_time_ = 0;      ///< left [s]
   double gentle_time_ = 0;     ///< left [s]
   double quiet_time_ = 0;      ///< since a guard acted [s]
+  /// At the last thorough look a solid had tetrahedra inside out and a volume far from V₀.
+  bool folded_ = false;
   double collapsed_time_ = 0;  ///< [s]
   int advances_ = 0;           ///< since the last thorough look
 };

@@ -85,13 +85,18 @@ void StateGuard::add_work(double h, std::span<const ContactRow> rows, double vol
   ledger_ += state.pressure * volume_change;
 }
 
+/// Of the pressure and, by the ledger, of every impulse since the last look.
+bool StateGuard::is_finite(const OrganState& state) const {
+  return std::isfinite(state.pressure) && std::isfinite(ledger_);
+}
+
 Disbelief StateGuard::look(const OrganState& state, double period) {
   const double way = period * period * kMaxNodeSpeed * kMaxNodeSpeed;
   const double far = largest_distance_ * largest_distance_;
   const double fast = kMaxNodeSpeed * kMaxNodeSpeed;
   const Vec3 first = state.positions[0];
   double twice_energy = 0;
-  bool sound = std::isfinite(state.pressure);
+  bool sound = is_finite(state);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const double speed = state.velocities[i].squaredNorm();
     const double distance = (state.positions[i] - first).squaredNorm();
@@ -136,7 +141,7 @@ Disbelief StateGuard::judge_energy(double energy) {
 }
 
 Disbelief StateGuard::explain(const OrganState& state, double period) const {
-  bool finite = std::isfinite(state.pressure);
+  bool finite = is_finite(state);
   double speed = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     finite &= state.positions[i].allFinite() && state.velocities[i].allFinite();

@@ -27,12 +27,12 @@ namespace palpate::deformation {
 /// Why a state is not believed.
 enum class Disbelief : std::uint8_t {
   kNone,
-  kNotFinite,     ///< a position, velocity or pressure
+  kNotFinite,     ///< a position, velocity, pressure or impulse
   kTooFast,       ///< a node beyond kMaxNodeSpeed, now or on the way since the last look
   kEnergyGrew,    ///< beyond kEnergyGain times what it had and was given
   kTooLarge,      ///< two nodes further apart than kMaxGrowth times any two at rest
   kTurnedInside,  ///< it encloses less than −kTurnedVolume V₀
-  kCollapsed      ///< flattened to a line or point, for kCollapsedTime (simulated_organ.h)
+  kCollapsed      ///< flattened to a line or point, or a solid folded, for kCollapsedTime
 };
 
 /// Nothing soft moves faster and means it [m/s].
@@ -83,6 +83,7 @@ class StateGuard {
   double ledger() const { return ledger_; }  ///< what it may hold [J]
 
  private:
+  bool is_finite(const OrganState& state) const;
   Disbelief judge_energy(double energy);
   Disbelief explain(const OrganState& state, double period) const;
 

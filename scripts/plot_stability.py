@@ -86,6 +86,19 @@ def draw_frontier(axis, frontiers, scale):
         axis.plot([scale * row["x"] for row in known], [row[key] for row in known], style, linewidth=1.2)
 
 
+def draw_legend(figure, cells, frontiers):
+    """Of what is in the picture, and nothing else."""
+    entries = {state: plt.Rectangle((0, 0), 1, 1, color=color) for state, color in zip(STATES, COLORS)
+               if any(cell["state"] == state for cell in cells)}
+    if any(row["edge"] == "found" for row in frontiers):
+        entries["frontier, measured"] = plt.Line2D([], [], color="k", marker="o", markersize=3)
+    if any(math.isfinite(row["predicted"]) for row in frontiers):
+        entries["predicted"] = plt.Line2D([], [], color="b", linestyle="--")
+    if any(math.isfinite(row["given"]) for row in frontiers):
+        entries["largest step the model is given"] = plt.Line2D([], [], color="k", linestyle=":")
+    figure.legend(entries.values(), entries.keys(), loc="lower center", ncol=7, fontsize=8, frameon=False)
+
+
 def draw_map(folder, name, cells, frontiers):
     series = list(dict.fromkeys(cell["series"] for cell in cells))
     columns = min(len(series), 5 if len(series) > 8 else 4)
@@ -108,11 +121,7 @@ def draw_map(folder, name, cells, frontiers):
         axis.set_xlabel(X_NAMES[name], fontsize=7)
         axis.set_ylabel(Y_NAMES.get(name, "step [s]"), fontsize=7)
         axis.tick_params(labelsize=7)
-    handles = [plt.Rectangle((0, 0), 1, 1, color=color) for color in COLORS]
-    handles += [plt.Line2D([], [], color="k", marker="o", markersize=3), plt.Line2D([], [], color="b", linestyle="--"),
-                plt.Line2D([], [], color="k", linestyle=":")]
-    figure.legend(handles, [*STATES, "frontier, measured", "predicted", "largest step the model is given"],
-                  loc="lower center", ncol=7, fontsize=8, frameon=False)
+    draw_legend(figure, cells, frontiers)
     figure.suptitle(TITLES[name], fontsize=10)
     figure.tight_layout(rect=(0, 0.05, 1, 1))
     figure.savefig(folder / f"stability_{name}.png", dpi=100)

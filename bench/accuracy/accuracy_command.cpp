@@ -40,9 +40,8 @@ std::vector<scene::Model> wanted_models(const AccuracyOptions& options) {
     const auto found = std::find_if(
         all.begin(), all.end(), [&](scene::Model model) { return name == scene::word_of(model); });
     if (found == all.end()) {
-      std::vector<std::string> words;
-      for (const auto model : all) words.emplace_back(scene::word_of(model));
-      throw InputError(fmt::format("model '{}': must be one of {}", name, fmt::join(words, ", ")));
+      throw InputError(
+          fmt::format("model '{}': must be one of {}", name, fmt::join(model_names(), ", ")));
     }
     wanted.push_back(*found);
   }
@@ -97,6 +96,18 @@ void measure_peers(const AccuracyOptions& options, std::ostream& log) {
 
 }  // namespace
 
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const Case& each : cases()) names.emplace_back(each.name);
+  return names;
+}
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const auto model : ladder()) names.emplace_back(scene::word_of(model));
+  return names;
+}
+
 int run_accuracy(const AccuracyOptions& options, std::ostream& out, std::ostream& log) {
   bench::make_out_folder(options.out);
   const Source source = find_source(options);
@@ -119,9 +130,9 @@ int run_accuracy(const AccuracyOptions& options, std::ostream& out, std::ostream
     out << "on " << bench::machine_name() << '\n';
     bench::draw_figures(options.root / "scripts/plot_accuracy.py", options.out);
     out << "in " << options.out.string()
-        << ": the charts, points.csv, samples.csv, profiles.csv, truths.csv, bullet.csv; points/ "
-           "is what a next run starts "
-           "from\n";
+        << ": the charts, points.csv, samples.csv, profiles.csv, truths.csv"
+        << (std::filesystem::exists(options.out / "bullet.csv") ? ", bullet.csv" : "")
+        << "; points/ is what a next run starts from\n";
     return kExitDone;
   } catch (const bench::Stopped&) {
     log << "stopped; finished points stay in " << (options.out / "points").string()

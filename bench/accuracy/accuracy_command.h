@@ -21,6 +21,10 @@ struct AccuracyOptions {
   bool again = false;  ///< measures anew what has been measured
 };
 
+/// What only_cases and only_models may hold.
+std::vector<std::string> case_names();
+std::vector<std::string> model_names();
+
 /// The whole command. @return an exit code @throws InputError
 int run_accuracy(const AccuracyOptions& options, std::ostream& out, std::ostream& log);
 

@@ -7,15 +7,19 @@
 int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app("Speed against accuracy: what each model costs and how wrong it is.",
-               "palpate-bench-accuracy");
+               "palpate chart accuracy");
   accuracy::AccuracyOptions options;
   options.root = PALPATE_SOURCE_DIR;
   options.bullet_program =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "palpate-bench-bullet";
   bool quick = false, full = false;
   app.add_option("-o,--out", options.out, "Folder for tables and charts")->capture_default_str();
-  app.add_option("--case", options.only_cases, "Only these cases")->delimiter(',');
-  app.add_option("--model", options.only_models, "Only these models")->delimiter(',');
+  app.add_option("--case", options.only_cases,
+                 "Only these cases: " + CLI::detail::join(accuracy::case_names(), ", "))
+      ->delimiter(',');
+  app.add_option("--model", options.only_models,
+                 "Only these models: " + CLI::detail::join(accuracy::model_names(), ", "))
+      ->delimiter(',');
   app.add_flag("--quick", quick, "Coarse meshes, one step: under 2 minutes");
   app.add_flag("--full", full, "Fine meshes, four steps: hours")->excludes("--quick");
   app.add_flag("--again", options.again, "Measure anew what earlier runs have left in --out");
@@ -28,10 +32,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    std::cerr << "palpate-bench-accuracy: " << error.what() << '\n';
+    std::cerr << "palpate chart accuracy: " << error.what() << '\n';
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::cerr << "palpate-bench-accuracy: " << error.what() << '\n';
+    std::cerr << "palpate chart accuracy: " << error.what() << '\n';
     return kExitFailed;
   }
 }

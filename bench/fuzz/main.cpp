@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app("Random scenes, looking for one that fails without a guard noticing.",
-               "palpate-fuzz");
+               "palpate fuzz");
   fuzz::FuzzOptions options;
   options.root = PALPATE_SOURCE_DIR;
   app.add_option("-o,--out", options.out, "Folder for outcomes and failing scenes")
@@ -24,10 +24,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    std::cerr << "palpate-fuzz: " << error.what() << '\n';
+    std::cerr << "palpate fuzz: " << error.what() << '\n';
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::cerr << "palpate-fuzz: " << error.what() << '\n';
+    std::cerr << "palpate fuzz: " << error.what() << '\n';
     return kExitFailed;
   }
 }

@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app(
       "Volume methods of the related work side by side: error, cost, largest step, energy.",
-      "palpate-bench-neighbours");
+      "palpate chart neighbours");
   bench::NeighboursOptions options;
   options.scene = PALPATE_SOURCE_DIR "/scenes/stomach_probe.yaml";
   std::vector<std::string> names;
@@ -27,10 +27,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    std::cerr << "palpate-bench-neighbours: " << error.what() << '\n';
+    std::cerr << "palpate chart neighbours: " << error.what() << '\n';
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::cerr << "palpate-bench-neighbours: " << error.what() << '\n';
+    std::cerr << "palpate chart neighbours: " << error.what() << '\n';
     return kExitFailed;
   }
 }

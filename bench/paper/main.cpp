@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app("The figures and numbers of Hong et al., made anew: CSV files and pictures.",
-               "palpate-bench-paper");
+               "palpate chart paper");
   bench::PaperOptions options;
   options.source = PALPATE_SOURCE_DIR;
   app.add_option("-o,--out", options.out, "Folder to write to")->capture_default_str();
@@ -25,10 +25,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    std::cerr << "palpate-bench-paper: " << error.what() << '\n';
+    std::cerr << "palpate chart paper: " << error.what() << '\n';
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::cerr << "palpate-bench-paper: " << error.what() << '\n';
+    std::cerr << "palpate chart paper: " << error.what() << '\n';
     return kExitFailed;
   }
 }

@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app("Stability atlas: where each method fails, measured and predicted.",
-               "palpate-bench-stability");
+               "palpate stability");
   stability::StabilityOptions options;
   options.root = PALPATE_SOURCE_DIR;
   app.add_option("-o,--out", options.out, "Folder for tables and charts")->capture_default_str();
@@ -23,10 +23,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    std::cerr << "palpate-bench-stability: " << error.what() << '\n';
+    std::cerr << "palpate stability: " << error.what() << '\n';
     return kExitBadInput;
   } catch (const std::exception& error) {
-    std::cerr << "palpate-bench-stability: " << error.what() << '\n';
+    std::cerr << "palpate stability: " << error.what() << '\n';
     return kExitFailed;
   }
 }

@@ -104,7 +104,12 @@ TetMesh run_gmsh_with(const WorkFolder& folder, std::vector<std::string> options
   if (status != 0 || !wrong.empty()) {
     throw InputError("gmsh: exit status " + std::to_string(status) + ": " + wrong);
   }
-  return read_gmsh(output);
+  try {
+    return read_gmsh(output);
+  } catch (const InputError& error) {  // "/tmp/…/solid.msh:12: what": nobody knows that file
+    const std::string text = error.what();
+    throw InputError(text.substr(text.find(": ") + 2));
+  }
 }
 
 TetMesh run_gmsh_in(const WorkFolder& folder, const std::string& script) {

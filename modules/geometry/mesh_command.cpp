@@ -79,6 +79,7 @@ TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOption
 }
 
 void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
+  if (!options.output.empty()) check_can_write(options.output);
   TriangleSurface surface = read_surface(options.input, options.unit);
   out << options.input.string() << " (" << options.unit << ")\n";
   print_measures(check_surface(surface), out);

@@ -14,6 +14,9 @@ namespace palpate::geometry {
 ///         not finite, index out of range).
 TriangleSurface read_surface(const std::filesystem::path& file, std::string_view unit);
 
+/// @throws InputError for an extension write_surface() does not know
+void check_can_write(const std::filesystem::path& file);
+
 /// Writes by file extension (ply, stl, obj, off), in metres; whole file or nothing.
 /// @throws InputError for an extension not known; std::runtime_error if writing fails.
 void write_surface(const TriangleSurface& surface, const std::filesystem::path& file);

@@ -85,6 +85,8 @@ Writer writer_for(const std::filesystem::path& file) {
 
 }  // namespace
 
+void check_can_write(const std::filesystem::path& file) { writer_for(file); }
+
 void write_surface(const TriangleSurface& surface, const std::filesystem::path& file) {
   const Writer writer = writer_for(file);
   std::filesystem::path temporary = file;

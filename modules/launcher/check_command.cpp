@@ -9,6 +9,7 @@
 #include <set>
 
 #include "deformation/deformation_world.h"
+#include "haptics/device.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/geometry/organ_shape.h"
@@ -58,6 +59,15 @@ std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& sh
   text += fmt::format("  largest step {:.1f} us: {} sub-steps of {:.1f} us in a period\n",
                       1e6 * world.stable_step(index), substeps, 1e6 * period / substeps);
   return text;
+}
+
+/// Opens the files a probe names, as its processes would. What is wrong with a recording, but can
+/// be borne, is printed.
+void check_probe(const scene::Probe& probe, std::ostream& out) {
+  scene::load_probe_mesh(probe);
+  std::vector<std::string> warnings;
+  haptics::make_device(probe.device, warnings);
+  for (const auto& warning : warnings) out << "warning: " << warning << '\n';
 }
 
 /// Distance of a probe's origin from what it touches in direction n, for round shapes [m].
@@ -125,6 +135,7 @@ int check_command(const std::filesystem::path& file, double measure_for, std::os
   out << scene::resolved_text(scene) << '\n';
   std::vector<geometry::OrganShape> shapes;
   for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
+  for (const auto& probe : scene.probes) check_probe(probe, out);
   runtime::WorkerTeam team(scene.deformation_threads);
   deformation::DeformationWorld world(scene, shapes, &team);
   const double period = 1 / scene.rates.deformation;

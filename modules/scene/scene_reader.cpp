@@ -35,6 +35,10 @@ void check_first_key(const YamlValue& root) {
   if (!first.IsScalar() || first.Scalar() != kFormatKey) {
     throw InputError(place_in(*root.source, line_of(first)) + ": the first key must be " + wanted);
   }
+  // Before what else is missing: another version may name it otherwise.
+  About version;
+  version.min = version.max = kSceneFormat;
+  count_from({root.node.begin()->second, line_of(first), kFormatKey, root.source}, version);
 }
 
 }  // namespace

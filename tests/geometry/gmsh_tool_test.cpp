@@ -2,9 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <fstream>
 
 #include "modules/core/error.h"
 #include "modules/geometry/primitives.h"
+#include "tests/geometry/scratch.h"
 #include "tests/geometry/tetrahedra.h"
 
 namespace palpate::geometry {
@@ -64,6 +66,17 @@ TEST_CASE("gmsh tool: what it cannot do is said") {
   auto open = make_ball(0.05, 1);
   open.triangles.pop_back();
   CHECK_THROWS_AS(fill_surface(open, 0.02), InputError);
+}
+
+TEST_CASE("gmsh tool: a file without tetrahedra is refused by its own name") {
+  // Oracle: the message. One triangle, as VTK's legacy format has it.
+  if (testing::without_gmsh()) return;
+  const test::ScratchFolder folder;
+  const auto file = folder / "shell.vtk";
+  std::ofstream(file) << "# vtk DataFile Version 2.0\nshell\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+                         "POINTS 3 double\n0 0 0\n1 0 0\n0 1 0\n"
+                         "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n";
+  CHECK_THROWS_WITH(read_tetrahedra(file), file.string() + ": no tetrahedra");
 }
 
 }  // namespace

@@ -92,5 +92,6 @@ TEST_CASE("mesh command: every bad option is exit code 2, a failed write exit co
   const Outcome format = run({folder / "in.ply", folder / "out.doc", 0, "m"});
   CHECK(format.code == kExitBadInput);
   CHECK_THAT(format.err, Contains("allowed: .ply"));
+  CHECK(format.out.empty());  // before any work
   CHECK(run({folder / "in.ply", folder / "no" / "out.ply", 0, "m"}).code == kExitFailed);
 }

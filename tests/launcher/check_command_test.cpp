@@ -68,3 +68,17 @@ TEST_CASE("check: a bad scene is refused with its place") {
                     Contains(scene.file().string() + ":12:") && Contains("wrong_key"));
   CHECK(out.str().empty());
 }
+
+TEST_CASE("check: a recording that cannot be used is refused by file and line, gaps are told") {
+  // Oracle: what the haptics process says of the same file
+  // (tests/haptics/trajectory_file_test.cpp).
+  const BallScene scene("trajectory: {file: moves.csv}");
+  const auto file = scene.folder() / "moves.csv";
+  std::ostringstream out;
+  std::ofstream(file) << "t,x,y,z\n0,0,0,0\n";
+  CHECK_THROWS_WITH(launcher::check_command(scene.file(), 0.05, out), Contains("moves.csv:1: "));
+  std::ofstream(file) << "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.09,0,0,0,1\nnone,0,0,0.09,0,0,0,1\n"
+                         "0.01,0,0,0.09,0,0,0,1\n";
+  CHECK(launcher::check_command(scene.file(), 0.05, out) == kExitDone);
+  CHECK_THAT(out.str(), Contains("warning: ") && Contains("moves.csv:3: "));
+}

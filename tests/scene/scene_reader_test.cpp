@@ -229,6 +229,8 @@ TEST_CASE("scene reader: the format comes first and is one that is known") {
         "scene.yaml:2: the first key must be palpate_scene: 1");
   CHECK(folder.refusal(changed("palpate_scene: 1", "palpate_scene: 2")) ==
         "scene.yaml:1: key 'palpate_scene' = '2': must be 1");
+  CHECK(folder.refusal("palpate_scene: 2\n") ==
+        "scene.yaml:1: key 'palpate_scene' = '2': must be 1");  // before what is missing
   CHECK(folder.refusal(changed("palpate_scene: 1", "palpate_scene: one")) ==
         "scene.yaml:1: key 'palpate_scene' = 'one': must be a whole number");
 }

@@ -31,7 +31,8 @@ struct View {
   std::function<Vec3(const Vec3&)> back;
   double scale = 1;
   bool mirrored = false, renumbered = false;
-  double tolerance = 1e-5;  ///< springs and conjugate gradients are in float
+  /// Springs and conjugate gradients are in float, modes are found to 1e-8 of ω².
+  double tolerance = 1e-5;
 };
 
 std::vector<View> views() {
@@ -77,6 +78,12 @@ geometry::OrganShape seen(const geometry::OrganShape& shape, const View& view) {
     for (auto& node : tetrahedron) node = number[node];
     if (view.mirrored) std::swap(tetrahedron[1], tetrahedron[2]);
   }
+  for (auto& middles : out.edge_nodes) {
+    for (auto& node : middles) node = number[node];
+    if (!view.mirrored) continue;
+    std::swap(middles[0], middles[2]);  // edges 01 and 02
+    std::swap(middles[4], middles[5]);  // 13 and 23
+  }
   return out;
 }
 
@@ -85,7 +92,7 @@ std::vector<Vec3> motion(const ModelUnderTest& kind, const View& view) {
   auto organ = organ_of(kind);
   organ.tissue.youngs_modulus *= view.scale * view.scale;
   organ.tissue.wall_thickness *= view.scale;
-  const auto shape = lopsided_shape(scene::is_solid(kind.model));
+  const auto shape = lopsided_shape(kind.model);
   const auto number = numbering(shape, view.renumbered);
   const auto model = build_organ_model(organ, Vec3::Zero(), seen(shape, view));
   const auto dynamics = make_dynamics(organ, model, kStep);
@@ -99,9 +106,6 @@ std::vector<Vec3> motion(const ModelUnderTest& kind, const View& view) {
     state.positions[number[i]] += view.to(offset) - origin;
     state.velocities[number[i]] = view.to(speed) - origin;
   }
-  // No jump of the volume in the first step: backward Euler's conjugate gradients answer a shock
-  // with float noise (docs/stability.md).
-  state.target_volume = geometry::enclosed_volume(state.positions, model.triangles);
   for (int s = 0; s < kSteps; ++s) dynamics->step(kStep, {}, state);
   std::vector<Vec3> positions;
   for (std::size_t i = 0; i < shape.node_count(); ++i) {
@@ -112,7 +116,7 @@ std::vector<Vec3> motion(const ModelUnderTest& kind, const View& view) {
 
 TEST_CASE("invariance: every model moves the same however it is looked at") {
   // Oracle: symmetry. Methods with a constant of their own (a pressure, a length) do not scale;
-  // XPBD of springs visits them one by one, so their order matters by 0.3 %.
+  // XPBD of springs visits them one by one, so their order matters by 0.4 %.
   const View plain{"plain", [](const Vec3& p) { return p; }, [](const Vec3& p) { return p; }};
   for (const auto& kind : models_under_test()) {
     const auto expected = motion(kind, plain);

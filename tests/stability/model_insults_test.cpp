@@ -7,17 +7,6 @@
 namespace palpate::deformation {
 namespace {
 
-using testing::kBallRadius;
-
-geometry::OrganShape shape_for(scene::Model model) {
-  if (!scene::is_solid(model)) return geometry::make_ball(kBallRadius, 2);
-  auto shape =
-      geometry::shape_of(geometry::testing::block(Vec3::Constant(2 * kBallRadius), 3, 3, 3));
-  for (Vec3& p : shape.surface.nodes) p -= Vec3::Constant(kBallRadius);
-  for (Vec3& p : shape.inner_nodes) p -= Vec3::Constant(kBallRadius);
-  return shape;
-}
-
 /// Shape a model is back to 3 s after the plates opened, over the cube root of its volume. Those
 /// that keep no volume, or only that of parts, may stay folded: their walls pass each other.
 double expected_shape(scene::Model model) {
@@ -36,7 +25,7 @@ TEST_CASE("model insults: between plates that close to a tenth no model breaks o
   // Oracle: invariants; the table above is what was measured.
   for (const auto& kind : testing::models_under_test()) {
     const auto organ = testing::organ_of(kind);
-    const auto shape = shape_for(kind.model);
+    const auto shape = testing::compact_shape(kind.model);
     DeformationWorld world(testing::ball_scene(2, organ), {shape});
     const auto witness = testing::squeeze_and_release(world, 0.9);
     const auto model = build_organ_model(organ, Vec3::Zero(), shape);

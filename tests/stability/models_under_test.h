@@ -1,6 +1,7 @@
 // Every model of the scene, with what holds for it.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "modules/scene/schema.h"
@@ -41,14 +42,21 @@ inline std::vector<ModelUnderTest> models_under_test() {
           {Model::kXpbdSprings, kAuto, true, false, true, true},
           {Model::kXpbdTetrahedra, kAuto, true, false},
           {Model::kCorotational, kAuto, true, false},
-          {Model::kNodalPressure, kAuto, true, false}};
+          {Model::kNodalPressure, kAuto, true, false},
+          {Model::kQuadraticElements, kAuto, true, false},
+          // Linear about the rest shape: a turned scene is a symmetry; angular momentum, that of
+          // a turned organ, is kept about the rest positions only and not looked at here.
+          {Model::kModal, kAuto, true, false}};
 }
 
-/// A lopsided organ of about 5 cm: no axis, plane or two nodes of it are alike.
-inline geometry::OrganShape lopsided_shape(bool solid) {
+/// A lopsided organ of about 5 cm: no axis, plane or two nodes of it are alike. Quadratic models
+/// factorize matrices: 12 tetrahedra for them, 72 for the other solids.
+inline geometry::OrganShape lopsided_shape(scene::Model model) {
+  const bool quadratic = scene::is_quadratic(model);
   geometry::OrganShape shape;
-  if (solid) {
-    shape = geometry::shape_of(geometry::testing::block(Vec3(0.08, 0.06, 0.05), 3, 2, 2));
+  if (scene::is_solid(model)) {
+    const auto [nx, ny, nz] = quadratic ? std::array{2, 1, 1} : std::array{3, 2, 2};
+    shape = geometry::shape_of(geometry::testing::block(Vec3(0.08, 0.06, 0.05), nx, ny, nz));
   } else {
     shape = geometry::make_ball(kBallRadius, 2);
   }
@@ -58,7 +66,20 @@ inline geometry::OrganShape lopsided_shape(bool solid) {
   };
   for (Vec3& p : shape.surface.nodes) warp(p);
   for (Vec3& p : shape.inner_nodes) warp(p);
-  return shape;
+  return quadratic ? geometry::with_edge_nodes(shape) : shape;
+}
+
+/// A ball about the origin, of solids a cube as wide. Quadratic models factorize matrices: 6
+/// tetrahedra for quadratic_elements, or tests take minutes.
+inline geometry::OrganShape compact_shape(scene::Model model) {
+  if (!scene::is_solid(model)) return geometry::make_ball(kBallRadius, 2);
+  const bool quadratic = scene::is_quadratic(model);
+  const int cells = model == scene::Model::kQuadraticElements ? 1 : quadratic ? 2 : 3;
+  auto shape = geometry::shape_of(
+      geometry::testing::block(Vec3::Constant(2 * kBallRadius), cells, cells, cells));
+  for (Vec3& p : shape.surface.nodes) p -= Vec3::Constant(kBallRadius);
+  for (Vec3& p : shape.inner_nodes) p -= Vec3::Constant(kBallRadius);
+  return quadratic ? geometry::with_edge_nodes(shape) : shape;
 }
 
 inline scene::Organ organ_of(const ModelUnderTest& kind) {

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "deformation/solids/quadratic_elements.h"
 #include "tests/stability/models_under_test.h"
 
 namespace palpate::deformation {
@@ -24,10 +25,7 @@ Moving moving(const testing::ModelUnderTest& kind, double damping_ratio, double 
   auto organ = organ_of(kind);
   organ.tissue.damping_ratio = damping_ratio;
   organ.tissue.drag = drag;
-  Moving out{build_organ_model(organ, Vec3::Zero(), lopsided_shape(scene::is_solid(kind.model))),
-             nullptr,
-             {},
-             0};
+  Moving out{build_organ_model(organ, Vec3::Zero(), lopsided_shape(kind.model)), nullptr, {}, 0};
   out.dynamics = make_dynamics(organ, out.model, testing::kPeriod);
   out.step = std::min(out.dynamics->largest_step(), 1e-3);
   out.state = rest_state(out.model);
@@ -45,10 +43,31 @@ struct Sums {
   double kinetic = 0, mass = 0;
 };
 
+/// M v of each node [kg m/s]. Quadratic models move by the mass of their elements, not by lumps.
+std::vector<Vec3> momenta(const Moving& m) {
+  std::vector<Vec3> momenta(m.model.node_count(), Vec3::Zero());
+  for (std::size_t i = 0; m.model.solid.edge_nodes.empty() && i < momenta.size(); ++i) {
+    momenta[i] = m.model.masses[i] * m.state.velocities[i];
+  }
+  if (m.model.solid.edge_nodes.empty()) return momenta;
+  const auto solid = quadratic_solid(m.model);
+  for (std::size_t e = 0; e < solid.element_count(); ++e) {
+    const auto& nodes = solid.mesh().elements[e];
+    const elements::ElementMass mass = solid.mass(e);
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      for (std::size_t b = 0; b < nodes.size(); ++b) {
+        momenta[nodes[a]] += mass(Eigen::Index(a), Eigen::Index(b)) * m.state.velocities[nodes[b]];
+      }
+    }
+  }
+  return momenta;
+}
+
 Sums sums_of(const Moving& m) {
   Sums sums;
+  const auto all = momenta(m);
   for (std::size_t i = 0; i < m.model.node_count(); ++i) {
-    const Vec3 p = m.model.masses[i] * m.state.velocities[i];
+    const Vec3& p = all[i];
     sums.momentum += p;
     sums.angular += m.state.positions[i].cross(p);
     sums.kinetic += p.dot(m.state.velocities[i]) / 2;
