@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "modules/geometry/triangle_surface.h"
@@ -64,7 +65,9 @@ void StateGuard::begin(const OrganState& state, double elastic_energy) {
   for (std::size_t i = 0; i < state.velocities.size(); ++i) {
     kinetic += model_.masses[i] * state.velocities[i].squaredNorm() / 2;
   }
-  ledger_ = kinetic + elastic_energy;
+  // Tissue pressed flat may have no energy that is a number; it is judged from the next look on.
+  ledger_ =
+      std::isfinite(elastic_energy) ? kinetic + elastic_energy : std::numeric_limits<double>::max();
   unpaid_ = 0;
   first_moment_ = first_moment(model_, state.positions);
   seen_ = state.positions;

@@ -188,5 +188,22 @@ TEST_CASE("state guard: counts tetrahedra that are turned inside out") {
   CHECK(inverted_tetrahedra(model, nodes) == 2);
 }
 
+TEST_CASE(
+    "state guard: an impulse that is no number is not believed, whatever it left of the state") {
+  // Oracle: IEEE arithmetic: without the look the ledger would be no number for ever, and any
+  // energy be less than that.
+  const auto model = testing::ball_model(1);
+  StateGuard guard(model, true);
+  const OrganState state = rest_state(model);
+  guard.begin(state, 0);
+  ContactRow row;
+  row.weights = Vec3(1, 0, 0);
+  row.tangential_impulse = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  guard.add_work(kStep, std::span(&row, 1), 0, state);
+  CHECK(guard.look(state, kLong) == Disbelief::kNotFinite);
+  guard.begin(state, std::numeric_limits<double>::quiet_NaN());
+  CHECK(guard.look(state, kLong) == Disbelief::kNone);
+}
+
 }  // namespace
 }  // namespace palpate::deformation
