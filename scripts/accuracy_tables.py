@@ -5,8 +5,8 @@ import math
 import shutil
 
 # Shown in the docs.
-PICTURES = ["accuracy_cost.png", "accuracy_curves.png", "accuracy_iterations.png", "accuracy_profile.png",
-            "accuracy_volume.png"]
+PICTURES = ["accuracy_cost.png", "accuracy_cost_mesh.png", "accuracy_curves.png", "accuracy_iterations.png",
+            "accuracy_mesh.png", "accuracy_profile.png", "accuracy_volume.png"]
 TITLES = {
     "ball": "solid ball between plates, 10–40 %",
     "block": "bonded block, 5–18 %",

@@ -250,6 +250,8 @@ def draw_profile(folder, profiles):
             finest = max((p["level"], -p["rate_hz"]) for p in mine)
             line = sorted((p["distance_m"], p["displacement_m"]) for p in mine
                           if (p["level"], -p["rate_hz"]) == finest)
+            if all(abs(u) < 1e-6 for _, u in line):  # the tip has slipped through
+                continue
             axis.plot([1e3 * x for x, _ in line], [1e3 * u for _, u in line], marker="o", markersize=3, color=color,
                       label=model)
         axis.set_title(f"{1e3 * load:g} mm deep", fontsize=9)

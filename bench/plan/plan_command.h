@@ -8,7 +8,7 @@ namespace palpate::plan {
 struct PlanOptions {
   std::filesystem::path scene;
   std::filesystem::path out;  ///< scene file to write; empty: NAME.planned.yaml beside the scene
-  double seconds = 4;         ///< of the scene, from its start
+  double seconds = 6;         ///< of the scene, from its start
 };
 
 /// The whole command: measures, prints choice and runners-up with what they lost by, writes the
