@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "deformation/organ_dynamics.h"
 #include "deformation/probe_contacts.h"
@@ -16,6 +17,8 @@ constexpr double kLeastStep = 1e-6;  // [s]
 /// The contact model is believed within this part of the mean edge: the touched nodes stay the
 /// same.
 constexpr double kValidityOfEdge = 0.5;
+/// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
+constexpr double kFarthestContact = 10;
 
 struct WorldOrgan {
   SimulatedOrgan simulated;
@@ -82,10 +85,29 @@ struct DeformationWorld::Impl {
   std::vector<ProbeContacts> probes;
   Contacts accepted;  ///< buffer of set_contacts()
   double time = 0;
+  bool contact_refused = false;  ///< since the last advance
 
   bool names_our_triangle(const Contact& contact) const {
     return contact.organ < organs.size() &&
            contact.triangle < organs[contact.organ].simulated.model().triangles.size();
+  }
+
+  bool is_near(const Contact& contact, const Pose& probe) const {
+    const SimulatedOrgan& organ = organs[contact.organ].simulated;
+    const auto& nodes = organ.model().triangles[contact.triangle];
+    Vec3 tissue = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      tissue += contact.barycentric[k] * organ.state().positions[nodes[k]];
+    }
+    return (contact.point_on_probe - tissue).stableNorm() <= kFarthestContact &&
+           (contact.point_on_probe - probe.position).stableNorm() <= kFarthestContact;
+  }
+
+  bool believes(const Contact& contact, const Pose& probe) {
+    if (!names_our_triangle(contact)) return false;
+    const bool near = is_near(contact, probe);
+    contact_refused |= !near;
+    return near;
   }
 
   /// One organ through one advance, all probes moving along.
@@ -169,13 +191,14 @@ void DeformationWorld::set_contacts(const Contacts& contacts) {
   accepted.probe_pose = contacts.probe_pose;
   accepted.contacts.clear();
   for (const Contact& contact : contacts.contacts) {
-    if (impl_->names_our_triangle(contact)) accepted.contacts.push_back(contact);
+    if (impl_->believes(contact, contacts.probe_pose)) accepted.contacts.push_back(contact);
   }
   impl_->probes[contacts.probe].set_contacts(accepted);
 }
 
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
+  report.contact_refused = std::exchange(impl_->contact_refused, false);
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     impl_->advance_organ(i, period, report);

@@ -31,7 +31,8 @@ class DeformationWorld {
   /// Newest pose of a probe. Contacts are carried along rigidly with it until the next contacts.
   void set_probe(const ProbeState& probe);
   /// Newest contacts of a probe; replaces those it had. Entries naming no organ or triangle of
-  /// this world are ignored.
+  /// this world are ignored; those metres away from their tissue or probe are refused, too, and the
+  /// next advance says so.
   void set_contacts(const Contacts& contacts);
 
   /// Advances every organ by `period` [s] in its stable sub-steps. Contacts hold unilaterally,

@@ -42,6 +42,8 @@ constexpr std::array<Kind, GuardLog::kKinds> kKindsOfGuards{{
      "an organ is too flat for its volume to be corrected"},
     {[](const AdvanceReport& r) { return r.tissue_inverted; },
      "tissue is squeezed inside out in places: forces there are not to be believed"},
+    {[](const AdvanceReport& r) { return r.contact_refused; },
+     "a contact metres away from its tissue was not believed"},
     {[](const AdvanceReport& r) { return r.probe_jumped; },
      "a probe jumped: its contacts were dropped"},
     {[](const AdvanceReport& r) { return r.step_reduced; },

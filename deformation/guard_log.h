@@ -20,7 +20,7 @@ class GuardLog {
   /// Valid until the next call. Allocates nothing.
   const char* describe(const AdvanceReport& report, double time);
 
-  static constexpr std::size_t kKinds = 14;
+  static constexpr std::size_t kKinds = 15;
 
  private:
   struct Count {

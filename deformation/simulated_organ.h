@@ -30,6 +30,7 @@ struct AdvanceReport {
   bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
   bool contacts_ignored = false;        ///< of an organ put back to rest, for kQuietTime
   bool tissue_inverted = false;         ///< some tetrahedra of a solid are turned inside out
+  bool contact_refused = false;         ///< it was too far from its tissue to be one
   bool probe_jumped = false;            ///< a probe moved faster than believed: no contacts
 };
 

@@ -196,6 +196,7 @@ class Lockstep {
     count(Guard::kVolumeSkipped, r.volume_skipped);
     count(Guard::kContactsIgnored, r.contacts_ignored);
     count(Guard::kTissueInverted, r.tissue_inverted);
+    count(Guard::kMessageRefused, r.contact_refused);
     count(Guard::kProbeJumped, r.probe_jumped);
   }
 

@@ -88,6 +88,27 @@ TEST_CASE("deformation world: a probe that jumps drops its contacts and says so"
   CHECK(nodes.kinetic_energy < 1e-2);
 }
 
+TEST_CASE(
+    "deformation world: contacts far from their tissue or probe are refused, and it says so") {
+  // Oracle: a torque about the probe's origin that is a number, and no more than any contact there
+  // is could exert.
+  for (const bool far_probe : {false, true}) {
+    auto world = ball_world(2, 1);
+    world.set_probe(probe_at(0, Vec3(0, 0, 0.049)));
+    Contacts contacts = plate_contacts(world, 0, 0.049, 1, 2e-3);
+    REQUIRE(contacts.contacts.size() > 1);
+    contacts.contacts[0].point_on_probe = Vec3(1e300, 0, 0.049);
+    if (far_probe) contacts.probe_pose.position = Vec3(0, 1e308, 0);
+    world.set_contacts(contacts);
+    CHECK(world.advance(kPeriod).contact_refused);
+    ContactModel model;
+    world.write_contact_model(0, model);
+    CHECK(model.touching != far_probe);
+    CHECK(model.torque.norm() <= 0.05 * model.force.norm());
+    CHECK_FALSE(world.advance(kPeriod).contact_refused);
+  }
+}
+
 TEST_CASE("deformation world: contacts that name nothing here are ignored") {
   // Oracle: definition.
   auto world = ball_world(1, 1);

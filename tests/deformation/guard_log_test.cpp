@@ -25,10 +25,11 @@ TEST_CASE("guard log: every guard has words of its own") {
   for (int reason = 1; reason <= static_cast<int>(Disbelief::kCollapsed); ++reason) {
     reports.push_back(replaced(static_cast<Disbelief>(reason)));
   }
-  for (const auto flag : {&AdvanceReport::back_to_rest, &AdvanceReport::step_reduced,
-                          &AdvanceReport::pressure_capped, &AdvanceReport::volume_released,
-                          &AdvanceReport::volume_skipped, &AdvanceReport::contacts_ignored,
-                          &AdvanceReport::tissue_inverted, &AdvanceReport::probe_jumped}) {
+  for (const auto flag :
+       {&AdvanceReport::back_to_rest, &AdvanceReport::step_reduced, &AdvanceReport::pressure_capped,
+        &AdvanceReport::volume_released, &AdvanceReport::volume_skipped,
+        &AdvanceReport::contacts_ignored, &AdvanceReport::tissue_inverted,
+        &AdvanceReport::contact_refused, &AdvanceReport::probe_jumped}) {
     reports.emplace_back();
     reports.back().*flag = true;
   }
