@@ -40,6 +40,7 @@ class WorkFolder {
 /// Runs the program found in PATH, both outputs into `log`. @returns exit status, -1 if not found
 int run(std::vector<std::string> words, const std::filesystem::path& log) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;

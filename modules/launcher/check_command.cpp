@@ -92,7 +92,8 @@ void press(deformation::DeformationWorld& world, const scene::Scene& scene, doub
   std::array<Vec3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
     corners[k] =
-        Eigen::Map<const Eigen::Vector3f>(&topology.rest_positions[3 * (*free)[k]]).cast<double>();
+        Eigen::Map<const Eigen::Vector3f>(&topology.rest_positions[std::size_t{3} * (*free)[k]])
+            .cast<double>();
   }
   const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   const Vec3 point = (corners[0] + corners[1] + corners[2]) / 3 - depth * n;
