@@ -141,6 +141,13 @@ int Writer<Message>::matched_readers() const {
 }
 
 template <class Message>
+bool Writer<Message>::wait_until_received(double longest) {
+  const eprosima::fastrtps::Duration_t duration(static_cast<long double>(longest));
+  return impl_->writer->wait_for_acknowledgments(duration) ==
+         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+}
+
+template <class Message>
 const char* Writer<Message>::refused_field() const {
   return impl_->refused_field;
 }

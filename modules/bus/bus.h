@@ -38,6 +38,9 @@ class Writer {
   /// it. No allocation once message sizes have been seen.
   bool write(Message& message);
   int matched_readers() const;
+  /// Waits until every reader of a state topic has what was written, at most `longest` [s]: who
+  /// writes and leaves at once may not be heard. False if time was up.
+  bool wait_until_received(double longest);
   /// Wire name (idl/) of the field for which the last write was refused; nullptr if it was not.
   const char* refused_field() const;
 

@@ -54,6 +54,7 @@ Module::~Module() {
   status_.forget_inputs();  // readers are declared after the module and gone before it
   status_.set_state(ModuleState::kStopped, status_.status().last_error);
   status_.publish(now, session_.time(now), loop);
+  status_.take_leave();
   spdlog::info(
       "{} cycles at {:.0f} Hz, {:.3f} % on time, late by at most {:.3f} ms ({:.3f} ms in 99.9 %)",
       loop.cycles, loop_.rate_hz(), 100 * loop.on_time_fraction(), 1e3 * worst,

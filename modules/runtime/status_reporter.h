@@ -32,9 +32,13 @@ class StatusReporter {
   /// Publishes now.
   void publish(std::int64_t now_ns, double session_time, const LoopStatistics& loop);
 
+  /// Gives the last status time to be heard, at most kFarewell.
+  void take_leave() { writer_.wait_until_received(kFarewell); }
+
   const ModuleStatus& status() const { return status_; }
 
   static constexpr std::size_t kMaxErrorBytes = 500;
+  static constexpr double kFarewell = 0.2;  ///< [s]
 
  private:
   void count_cycles(std::int64_t now_ns, const LoopStatistics& loop);
