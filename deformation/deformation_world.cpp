@@ -50,13 +50,6 @@ SurfaceTopology make_topology(const scene::Organ& organ, std::uint32_t index,
   return topology;
 }
 
-double mean_edge_length(const geometry::TriangleSurface& surface) {
-  const auto edges = geometry::edges_of(surface.triangles);
-  double sum = 0;
-  for (const auto& [a, b] : edges) sum += (surface.nodes[b] - surface.nodes[a]).norm();
-  return sum / static_cast<double>(edges.size());
-}
-
 WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
                       double period, const geometry::OrganShape& shape, ChunkRunner* runner,
                       Guarding guarding) {
@@ -75,7 +68,7 @@ WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3
           integrator,
           std::move(topology),
           {},
-          mean_edge_length(shape.surface)};
+          geometry::mean_edge_length(shape.surface)};
 }
 
 }  // namespace

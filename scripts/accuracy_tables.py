@@ -1,8 +1,9 @@
 """Tables of `palpate chart`: what its CSV files hold, and results.md for docs/accuracy.md."""
 
-import csv
 import math
 import shutil
+
+import csv_rows
 
 # Shown in the docs.
 PICTURES = ["accuracy_cost.png", "accuracy_cost_mesh.png", "accuracy_curves.png", "accuracy_iterations.png",
@@ -38,22 +39,8 @@ FURTHER = [("shape [mm]", "shape_error_m", 1e3), ("field [mm]", "field_error_m",
            ("volume", "volume_error", 1)]
 
 
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
 def rows_of(file):
-    if not file.exists():
-        return []
-    with open(file, newline="", encoding="utf-8") as stream:
-        return [
-            {key: value if key in ("case", "model", "solver", "setting", "verdict") else number(value)
-             for key, value in row.items()}
-            for row in csv.DictReader(stream)
-        ]
+    return csv_rows.rows_of(file, words=("case", "model", "solver", "setting", "verdict"))
 
 
 def known(*values):

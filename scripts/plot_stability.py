@@ -6,7 +6,6 @@
 """
 
 import argparse
-import csv
 import math
 import sys
 from pathlib import Path
@@ -19,6 +18,8 @@ except ImportError as error:
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.colors import ListedColormap  # noqa: E402
+
+from csv_rows import number, rows_of  # noqa: E402
 
 STATES = ["stable", "drifting", "oscillating", "diverged"]
 COLORS = ["#cfe8cf", "#f4e7a1", "#f0a35e", "#b5473c"]
@@ -39,20 +40,6 @@ X_NAMES = {
 Y_NAMES = {"haptic_loop": "stiffness [N/m]"}
 X_SCALES = {"haptic_loop": 1e3}
 LOG_X = {"step_stiffness", "probe_speed", "mesh_quality"}
-
-
-def number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
-
-
-def rows_of(file):
-    if not file.exists():
-        return []
-    with open(file, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
 
 
 def borders(values, log):

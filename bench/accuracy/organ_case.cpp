@@ -54,21 +54,14 @@ geometry::TriangleSurface surface_of(scene::Organ organ, std::size_t nodes) {
   return scene::load_organ(organ).surface;
 }
 
-double mean_edge(const geometry::TriangleSurface& surface) {
-  const auto edges = geometry::edges_of(surface.triangles);
-  double sum = 0;
-  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
-  return sum / static_cast<double>(edges.size());
-}
-
 /// 150, 550 or 2,000 nodes; a quadratic mesh a quarter of them as corners.
 geometry::OrganShape organ_shape(const Setting& setting, const scene::Organ& organ) {
   std::size_t nodes = kNodes[static_cast<std::size_t>(setting.level)];
   if (scene::is_quadratic(setting.model)) nodes = nodes / 4 + 2;
   const auto surface = surface_of(organ, nodes);
   if (!scene::is_solid(setting.model)) return geometry::OrganShape(surface);
-  return shape_for(setting,
-                   geometry::shape_of(geometry::fill_surface(surface, mean_edge(surface))));
+  return shape_for(setting, geometry::shape_of(geometry::fill_surface(
+                                surface, geometry::mean_edge_length(surface))));
 }
 
 Measurement press_organ(const Place& press, const Setting& setting, const Source& source,
@@ -118,7 +111,7 @@ Measurement press_at_rest(const Place& place, int level, const Source& source,
   const Vec3 touched(place.x, front_of(coarse, place.x, place.z), place.z);
   const auto surface = refine_around(coarse, touched, kFinest[at], kGrowth[at]);
   const elements::MixedSolid solid(
-      elements::make_quadratic(geometry::fill_surface(surface, mean_edge(coarse))),
+      elements::make_quadratic(geometry::fill_surface(surface, geometry::mean_edge_length(coarse))),
       elements::NeoHookean::from_engineering(kYoungsModulus, kPoissonRatio), kDensity);
   std::vector<char> held;
   for (const Vec3& node : solid.mesh().nodes) {

@@ -16,14 +16,6 @@ std::vector<geometry::OrganShape> shapes_in_world(const RandomScene& scene,
   return shapes;
 }
 
-std::vector<std::vector<geometry::Triangle>> triangles_of(
-    const std::vector<geometry::OrganShape>& shapes) {
-  std::vector<std::vector<geometry::Triangle>> triangles;
-  triangles.reserve(shapes.size());
-  for (const auto& shape : shapes) triangles.push_back(shape.surface.triangles);
-  return triangles;
-}
-
 std::vector<collision::ProbeGeometry> probe_geometry(const RandomScene& scene,
                                                      const ShapeStore& store) {
   std::vector<collision::ProbeGeometry> geometry;

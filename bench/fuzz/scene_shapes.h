@@ -11,9 +11,6 @@ namespace palpate::fuzz {
 std::vector<geometry::OrganShape> shapes_in_world(const RandomScene& scene,
                                                   const ShapeStore& store);
 
-std::vector<std::vector<geometry::Triangle>> triangles_of(
-    const std::vector<geometry::OrganShape>& shapes);
-
 /// One per probe.
 std::vector<collision::ProbeGeometry> probe_geometry(const RandomScene& scene,
                                                      const ShapeStore& store);

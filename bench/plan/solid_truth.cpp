@@ -37,13 +37,6 @@ Vec3 nearest_point(const geometry::TriangleSurface& surface, const Vec3& to) {
   return nearest;
 }
 
-double mean_edge(const geometry::TriangleSurface& surface) {
-  const auto edges = geometry::edges_of(surface.triangles);
-  double sum = 0;
-  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
-  return sum / static_cast<double>(edges.size());
-}
-
 }  // namespace
 
 geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duration, double edge) {
@@ -64,7 +57,7 @@ geometry::OrganShape solid_truth_shape(const scene::Scene& scene, double duratio
       last = near;
     }
   }
-  return geometry::shape_of(geometry::fill_surface(surface, mean_edge(coarse)));
+  return geometry::shape_of(geometry::fill_surface(surface, geometry::mean_edge_length(coarse)));
 }
 
 }  // namespace palpate::plan

@@ -54,9 +54,10 @@ void apply_transport(const std::vector<std::string>& interfaces, dds::DomainPart
   discovery.initial_announcements.period = milliseconds(50);
   discovery.leaseDuration_announcementperiod = milliseconds(250);
   // Every remote participant is checked once per lease. A check that meets one just leaving aborts
-  // the process (2.9.1: assertion in PDP::check_remote_participant_liveliness): so seldom. Nobody
-  // waits for the lease: a silent process is told by the age of its samples.
-  discovery.leaseDuration = {120, 0};
+  // the process (2.9.1: assertion in PDP::check_remote_participant_liveliness; leases of 3 ms show
+  // it in seconds): so not while a session lasts. Nobody waits for the lease: a silent process is
+  // told by the age of its samples.
+  discovery.leaseDuration = {86'400, 0};
 }
 
 void apply_profile(Delivery delivery, dds::DataWriterQos& qos) {

@@ -17,7 +17,7 @@ namespace palpate::bus {
 /// Keys (organs, probes, modules) a topic may carry at a time.
 inline constexpr int kMaxKeys = 256;
 
-/// UDP on these interfaces only, no shared memory; quick discovery, 120 s lease.
+/// UDP on these interfaces only, no shared memory; quick discovery, a lease of a day.
 void apply_transport(const std::vector<std::string>& interfaces,
                      eprosima::fastdds::dds::DomainParticipantQos& qos);
 

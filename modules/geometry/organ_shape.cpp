@@ -50,6 +50,13 @@ void check_boundary(const TriangleSurface& surface) {
 
 }  // namespace
 
+std::vector<std::vector<Triangle>> triangles_of(const std::vector<OrganShape>& shapes) {
+  std::vector<std::vector<Triangle>> triangles;
+  triangles.reserve(shapes.size());
+  for (const auto& shape : shapes) triangles.push_back(shape.surface.triangles);
+  return triangles;
+}
+
 OrganShape shape_of(const TetMesh& mesh) {
   const auto boundary = boundary_triangles(mesh);
   std::vector<std::uint32_t> number(mesh.nodes.size(), kNone);

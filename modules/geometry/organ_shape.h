@@ -25,6 +25,9 @@ struct OrganShape {
   }
 };
 
+/// The surfaces' triangles, shape by shape.
+std::vector<std::vector<Triangle>> triangles_of(const std::vector<OrganShape>& shapes);
+
 /// Renumbers the mesh: nodes of its boundary first, in their order, then the others in theirs.
 /// @throws InputError if its boundary is not one closed manifold surface
 OrganShape shape_of(const TetMesh& mesh);

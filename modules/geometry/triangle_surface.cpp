@@ -101,4 +101,11 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> tri
   return edges;
 }
 
+double mean_edge_length(const TriangleSurface& surface) {
+  const auto edges = edges_of(surface.triangles);
+  double sum = 0;
+  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
+  return sum / static_cast<double>(edges.size());
+}
+
 }  // namespace palpate::geometry

@@ -46,4 +46,7 @@ Vec3 dominant_axis(std::span<const Vec3> nodes);
 /// Undirected edges, each once, a < b, sorted.
 std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> triangles);
 
+/// Mean length of the edges [m]. @param surface  with triangles
+double mean_edge_length(const TriangleSurface& surface);
+
 }  // namespace palpate::geometry

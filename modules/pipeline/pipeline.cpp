@@ -35,14 +35,6 @@ struct ProbeLoop {
   HapticForce force;
 };
 
-std::vector<std::vector<geometry::Triangle>> triangles_of(
-    const std::vector<geometry::OrganShape>& shapes) {
-  std::vector<std::vector<geometry::Triangle>> triangles;
-  triangles.reserve(shapes.size());
-  for (const auto& shape : shapes) triangles.push_back(shape.surface.triangles);
-  return triangles;
-}
-
 std::vector<collision::ProbeGeometry> probe_geometry(
     const scene::Scene& scene, std::vector<geometry::TriangleSurface> meshes) {
   std::vector<collision::ProbeGeometry> geometry;

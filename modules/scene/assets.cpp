@@ -37,17 +37,11 @@ geometry::OrganShape load_tetrahedra(const Mesh& mesh, const std::string& owner)
   }
 }
 
-double mean_edge(const geometry::TriangleSurface& surface) {
-  const auto edges = geometry::edges_of(surface.triangles);
-  double sum = 0;
-  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
-  return sum / static_cast<double>(edges.size());
-}
-
 geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Solid& solid,
                             const std::string& owner) {
   try {
-    const double size = solid.element_size > 0 ? solid.element_size : mean_edge(surface);
+    const double size =
+        solid.element_size > 0 ? solid.element_size : geometry::mean_edge_length(surface);
     return geometry::shape_of(geometry::fill_surface(surface, size));
   } catch (const InputError& error) {
     throw InputError(owner + ": " + error.what());

@@ -81,7 +81,7 @@ TEST_CASE("qos: a participant uses UDP on loopback only, and finds others quickl
   CHECK(udp->sendBufferSize == 4u << 20);
   const auto& discovery = qos.wire_protocol().builtin.discovery_config;
   CHECK(discovery.initial_announcements.count == 20);
-  CHECK(discovery.leaseDuration.seconds == 120);
+  CHECK(discovery.leaseDuration.seconds == 86'400);
 }
 
 TEST_CASE("qos: the session is the partition of both publisher and subscriber", "[bus]") {

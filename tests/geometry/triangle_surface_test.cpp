@@ -125,6 +125,13 @@ TEST_CASE("surface area: exact for a box, close below 4πr² for a ball") {
   CHECK(area == Approx(4 * std::numbers::pi).epsilon(0.0025));
 }
 
+TEST_CASE("mean edge length: each edge counts once") {
+  // Oracle: a unit cube of twelve triangles has twelve edges and six diagonals.
+  const TriangleSurface cube = make_box(Vec3(1, 1, 1));
+  REQUIRE(cube.triangles.size() == 12);
+  CHECK(mean_edge_length(cube) == Approx((12 + 6 * std::sqrt(2.0)) / 18));
+}
+
 TEST_CASE("area vector: half the cross product, along the outward normal") {
   // Oracle: analytic, a right triangle with legs 2 and 3 in the x–y plane.
   const std::vector<Vec3> nodes{{1, 1, 5}, {3, 1, 5}, {1, 4, 5}};
