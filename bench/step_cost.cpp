@@ -137,9 +137,11 @@ Traffic traffic_of(const deformation::OrganModel& model) {
   const std::size_t rows = view.slice_count * deformation::kernel::kLanes;
   const std::size_t half_springs = (last.first_slot + last.slots) * deformation::kernel::kLanes;
   const std::size_t coordinates = 3 * model.node_count();
-  // neighbour and rest length (half a number each); inner spring (two), ring (three), masses
+  const auto& fans = view.cover.fans[view.first_fans[view.chunk_count] - 1];
+  const std::size_t fan_nodes = (fans.first_slot + fans.slots) * deformation::kernel::kDoubleLanes;
+  // neighbour and rest length (half a number each); fan node (half); inner spring (two), masses
   // (three); x and v; then x, v⁺
-  return {half_springs + rows * 8 + 2 * coordinates, 2 * coordinates};
+  return {half_springs + fan_nodes / 2 + rows * 5 + 2 * coordinates, 2 * coordinates};
 }
 
 Variant streaming_variant(const Traffic& traffic) {

@@ -17,8 +17,8 @@ const kernel::Functions& functions_of(InstructionSet set) {
   return kernel::portable_functions();
 }
 
-void repeat(const Vec3& from, double (&to)[3 * kernel::kRingLanes]) {
-  for (std::size_t i = 0; i < 3 * kernel::kRingLanes; ++i) to[i] = from[static_cast<int>(i % 3)];
+void repeat(const Vec3& from, double (&to)[3 * kernel::kDoubleLanes]) {
+  for (std::size_t i = 0; i < 3 * kernel::kDoubleLanes; ++i) to[i] = from[static_cast<int>(i % 3)];
 }
 
 const double* coordinates(const std::vector<Vec3>& nodes) {
@@ -155,7 +155,7 @@ void SpringKernel::sum_chunks(FreeStep& out) const {
     total.denominator += part.denominator;
     total.volume_velocity += part.volume_velocity;
   }
-  out.volume.volume = total.volume / 3;
+  out.volume.volume = total.volume;
   out.volume.denominator = total.denominator;
   out.volume_velocity = total.volume_velocity;
 }

@@ -2,10 +2,10 @@
 //
 // The plain code is spring_forces.h and volume_constraint.h. Each node gathers its springs from its
 // neighbours in float, sixteen nodes side by side (spring_kernel_arrays.h): forces agree with the
-// plain ones to some 1e-7 of stiffness times position, both ends of a spring to the bit. State,
-// volume and sums are double; the volume gradient needs but a cross product per neighbour in the
-// one-ring: with d_j = x_j − x_i,
-//   g_i = ∂V/∂x_i = (1/6) Σ_ring d_j × d_j+1        V = ⅓ Σ (x_i − x₀)·g_i
+// plain ones to some 1e-7 of stiffness times position, both ends of a spring to the bit. The volume
+// gradient needs but a cross product more per neighbour in the one-ring, with d_j = x_j − x_i
+//   g_i = ∂V/∂x_i = (1/6) Σ_ring d_j × d_j+1
+// and is as exact as the forces. State, V itself and all sums are double.
 // Any number of threads gives the same bits, and so do AVX2 and AVX-512. The portable code, for
 // CPUs that do not fuse multiply and add, rounds its products and differs in the last digits.
 // docs/decisions/0005-spring-kernel.md says why it looks as it does.
@@ -46,7 +46,7 @@ class SpringKernel {
   void free_step(double h, const OrganState& state, FreeStep& out);
 
   /// Of such a step the volume alone: V, g and gᵀM⁻¹g at other positions, and g·v̂ with the v̂ in
-  /// `out`  (node_count). Zeros if the model keeps no volume.
+  /// `out`  (node_count), all in double. Zeros if the model keeps no volume.
   void evaluate_volume(const std::vector<Vec3>& positions, FreeStep& out);
 
   /// v⁺ = v̂ − M⁻¹g σ and x⁺ = x + h v⁺, taking v̂ out of `step`.

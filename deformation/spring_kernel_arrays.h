@@ -8,9 +8,11 @@
 // neighbour of all its rows side by side. Shorter rows are filled up with the node itself: a spring
 // without length pulls at nothing. The inner spring of a node is in arrays of its own.
 //
-// Rings: slices of kRingLanes rows, the node itself in the first slot, then its structural
-// neighbours in the order of the one-ring (counter-clockwise from outside). Shorter rings are
-// filled up with their first neighbour, so that they close.
+// Structural neighbours stand in the order of the one-ring (counter-clockwise from outside).
+//
+// Fans: runs of triangles around a node, the node itself in the first slot, then the run's nodes in
+// order, the first again where it closes. Eight stand side by side; shorter ones repeat their last
+// node, which adds triangles without area.
 //
 // Monakov, Lokhmotov & Avetisyan, "Automatically tuning sparse matrix-vector multiplication for GPU
 // architectures", HiPEAC 2010 (sliced ELLPACK).
@@ -24,7 +26,7 @@ namespace palpate::deformation::kernel {
 /// Rows of a slice, floats in the widest register. The same for every instruction set, so that all
 /// sum in the same order.
 inline constexpr std::size_t kLanes = 16;
-inline constexpr std::size_t kRingLanes = 8;  ///< the same for doubles
+inline constexpr std::size_t kDoubleLanes = 8;  ///< the same for doubles
 
 /// A packed node: x y z 0 relative to an origin [m], then another vector, x y z 0.
 inline constexpr std::size_t kNodeFloats = 8;
@@ -40,6 +42,7 @@ struct Slice {
   std::size_t first_slot = 0;
   std::uint32_t structural_slots = 0;
   std::uint32_t slots = 0;                       ///< structural and bending slots
+  std::uint32_t shortest_ring = 0;               ///< structural slots no row fills up
   std::uint32_t first_link = 0, link_count = 0;  ///< virtual nodes its inner springs go to
 };
 
@@ -49,8 +52,15 @@ struct Link {
   float weights[kLanes] = {};  ///< 1 for its rows, 0 for others
 };
 
-struct RingSlice {
-  std::uint32_t first_slot = 0, slots = 0;  ///< the node itself included
+/// Fans side by side.
+struct Fans {
+  std::uint32_t first_slot = 0;
+  std::uint32_t slots = 0;  ///< the center included; even
+};
+
+struct FanTable {
+  const Fans* fans = nullptr;
+  const std::uint32_t* nodes = nullptr;  ///< first coordinates  (slots × kDoubleLanes)
 };
 
 /// Constant per organ. Rows are padded to a multiple of kLanes: row_count = kLanes · slice_count.
@@ -61,8 +71,9 @@ struct Layout {
   const std::uint32_t* neighbours = nullptr;  ///< first floats of packed nodes  (slots × kLanes)
   const float* rest_lengths = nullptr;        ///< l₀ [m]  (slots × kLanes)
   const std::uint32_t* row_nodes = nullptr;   ///< first float; the last node again in padding
-  const RingSlice* ring_slices = nullptr;
-  const std::uint32_t* ring_nodes = nullptr;  ///< first coordinates  (ring slots × kRingLanes)
+  FanTable rings;                             ///< the fan of each row, closed
+  FanTable cover;                             ///< fans that hold each triangle once
+  const std::uint32_t* first_fans = nullptr;  ///< of each chunk's, and the end  (chunk_count + 1)
   const double* inverse_masses = nullptr;     ///< each node's three times [1/kg], 0 in padding
   // Springs of one family are alike but for their lengths. Damping as a time τ = c/k [s].
   float structural_stiffness = 0, bending_stiffness = 0;        ///< k [N/m]
@@ -77,7 +88,7 @@ struct Layout {
 
 /// Sums over the rows of a chunk.
 struct ChunkSums {
-  double volume = 0;           ///< Σ (x − origin)·g, that is 3 V [m³]
+  double volume = 0;           ///< V of the chunk's fans [m³]
   double denominator = 0;      ///< gᵀM⁻¹g [m⁴/kg]
   double volume_velocity = 0;  ///< g·v̂ [m³/s]
 };
@@ -85,15 +96,15 @@ struct ChunkSums {
 /// One step's input and output. Nodes are three doubles each, one after the other, surface nodes
 /// first. Positions can be read 8 bytes beyond the last surface node.
 struct Step {
-  double h = 0;                         ///< [s]
-  double gravity[3 * kRingLanes] = {};  ///< of the coordinates of a slice of rings [m/s²]
-  double drag = 0;                      ///< [1/s]
-  double origin[3 * kRingLanes] = {};   ///< the same; the volume is taken about it [m]
-  const double* positions = nullptr;    ///< [m]
-  const double* velocities = nullptr;   ///< [m/s]
-  const float* nodes = nullptr;         ///< positions and velocities, packed
-  double* new_velocities = nullptr;     ///< v̂ of the surface nodes [m/s]
-  double* gradient = nullptr;           ///< g [m²]  (surface_node_count)
+  double h = 0;                           ///< [s]
+  double gravity[3 * kDoubleLanes] = {};  ///< of the coordinates of eight nodes [m/s²]
+  double drag = 0;                        ///< [1/s]
+  double origin[3 * kDoubleLanes] = {};   ///< the volume is taken about it [m]
+  const double* positions = nullptr;      ///< [m]
+  const double* velocities = nullptr;     ///< [m/s]
+  const float* nodes = nullptr;           ///< positions and velocities, packed
+  double* new_velocities = nullptr;       ///< v̂ of the surface nodes [m/s]
+  double* gradient = nullptr;             ///< g [m²]  (surface_node_count)
   float* virtual_forces = nullptr;  ///< of the chunk's inner springs [N]  (chunk × virtual × 3 ×
                                     ///< kLanes)
   ChunkSums* sums = nullptr;        ///< (chunk_count)

@@ -23,6 +23,9 @@ struct Avx2Floats {
   static Pack of_bits(const Bits& bits) { return reinterpret_cast<Pack>(bits); }
 
   static Pack absolute(const Pack& x) { return of_bits(bits(x) & 0x7fffffffu); }
+  static Pack larger(const Pack& a, const Pack& b, const Pack& yes, const Pack& no) {
+    return _mm256_blendv_ps(no, yes, _mm256_cmp_ps(a, b, _CMP_GT_OQ));
+  }
 
   /// Two nodes, the second above the first.
   static Pack pair(const float* base, std::uint32_t low, std::uint32_t high) {

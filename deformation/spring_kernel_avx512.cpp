@@ -26,6 +26,9 @@ struct Avx512Floats {
   static Pack of_bits(const Bits& bits) { return reinterpret_cast<Pack>(bits); }
 
   static Pack absolute(const Pack& x) { return of_bits(bits(x) & 0x7fffffffu); }
+  static Pack larger(const Pack& a, const Pack& b, const Pack& yes, const Pack& no) {
+    return _mm512_mask_blend_ps(_mm512_cmp_ps_mask(a, b, _CMP_GT_OQ), no, yes);
+  }
 
   /// x of four nodes in each quarter, then y, then z, from x y z 0 of one in each.
   static Vector3<Avx512Floats> transposed(const Pack& a, const Pack& b, const Pack& c,

@@ -11,6 +11,7 @@
 //   load_pairs(base, offsets)   both vectors of kWidth packed nodes
 //   bits(pack), of_bits(bits)   as unsigned integers
 //   absolute(Pack)              elementwise
+//   larger(a, b, yes, no)       yes where a > b, else no
 //   store_nodes(base, nodes)    of kWidth consecutive nodes of four floats, the fourth 0
 //   pack_node(from, origin, to) one vector of a packed node
 // and Doubles
@@ -57,7 +58,12 @@ inline Vector3<Set> no_vectors() {
   return {none, none, none};
 }
 
-/// Springs, in float.
+/// A vector of each row of a slice.
+struct Rows {
+  float x[kLanes], y[kLanes], z[kLanes];
+};
+
+/// Springs and the volume's gradient, in float.
 template <class Set>
 struct Springs {
   using Pack = typename Set::Pack;
@@ -80,18 +86,50 @@ struct Springs {
     return spring;
   }
 
-  /// Σ pull d of the slots [from, to), pull = tension over length and stiffness: with l = |d|,
-  /// 1 − l₀/l + τ (w·d)/l².
-  static void add_slots(const Layout& layout, const Step& step, std::size_t from, std::size_t to,
-                        std::size_t lane, float damping_time, const NodePairs<Set>& here,
-                        Nodes& sum) {
-    const Pack time = Set::broadcast(damping_time), one = Set::broadcast(1);
-    for (std::size_t slot = from; slot < to; ++slot) {
-      const std::size_t at = slot * kLanes + lane;
-      const Spring spring = spring_to(step.nodes, layout.neighbours + at, here);
-      const Pack r = inverse_root<Set>(spring.square);
-      const Pack shortfall = Set::fma(time * spring.rate, r, -Set::load(layout.rest_lengths + at));
-      add_scaled(sum, Set::fma(shortfall, r, one), spring.d);
+  /// Adds pull d of the springs [at, at + kWidth), pull = tension over length and stiffness: with
+  /// l = |d|, 1 − l₀/l + τ (w·d)/l². @return d
+  static Nodes add_spring(const Layout& layout, const Step& step, std::size_t at, const Pack& time,
+                          const NodePairs<Set>& here, Nodes& sum) {
+    const Spring spring = spring_to(step.nodes, layout.neighbours + at, here);
+    const Pack r = inverse_root<Set>(spring.square);
+    const Pack shortfall = Set::fma(time * spring.rate, r, -Set::load(layout.rest_lengths + at));
+    add_scaled(sum, Set::fma(shortfall, r, Set::broadcast(1)), spring.d);
+    return spring.d;
+  }
+
+  /// d, where a row is shorter the one before: its ring goes on only behind the padding.
+  static Nodes unpadded(const Layout& layout, std::size_t at, const Nodes& d, const Nodes& before) {
+    const Pack length = Set::load(layout.rest_lengths + at), none = Set::broadcast(kPaddingLength);
+    return {Set::larger(length, none, d.x, before.x), Set::larger(length, none, d.y, before.y),
+            Set::larger(length, none, d.z, before.z)};
+  }
+
+  /// Σ pull d of the structural springs, and the ring Σ d_j × d_j+1 of the same neighbours.
+  template <bool kVolume>
+  static void add_structural(const Layout& layout, const Step& step, const Slice& slice,
+                             std::size_t lane, const NodePairs<Set>& here, Nodes& sum,
+                             Nodes& ring) {
+    const Pack time = Set::broadcast(layout.structural_damping_time);
+    const std::size_t start = slice.first_slot * kLanes + lane;
+    const Nodes first = add_spring(layout, step, start, time, here, sum);
+    Nodes before = first;
+    for (std::size_t slot = 1; slot < slice.structural_slots; ++slot) {
+      const std::size_t at = start + slot * kLanes;
+      Nodes d = add_spring(layout, step, at, time, here, sum);
+      if constexpr (kVolume) {
+        if (slot >= slice.shortest_ring) d = unpadded(layout, at, d, before);
+        add_cross(ring, before, d);
+        before = d;
+      }
+    }
+    if constexpr (kVolume) add_cross(ring, before, first);
+  }
+
+  static void add_bending(const Layout& layout, const Step& step, const Slice& slice,
+                          std::size_t lane, const NodePairs<Set>& here, Nodes& sum) {
+    const Pack time = Set::broadcast(layout.bending_damping_time);
+    for (std::size_t slot = slice.structural_slots; slot < slice.slots; ++slot) {
+      add_spring(layout, step, (slice.first_slot + slot) * kLanes + lane, time, here, sum);
     }
   }
 
@@ -117,34 +155,38 @@ struct Springs {
     return force;
   }
 
-  /// Forces on kWidth rows, into lanes of x, y and z.
+  static void store(const Nodes& nodes, std::size_t lane, Rows& to) {
+    Set::store(to.x + lane, nodes.x);
+    Set::store(to.y + lane, nodes.y);
+    Set::store(to.z + lane, nodes.z);
+  }
+
+  /// Forces on kWidth rows and 6 g.
+  template <bool kVolume>
   static void add_part(const Layout& layout, const Step& step, std::size_t index, std::size_t lane,
-                       float* virtual_forces, float (&forces)[3][kLanes]) {
+                       float* virtual_forces, Rows& forces, Rows& rings) {
     const Slice& slice = layout.slices[index];
-    const std::size_t first = index * kLanes + lane,
-                      bending = slice.first_slot + slice.structural_slots;
+    const std::size_t first = index * kLanes + lane;
     const NodePairs<Set> here = Set::load_pairs(step.nodes, layout.row_nodes + first);
-    Nodes force = no_vectors<Set>(), sum = force;
+    Nodes force = no_vectors<Set>(), sum = force, ring = force;
     if (layout.virtual_node_count > 0) {
       force = inner_force(layout, step, slice, first, lane, here, virtual_forces);
     }
-    add_slots(layout, step, slice.first_slot, bending, lane, layout.structural_damping_time, here,
-              sum);
+    add_structural<kVolume>(layout, step, slice, lane, here, sum, ring);
     add_scaled(force, Set::broadcast(layout.structural_stiffness), sum);
+    if constexpr (kVolume) store(ring, lane, rings);
     sum = no_vectors<Set>();
-    add_slots(layout, step, bending, slice.first_slot + slice.slots, lane,
-              layout.bending_damping_time, here, sum);
+    add_bending(layout, step, slice, lane, here, sum);
     add_scaled(force, Set::broadcast(layout.bending_stiffness), sum);
-    Set::store(forces[0] + lane, force.x);
-    Set::store(forces[1] + lane, force.y);
-    Set::store(forces[2] + lane, force.z);
+    store(force, lane, forces);
   }
 
-  /// Forces on the rows of a slice [N].
+  /// Forces on the rows of a slice [N] and, with volume, 6 g [m²].
+  template <bool kVolume>
   static void add_slice(const Layout& layout, const Step& step, std::size_t index,
-                        float* virtual_forces, float (&forces)[3][kLanes]) {
+                        float* virtual_forces, Rows& forces, Rows& rings) {
     for (std::size_t lane = 0; lane < kLanes; lane += kWidth) {
-      add_part(layout, step, index, lane, virtual_forces, forces);
+      add_part<kVolume>(layout, step, index, lane, virtual_forces, forces, rings);
     }
   }
 
@@ -194,33 +236,49 @@ struct Springs {
   }
 };
 
-/// Volume, in double, and what joins both.
+/// The volume itself, in double, and what joins both.
 template <class Floats, class Doubles>
 struct Kernel {
   using Nodes = Vector3<Doubles>;
 
-  /// 6 g of kWidth rows: Σ d_j × d_j+1 around the ring, two at a time,
-  /// d_1 × d_2 + d_2 × d_3 = d_2 × (x_3 − x_1).
-  static Nodes ring_sum(const Layout& layout, const Step& step, const RingSlice& slice,
-                        std::size_t lane) {
-    const auto* const slots = layout.ring_nodes + slice.first_slot * kRingLanes + lane;
+  /// Σ d_j × d_j+1 of kWidth fans, two at a time: d_1 × d_2 + d_2 × d_3 = d_2 × (x_3 − x_1).
+  static Nodes fan_sum(const Step& step, const FanTable& table, std::size_t index, std::size_t lane,
+                       const Nodes& center) {
+    const Fans& fans = table.fans[index];
+    const std::uint32_t* const nodes = table.nodes + fans.first_slot * kDoubleLanes + lane;
     const auto load = [&](std::size_t slot) {
-      return Doubles::load_nodes(step.positions, slots + slot * kRingLanes);
+      return Doubles::load_nodes(step.positions, nodes + slot * kDoubleLanes);
     };
-    const Nodes here = load(0), first = load(1);
-    Nodes sum = no_vectors<Doubles>(), before = first;
-    std::size_t slot = 2;
-    for (; slot + 1 < slice.slots; slot += 2) {
-      const Nodes d = load(slot) - here, after = load(slot + 1);
+    Nodes sum = no_vectors<Doubles>(), before = load(1);
+    for (std::size_t slot = 2; slot < fans.slots; slot += 2) {
+      const Nodes d = load(slot) - center, after = load(slot + 1);
       add_cross(sum, d, after - before);
       before = after;
     }
-    if (slot < slice.slots) {
-      add_cross(sum, load(slot) - here, first - before);
-    } else {
-      add_cross(sum, before - here, first - here);
-    }
     return sum;
+  }
+
+  static Nodes centers(const Step& step, const FanTable& table, std::size_t index,
+                       std::size_t lane) {
+    const std::size_t first = table.fans[index].first_slot * kDoubleLanes + lane;
+    return Doubles::load_nodes(step.positions, table.nodes + first);
+  }
+
+  /// A chunk's share of V: a fan and the origin enclose (x − origin)·Σ d_j × d_j+1 / 6.
+  static double chunk_volume(const Layout& layout, const Step& step, std::size_t chunk) {
+    const Nodes origin{Doubles::broadcast(step.origin[0]), Doubles::broadcast(step.origin[1]),
+                       Doubles::broadcast(step.origin[2])};
+    double sixfold[kDoubleLanes], total = 0;
+    for (std::size_t lane = 0; lane < kDoubleLanes; lane += Doubles::kWidth) {
+      typename Doubles::Pack sum = Doubles::broadcast(0);
+      for (std::uint32_t k = layout.first_fans[chunk]; k < layout.first_fans[chunk + 1]; ++k) {
+        const Nodes center = centers(step, layout.cover, k, lane);
+        sum = sum + dot(center - origin, fan_sum(step, layout.cover, k, lane, center));
+      }
+      Doubles::store(sixfold + lane, sum);
+    }
+    for (const double part : sixfold) total += part;
+    return total / 6;
   }
 
   /// Rows from `first` on as far as there are nodes.
@@ -238,48 +296,56 @@ struct Kernel {
     }
   }
 
-  /// 6 g of a slice, to where g will be.
+  /// A slice's floats to `base`, three doubles a row.
+  static void store_slice(const Layout& layout, std::size_t index, const Rows& rows, double* base) {
+    for (std::size_t lane = 0; lane < kLanes; lane += Doubles::kWidth) {
+      store_rows(layout, index * kLanes + lane, base,
+                 {Doubles::widen(rows.x + lane), Doubles::widen(rows.y + lane),
+                  Doubles::widen(rows.z + lane)});
+    }
+  }
+
+  /// 6 g of a slice, in double, to where g will be.
   static void ring_slice(const Layout& layout, const Step& step, std::size_t index) {
     for (std::size_t lane = 0; lane < kLanes; lane += Doubles::kWidth) {
-      const std::size_t first = index * kLanes + lane;
-      const RingSlice& ring = layout.ring_slices[first / kRingLanes];
-      store_rows(layout, first, step.gradient, ring_sum(layout, step, ring, first % kRingLanes));
+      const std::size_t first = index * kLanes + lane, rings = first / kDoubleLanes;
+      const Nodes center = centers(step, layout.rings, rings, first % kDoubleLanes);
+      store_rows(layout, first, step.gradient,
+                 fan_sum(step, layout.rings, rings, first % kDoubleLanes, center));
     }
   }
 
-  /// Forces and 6 g of a slice, to where v̂ and g will be.
-  template <bool kVolume>
-  static void step_slice(const Layout& layout, const Step& step, std::size_t index,
-                         float* virtual_forces) {
-    float forces[3][kLanes];
-    Springs<Floats>::add_slice(layout, step, index, virtual_forces, forces);
-    for (std::size_t lane = 0; lane < kLanes; lane += Doubles::kWidth) {
-      const std::size_t first = index * kLanes + lane;
-      store_rows(layout, first, step.new_velocities,
-                 {Doubles::widen(forces[0] + lane), Doubles::widen(forces[1] + lane),
-                  Doubles::widen(forces[2] + lane)});
-    }
-    if constexpr (kVolume) ring_slice(layout, step, index);
+  /// Where a chunk's coordinates end.
+  static std::size_t end_of(const Layout& layout, const SliceRange& slices) {
+    return 3 * (slices.end < layout.slice_count ? kLanes * slices.end : layout.surface_node_count);
   }
 
+  /// Forces and 6 g of the chunk's slices, to where v̂ and g will be.
   template <bool kVolume>
   static void step_chunk(const Layout& layout, const Step& step, std::size_t chunk) {
     const std::size_t stride = 3 * kLanes * layout.virtual_node_count;
     float* const virtual_forces = step.virtual_forces + stride * chunk;
     for (std::size_t i = 0; i < stride; ++i) virtual_forces[i] = 0;
-    const auto [begin, end] = slices_of(layout, chunk);
-    for (std::size_t index = begin; index < end; ++index) {
-      step_slice<kVolume>(layout, step, index, virtual_forces);
+    const SliceRange slices = slices_of(layout, chunk);
+    for (std::size_t index = slices.begin; index < slices.end; ++index) {
+      Rows forces, rings;
+      Springs<Floats>::template add_slice<kVolume>(layout, step, index, virtual_forces, forces,
+                                                   rings);
+      store_slice(layout, index, forces, step.new_velocities);
+      if constexpr (kVolume) store_slice(layout, index, rings, step.gradient);
     }
-    const std::size_t last = end < layout.slice_count ? kLanes * end : layout.surface_node_count;
-    step.sums[chunk] = finish_slices<kVolume>(layout, step, 3 * kLanes * begin, 3 * last);
+    step.sums[chunk] =
+        finish_slices<kVolume>(layout, step, 3 * kLanes * slices.begin, end_of(layout, slices));
+    if constexpr (kVolume) step.sums[chunk].volume = chunk_volume(layout, step, chunk);
   }
 
   static void volume_chunk(const Layout& layout, const Step& step, std::size_t chunk) {
-    const auto [begin, end] = slices_of(layout, chunk);
-    for (std::size_t index = begin; index < end; ++index) ring_slice(layout, step, index);
-    const std::size_t last = end < layout.slice_count ? kLanes * end : layout.surface_node_count;
-    step.sums[chunk] = finish_volume(layout, step, 3 * kLanes * begin, 3 * last);
+    const SliceRange slices = slices_of(layout, chunk);
+    for (std::size_t index = slices.begin; index < slices.end; ++index) {
+      ring_slice(layout, step, index);
+    }
+    step.sums[chunk] =
+        finish_volume(layout, step, 3 * kLanes * slices.begin, end_of(layout, slices));
   }
 
   static void pack(const Packing& packing, std::size_t first, std::size_t last) {

@@ -8,11 +8,10 @@
 namespace palpate::deformation::kernel {
 namespace {
 
-inline constexpr std::size_t kSliceCoordinates = 3 * kRingLanes;
+inline constexpr std::size_t kSliceCoordinates = 3 * kDoubleLanes;
 
-/// By coordinate of a slice of rings.
+/// By coordinate of eight nodes.
 struct CoordinateSums {
-  double volume[kSliceCoordinates] = {};
   double denominator[kSliceCoordinates] = {};
   double volume_velocity[kSliceCoordinates] = {};
 };
@@ -30,13 +29,10 @@ inline void finish_slice(const Layout& layout, const Step& step, std::size_t fir
                          std::size_t count, CoordinateSums& sums) {
   const double h = step.h, drag = step.drag;
   const double* __restrict gravity = step.gravity;
-  const double* __restrict origin = step.origin;
   const double* __restrict inverse_masses = layout.inverse_masses + first;
   const double* __restrict velocities = step.velocities + first;
-  const double* __restrict positions = step.positions + first;
   double* __restrict new_velocities = step.new_velocities + first;
   double* __restrict gradient = step.gradient + first;
-  double* __restrict volume = sums.volume;
   double* __restrict denominator = sums.denominator;
   double* __restrict volume_velocity = sums.volume_velocity;
 #pragma GCC ivdep
@@ -49,7 +45,6 @@ inline void finish_slice(const Layout& layout, const Step& step, std::size_t fir
     if constexpr (kVolume) {
       const double g = gradient[c] * (1.0 / 6);
       gradient[c] = g;
-      volume[c] += (positions[c] - origin[c]) * g;
       denominator[c] += g * g * inverse_mass;
       volume_velocity[c] += g * next;
     }
@@ -65,13 +60,14 @@ inline ChunkSums finish_slices(const Layout& layout, const Step& step, std::size
     finish_slice<kVolume>(layout, step, first, kSliceCoordinates, sums);
   }
   if (first < last) finish_slice<kVolume>(layout, step, first, last - first, sums);
-  return {sum(sums.volume), sum(sums.denominator), sum(sums.volume_velocity)};
+  return {0, sum(sums.denominator), sum(sums.volume_velocity)};
 }
 
-/// Where 6 g was: g, and what finish_slices() sums of the volume, with the velocities there are.
+/// Where 6 g was: g, and the chunk's sums with the velocities there are; V = ⅓ Σ (x − origin)·g.
 inline ChunkSums finish_volume(const Layout& layout, const Step& step, std::size_t first,
                                std::size_t last) {
   CoordinateSums sums;
+  double threefold[kSliceCoordinates] = {};
   for (; first < last; first += kSliceCoordinates) {
     const std::size_t count = last - first < kSliceCoordinates ? last - first : kSliceCoordinates;
     const double* __restrict origin = step.origin;
@@ -83,12 +79,12 @@ inline ChunkSums finish_volume(const Layout& layout, const Step& step, std::size
     for (std::size_t c = 0; c < count; ++c) {
       const double g = gradient[c] * (1.0 / 6);
       gradient[c] = g;
-      sums.volume[c] += (positions[c] - origin[c]) * g;
+      threefold[c] += (positions[c] - origin[c]) * g;
       sums.denominator[c] += g * g * inverse_masses[c];
       sums.volume_velocity[c] += g * velocities[c];
     }
   }
-  return {sum(sums.volume), sum(sums.denominator), sum(sums.volume_velocity)};
+  return {sum(threefold) / 3, sum(sums.denominator), sum(sums.volume_velocity)};
 }
 
 inline void move(const Move& move, std::size_t first, std::size_t last) {

@@ -1,6 +1,9 @@
 #include "deformation/spring_kernel_layout.h"
 
 #include <algorithm>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "modules/core/error.h"
 
@@ -60,6 +63,46 @@ std::vector<std::vector<std::uint32_t>> ordered_one_rings(
   return rings;
 }
 
+std::vector<Fan> fans_of(const std::vector<std::vector<std::uint32_t>>& rings) {
+  // Of each node, whether the triangle from its k-th neighbour to the next is still in no fan.
+  std::vector<std::vector<char>> left;
+  std::set<std::pair<std::ptrdiff_t, std::uint32_t>> order;  // −triangles left, node
+  for (std::uint32_t node = 0; node < rings.size(); ++node) {
+    left.emplace_back(rings[node].size(), 1);
+    order.emplace(-static_cast<std::ptrdiff_t>(rings[node].size()), node);
+  }
+  const auto take = [&](std::uint32_t node, std::uint32_t from) {
+    const auto count = std::count(left[node].begin(), left[node].end(), 1);
+    order.erase({-count, node});
+    const auto& ring = rings[node];
+    left[node][static_cast<std::size_t>(std::find(ring.begin(), ring.end(), from) - ring.begin())] =
+        0;
+    if (count > 1) order.emplace(1 - count, node);
+  };
+  std::vector<Fan> fans;
+  while (!order.empty()) {
+    const std::uint32_t center = order.begin()->second;
+    const auto& ring = rings[center];
+    // From a triangle that is taken on, or from anywhere if none is.
+    const auto start = static_cast<std::size_t>(
+        std::find(left[center].begin(), left[center].end(), 0) - left[center].begin());
+    bool open = false;
+    for (std::size_t step = 0; step < ring.size(); ++step) {
+      const std::size_t k = (start + step) % ring.size();
+      const std::uint32_t from = ring[k], to = ring[(k + 1) % ring.size()];
+      const bool here = left[center][k] != 0;
+      if (here && !open) fans.push_back({center, {from}});
+      open = here;
+      if (!here) continue;
+      fans.back().nodes.push_back(to);
+      take(center, from);
+      take(from, to);
+      take(to, center);
+    }
+  }
+  return fans;
+}
+
 SpringKernelLayout::Rows SpringKernelLayout::rows_of(const OrganModel& model, std::size_t first,
                                                      std::size_t count) {
   Rows rows(model.surface_node_count());
@@ -69,6 +112,20 @@ SpringKernelLayout::Rows SpringKernelLayout::rows_of(const OrganModel& model, st
     rows[spring.node_b].push_back({spring.node_a, spring.rest_length});
   }
   return rows;
+}
+
+void SpringKernelLayout::put_in_order(const std::vector<std::vector<std::uint32_t>>& rings,
+                                      Rows& rows) {
+  for (std::size_t node = 0; node < rows.size(); ++node) {
+    auto& row = rows[node];
+    PALPATE_DEMAND(row.size() == rings[node].size());
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const auto found = std::find_if(row.begin() + static_cast<std::ptrdiff_t>(k), row.end(),
+                                      [&](const Neighbour& n) { return n.node == rings[node][k]; });
+      PALPATE_DEMAND(found != row.end());
+      std::swap(row[k], *found);
+    }
+  }
 }
 
 SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
@@ -90,12 +147,17 @@ SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
   scalars_.bending_damping_time = static_cast<float>(bending.damping_time);
 
   add_rows(model);
-  const Rows first = rows_of(model, 0, network.structural_count);
+  Rows first = rows_of(model, 0, network.structural_count);
+  if (model.preserve_volume) {
+    const auto rings = ordered_one_rings(model.triangles, node_count);
+    put_in_order(rings, first);
+    add_rings(rings);
+    add_cover(rings);
+  }
   const Rows second = rows_of(model, network.structural_count, network.bending_count);
   for (std::size_t slice = 0; slice < scalars_.slice_count; ++slice) {
     add_slice(slice * kernel::kLanes, first, second);
   }
-  add_rings(ordered_one_rings(model.triangles, node_count));
   if (scalars_.virtual_node_count > 0) add_inner_springs(model);
 }
 
@@ -113,13 +175,15 @@ void SpringKernelLayout::add_slice(std::size_t first_row, const Rows& structural
   kernel::Slice slice;
   slice.first_slot = neighbours_.size() / kernel::kLanes;
   const std::size_t end = std::min(first_row + kernel::kLanes, scalars_.surface_node_count);
-  std::size_t first = 0, second = 0;
+  std::size_t first = 0, second = 0, shortest = structural[first_row].size();
   for (std::size_t row = first_row; row < end; ++row) {
     first = std::max(first, structural[row].size());
+    shortest = std::min(shortest, structural[row].size());
     second = std::max(second, bending[row].size());
   }
   slice.structural_slots = static_cast<std::uint32_t>(first);
   slice.slots = static_cast<std::uint32_t>(first + second);
+  slice.shortest_ring = static_cast<std::uint32_t>(shortest);
   slices_.push_back(slice);
   for (std::size_t slot = 0; slot < first + second; ++slot) {
     const Rows& rows = slot < first ? structural : bending;
@@ -133,27 +197,61 @@ void SpringKernelLayout::add_slice(std::size_t first_row, const Rows& structural
   }
 }
 
-void SpringKernelLayout::add_rings(const std::vector<std::vector<std::uint32_t>>& rings) {
-  const auto slices = scalars_.slice_count * (kernel::kLanes / kernel::kRingLanes);
-  for (std::size_t slice = 0; slice < slices; ++slice) {
-    const auto of_row = [&](std::size_t lane) {
-      return std::min(slice * kernel::kRingLanes + lane, rings.size() - 1);
-    };
-    std::size_t longest = 0;
-    for (std::size_t lane = 0; lane < kernel::kRingLanes; ++lane) {
-      longest = std::max(longest, rings[of_row(lane)].size());
-    }
-    ring_slices_.push_back({static_cast<std::uint32_t>(ring_nodes_.size() / kernel::kRingLanes),
-                            static_cast<std::uint32_t>(1 + longest)});
-    for (std::size_t slot = 0; slot <= longest; ++slot) {
-      for (std::size_t lane = 0; lane < kernel::kRingLanes; ++lane) {
-        const auto& ring = rings[of_row(lane)];
-        const std::size_t node =
-            slot == 0 ? of_row(lane) : ring[slot <= ring.size() ? slot - 1 : 0];
-        ring_nodes_.push_back(static_cast<std::uint32_t>(3 * node));
+void SpringKernelLayout::FanArrays::add(std::span<const Fan> some) {
+  std::size_t longest = 0;
+  for (const Fan& fan : some) longest = std::max(longest, fan.nodes.size());
+  // Triangles are taken in pairs.
+  const std::size_t slots = 1 + longest + (longest + 1) % 2;
+  fans.push_back({static_cast<std::uint32_t>(nodes.size() / kernel::kDoubleLanes),
+                  static_cast<std::uint32_t>(slots)});
+  for (std::size_t slot = 0; slot < slots; ++slot) {
+    for (std::size_t lane = 0; lane < kernel::kDoubleLanes; ++lane) {
+      std::uint32_t node = 0;  // lanes without a fan: a node and itself
+      if (lane < some.size()) {
+        const Fan& fan = some[lane];
+        node = slot == 0 ? fan.center : fan.nodes[std::min(slot, fan.nodes.size()) - 1];
       }
+      nodes.push_back(3 * node);
     }
   }
+}
+
+void SpringKernelLayout::add_rings(const std::vector<std::vector<std::uint32_t>>& rings) {
+  std::vector<Fan> fans;
+  for (const auto& ring : rings) {
+    fans.push_back({static_cast<std::uint32_t>(fans.size()), ring});
+    fans.back().nodes.push_back(ring.front());
+  }
+  // The last slice of rows may be half empty.
+  fans.resize(scalars_.slice_count * kernel::kLanes, fans.back());
+  for (std::size_t row = 0; row < fans.size(); row += kernel::kDoubleLanes) {
+    rings_.add(std::span(fans).subspan(row, kernel::kDoubleLanes));
+  }
+}
+
+void SpringKernelLayout::add_cover(const std::vector<std::vector<std::uint32_t>>& rings) {
+  auto fans = fans_of(rings);
+  const std::size_t rows_per_chunk = kernel::kLanes * scalars_.slices_per_chunk;
+  const auto chunk_of = [&](const Fan& fan) { return fan.center / rows_per_chunk; };
+  // Fans of a length side by side need no padding.
+  std::sort(fans.begin(), fans.end(), [&](const Fan& a, const Fan& b) {
+    return std::tuple(chunk_of(a), b.nodes.size(), a.center, a.nodes.front()) <
+           std::tuple(chunk_of(b), a.nodes.size(), b.center, b.nodes.front());
+  });
+  std::size_t next = 0;
+  for (std::size_t chunk = 0; chunk < scalars_.chunk_count; ++chunk) {
+    first_fans_.push_back(static_cast<std::uint32_t>(cover_.fans.size()));
+    while (next < fans.size() && chunk_of(fans[next]) == chunk) {
+      std::size_t end = next;
+      while (end < fans.size() && end < next + kernel::kDoubleLanes &&
+             chunk_of(fans[end]) == chunk) {
+        ++end;
+      }
+      cover_.add(std::span(fans).subspan(next, end - next));
+      next = end;
+    }
+  }
+  first_fans_.push_back(static_cast<std::uint32_t>(cover_.fans.size()));
 }
 
 void SpringKernelLayout::add_inner_springs(const OrganModel& model) {
@@ -198,8 +296,9 @@ kernel::Layout SpringKernelLayout::view() const {
   layout.neighbours = neighbours_.data();
   layout.rest_lengths = rest_lengths_.data();
   layout.row_nodes = row_nodes_.data();
-  layout.ring_slices = ring_slices_.data();
-  layout.ring_nodes = ring_nodes_.data();
+  layout.rings = rings_.view();
+  layout.cover = cover_.view();
+  layout.first_fans = first_fans_.data();
   layout.inverse_masses = inverse_masses_.data();
   layout.inner_nodes = inner_nodes_.data();
   layout.links = links_.data();

@@ -1,6 +1,7 @@
 // Builds the arrays of spring_kernel_arrays.h from an organ model.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "deformation/aligned_vector.h"
@@ -13,6 +14,16 @@ namespace palpate::deformation {
 /// @param triangles  closed, oriented, one fan per node
 std::vector<std::vector<std::uint32_t>> ordered_one_rings(
     const std::vector<geometry::Triangle>& triangles, std::size_t node_count);
+
+/// A run of triangles around a node: (center, nodes[i], nodes[i+1]), oriented.
+struct Fan {
+  std::uint32_t center = 0;
+  std::vector<std::uint32_t> nodes;
+};
+
+/// Every triangle in one fan, in few fans: a node with most triangles left comes first and takes
+/// them.
+std::vector<Fan> fans_of(const std::vector<std::vector<std::uint32_t>>& rings);
 
 class SpringKernelLayout {
  public:
@@ -27,20 +38,32 @@ class SpringKernelLayout {
     double rest_length = 0;
   };
   using Rows = std::vector<std::vector<Neighbour>>;
+  struct FanArrays {
+    std::vector<kernel::Fans> fans;
+    AlignedVector<std::uint32_t> nodes;
+
+    /// These side by side. @param some  1 … kernel::kDoubleLanes
+    void add(std::span<const Fan> some);
+    kernel::FanTable view() const { return {fans.data(), nodes.data()}; }
+  };
 
   /// Neighbours by springs [first, first + count), seen from both ends.
   static Rows rows_of(const OrganModel& model, std::size_t first, std::size_t count);
+  /// Each row's neighbours in the order of its ring.
+  static void put_in_order(const std::vector<std::vector<std::uint32_t>>& rings, Rows& rows);
   void add_rows(const OrganModel& model);
   void add_slice(std::size_t first_row, const Rows& structural, const Rows& bending);
   void add_rings(const std::vector<std::vector<std::uint32_t>>& rings);
+  void add_cover(const std::vector<std::vector<std::uint32_t>>& rings);
   void add_inner_springs(const OrganModel& model);
   void add_links(std::size_t slice);
 
   kernel::Layout scalars_;
   std::vector<kernel::Slice> slices_;
   std::vector<kernel::Link> links_;
-  std::vector<kernel::RingSlice> ring_slices_;
-  AlignedVector<std::uint32_t> neighbours_, row_nodes_, ring_nodes_, inner_nodes_;
+  FanArrays rings_, cover_;
+  std::vector<std::uint32_t> first_fans_;
+  AlignedVector<std::uint32_t> neighbours_, row_nodes_, inner_nodes_;
   AlignedVector<float> rest_lengths_;
   AlignedVector<double> inverse_masses_;
   AlignedVector<float> inner_rest_lengths_, inner_stiffnesses_, inner_dampings_;

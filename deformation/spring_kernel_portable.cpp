@@ -21,6 +21,9 @@ struct PortableFloats {
   static Pack of_bits(const Bits& bits) { return reinterpret_cast<Pack>(bits); }
 
   static Pack absolute(const Pack& x) { return of_bits(bits(x) & 0x7fffffffu); }
+  static Pack larger(const Pack& a, const Pack& b, const Pack& yes, const Pack& no) {
+    return a > b ? yes : no;
+  }
 
   static Vector3<PortableFloats> load_nodes(const float* base, const std::uint32_t* i) {
     const Pack a = load(base + i[0]), b = load(base + i[1]);
@@ -57,6 +60,10 @@ struct PortableDoubles {
   using Pack = double __attribute__((vector_size(16)));
 
   static Pack broadcast(double value) { return Pack{value, value}; }
+  static void store(double* to, const Pack& pack) {
+    to[0] = pack[0];
+    to[1] = pack[1];
+  }
   static Pack widen(const float* from) { return Pack{from[0], from[1]}; }
   static Pack fma(const Pack& a, const Pack& b, const Pack& c) { return a * b + c; }
   static Pack fnma(const Pack& a, const Pack& b, const Pack& c) { return c - a * b; }

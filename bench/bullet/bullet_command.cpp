@@ -84,12 +84,16 @@ bool more_accurate(const TableRow& a, const TableRow& b) { return a.outcome.held
 
 using Order = bool (*)(const TableRow&, const TableRow&);
 
-/// The first by `order` of the stable rows of one size and side; nullptr if there is none.
+/// The first by `order` of the stable rows of one size and side, of those run most often: these
+/// took turns. nullptr if there is none.
 const TableRow* best(const std::vector<TableRow>& rows, std::size_t nodes, bool ours, Order order) {
   const TableRow* found = nullptr;
   for (const TableRow& row : rows) {
     if (row.nodes != nodes || row.ours != ours || !row.outcome.stable()) continue;
-    if (found == nullptr || order(row, *found)) found = &row;
+    if (found == nullptr || row.runs > found->runs ||
+        (row.runs == found->runs && order(row, *found))) {
+      found = &row;
+    }
   }
   return found;
 }
@@ -123,6 +127,7 @@ void compare_size(const BulletOptions& options, std::size_t nodes, Progress& pro
   for (std::size_t i = 0; i < settings.size(); ++i) {
     times[i].push_back(rows[first + i].outcome.us_per_step);
     rows[first + i].outcome.us_per_step = median(times[i]);
+    rows[first + i].runs = static_cast<int>(times[i].size());
   }
 }
 

@@ -23,6 +23,7 @@ struct TableRow {
   bool ours = false;
   std::string setting;
   Outcome outcome;  ///< us_per_step: median of all runs of it
+  int runs = 1;
 };
 
 /// Runs every setting once, then the fastest and the most accurate stable one of Bullet and all of

@@ -68,27 +68,109 @@ TEST_CASE("spring kernel layout: holds every spring of the network once from eac
   }
 }
 
-TEST_CASE("spring kernel layout: rings hold the node, its one-ring, and the first again") {
-  // Oracle: ordered_one_rings(). Short rings repeat their first neighbour and so close.
+TEST_CASE("spring kernel layout: structural neighbours stand in the order of the one-ring") {
+  // Oracle: ordered_one_rings().
   const auto model = testing::ball_model(2);  // twelve nodes with five neighbours, others six
   const SpringKernelLayout layout(model);
   const auto view = layout.view();
   const auto rings = ordered_one_rings(model.triangles, view.surface_node_count);
-  std::size_t repeated = 0;
+  std::size_t shorter = 0;
   for (std::size_t row = 0; row < view.surface_node_count; ++row) {
-    const kernel::RingSlice& slice = view.ring_slices[row / kernel::kRingLanes];
-    const auto entry = [&](std::size_t k) {
-      return view.ring_nodes[(slice.first_slot + k) * kernel::kRingLanes +
-                             row % kernel::kRingLanes] /
-             3;
-    };
-    CHECK(entry(0) == row);
-    for (std::size_t k = 0; k + 1 < slice.slots; ++k) {
-      CHECK(entry(k + 1) == (k < rings[row].size() ? rings[row][k] : rings[row][0]));
-      if (k >= rings[row].size()) ++repeated;
+    const kernel::Slice& slice = view.slices[row / kernel::kLanes];
+    CHECK(slice.shortest_ring <= rings[row].size());
+    REQUIRE(rings[row].size() <= slice.structural_slots);
+    if (rings[row].size() < slice.structural_slots) ++shorter;
+    for (std::size_t k = 0; k < rings[row].size(); ++k) {
+      const std::size_t at = (slice.first_slot + k) * kernel::kLanes + row % kernel::kLanes;
+      CHECK(view.neighbours[at] == kernel::kNodeFloats * rings[row][k]);
     }
   }
-  CHECK(repeated > 0);
+  CHECK(shorter > 0);
+}
+
+geometry::Triangle lowest_first(geometry::Triangle t) {
+  std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  return t;
+}
+
+geometry::TriangleSurface some_surface() {
+  return GENERATE(geometry::make_ball(0.05, 2), geometry::make_tetrahedron(0.1),
+                  geometry::make_box(Vec3(0.1, 0.06, 0.08), 3),
+                  geometry::make_capsule(0.03, 0.1, 30));
+}
+
+TEST_CASE("fans: each triangle once, as it is oriented") {
+  // Oracle: the triangles.
+  const auto surface = some_surface();
+  std::multiset<geometry::Triangle> expected, found;
+  for (const auto& triangle : surface.triangles) expected.insert(lowest_first(triangle));
+  const auto fans = fans_of(ordered_one_rings(surface.triangles, surface.nodes.size()));
+  for (const Fan& fan : fans) {
+    REQUIRE(fan.nodes.size() >= 2);
+    for (std::size_t k = 0; k + 1 < fan.nodes.size(); ++k) {
+      found.insert(lowest_first({fan.center, fan.nodes[k], fan.nodes[k + 1]}));
+    }
+  }
+  CHECK(found == expected);
+}
+
+/// Of fans side by side those in a lane, as the layout holds them; padding has no area: a node
+/// twice.
+std::vector<geometry::Triangle> triangles_in(const kernel::FanTable& table, std::size_t index,
+                                             std::size_t lane) {
+  const kernel::Fans& fans = table.fans[index];
+  CHECK(fans.slots % 2 == 0);
+  const auto node = [&](std::size_t slot) {
+    return table.nodes[(fans.first_slot + slot) * kernel::kDoubleLanes + lane] / 3;
+  };
+  std::vector<geometry::Triangle> triangles;
+  for (std::size_t slot = 1; slot + 1 < fans.slots; ++slot) {
+    if (node(slot) != node(slot + 1)) triangles.push_back({node(0), node(slot), node(slot + 1)});
+  }
+  return triangles;
+}
+
+OrganModel some_model() {
+  auto organ = testing::ball_organ();
+  organ.springs = {0.1, 0.5, 1};
+  return build_organ_model(organ, Vec3::Zero(), some_surface());
+}
+
+TEST_CASE("spring kernel layout: the cover holds each triangle once, and none besides") {
+  // Oracle: the triangles.
+  const auto model = some_model();
+  const SpringKernelLayout layout(model);
+  const auto view = layout.view();
+  std::multiset<geometry::Triangle> expected, found;
+  for (const auto& triangle : model.triangles) expected.insert(lowest_first(triangle));
+  REQUIRE(view.first_fans[0] == 0);
+  for (std::uint32_t fans = 0; fans < view.first_fans[view.chunk_count]; ++fans) {
+    for (std::size_t lane = 0; lane < kernel::kDoubleLanes; ++lane) {
+      for (const auto& t : triangles_in(view.cover, fans, lane)) found.insert(lowest_first(t));
+    }
+  }
+  CHECK(found == expected);
+}
+
+TEST_CASE("spring kernel layout: the ring of a row holds the triangles around its node") {
+  // Oracle: the triangles.
+  const auto model = some_model();
+  const SpringKernelLayout layout(model);
+  const auto view = layout.view();
+  for (std::uint32_t row = 0; row < view.surface_node_count; ++row) {
+    std::set<geometry::Triangle> expected, found;
+    for (const auto& triangle : model.triangles) {
+      if (std::count(triangle.begin(), triangle.end(), row) > 0) {
+        expected.insert(lowest_first(triangle));
+      }
+    }
+    for (const auto& t :
+         triangles_in(view.rings, row / kernel::kDoubleLanes, row % kernel::kDoubleLanes)) {
+      CHECK(t[0] == row);
+      CHECK(found.insert(lowest_first(t)).second);
+    }
+    CHECK(found == expected);
+  }
 }
 
 TEST_CASE("spring kernel layout: links name each row's virtual node once") {

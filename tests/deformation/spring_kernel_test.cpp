@@ -90,40 +90,57 @@ Differences from_plain(const OrganModel& model, const OrganState& state, Instruc
   return worst;
 }
 
+/// How far the gradient may be off: 6e-8 for products, and for the positions of both ends of an
+/// edge, which are rounded relative to the organ's extent.
+double gradient_rounding(const OrganModel& model, const OrganState& state) {
+  double extent = 0, shortest = 1;
+  for (const auto& [a, b] : geometry::edges_of(model.triangles)) {
+    extent = std::max(extent, (state.positions[a] - state.positions[0]).norm());
+    shortest = std::min(shortest, (state.positions[a] - state.positions[b]).norm());
+  }
+  return 1.2e-7 * (1 + extent / shortest);
+}
+
 void check_agrees(const OrganModel& model, const OrganState& state) {
   // Sums of some twenty terms, each off by a few units in the last place: 6e-8 of the float's that
-  // springs are in, 1e-16 of the volume's.
+  // springs and gradient are in, 1e-16 of the volume's.
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
     const Differences difference = from_plain(model, state, set);
     CHECK(difference.velocity < 3e-7);
-    CHECK(difference.gradient < 1e-14);
+    CHECK(difference.gradient < gradient_rounding(model, state));
     CHECK(difference.volume < 1e-14);
-    CHECK(difference.denominator < 1e-14);
+    CHECK(difference.denominator < gradient_rounding(model, state));
     CHECK(difference.volume_velocity < 3e-7);
   }
 }
 
-TEST_CASE("spring kernel: the volume alone is the one the step has, for any instruction set") {
-  // Oracle: free_step(), with the velocities it leaves.
+TEST_CASE("spring kernel: the volume alone is that of the plain code, for any instruction set") {
+  // Oracle: evaluate_volume(). All in double: sums of some hundred terms.
   const auto model = testing::ball_model(2);
   auto state = rest_state(model);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     state.positions[i] *= 1 + 0.05 * std::sin(static_cast<double>(i));
     state.velocities[i] = Vec3(std::cos(static_cast<double>(i)), 0.3, -0.1);
   }
+  VolumeGradient plain;
+  evaluate_volume(model, state.positions, plain);
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
     SpringKernel kernel(model, nullptr, set);
-    FreeStep stepped, alone;
-    kernel.free_step(1e-4, state, stepped);
-    alone.velocities = stepped.velocities;
+    FreeStep alone;
+    alone.velocities = state.velocities;
     kernel.evaluate_volume(state.positions, alone);
-    CHECK(alone.volume.volume == stepped.volume.volume);
-    CHECK(alone.volume.denominator == stepped.volume.denominator);
-    CHECK(alone.volume_velocity == stepped.volume_velocity);
-    CHECK(alone.volume.gradient == stepped.volume.gradient);
-    CHECK(alone.velocities == stepped.velocities);
+    double rate = 0;
+    for (std::size_t i = 0; i < plain.gradient.size(); ++i) {
+      rate += plain.gradient[i].dot(state.velocities[i]);
+      CHECK((alone.volume.gradient[i] - plain.gradient[i]).norm() <
+            1e-14 * plain.gradient[i].norm());
+    }
+    CHECK(alone.volume.volume == Approx(plain.volume).epsilon(1e-14));
+    CHECK(alone.volume.denominator == Approx(plain.denominator).epsilon(1e-14));
+    CHECK(alone.volume_velocity == Approx(rate).epsilon(1e-13));
+    CHECK(alone.velocities == state.velocities);
   }
 }
 
@@ -229,7 +246,7 @@ TEST_CASE("spring kernel: the same bits for all instruction sets with fused mult
 
 TEST_CASE("spring kernel: internal forces keep momentum and angular momentum") {
   // Oracle: invariant. The two ends of a spring get the same force to the bit; the sums at the
-  // nodes are rounded, in float for springs, in double for the volume's gradient.
+  // nodes are rounded in float, and so is the volume's gradient.
   auto organ = ball_organ();
   organ.tissue.drag = 0;
   const auto model = ball_model(2, organ);
@@ -248,11 +265,12 @@ TEST_CASE("spring kernel: internal forces keep momentum and angular momentum") {
   for (const Vec3& g : step.volume.gradient) volume += g;
   CHECK(momentum.norm() < 1e-7 * size);
   CHECK(angular.norm() < 1e-7 * size * testing::kBallRadius);
-  CHECK(volume.norm() < 1e-13 * geometry::surface_area(state.positions, model.triangles));
+  CHECK(volume.norm() < 1e-7 * geometry::surface_area(state.positions, model.triangles));
 }
 
 TEST_CASE("spring kernel: without volume it is the same step") {
-  // Oracle: itself with volume.
+  // Oracle: itself with volume, which takes structural springs in the order of the rings: the sums
+  // of float forces are rounded otherwise, to 3e-7 of what they give.
   auto organ = ball_organ();
   const auto with = ball_model(2, organ);
   organ.model = scene::Model::kMassSpring;
@@ -262,7 +280,13 @@ TEST_CASE("spring kernel: without volume it is the same step") {
     FreeStep expected, found;
     SpringKernel(with, nullptr, set).free_step(kStep, state, expected);
     SpringKernel(without, nullptr, set).free_step(kStep, state, found);
-    CHECK(found.velocities == expected.velocities);
+    double given = 0;
+    for (std::size_t i = 0; i < with.node_count(); ++i) {
+      given = std::max(given, (expected.velocities[i] - state.velocities[i]).norm());
+    }
+    for (std::size_t i = 0; i < with.node_count(); ++i) {
+      CHECK((found.velocities[i] - expected.velocities[i]).norm() < 3e-7 * given);
+    }
   }
 }
 

@@ -116,7 +116,8 @@ TEST_CASE("shape insults: an everted ball is put back, not blown up") {
   const auto story = run(organ, kBackTime);
   CHECK(story.first_reason == Disbelief::kTurnedInside);
   CHECK(story.replaced == 1);
-  CHECK(story.fastest < 1e-6);
+  // At rest float forces keep an organ swinging by 1e-8 m (decision 5), at 2/h at most.
+  CHECK(story.fastest < 1e-8 * 2 / stable_step_bound(organ.model()));
   check_back(organ);
 }
 
