@@ -35,7 +35,6 @@ inline void finish_slice(const Layout& layout, const Step& step, std::size_t fir
   double* __restrict gradient = step.gradient + first;
   double* __restrict denominator = sums.denominator;
   double* __restrict volume_velocity = sums.volume_velocity;
-#pragma GCC ivdep
   for (std::size_t c = 0; c < count; ++c) {
     const double v = velocities[c], inverse_mass = inverse_masses[c];
     const double a = new_velocities[c] * inverse_mass + gravity[c] - drag * v;
@@ -75,7 +74,6 @@ inline ChunkSums finish_volume(const Layout& layout, const Step& step, std::size
     const double* __restrict velocities = step.velocities + first;
     const double* __restrict positions = step.positions + first;
     double* __restrict gradient = step.gradient + first;
-#pragma GCC ivdep
     for (std::size_t c = 0; c < count; ++c) {
       const double g = gradient[c] * (1.0 / 6);
       gradient[c] = g;
@@ -93,7 +91,6 @@ inline void move(const Move& move, std::size_t first, std::size_t last) {
   double* __restrict velocities = move.velocities;
   double* __restrict positions = move.positions;
   const double h = move.h, sigma = move.volume_impulse;
-#pragma GCC ivdep
   for (std::size_t c = first; c < last; ++c) {
     velocities[c] -= (inverse_masses[c] * sigma) * gradient[c];
     positions[c] += h * velocities[c];
