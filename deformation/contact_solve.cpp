@@ -241,10 +241,10 @@ ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const Volu
 
 ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volume,
                                   double volume_velocity, double h, std::span<ContactRow> rows,
-                                  std::vector<Vec3>& velocities) {
+                                  std::vector<Vec3>& velocities, StartImpulses start) {
   const bool vanished = has_vanished(model, volume);
   auto report = solve(MassMobility(model), vanished ? nullptr : volume, volume_velocity, h, rows,
-                      velocities, StartImpulses::kToApply);
+                      velocities, start);
   report.volume_skipped = vanished;
   return report;
 }

@@ -71,7 +71,8 @@ ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const Volu
 /// @param volume_velocity  g·v̂ [m³/s]
 ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volume,
                                   double volume_velocity, double h, std::span<ContactRow> rows,
-                                  std::vector<Vec3>& velocities);
+                                  std::vector<Vec3>& velocities,
+                                  StartImpulses start = StartImpulses::kToApply);
 
 /// The same where a node answers an impulse not by M⁻¹ but by its mobility, as in implicit steps.
 /// @param mobilities  W, symmetric, positive; zero for fixed nodes [1/kg]  (node_count)

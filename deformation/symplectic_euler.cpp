@@ -91,14 +91,29 @@ StepReport SymplecticEuler::step(double h, std::span<ContactRow> rows, OrganStat
   }
 
   // 3. velocities at the end of the step, positions
+  const int corrections = model_.preserve_volume ? model_.volume_corrections : 0;
+  if (corrections > 0) start_ = state.positions;
   kernel_.finish_step(h, report.volume_impulse, free_, state);
 
   // 4. what the linearisation left
-  for (int k = 0; model_.preserve_volume && k < model_.volume_corrections; ++k) {
-    correct_volume(model_, h, rows, state, buffers_, report);
-  }
+  for (int k = 0; k < corrections; ++k) correct_volume(h, rows, state, report);
   state.pressure = -report.volume_impulse / h;
   return {.volume_skipped = report.volume_skipped};
+}
+
+/// What the plain correct_volume() does, the step's end taken again from its start.
+void SymplecticEuler::correct_volume(double h, std::span<ContactRow> rows, OrganState& state,
+                                     ContactSolveReport& report) {
+  free_.velocities = state.velocities;
+  kernel_.evaluate_volume(state.positions, free_);
+  const VolumeRow volume{free_.volume,
+                         (free_.volume.volume - state.target_volume) / h - free_.volume_velocity};
+  const auto correction = solve_contacts(model_, &volume, free_.volume_velocity, h, rows,
+                                         free_.velocities, StartImpulses::kApplied);
+  state.positions = start_;
+  kernel_.finish_step(h, correction.volume_impulse, free_, state);
+  report.volume_impulse += correction.volume_impulse;
+  report.volume_skipped |= correction.volume_skipped;
 }
 
 /// The step with a given impulse of the contents, to which contacts are found anew.

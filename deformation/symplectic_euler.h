@@ -46,12 +46,14 @@ class SymplecticEuler : public OrganDynamics {
 
  private:
   void push_with(double volume_impulse, double h, std::span<ContactRow> rows, OrganState& state);
+  void correct_volume(double h, std::span<ContactRow> rows, OrganState& state,
+                      ContactSolveReport& report);
 
   const OrganModel& model_;
   double largest_step_;
   SpringKernel kernel_;
   FreeStep free_;
-  StepBuffers buffers_;  ///< of corrections
+  std::vector<Vec3> start_;  ///< positions, for corrections
 };
 
 }  // namespace palpate::deformation
