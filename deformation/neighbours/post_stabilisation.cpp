@@ -17,10 +17,11 @@ StepReport PostStabilisation::step(double h, std::span<ContactRow> rows, OrganSt
   state.pressure = -report.volume_impulse / h;
 
   // 4. back to V*
-  evaluate_volume(model_, state.positions, end_);
-  if (has_vanished(model_, end_)) return {.volume_skipped = true};
-  const double error = end_.volume - state.target_volume;
-  add_along_gradient(model_, end_.gradient, -error / end_.denominator, state.positions);
+  kernel_.evaluate_volume(state.positions, free_);
+  const VolumeGradient& end = free_.volume;
+  if (has_vanished(model_, end)) return {.volume_skipped = true};
+  const double error = end.volume - state.target_volume;
+  add_along_gradient(model_, end.gradient, -error / end.denominator, state.positions);
   return {report.volume_skipped};
 }
 

@@ -33,7 +33,6 @@ class PostStabilisation : public OrganDynamics {
   double largest_step_;
   SpringKernel kernel_;
   FreeStep free_;
-  VolumeGradient end_;  ///< at x̂
 };
 
 }  // namespace palpate::deformation
