@@ -1,7 +1,6 @@
 #include "deformation/spring_kernel_layout.h"
 
 #include <algorithm>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -36,72 +35,6 @@ std::uint32_t packed_offset(std::size_t node) {
 }
 
 }  // namespace
-
-std::vector<std::vector<std::uint32_t>> ordered_one_rings(
-    const std::vector<geometry::Triangle>& triangles, std::size_t node_count) {
-  using Edge = std::pair<std::uint32_t, std::uint32_t>;  // opposite a node: from, to
-  std::vector<std::vector<Edge>> fans(node_count);
-  for (const auto& [i, j, k] : triangles) {
-    fans[i].emplace_back(j, k);
-    fans[j].emplace_back(k, i);
-    fans[k].emplace_back(i, j);
-  }
-  std::vector<std::vector<std::uint32_t>> rings(node_count);
-  for (std::size_t node = 0; node < node_count; ++node) {
-    auto& fan = fans[node];
-    PALPATE_DEMAND(!fan.empty());
-    std::sort(fan.begin(), fan.end());
-    std::uint32_t next = fan.front().first;
-    do {
-      rings[node].push_back(next);
-      const auto edge = std::lower_bound(fan.begin(), fan.end(), Edge{next, 0});
-      PALPATE_DEMAND(edge != fan.end() && edge->first == next);
-      next = edge->second;
-    } while (next != rings[node].front() && rings[node].size() <= fan.size());
-    PALPATE_DEMAND(rings[node].size() == fan.size());
-  }
-  return rings;
-}
-
-std::vector<Fan> fans_of(const std::vector<std::vector<std::uint32_t>>& rings) {
-  // Of each node, whether the triangle from its k-th neighbour to the next is still in no fan.
-  std::vector<std::vector<char>> left;
-  std::set<std::pair<std::ptrdiff_t, std::uint32_t>> order;  // −triangles left, node
-  for (std::uint32_t node = 0; node < rings.size(); ++node) {
-    left.emplace_back(rings[node].size(), 1);
-    order.emplace(-static_cast<std::ptrdiff_t>(rings[node].size()), node);
-  }
-  const auto take = [&](std::uint32_t node, std::uint32_t from) {
-    const auto count = std::count(left[node].begin(), left[node].end(), 1);
-    order.erase({-count, node});
-    const auto& ring = rings[node];
-    left[node][static_cast<std::size_t>(std::find(ring.begin(), ring.end(), from) - ring.begin())] =
-        0;
-    if (count > 1) order.emplace(1 - count, node);
-  };
-  std::vector<Fan> fans;
-  while (!order.empty()) {
-    const std::uint32_t center = order.begin()->second;
-    const auto& ring = rings[center];
-    // From a triangle that is taken on, or from anywhere if none is.
-    const auto start = static_cast<std::size_t>(
-        std::find(left[center].begin(), left[center].end(), 0) - left[center].begin());
-    bool open = false;
-    for (std::size_t step = 0; step < ring.size(); ++step) {
-      const std::size_t k = (start + step) % ring.size();
-      const std::uint32_t from = ring[k], to = ring[(k + 1) % ring.size()];
-      const bool here = left[center][k] != 0;
-      if (here && !open) fans.push_back({center, {from}});
-      open = here;
-      if (!here) continue;
-      fans.back().nodes.push_back(to);
-      take(center, from);
-      take(from, to);
-      take(to, center);
-    }
-  }
-  return fans;
-}
 
 SpringKernelLayout::Rows SpringKernelLayout::rows_of(const OrganModel& model, std::size_t first,
                                                      std::size_t count) {
@@ -149,7 +82,7 @@ SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
   add_rows(model);
   Rows first = rows_of(model, 0, network.structural_count);
   if (model.preserve_volume) {
-    const auto rings = ordered_one_rings(model.triangles, node_count);
+    const auto rings = geometry::ordered_one_rings(model.triangles, node_count);
     put_in_order(rings, first);
     add_rings(rings);
     add_cover(rings);
@@ -197,9 +130,9 @@ void SpringKernelLayout::add_slice(std::size_t first_row, const Rows& structural
   }
 }
 
-void SpringKernelLayout::FanArrays::add(std::span<const Fan> some) {
+void SpringKernelLayout::FanArrays::add(std::span<const geometry::Fan> some) {
   std::size_t longest = 0;
-  for (const Fan& fan : some) longest = std::max(longest, fan.nodes.size());
+  for (const geometry::Fan& fan : some) longest = std::max(longest, fan.nodes.size());
   // Triangles are taken in pairs.
   const std::size_t slots = 1 + longest + (longest + 1) % 2;
   fans.push_back({static_cast<std::uint32_t>(nodes.size() / kernel::kDoubleLanes),
@@ -208,7 +141,7 @@ void SpringKernelLayout::FanArrays::add(std::span<const Fan> some) {
     for (std::size_t lane = 0; lane < kernel::kDoubleLanes; ++lane) {
       std::uint32_t node = 0;  // lanes without a fan: a node and itself
       if (lane < some.size()) {
-        const Fan& fan = some[lane];
+        const geometry::Fan& fan = some[lane];
         node = slot == 0 ? fan.center : fan.nodes[std::min(slot, fan.nodes.size()) - 1];
       }
       nodes.push_back(3 * node);
@@ -217,7 +150,7 @@ void SpringKernelLayout::FanArrays::add(std::span<const Fan> some) {
 }
 
 void SpringKernelLayout::add_rings(const std::vector<std::vector<std::uint32_t>>& rings) {
-  std::vector<Fan> fans;
+  std::vector<geometry::Fan> fans;
   for (const auto& ring : rings) {
     fans.push_back({static_cast<std::uint32_t>(fans.size()), ring});
     fans.back().nodes.push_back(ring.front());
@@ -230,11 +163,11 @@ void SpringKernelLayout::add_rings(const std::vector<std::vector<std::uint32_t>>
 }
 
 void SpringKernelLayout::add_cover(const std::vector<std::vector<std::uint32_t>>& rings) {
-  auto fans = fans_of(rings);
+  auto fans = geometry::fans_of(rings);
   const std::size_t rows_per_chunk = kernel::kLanes * scalars_.slices_per_chunk;
-  const auto chunk_of = [&](const Fan& fan) { return fan.center / rows_per_chunk; };
+  const auto chunk_of = [&](const geometry::Fan& fan) { return fan.center / rows_per_chunk; };
   // Fans of a length side by side need no padding.
-  std::sort(fans.begin(), fans.end(), [&](const Fan& a, const Fan& b) {
+  std::sort(fans.begin(), fans.end(), [&](const geometry::Fan& a, const geometry::Fan& b) {
     return std::tuple(chunk_of(a), b.nodes.size(), a.center, a.nodes.front()) <
            std::tuple(chunk_of(b), a.nodes.size(), b.center, b.nodes.front());
   });

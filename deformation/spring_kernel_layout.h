@@ -7,23 +7,9 @@
 #include "deformation/aligned_vector.h"
 #include "deformation/organ_model.h"
 #include "deformation/spring_kernel_arrays.h"
+#include "modules/geometry/triangle_fans.h"
 
 namespace palpate::deformation {
-
-/// Neighbours of each node counter-clockwise as seen from outside, from the lowest on.
-/// @param triangles  closed, oriented, one fan per node
-std::vector<std::vector<std::uint32_t>> ordered_one_rings(
-    const std::vector<geometry::Triangle>& triangles, std::size_t node_count);
-
-/// A run of triangles around a node: (center, nodes[i], nodes[i+1]), oriented.
-struct Fan {
-  std::uint32_t center = 0;
-  std::vector<std::uint32_t> nodes;
-};
-
-/// Every triangle in one fan, in few fans: a node with most triangles left comes first and takes
-/// them.
-std::vector<Fan> fans_of(const std::vector<std::vector<std::uint32_t>>& rings);
 
 class SpringKernelLayout {
  public:
@@ -43,7 +29,7 @@ class SpringKernelLayout {
     AlignedVector<std::uint32_t> nodes;
 
     /// These side by side. @param some  1 … kernel::kDoubleLanes
-    void add(std::span<const Fan> some);
+    void add(std::span<const geometry::Fan> some);
     kernel::FanTable view() const { return {fans.data(), nodes.data()}; }
   };
 

@@ -10,24 +10,6 @@
 namespace palpate::deformation {
 namespace {
 
-TEST_CASE("one-rings: each follows the triangles around its node") {
-  // Oracle: brute force. Every triangle (i, j, k) makes k the successor of j in the ring of i.
-  const auto ball = geometry::make_ball(0.05, 2);
-  const auto rings = ordered_one_rings(ball.triangles, ball.nodes.size());
-  std::size_t steps = 0;
-  for (const auto& ring : rings) steps += ring.size();
-  CHECK(steps == 3 * ball.triangles.size());
-  for (const auto& triangle : ball.triangles) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const auto& ring = rings[triangle[corner]];
-      const auto from = std::find(ring.begin(), ring.end(), triangle[(corner + 1) % 3]);
-      REQUIRE(from != ring.end());
-      const auto to = std::next(from) == ring.end() ? ring.begin() : std::next(from);
-      CHECK(*to == triangle[(corner + 2) % 3]);
-    }
-  }
-}
-
 /// Springs between surface nodes as the layout holds them: (node, neighbour) → rest length.
 std::map<std::pair<std::uint32_t, std::uint32_t>, float> half_springs(
     const kernel::Layout& layout) {
@@ -73,7 +55,7 @@ TEST_CASE("spring kernel layout: structural neighbours stand in the order of the
   const auto model = testing::ball_model(2);  // twelve nodes with five neighbours, others six
   const SpringKernelLayout layout(model);
   const auto view = layout.view();
-  const auto rings = ordered_one_rings(model.triangles, view.surface_node_count);
+  const auto rings = geometry::ordered_one_rings(model.triangles, view.surface_node_count);
   std::size_t shorter = 0;
   for (std::size_t row = 0; row < view.surface_node_count; ++row) {
     const kernel::Slice& slice = view.slices[row / kernel::kLanes];
@@ -97,21 +79,6 @@ geometry::TriangleSurface some_surface() {
   return GENERATE(geometry::make_ball(0.05, 2), geometry::make_tetrahedron(0.1),
                   geometry::make_box(Vec3(0.1, 0.06, 0.08), 3),
                   geometry::make_capsule(0.03, 0.1, 30));
-}
-
-TEST_CASE("fans: each triangle once, as it is oriented") {
-  // Oracle: the triangles.
-  const auto surface = some_surface();
-  std::multiset<geometry::Triangle> expected, found;
-  for (const auto& triangle : surface.triangles) expected.insert(lowest_first(triangle));
-  const auto fans = fans_of(ordered_one_rings(surface.triangles, surface.nodes.size()));
-  for (const Fan& fan : fans) {
-    REQUIRE(fan.nodes.size() >= 2);
-    for (std::size_t k = 0; k + 1 < fan.nodes.size(); ++k) {
-      found.insert(lowest_first({fan.center, fan.nodes[k], fan.nodes[k + 1]}));
-    }
-  }
-  CHECK(found == expected);
 }
 
 /// Of fans side by side those in a lane, as the layout holds them; padding has no area: a node
