@@ -69,6 +69,9 @@ function(palpate_tests name)
   endif()
   # A test without its data says "SKIPPED: …" and returns; ctest then counts it as skipped, not passed.
   set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_REGULAR_EXPRESSION "SKIPPED:")
+  if(PALPATE_SANITIZE)  # Fast DDS 2.9.1 frees a reader's statistics by their base's size
+    list(APPEND properties ENVIRONMENT "ASAN_OPTIONS=new_delete_type_mismatch=0")
+  endif()
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
   endif()
