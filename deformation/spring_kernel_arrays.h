@@ -8,7 +8,8 @@
 // neighbour of all its rows side by side. Shorter rows are filled up with the node itself: a spring
 // without length pulls at nothing. The inner spring of a node is in arrays of its own.
 //
-// Structural neighbours stand in the order of the one-ring (counter-clockwise from outside).
+// Where the volume is kept, structural neighbours stand in the order of the one-ring
+// (counter-clockwise from outside).
 //
 // Fans: runs of triangles around a node, the node itself in the first slot, then the run's nodes in
 // order, the first again where it closes. Eight stand side by side; shorter ones repeat their last
@@ -73,7 +74,7 @@ struct Layout {
   const std::uint32_t* row_nodes = nullptr;   ///< first float; the last node again in padding
   FanTable rings;                             ///< the fan of each row, closed
   FanTable cover;                             ///< fans that hold each triangle once
-  const std::uint32_t* first_fans = nullptr;  ///< of each chunk's, and the end  (chunk_count + 1)
+  const std::uint32_t* first_fans = nullptr;  ///< each chunk's, and the end  (chunk_count + 1)
   const double* inverse_masses = nullptr;     ///< each node's three times [1/kg], 0 in padding
   // Springs of one family are alike but for their lengths. Damping as a time τ = c/k [s].
   float structural_stiffness = 0, bending_stiffness = 0;        ///< k [N/m]
