@@ -12,15 +12,15 @@
 #include <functional>
 #include <numeric>
 
-#include "bench/report/measures.h"
-#include "deformation/spring_kernel.h"
-#include "deformation/symplectic_euler.h"
+#include "deformation/springs/kernel/spring_kernel.h"
+#include "deformation/steppers/symplectic_euler.h"
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/node_order.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
+#include "studies/report/measures.h"
 
 namespace {
 

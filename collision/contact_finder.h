@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "modules/core/messages.h"
 #include "modules/geometry/triangle_surface.h"
+#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::collision {

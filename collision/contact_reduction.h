@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collision/relative_motion.h"
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::collision {
 

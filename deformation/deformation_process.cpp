@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "deformation/deformation_world.h"
-#include "deformation/guard_log.h"
+#include "deformation/guard/guard_log.h"
+#include "deformation/world.h"
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/cycle_budget.h"

@@ -13,9 +13,9 @@
 #include <memory>
 #include <span>
 
-#include "deformation/organ_dynamics.h"
-#include "deformation/state_guard.h"
-#include "deformation/target_volume.h"
+#include "deformation/guard/state_guard.h"
+#include "deformation/model/target_volume.h"
+#include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
 

@@ -1,7 +1,7 @@
 #include "haptics/force_limits.h"
 
 #include "haptics/vector_checks.h"
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::haptics {
 

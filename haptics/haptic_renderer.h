@@ -11,7 +11,7 @@
 #include "haptics/force_limits.h"
 #include "haptics/local_contact_model.h"
 #include "haptics/passivity.h"
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::haptics {

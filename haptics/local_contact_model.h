@@ -7,7 +7,7 @@
 // decided by deformation, once per step, by the anchor and force of the next model.
 #pragma once
 
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::haptics {
 

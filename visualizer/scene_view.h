@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 #include "visualizer/history.h"
 #include "visualizer/shape_measures.h"

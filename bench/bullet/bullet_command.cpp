@@ -7,11 +7,11 @@
 
 #include "bench/bullet/bullet_ball.h"
 #include "bench/bullet/palpate_ball.h"
-#include "bench/report/measures.h"
-#include "bench/report/progress.h"
-#include "bench/report/table_file.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
+#include "studies/report/measures.h"
+#include "studies/report/progress.h"
+#include "studies/report/table_file.h"
 
 namespace palpate::bench {
 namespace {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "bench/bullet/squeezed_ball.h"
-#include "deformation/organ_dynamics.h"
+#include "deformation/steppers/organ_dynamics.h"
 #include "haptics/device.h"
-#include "modules/pipeline/pipeline.h"
+#include "palpate/session/pipeline.h"
 
 namespace palpate::bench {
 

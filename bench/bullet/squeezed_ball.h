@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "deformation/organ_model.h"
+#include "deformation/model/organ_model.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/scene/scene.h"
 

@@ -5,10 +5,10 @@
 
 #include "bench/solids/pressed_solid.h"
 #include "bench/solids/step_cost.h"
-#include "deformation/solids/implicit_solid.h"
+#include "deformation/steppers/implicit_solid.h"
 #include "modules/core/error.h"
-#include "modules/geometry/gmsh_tool.h"
 #include "modules/geometry/organ_shape.h"
+#include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/schema.h"
 
 namespace palpate::solids_bench {

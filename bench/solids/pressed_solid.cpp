@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "deformation/solids/implicit_solid.h"
+#include "deformation/steppers/implicit_solid.h"
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/organ_shape.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "deformation/organ_dynamics.h"
+#include "deformation/steppers/organ_dynamics.h"
 #include "modules/geometry/tet_mesh.h"
 
 namespace palpate::solids_bench {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "deformation/solids/corotational.h"
-#include "deformation/solids/nodal_pressure.h"
+#include "deformation/steppers/corotational.h"
+#include "deformation/steppers/nodal_pressure.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/schema.h"
 

@@ -17,8 +17,8 @@
 #include <array>
 #include <vector>
 
-#include "deformation/elements/neo_hookean.h"
 #include "deformation/elements/quadratic_mesh.h"
+#include "deformation/materials/neo_hookean.h"
 
 namespace palpate::elements {
 

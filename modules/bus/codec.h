@@ -1,7 +1,7 @@
 // Translation between messages and wire types (idl/). Pure functions: no clock, no network.
 #pragma once
 
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::idl {
 class ProbeState;

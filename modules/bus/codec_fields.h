@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::bus {
 

@@ -5,7 +5,7 @@
 #include "idl/ProbeState.h"
 #include "modules/bus/codec.h"
 #include "modules/bus/codec_fields.h"
-#include "modules/bus/message_checks.h"
+#include "modules/messages/message_checks.h"
 
 namespace palpate::bus {
 namespace {

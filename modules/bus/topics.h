@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::bus {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "modules/core/messages.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::runtime {
 

@@ -4,8 +4,8 @@
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
-#include "modules/geometry/gmsh_tool.h"
 #include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/tools/gmsh_tool.h"
 
 namespace palpate::scene {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "deformation/deformation_world.h"
-#include "deformation/organ_model.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/world.h"
 #include "modules/geometry/primitives.h"
 
 namespace palpate::deformation::testing {

@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "deformation/backward_euler.h"
-#include "tests/deformation/neighbours/method_checks.h"
-#include "tests/stability/organs_under_test.h"
-#include "tests/stability/overstated_step.h"
+#include "deformation/steppers/backward_euler.h"
+#include "tests/deformation/volume/rules/method_checks.h"
+#include "tests/robustness/organs_under_test.h"
+#include "tests/robustness/overstated_step.h"
 
 namespace palpate::deformation {
 namespace {

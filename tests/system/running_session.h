@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "modules/bus/bus.h"
-#include "modules/launcher/child_process.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/session.h"
 #include "modules/scene/scene_reader.h"
-#include "tests/launcher/ball_scene.h"
-#include "tests/runtime/waiting.h"
+#include "palpate/child_process.h"
+#include "tests/modules/runtime/waiting.h"
+#include "tests/palpate/ball_scene.h"
 
 namespace palpate::testing {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "modules/core/messages.h"
 #include "modules/geometry/triangle_surface.h"
+#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::visualizer::testing {

@@ -1,0 +1,230 @@
+#include "deformation/contact/constraint_projection.h"
+
+#include <algorithm>
+
+namespace palpate::deformation {
+namespace {
+
+/// Contacts may depend on each other (two on one node): this part of S's diagonal is added, which
+/// leaves as much of a velocity along a row as it should remove.
+constexpr double kCompliance = 1e-9;
+/// A contact whose friction is nearer to its cone than this slides.
+constexpr double kSlidingFraction = 0.999;
+/// Below this part of gᵀWg the contacts hold all the volume that can move.
+constexpr double kVanishedMobility = 1e-9;
+/// A projection that leaves less than this part of r·W r is mostly rounding: it is done again,
+/// without what the rows took.
+constexpr double kMostlyTaken = 1e-4;
+
+bool sticks(const ContactRow& contact) {
+  return contact.tangential_impulse.norm() <
+         kSlidingFraction * contact.friction * contact.normal_impulse;
+}
+
+/// Whether none of the nodes it acts on can move.
+bool is_held(std::span<const Mat3> mobilities, const ContactRow& contact) {
+  for (int k = 0; k < 3; ++k) {
+    if (contact.weights[k] != 0 && !mobilities[contact.nodes[k]].isZero(0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void ConstraintProjection::prepare(std::span<const Mat3> mobilities, std::span<const Vec3> gradient,
+                                   std::span<const ContactRow> contacts) {
+  take_mobilities(mobilities);
+  collect_rows(mobilities, contacts);
+  if (!rows_.empty()) factor_contacts(mobilities);
+  prepare_volume(gradient);
+  all_mu_.setZero(static_cast<Eigen::Index>(rows_.size()));
+  all_volume_mu_ = volume_mu_ = 0;
+}
+
+void ConstraintProjection::take_mobilities(std::span<const Mat3> mobilities) {
+  mobilities_.resize(mobilities.size());
+  for (std::size_t i = 0; i < mobilities.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      mobilities_[i][static_cast<std::size_t>(axis)] = wide(mobilities[i].col(axis));
+    }
+  }
+}
+
+void ConstraintProjection::collect_rows(std::span<const Mat3> mobilities,
+                                        std::span<const ContactRow> contacts) {
+  rows_.clear();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactRow& contact = contacts[c];
+    if (contact.normal_impulse <= 0 || is_held(mobilities, contact)) continue;
+    rows_.push_back({c, contact.nodes, contact.weights, contact.normal, true});
+    if (!sticks(contact)) continue;
+    const Vec3 tangent = contact.normal.unitOrthogonal();
+    rows_.push_back({c, contact.nodes, contact.weights, tangent, false});
+    rows_.push_back({c, contact.nodes, contact.weights, contact.normal.cross(tangent), false});
+  }
+}
+
+void ConstraintProjection::factor_contacts(std::span<const Mat3> mobilities) {
+  // Rows meet at nodes: (node, row, W b d) sorted by node.
+  struct Visit {
+    std::uint32_t node;
+    int row;
+    Vec3 arm, answer;
+  };
+  std::vector<Visit> visits;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    for (int k = 0; k < 3; ++k) {
+      if (rows_[r].weights[k] == 0) continue;
+      const Vec3 arm = rows_[r].weights[k] * rows_[r].direction;
+      visits.push_back(
+          {rows_[r].nodes[k], static_cast<int>(r), arm, mobilities[rows_[r].nodes[k]] * arm});
+    }
+  }
+  std::stable_sort(visits.begin(), visits.end(),
+                   [](const Visit& a, const Visit& b) { return a.node < b.node; });
+  std::vector<Eigen::Triplet<double>> entries;
+  for (auto begin = visits.begin(); begin != visits.end();) {
+    auto end = begin;
+    while (end != visits.end() && end->node == begin->node) ++end;
+    for (auto a = begin; a != end; ++a) {
+      for (auto b = begin; b <= a; ++b) {  // the lower triangle: rows rise within a node
+        const double entry = a->arm.dot(b->answer);
+        entries.emplace_back(a->row, b->row, a == b ? (1 + kCompliance) * entry : entry);
+      }
+    }
+    begin = end;
+  }
+  const auto size = static_cast<Eigen::Index>(rows_.size());
+  Eigen::SparseMatrix<double> matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  factor_.compute(matrix);
+}
+
+void ConstraintProjection::prepare_volume(std::span<const Vec3> gradient) {
+  gradient_.assign(mobilities_.size(), Vec4f::Zero());
+  volume_answer_.assign(mobilities_.size(), Vec4f::Zero());
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    gradient_[i] = wide(gradient[i]);
+    volume_answer_[i] = answer(i, gradient_[i]);
+  }
+  const double unhindered = dot(gradient_, volume_answer_);
+  if (!rows_.empty()) {
+    volume_shares_ = factor_.solve(times_rows(volume_answer_));
+    subtract_rows(volume_shares_, gradient_, volume_answer_);
+  }
+  volume_mobility_ = dot(gradient_, volume_answer_);
+  if (!(volume_mobility_ > kVanishedMobility * unhindered)) volume_mobility_ = 0;
+}
+
+double ConstraintProjection::project(std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
+  double descent = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    add(-volume_mu_, gradient_, r);
+    for (std::size_t i = 0; i < r.size(); ++i) z[i] = answer(i, r[i]);
+    const Sums sums{dot(r, z), dot(gradient_, z)};
+    descent = hold_rows(sums, r, z);
+    if (descent > kMostlyTaken * sums.r_z) break;
+  }
+  add(-volume_mu_, volume_answer_, z);
+  return descent;
+}
+
+double ConstraintProjection::descend(double step, const AlignedVector<WideNode>& p,
+                                     const std::vector<Vec4f>& q, std::vector<Vec4f>& x,
+                                     std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
+  const auto factor = static_cast<float>(step), mu = static_cast<float>(volume_mu_);
+  Sums sums;
+  for (std::size_t first = 0; first < r.size(); first += kDotBlock) {
+    Vec4f r_z = Vec4f::Zero(), g_z = Vec4f::Zero();
+    const std::size_t end = std::min(first + kDotBlock, r.size());
+    for (std::size_t i = first; i < end; ++i) {
+      x[i] += factor * p[i].vector;
+      const Vec4f rest = r[i] - factor * q[i] - mu * gradient_[i];
+      r[i] = rest;
+      const Vec4f velocity = answer(i, rest);
+      z[i] = velocity;
+      r_z += rest.cwiseProduct(velocity);
+      g_z += gradient_[i].cwiseProduct(velocity);
+    }
+    sums.r_z += static_cast<double>(r_z.sum());
+    sums.g_z += static_cast<double>(g_z.sum());
+  }
+  return hold_rows(sums, r, z);
+}
+
+/// With c = C W r:  μ_c = S⁻¹ c but for what the volume's share of it changes, μ_v = g'·W r /
+/// mobility, and r·z is r·W r less what each row takes.
+double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& r,
+                                       std::vector<Vec4f>& z) {
+  double r_z = sums.r_z;
+  if (!rows_.empty()) {
+    const Eigen::VectorXd row_speeds = times_rows(z), mu = factor_.solve(row_speeds);
+    subtract_rows(mu, r, z);
+    r_z -= mu.dot(row_speeds);
+    all_mu_ += mu;
+  }
+  volume_mu_ = volume_mobility_ > 0 ? sums.g_z / volume_mobility_ : 0;
+  all_volume_mu_ += volume_mu_;
+  return r_z - volume_mu_ * sums.g_z;
+}
+
+void ConstraintProjection::turn(double kept, const std::vector<Vec4f>& z,
+                                AlignedVector<WideNode>& p) const {
+  const auto factor = static_cast<float>(kept), mu = static_cast<float>(volume_mu_);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    p[i].vector = z[i] - mu * volume_answer_[i] + factor * p[i].vector;
+  }
+}
+
+void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double& volume_impulse,
+                                         std::vector<Vec4f>& r) {
+  if (volume_mobility_ > 0 && !rows_.empty()) all_mu_ -= all_volume_mu_ * volume_shares_;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Row& row = rows_[k];
+    const double mu = all_mu_[static_cast<Eigen::Index>(k)];
+    ContactRow& contact = contacts[row.contact];
+    // μ is what r had along the row; the contact's impulse takes it away.
+    if (row.normal) {
+      contact.normal_impulse += mu;
+    } else {
+      contact.tangential_impulse -= mu * row.direction;
+    }
+  }
+  add(-volume_mu_, gradient_, r);
+  volume_mu_ = 0;
+  volume_impulse += all_volume_mu_;
+}
+
+Vec4f ConstraintProjection::answer(std::size_t node, const Vec4f& impulse) const {
+  const auto& w = mobilities_[node];
+  return w[0] * impulse[0] + w[1] * impulse[1] + w[2] * impulse[2];
+}
+
+Eigen::VectorXd ConstraintProjection::times_rows(const std::vector<Vec4f>& v) const {
+  Eigen::VectorXd out(static_cast<Eigen::Index>(rows_.size()));
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    Vec3 sum = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      if (rows_[r].weights[k] == 0) continue;
+      sum += rows_[r].weights[k] * v[rows_[r].nodes[k]].head<3>().cast<double>();
+    }
+    out[static_cast<Eigen::Index>(r)] = rows_[r].direction.dot(sum);
+  }
+  return out;
+}
+
+void ConstraintProjection::subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r,
+                                         std::vector<Vec4f>& z) const {
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Row& row = rows_[k];
+    const double row_mu = mu[static_cast<Eigen::Index>(k)];
+    for (int n = 0; n < 3; ++n) {
+      if (row.weights[n] == 0) continue;
+      const Vec4f impulse = wide((row.weights[n] * row_mu) * row.direction);
+      r[row.nodes[n]] -= impulse;
+      z[row.nodes[n]] -= answer(row.nodes[n], impulse);
+    }
+  }
+}
+
+}  // namespace palpate::deformation

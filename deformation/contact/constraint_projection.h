@@ -1,0 +1,97 @@
+// Projection onto velocities that change neither the volume nor any active contact.
+//
+// With rows B (the volume gradient g; per closed contact n, and two tangents if it sticks) and node
+// mobilities W, the projection of a force r is
+//     z = W (r − Bᵀμ),   B z = 0
+// As preconditioner of conjugate gradients it keeps every iterate on the rows, however few
+// iterations: N. Gould, M. Hribar, J. Nocedal, "On the Solution of Equality Constrained Quadratic
+// Programming Problems Arising in Optimization", SIAM J. Sci. Comput. 2001. μ tells what the rows'
+// impulses lack.
+//
+// With every projection r gives Bᵀμ away (their residual update). Left in r it would outgrow all
+// else as the iterations converge, and r·z would be rounding: a step of r·z / p·A p along it has no
+// bound. In short steps, where A is nearly diagonal, one iteration is enough for that.
+//
+// The contact rows are sparse: S = C W Cᵀ is factored once per step. The volume row is dense and
+// eliminated by the scalar division, as in contact_solve.h with the roles exchanged. Vectors over
+// nodes are in float like the matrix they go with; what of a row that lets through is taken back
+// when contact_solve.h has the last word.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <span>
+#include <vector>
+
+#include "deformation/contact/contact_solve.h"
+#include "modules/core/aligned_vector.h"
+#include "modules/core/wide_vectors.h"
+
+namespace palpate::deformation {
+
+class ConstraintProjection {
+ public:
+  /// Takes as active the contacts with a normal impulse; those below the cone stick.
+  /// @param mobilities  W, zero for fixed nodes [1/kg]  (node_count)
+  /// @param gradient    g [m²]  (surface_node_count); empty: no volume row
+  void prepare(std::span<const Mat3> mobilities, std::span<const Vec3> gradient,
+               std::span<const ContactRow> contacts);
+
+  /// @param r  loses what the rows take, but for what the volume row takes at last [N·s]
+  ///           (node_count)
+  /// @param z  out [m/s]  (node_count)
+  /// @returns r·z
+  double project(std::vector<Vec4f>& r, std::vector<Vec4f>& z);
+
+  /// A step of conjugate gradients in one pass: x += step p, r −= step q and what the volume row
+  /// took before, z of the new r but for what the volume row takes from it, and r less what the
+  /// contacts take. p are the nodes' vectors.
+  /// @returns r·z
+  double descend(double step, const AlignedVector<WideNode>& p, const std::vector<Vec4f>& q,
+                 std::vector<Vec4f>& x, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
+
+  /// p = z + kept p, with what the volume row takes from z.
+  void turn(double kept, const std::vector<Vec4f>& z, AlignedVector<WideNode>& p) const;
+
+  /// Adds to the impulses the μ of all projections since prepare(), and takes from r what the
+  /// volume row took at last.
+  void take_impulses(std::span<ContactRow> contacts, double& volume_impulse, std::vector<Vec4f>& r);
+
+ private:
+  /// One scalar row of C: Σ_k weight_k direction·v_k.
+  struct Row {
+    std::size_t contact = 0;
+    std::array<std::uint32_t, 3> nodes{};
+    Vec3 weights = Vec3::Zero(), direction = Vec3::Zero();
+    bool normal = false;
+  };
+
+  void take_mobilities(std::span<const Mat3> mobilities);
+  void collect_rows(std::span<const Mat3> mobilities, std::span<const ContactRow> contacts);
+  void factor_contacts(std::span<const Mat3> mobilities);
+  void prepare_volume(std::span<const Vec3> gradient);
+  /// Sums over the nodes of z = W r.
+  struct Sums {
+    double r_z = 0, g_z = 0;
+  };
+  /// Takes from r and z = W r what the contacts take, and finds μ.
+  /// @returns r·z, the volume's part taken
+  double hold_rows(const Sums& sums, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
+  Vec4f answer(std::size_t node, const Vec4f& impulse) const;     ///< W impulse
+  Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;  ///< C v
+  /// r −= Cᵀ μ and z −= W Cᵀ μ
+  void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r, std::vector<Vec4f>& z) const;
+
+  std::vector<std::array<Vec4f, 3>> mobilities_;  ///< W, by columns
+  std::vector<Row> rows_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;  ///< of S
+  Eigen::VectorXd volume_shares_;     ///< S⁻¹ C W g: what of the volume row the contacts take
+  std::vector<Vec4f> gradient_;       ///< g' = g − Cᵀ S⁻¹ C W g  (node_count)
+  std::vector<Vec4f> volume_answer_;  ///< W g', the velocity a pressure gives
+  double volume_mobility_ = 0;        ///< g' · W g'; 0: no volume row
+  double volume_mu_ = 0;              ///< of the last projection, still in r
+  // Since prepare():
+  Eigen::VectorXd all_mu_;  ///< without the volume row's shares
+  double all_volume_mu_ = 0;
+};
+
+}  // namespace palpate::deformation

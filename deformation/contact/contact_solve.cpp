@@ -1,0 +1,258 @@
+#include "deformation/contact/contact_solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "deformation/contact/independent_contacts.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// At least this part of a contact's inverse mass is kept when the volume removes mobility from
+/// it: a contact that holds the whole organ could otherwise not be moved at all.
+constexpr double kLeastMobility = 1e-3;
+constexpr double kVelocityTolerance = 1e-9;  // [m/s]
+constexpr int kMaxSweeps = 60;
+constexpr int kNewtonSweeps = 10;
+constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly all of the surface
+
+/// A row with what Gauss–Seidel needs at every visit.
+struct PreparedRow {
+  double normal_mobility = 0;           ///< Σ b² W along n with σ held or eliminated [1/kg]
+  double tangential_mobility = 0;       ///< Σ b² W across n, the most of it [1/kg]
+  Vec3 volume_coupling = Vec3::Zero();  ///< Σ b W g [m²/kg]
+  double normal_coupling = 0;           ///< n·Σ b W g
+  double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
+  double allowed_approach = 0;          ///< n·v_c + gap/h, or less the separation speed [m/s]
+  int first_node = 0, last_node = 2;    ///< of the row's three, those it acts on
+};
+
+template <class Mobility>
+class Solver {
+ public:
+  Solver(const Mobility& mobility, const VolumeRow* volume, double volume_velocity, double h,
+         std::span<ContactRow> rows, std::vector<Vec3>& velocities, StartImpulses start)
+      : mobility_(mobility),
+        volume_(volume),
+        rows_(rows),
+        velocities_(velocities),
+        volume_velocity_(volume_velocity) {
+    sigma_is_held_ = std::all_of(rows.begin(), rows.end(),
+                                 [](const ContactRow& row) { return only_node(row) >= 0; });
+    prepared_.resize(rows.size());
+    for (std::size_t r = 0; r < rows.size(); ++r) prepare(rows[r], h, prepared_[r]);
+    for (std::size_t r = 0; start == StartImpulses::kToApply && r < rows.size(); ++r) {
+      // Start values are only a guess, but must lie in the cone of this row.
+      rows[r].tangential_impulse -= rows[r].normal * rows[r].normal.dot(rows[r].tangential_impulse);
+      clamp_to_cone(rows[r]);
+      const Vec3 impulse = rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal;
+      add_impulse(r, impulse, prepared_[r].volume_coupling.dot(impulse));
+    }
+    sigma_ = volume_impulse();
+  }
+
+  /// One visit of every contact; the largest change of a contact velocity [m/s].
+  double sweep() {
+    double change = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      if (prepared_[r].tangential_mobility == 0) continue;  // all nodes fixed
+      change = std::max(change, relax_normal(r));
+      if (rows_[r].friction > 0) change = std::max(change, relax_friction(r));
+    }
+    ++sweeps_;
+    return volume_ != nullptr && sigma_is_held_ ? std::max(change, refresh_sigma()) : change;
+  }
+
+  int sweeps() const { return sweeps_; }
+  /// σ that meets the volume exactly, whatever the contacts' impulses are.
+  double volume_impulse() const {
+    return volume_ == nullptr ? 0 : (volume_->rate + volume_velocity_) / volume_->at.denominator;
+  }
+
+ private:
+  void prepare(const ContactRow& row, double h, PreparedRow& prepared) {
+    const auto [along, across] = mobility_.along_and_across(row);
+    const int only = only_node(row);
+    if (only >= 0) prepared.first_node = prepared.last_node = only;
+    if (volume_ != nullptr) {
+      for (int k = 0; k < 3; ++k) {
+        if (row.weights[k] == 0) continue;
+        const std::uint32_t node = row.nodes[k];
+        prepared.volume_coupling +=
+            mobility_.answer(node, row.weights[k] * volume_->at.gradient[node]);
+      }
+      const double coupling = row.normal.dot(prepared.volume_coupling);
+      prepared.normal_coupling = coupling;
+      prepared.volume_share = along > 0 ? coupling * coupling / along : 0;
+    }
+    prepared.normal_mobility = along;
+    if (volume_ != nullptr && !sigma_is_held_) {
+      prepared.normal_mobility *=
+          std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
+    }
+    prepared.tangential_mobility = across;
+    prepared.allowed_approach = allowed_approach(row, h) + row.normal.dot(row.probe_velocity);
+  }
+
+  static void clamp_to_cone(ContactRow& row) {
+    const double limit = row.friction * row.normal_impulse;
+    const double norm = row.tangential_impulse.norm();
+    if (norm > limit) row.tangential_impulse *= norm > 0 ? limit / norm : 0;
+  }
+
+  /// Newton on the volume's one equation, F(σ) = rate + g·w(σ) − gᵀWg σ, piecewise linear in σ
+  /// while every row is solved for it: closed rows take their share of the slope. After some
+  /// steps the full slope, which is safe and slow. @returns the largest change of a velocity [m/s]
+  double refresh_sigma() {
+    const double denominator = volume_->at.denominator;
+    double slope = denominator, coupling = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      if (rows_[r].normal_impulse <= 0) continue;
+      if (sweeps_ <= kNewtonSweeps) slope -= prepared_[r].volume_share;
+      coupling = std::max(coupling, prepared_[r].volume_coupling.squaredNorm());
+    }
+    slope = std::max(slope, kLeastSlope * denominator);
+    const double change = (volume_->rate + volume_velocity_ - denominator * sigma_) / slope;
+    sigma_ += change;
+    return std::abs(change) * std::sqrt(coupling);
+  }
+
+  /// Velocity of the tissue at a contact, without σ [m/s].
+  Vec3 tissue_velocity(std::size_t r) const {
+    const ContactRow& row = rows_[r];
+    Vec3 velocity = Vec3::Zero();
+    for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
+      velocity += row.weights[k] * velocities_[row.nodes[k]];
+    }
+    return velocity;
+  }
+
+  /// @param coupling  of the impulse with the volume
+  void add_impulse(std::size_t r, const Vec3& impulse, double coupling) {
+    const ContactRow& row = rows_[r];
+    for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
+      velocities_[row.nodes[k]] += mobility_.answer(row.nodes[k], row.weights[k] * impulse);
+    }
+    volume_velocity_ += coupling;
+    if (!sigma_is_held_) sigma_ = volume_impulse();
+  }
+
+  double relax_normal(std::size_t r) {
+    ContactRow& row = rows_[r];
+    const PreparedRow& prepared = prepared_[r];
+    const double separation = prepared.allowed_approach + sigma_ * prepared.normal_coupling -
+                              row.normal.dot(tissue_velocity(r));
+    if (row.normal_impulse == 0 && separation >= 0) return 0;
+    const double wanted = row.normal_impulse - separation / prepared.normal_mobility;
+    const double change = std::max(0.0, wanted) - row.normal_impulse;
+    row.normal_impulse += change;
+    add_impulse(r, -change * row.normal, -change * prepared.normal_coupling);
+    return std::abs(change) * prepared.normal_mobility;
+  }
+
+  double relax_friction(std::size_t r) {
+    ContactRow& row = rows_[r];
+    if (row.normal_impulse == 0 && row.tangential_impulse.isZero(0)) return 0;
+    const Vec3 velocity =
+        tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
+    const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
+    const Vec3 before = row.tangential_impulse;
+    row.tangential_impulse -= sliding / prepared_[r].tangential_mobility;
+    clamp_to_cone(row);
+    const Vec3 change = row.tangential_impulse - before;
+    add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
+    return change.norm() * prepared_[r].tangential_mobility;
+  }
+
+  const Mobility& mobility_;
+  const VolumeRow* volume_;
+  std::span<ContactRow> rows_;
+  std::vector<Vec3>& velocities_;
+  std::vector<PreparedRow> prepared_;
+  double volume_velocity_;  ///< g·w [m³/s]; every impulse updates it
+  /// Whether σ stays as it is during a sweep. Rows that act on one node each are independent but
+  /// for σ: then Newton on σ needs a few sweeps where elimination, which couples all, needs many.
+  bool sigma_is_held_ = false;
+  double sigma_ = 0;  ///< [Pa·s]
+  int sweeps_ = 0;
+};
+
+/// Leaves w in `velocities`.
+/// @param volume_velocity  g·v̂ [m³/s]
+template <class Mobility>
+ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, double volume_velocity,
+                         double h, std::span<ContactRow> rows, std::vector<Vec3>& velocities,
+                         StartImpulses start) {
+  ContactSolveReport report;
+  if (rows.empty()) {
+    if (volume != nullptr) {
+      report.volume_impulse = (volume->rate + volume_velocity) / volume->at.denominator;
+    }
+    return report;
+  }
+  if (auto contacts =
+          IndependentContacts<Mobility>::take(mobility, volume, h, rows, velocities, start)) {
+    if (volume != nullptr) report.volume_impulse = contacts->solve_volume(*volume, volume_velocity);
+    contacts->apply(mobility, start, rows, velocities);
+    report.sweeps = contacts->steps();
+    return report;
+  }
+  Solver solver(mobility, volume, volume_velocity, h, rows, velocities, start);
+  while (solver.sweep() > kVelocityTolerance && solver.sweeps() < kMaxSweeps) {
+  }
+  report.sweeps = solver.sweeps();
+  report.volume_impulse = solver.volume_impulse();
+  return report;
+}
+
+/// The same, and v⁺ = w − W g σ.
+template <class Mobility>
+ContactSolveReport solve_all(const Mobility& mobility, const VolumeRow* volume, double h,
+                             std::span<ContactRow> rows, std::vector<Vec3>& velocities,
+                             StartImpulses start) {
+  if (volume == nullptr) return solve(mobility, volume, 0, h, rows, velocities, start);
+  const auto& gradient = volume->at.gradient;
+  double volume_velocity = 0;
+  for (std::size_t i = 0; i < gradient.size(); ++i)
+    volume_velocity += gradient[i].dot(velocities[i]);
+  const auto report = solve(mobility, volume, volume_velocity, h, rows, velocities, start);
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    velocities[i] -= mobility.answer(i, report.volume_impulse * gradient[i]);
+  }
+  return report;
+}
+
+bool has_vanished(const OrganModel& model, const VolumeRow* volume) {
+  return volume != nullptr &&
+         !(volume->at.denominator > kVanishedDenominator * model.rest_denominator);
+}
+
+}  // namespace
+
+ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const VolumeRow* volume,
+                                             double h, std::span<ContactRow> rows,
+                                             std::vector<Vec3>& velocities, StartImpulses start) {
+  const bool vanished = has_vanished(model, volume);
+  auto report =
+      solve_all(MassMobility(model), vanished ? nullptr : volume, h, rows, velocities, start);
+  report.volume_skipped = vanished;
+  return report;
+}
+
+ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volume,
+                                  double volume_velocity, double h, std::span<ContactRow> rows,
+                                  std::vector<Vec3>& velocities, StartImpulses start) {
+  const bool vanished = has_vanished(model, volume);
+  auto report = solve(MassMobility(model), vanished ? nullptr : volume, volume_velocity, h, rows,
+                      velocities, start);
+  report.volume_skipped = vanished;
+  return report;
+}
+
+ContactSolveReport solve_contacts(std::span<const Mat3> mobilities, const VolumeRow* volume,
+                                  double volume_velocity, double h, std::span<ContactRow> rows,
+                                  std::vector<Vec3>& velocities, StartImpulses start) {
+  return solve(BlockMobility(mobilities), volume, volume_velocity, h, rows, velocities, start);
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,31 @@
+#include "deformation/elements/linear_tetrahedra.h"
+
+#include <Eigen/LU>
+
+namespace palpate::deformation {
+
+LinearTetrahedra::LinearTetrahedra(const OrganModel& model) : corners(model.solid.tetrahedra) {
+  const auto& x = model.network.rest_positions;
+  for (const auto& t : corners) {
+    Mat3 edges;
+    for (int k = 0; k < 3; ++k) edges.col(k) = x[t[static_cast<std::size_t>(k) + 1]] - x[t[0]];
+    volumes.push_back(edges.determinant() / 6);
+    Mat34 g;
+    g.rightCols<3>() = edges.inverse().transpose();
+    g.col(0) = -g.rightCols<3>().rowwise().sum();
+    gradients.push_back(g);
+  }
+}
+
+Mat3 LinearTetrahedra::deformation_gradient(std::size_t e,
+                                            const std::vector<Vec3>& positions) const {
+  // Differences first: large coordinates cancel exactly enough.
+  const auto& t = corners[e];
+  const Vec3& origin = positions[t[0]];
+  Mat3 F = (positions[t[1]] - origin) * gradients[e].col(1).transpose();
+  F += (positions[t[2]] - origin) * gradients[e].col(2).transpose();
+  F += (positions[t[3]] - origin) * gradients[e].col(3).transpose();
+  return F;
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,26 @@
+// Tetrahedra with linear functions: what of them is constant.
+#pragma once
+
+#include <vector>
+
+#include "deformation/model/organ_model.h"
+
+namespace palpate::deformation {
+
+using Mat34 = Eigen::Matrix<double, 3, 4>;
+
+struct LinearTetrahedra {
+  std::vector<geometry::Tetrahedron> corners;
+  std::vector<double> volumes;   ///< V at rest [m³]
+  std::vector<Mat34> gradients;  ///< g_a = ∇N_a at rest, by columns [1/m]
+
+  /// @param model  a solid
+  explicit LinearTetrahedra(const OrganModel& model);
+
+  std::size_t size() const { return corners.size(); }
+
+  /// F = Σ_a x_a g_aᵀ
+  Mat3 deformation_gradient(std::size_t e, const std::vector<Vec3>& positions) const;
+};
+
+}  // namespace palpate::deformation

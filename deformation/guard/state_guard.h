@@ -1,0 +1,102 @@
+// Whether an organ's motion can be believed.
+//
+// Energy. An organ cannot hold more than it had and was given. Given is, per step of h,
+//   contacts   J·v⁺ of every impulse J, v⁺ the tissue's velocity after it: an upper bound, for the
+//              impulse itself brought v towards its own direction (exactly: J·(v + v⁺)/2)
+//   contents   p (V*⁺ − V*)
+//   gravity    m g · (way of the centre of mass)
+// The ledger holds the sum, and is brought down to the energy there is at every thorough look:
+// what damping took cannot be had again. An explicit step beyond its bound multiplies energy in
+// every step, so it passes any factor soon; time stepping within the bound makes the energy swing
+// (near the bound by 1/(1 − h²ω²/4)), which kEnergyGain leaves room for.
+//
+// Of the contacts' work J·v_c is the probe's, v_c the velocity of its surface; the rest,
+// J·(v⁺ − v_c) where positive, undoes penetrations and is paid by nobody. A probe that appeared
+// inside an organ may push it out once; a wall caught on a thin probe, pushed to this side and that
+// in turns, would be shaken by it forever. Only pushes faster than kPushedSpeed count: below 0.05
+// m/s those of an organ pressed flat with 1 kN add up to as much, and it is as healthy as can be.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "deformation/steppers/organ_dynamics.h"
+
+namespace palpate::deformation {
+
+/// Why a state is not believed.
+enum class Disbelief : std::uint8_t {
+  kNone,
+  kNotFinite,     ///< a position, velocity, pressure or impulse
+  kTooFast,       ///< a node beyond kMaxNodeSpeed, now or on the way since the last look
+  kEnergyGrew,    ///< beyond kEnergyGain times what it had and was given
+  kTooLarge,      ///< two nodes further apart than kMaxGrowth times any two at rest
+  kTurnedInside,  ///< it encloses less than −kTurnedVolume V₀
+  kCollapsed      ///< flattened to a line or point, or a solid folded, for kCollapsedTime
+};
+
+/// Nothing soft moves faster and means it [m/s].
+inline constexpr double kMaxNodeSpeed = 100.0;
+inline constexpr double kMaxGrowth = 5.0;
+inline constexpr double kTurnedVolume = 0.05;
+inline constexpr double kEnergyGain = 10.0;
+inline constexpr double kSuspiciousGain = 2.0;
+/// An organ with no more kinetic energy than its mass has at this speed is calm, wherever it came
+/// from [m/s].
+inline constexpr double kCalmSpeed = 0.05;
+
+/// Unpaid energy is forgotten by 1/e in this time [s]; no more is believed at a time than pushes
+/// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed², unless the organ is calm.
+inline constexpr double kUnpaidMemory = 10.0;
+/// Tissue parts from the probe faster than this where a penetration is undone in a hurry [m/s].
+inline constexpr double kPushedSpeed = 0.2;
+
+/// Whether elastic_energy() is all a model stores and its contacts' impulses all it is given. Not
+/// so for those that store energy in their contents, and those that move nodes by no force.
+bool knows_energy(scene::Model model);
+
+class StateGuard {
+ public:
+  /// @param model  outlives this
+  /// @param knows_energy  false: the ledger is not kept
+  StateGuard(const OrganModel& model, bool knows_energy);
+
+  /// Begins anew with `state`, whose stored energy is `elastic_energy` [J].
+  void begin(const OrganState& state, double elastic_energy);
+
+  /// Energy given in one step of h [s]. `state` is that after it.
+  /// @param volume_change  V*⁺ − V* [m³]
+  void add_work(double h, std::span<const ContactRow> rows, double volume_change,
+                const OrganState& state);
+
+  /// One pass over the nodes, for every advance.
+  /// @param period  since the last look [s]
+  Disbelief look(const OrganState& state, double period);
+
+  /// What look() sees, then all energy and the sign of the volume. Brings the ledger down.
+  Disbelief look_thoroughly(const OrganState& state, double period, OrganDynamics& dynamics);
+
+  /// The last look believed, but the energy was more than it should be: a step too large shows
+  /// itself so before it does harm.
+  bool suspicious() const { return suspicious_; }
+
+  double ledger() const { return ledger_; }  ///< what it may hold [J]
+
+ private:
+  bool is_finite(const OrganState& state) const;
+  Disbelief judge_energy(double energy);
+  Disbelief explain(const OrganState& state, double period) const;
+
+  const OrganModel& model_;
+  bool knows_energy_;
+  double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_unpaid_ = 0;
+  double ledger_ = 0, unpaid_ = 0, kinetic_energy_ = 0;  ///< [J]
+  Vec3 first_moment_ = Vec3::Zero();                     ///< Σ m x, under gravity [kg·m]
+  std::vector<Vec3> seen_;                               ///< positions of the last look [m]
+  bool suspicious_ = false;
+};
+
+/// How many tetrahedra enclose no positive volume.
+std::size_t inverted_tetrahedra(const OrganModel& model, const std::vector<Vec3>& positions);
+
+}  // namespace palpate::deformation

@@ -1,0 +1,153 @@
+#include "deformation/springs/spring_network.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "modules/core/error.h"
+
+namespace palpate::deformation {
+namespace {
+
+using NodePair = std::array<std::uint32_t, 2>;
+
+std::vector<std::vector<std::uint32_t>> neighbours_of(std::size_t node_count,
+                                                      const std::vector<NodePair>& edges) {
+  std::vector<std::vector<std::uint32_t>> neighbours(node_count);
+  for (const auto& [a, b] : edges) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  }
+  for (auto& list : neighbours) std::sort(list.begin(), list.end());
+  return neighbours;
+}
+
+/// Pairs of nodes joined by a path of two edges but by no edge, each once, sorted.
+std::vector<NodePair> secondary_pairs(std::size_t node_count, const std::vector<NodePair>& edges) {
+  const auto neighbours = neighbours_of(node_count, edges);
+  std::vector<NodePair> pairs;
+  std::vector<std::uint32_t> second_ring;
+  for (std::uint32_t a = 0; a < node_count; ++a) {
+    second_ring.clear();
+    for (const std::uint32_t middle : neighbours[a]) {
+      for (const std::uint32_t b : neighbours[middle]) {
+        if (b > a && !std::binary_search(neighbours[a].begin(), neighbours[a].end(), b)) {
+          second_ring.push_back(b);
+        }
+      }
+    }
+    std::sort(second_ring.begin(), second_ring.end());
+    second_ring.erase(std::unique(second_ring.begin(), second_ring.end()), second_ring.end());
+    for (const std::uint32_t b : second_ring) pairs.push_back({a, b});
+  }
+  return pairs;
+}
+
+std::size_t nearest(const std::vector<Vec3>& points, std::size_t first, const Vec3& p) {
+  std::size_t best = first;
+  for (std::size_t i = first; i < points.size(); ++i) {
+    if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
+  }
+  return best;
+}
+
+/// E t of the springs [N/m].
+double membrane_stiffness(const scene::Tissue& tissue) {
+  return kMembraneFactor * tissue.youngs_modulus * tissue.wall_thickness;
+}
+
+/// Each edge: (√3/4) E t per adjacent triangle, that is twice on a closed surface.
+void add_membrane_springs(const geometry::TriangleSurface& surface, const scene::Tissue& tissue,
+                          double bending_ratio, SpringNetwork& network) {
+  const auto edges = geometry::edges_of(surface.triangles);
+  const double structural =
+      2 * (std::sqrt(3.0) / 4) * membrane_stiffness(tissue) / (1 + 7 * bending_ratio);
+  const auto add = [&](const NodePair& pair, double stiffness) {
+    const double length = (surface.nodes[pair[0]] - surface.nodes[pair[1]]).norm();
+    network.springs.push_back({pair[0], pair[1], length, stiffness});
+  };
+  for (const auto& pair : edges) add(pair, structural);
+  network.structural_count = edges.size();
+  if (bending_ratio <= 0) return;
+  const auto pairs = secondary_pairs(surface.nodes.size(), edges);
+  for (const auto& pair : pairs) add(pair, bending_ratio * structural);
+  network.bending_count = pairs.size();
+}
+
+void add_inner_springs(const scene::Tissue& tissue, double inner_ratio, SpringNetwork& network) {
+  const std::size_t surface_count = network.surface_node_count;
+  double length_sum = 0;
+  for (std::uint32_t i = 0; i < surface_count; ++i) {
+    const auto& nodes = network.rest_positions;
+    const auto virtual_node = static_cast<std::uint32_t>(nearest(nodes, surface_count, nodes[i]));
+    const double length = (nodes[i] - nodes[virtual_node]).norm();
+    network.springs.push_back({i, virtual_node, length, 0});
+    length_sum += length;
+  }
+  network.inner_count = surface_count;
+  const double radius = length_sum / static_cast<double>(surface_count);
+  const double per_area = inner_ratio * membrane_stiffness(tissue) / (radius * radius);
+  for (std::size_t i = 0; i < surface_count; ++i) {
+    network.springs[network.springs.size() - surface_count + i].stiffness =
+        per_area * network.node_areas[i];
+  }
+}
+
+}  // namespace
+
+SpringFamily SpringNetwork::family(std::size_t spring) const {
+  if (spring < structural_count) return SpringFamily::kStructural;
+  return spring < structural_count + bending_count ? SpringFamily::kBending : SpringFamily::kInner;
+}
+
+/// The centroid of one or two nodes lies on the surface, where inner springs have no length.
+constexpr std::size_t kLeastInSection = 3;
+
+std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, std::size_t count) {
+  const Vec3 axis = geometry::dominant_axis(surface.nodes);
+  double low = std::numeric_limits<double>::max(), high = -low;
+  for (const Vec3& p : surface.nodes) {
+    low = std::min(low, axis.dot(p));
+    high = std::max(high, axis.dot(p));
+  }
+  std::vector<Vec3> sums(count, Vec3::Zero());
+  std::vector<std::size_t> sizes(count, 0);
+  for (const Vec3& p : surface.nodes) {
+    const double fraction = (axis.dot(p) - low) / std::max(high - low, 1e-300);
+    const auto section =
+        std::min(count - 1, static_cast<std::size_t>(fraction * static_cast<double>(count)));
+    sums[section] += p;
+    ++sizes[section];
+  }
+  std::vector<Vec3> nodes;
+  Vec3 all = Vec3::Zero();
+  for (std::size_t s = 0; s < count; ++s) {
+    all += sums[s];
+    if (sizes[s] >= kLeastInSection) nodes.push_back(sums[s] / static_cast<double>(sizes[s]));
+  }
+  if (nodes.empty()) nodes.push_back(all / static_cast<double>(surface.nodes.size()));
+  return nodes;
+}
+
+SpringNetwork build_spring_network(const geometry::TriangleSurface& surface,
+                                   const scene::Tissue& tissue, const scene::Springs& springs) {
+  PALPATE_DEMAND(!surface.nodes.empty() && !surface.triangles.empty());
+  SpringNetwork network;
+  network.surface_node_count = surface.nodes.size();
+  network.rest_positions = surface.nodes;
+  network.node_areas.assign(surface.nodes.size(), 0);
+  for (const auto& triangle : surface.triangles) {
+    const double third = geometry::area_vector(surface.nodes, triangle).norm() / 3;
+    for (const std::uint32_t node : triangle) network.node_areas[node] += third;
+  }
+  add_membrane_springs(surface, tissue, springs.bending_ratio, network);
+  if (springs.inner_ratio > 0 && springs.virtual_nodes > 0) {
+    const auto virtual_nodes = place_virtual_nodes(surface, springs.virtual_nodes);
+    network.rest_positions.insert(network.rest_positions.end(), virtual_nodes.begin(),
+                                  virtual_nodes.end());
+    add_inner_springs(tissue, springs.inner_ratio, network);
+  }
+  return network;
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,131 @@
+#include "deformation/springs/spring_product.h"
+
+#include <array>
+
+#include "modules/core/error.h"
+
+namespace palpate::deformation {
+namespace {
+
+using kernel::kBlockNumbers;
+using kernel::kLanes;
+
+const kernel::ProductFunctions& functions_of(InstructionSet set) {
+#if defined(__x86_64__)
+  if (set == InstructionSet::kAvx512) return kernel::avx512_product_functions();
+  if (set == InstructionSet::kAvx2) return kernel::avx2_product_functions();
+#endif
+  PALPATE_DEMAND(set == InstructionSet::kPortable);
+  return kernel::portable_product_functions();
+}
+
+/// xx, xy, xz, yy, yz, zz and what is added to all of the diagonal.
+Mat3 symmetric(const std::array<double, kBlockNumbers>& n, double mass) {
+  Mat3 block;
+  block << n[0], n[1], n[2], n[1], n[3], n[4], n[2], n[4], n[5];
+  block.diagonal().array() += n[6] + mass;
+  return block;
+}
+
+}  // namespace
+
+SpringProduct::SpringProduct(const OrganModel& model, ChunkRunner* runner, InstructionSet set)
+    : model_(model), runner_(runner), functions_(functions_of(set)), layout_(model) {
+  const kernel::Layout layout = layout_.view();
+  const std::size_t rows = layout.slice_count * kLanes;
+  const kernel::Slice& last = layout.slices[layout.slice_count - 1];
+  pairs_.resize((last.first_slot + last.slots) * kLanes);
+  masses_.resize(rows + layout.virtual_node_count);
+  inner_along_.resize(rows);
+  inner_across_.resize(rows);
+  nodes_.resize(model.node_count());
+  dots_.resize(layout.chunk_count * kLanes);
+  diagonal_.assign(model.node_count(), Mat3::Zero());
+  const std::size_t virtual_parts = layout.virtual_node_count * layout.chunk_count * kLanes;
+  blocks_.resize(kBlockNumbers * rows);
+  virtual_blocks_.resize(kBlockNumbers * virtual_parts);
+  virtual_sums_.resize(3 * virtual_parts);
+}
+
+kernel::Couplings SpringProduct::couplings() {
+  return {h_, nodes_.data()->position.data(), pairs_.data(), inner_along_.data(),
+          inner_across_.data()};
+}
+
+void SpringProduct::run(ChunkBody body) {
+  SerialRunner serial;
+  (runner_ == nullptr ? serial : *runner_).run(layout_.view().chunk_count, body);
+}
+
+void SpringProduct::linearise(const std::vector<Vec3>& positions, double h) {
+  PALPATE_DEMAND(positions.size() == model_.node_count());
+  h_ = static_cast<float>(h);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    nodes_[i].position = wide(positions[i] - positions[0]);
+  }
+  const kernel::Layout layout = layout_.view();
+  const kernel::Couplings out = couplings();
+  const std::size_t stride = kBlockNumbers * kLanes * layout.virtual_node_count;
+  run([&](std::size_t chunk) {
+    functions_.linearise(layout, out, chunk, blocks_.data(),
+                         virtual_blocks_.data() + stride * chunk);
+  });
+  take_diagonal(h);
+}
+
+void SpringProduct::take_diagonal(double h) {
+  const kernel::Layout layout = layout_.view();
+  const std::size_t surface_count = layout.surface_node_count;
+  const std::size_t rows = layout.slice_count * kLanes;
+  const double mass_factor = 1 + h * model_.drag;
+  std::array<double, kBlockNumbers> numbers;
+  for (std::size_t i = 0; i < surface_count; ++i) {
+    const float* const block = &blocks_[kBlockNumbers * kLanes * (i / kLanes) + i % kLanes];
+    for (std::size_t n = 0; n < kBlockNumbers; ++n) numbers[n] = block[n * kLanes];
+    masses_[i] = static_cast<float>(mass_factor * model_.masses[i]);
+    diagonal_[i] = symmetric(numbers, mass_factor * model_.masses[i]);
+  }
+  for (std::size_t k = 0; k < layout.virtual_node_count; ++k) {
+    numbers.fill(0);
+    for (std::size_t chunk = 0; chunk < layout.chunk_count; ++chunk) {
+      const std::size_t part = chunk * layout.virtual_node_count + k;
+      const float* number = &virtual_blocks_[kBlockNumbers * kLanes * part];
+      for (std::size_t n = 0; n < kBlockNumbers; ++n) {
+        for (std::size_t lane = 0; lane < kLanes; ++lane) numbers[n] += *number++;
+      }
+    }
+    const double mass = mass_factor * model_.masses[surface_count + k];
+    masses_[rows + k] = static_cast<float>(mass);
+    diagonal_[surface_count + k] = symmetric(numbers, mass);
+  }
+}
+
+double SpringProduct::apply(std::vector<Vec4f>& out) {
+  const kernel::Layout layout = layout_.view();
+  const kernel::Couplings in = couplings();
+  const std::size_t stride = 3 * kLanes * layout.virtual_node_count;
+  run([&](std::size_t chunk) {
+    functions_.apply(layout, in, chunk, masses_.data(), out.data()->data(),
+                     virtual_sums_.data() + stride * chunk, dots_.data() + kLanes * chunk);
+  });
+  double dot = 0;
+  for (const float part : dots_) dot += static_cast<double>(part);
+  for (std::size_t k = 0; k < layout.virtual_node_count; ++k) {
+    const std::size_t node = layout.surface_node_count + k;
+    std::array<float, 3 * kLanes> lanes{};
+    for (std::size_t chunk = 0; chunk < layout.chunk_count; ++chunk) {
+      const float* const part = &virtual_sums_[stride * chunk + 3 * kLanes * k];
+      for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] += part[i];
+    }
+    const Vec4f& p = nodes_[node].vector;
+    Vec4f sum = masses_[layout.slice_count * kLanes + k] * p;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      sum += Vec4f(lanes[lane], lanes[kLanes + lane], lanes[2 * kLanes + lane], 0);
+    }
+    out[node] = sum;
+    dot += static_cast<double>(p.dot(sum));
+  }
+  return dot;
+}
+
+}  // namespace palpate::deformation

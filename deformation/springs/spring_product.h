@@ -1,0 +1,60 @@
+// The matrix of an implicit step times a vector, fast: spring_linearization.h says what it is, and
+// is the plain code this agrees with to eight binary digits of a spring's two numbers, as they are
+// kept here (spring_product_arrays.h). The matrix stays symmetric and positive.
+//
+// Each node gathers from its neighbours, sixteen nodes side by side in the slices of the spring
+// kernel (spring_kernel_arrays.h). Any number of threads gives the same bits.
+#pragma once
+
+#include <vector>
+
+#include "deformation/model/organ_model.h"
+#include "deformation/springs/kernel/spring_kernel.h"
+#include "deformation/springs/spring_product_arrays.h"
+#include "modules/core/aligned_vector.h"
+#include "modules/core/parallel.h"
+#include "modules/core/wide_vectors.h"
+
+namespace palpate::deformation {
+
+class SpringProduct {
+ public:
+  /// @param model   outlives this
+  /// @param runner  outlives this; none: the calling thread alone
+  explicit SpringProduct(const OrganModel& model, ChunkRunner* runner = nullptr,
+                         InstructionSet set = available_instruction_sets().back());
+
+  /// Takes A at these positions [m] (node_count) for a step of h [s].
+  void linearise(const std::vector<Vec3>& positions, double h);
+
+  const std::vector<Mat3>& diagonal() const { return diagonal_; }  ///< D [kg]  (node_count)
+
+  /// Nodes as the product loads them; their vectors p [m/s] are for the caller to set. (node_count)
+  AlignedVector<WideNode>& nodes() { return nodes_; }
+
+  /// out = A p. Rows of fixed nodes are like any other: leave p zero there and ignore them.
+  /// @param out  [N·s]  (node_count)
+  /// @returns p·A p
+  double apply(std::vector<Vec4f>& out);
+
+ private:
+  kernel::Couplings couplings();
+  void run(ChunkBody body);
+  void take_diagonal(double h);
+
+  const OrganModel& model_;
+  ChunkRunner* runner_;
+  const kernel::ProductFunctions& functions_;
+  SpringKernelLayout layout_;
+  float h_ = 0;
+  AlignedVector<WideNode> nodes_;  ///< positions from the first node
+  AlignedVector<float> masses_;    ///< (1 + h·drag) M; of rows, then of virtual nodes
+  AlignedVector<float> pairs_, inner_along_, inner_across_;
+  AlignedVector<float> blocks_;          ///< of the rows, by slice
+  AlignedVector<float> virtual_blocks_;  ///< by chunk and virtual node
+  AlignedVector<float> virtual_sums_;    ///< likewise
+  AlignedVector<float> dots_;            ///< of p and A p, by chunk and lane
+  std::vector<Mat3> diagonal_;
+};
+
+}  // namespace palpate::deformation

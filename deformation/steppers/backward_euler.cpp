@@ -1,0 +1,211 @@
+#include "deformation/steppers/backward_euler.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace palpate::deformation {
+namespace {
+
+/// Iterations end when what they could still change is below this [m/s], as a mean weighted by D.
+constexpr double kVelocityTolerance = 1e-7;
+
+/// a += scale · b
+void add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += scale * b[i];
+}
+
+}  // namespace
+
+BackwardEuler::BackwardEuler(const OrganModel& model, int iterations)
+    : model_(model), max_iterations_(iterations), springs_(model), kernel_(model) {
+  for (const double mass : model.masses) total_mass_ += mass;
+  for (auto* buffer : {&change_, &residual_, &trial_}) {
+    buffer->assign(model.node_count(), Vec3::Zero());
+  }
+  for (auto* buffer : {&inner_change_, &inner_residual_, &projected_, &product_}) {
+    buffer->assign(model.node_count(), Vec4f::Zero());
+  }
+  mobilities_.assign(model.node_count(), Mat3::Zero());
+}
+
+StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
+  StepReport report;
+  // 1. springs, volume and forces after free flight
+  linearise_springs(h, state);
+  report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
+
+  // 2.-4. contacts, springs and volume
+  solve(h, rows, state);
+  if (std::abs(volume_impulse_) > h * state.pressure_limit) {
+    push_with(std::copysign(h * state.pressure_limit, volume_impulse_), h, rows, state);
+    report.pressure_capped = true;
+  }
+
+  // 5. the new state, and what the linearisation of the volume left
+  add(1, change_, state.velocities);
+  add(h, state.velocities, state.positions);
+  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
+  state.pressure = -volume_impulse_ / h;
+  return report;
+}
+
+void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
+  // 2. which contacts close, which slide
+  volume_impulse_ = 0;
+  solve_impulses(h, rows, state, StartImpulses::kToApply);
+
+  // 3. springs, with those contacts and the volume held
+  update_residual(rows);
+  relax_springs(rows);
+
+  // 4. what opened, closed or began to slide meanwhile
+  solve_impulses(h, rows, state, StartImpulses::kApplied);
+  keep_momentum(h, rows, state);
+}
+
+/// Solves with a given impulse of the contents, which is one more outside force.
+void BackwardEuler::push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                              const OrganState& state) {
+  linearise_springs(h, state);
+  volume_row_.reset();
+  const auto& gradient = free_.volume.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    if (model_.inverse_masses[i] > 0) residual_[i] -= volume_impulse * gradient[i];
+  }
+  solve(h, rows, state);
+  volume_impulse_ = volume_impulse;
+}
+
+void BackwardEuler::linearise_springs(double h, const OrganState& state) {
+  flight_.positions = state.positions;
+  flight_.velocities = state.velocities;
+  add(h, state.velocities, flight_.positions);
+  kernel_.free_step(h, flight_, free_);
+  springs_.linearise(flight_.positions, h);
+  for (std::size_t i = 0; i < model_.node_count(); ++i) {
+    change_[i].setZero();
+    residual_[i].setZero();
+    if (model_.inverse_masses[i] == 0) continue;
+    residual_[i] = model_.masses[i] * (free_.velocities[i] - state.velocities[i]);
+    mobilities_[i] = 0.5 * springs_.diagonal()[i].inverse();
+  }
+}
+
+bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradient& volume,
+                                     const std::vector<Vec3>& velocities) {
+  volume_row_.reset();
+  if (!model_.preserve_volume) return true;
+  if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
+  double rate = (volume.volume - target_volume) / h;
+  volume.denominator = 0;  // of these mobilities from here on
+  volume_answers_.resize(volume.gradient.size());
+  for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
+    rate -= volume.gradient[i].dot(velocities[i]);
+    volume_answers_[i] = mobilities_[i] * volume.gradient[i];
+    volume.denominator += volume.gradient[i].dot(volume_answers_[i]);
+  }
+  volume_row_.emplace(VolumeRow{volume, rate});
+  return true;
+}
+
+void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
+                                   StartImpulses start) {
+  for (std::size_t i = 0; i < trial_.size(); ++i) {
+    trial_[i] = state.velocities[i] + change_[i] + mobilities_[i] * residual_[i];
+  }
+  hold_rows(h, rows, start);
+  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+}
+
+void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, StartImpulses start) {
+  const VolumeRow* const volume = volume_row_ ? &*volume_row_ : nullptr;
+  double volume_velocity = 0;
+  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
+    volume_velocity += volume->at.gradient[i].dot(trial_[i]);
+  }
+  const double sigma =
+      solve_contacts(mobilities_, volume, volume_velocity, h, rows, trial_, start).volume_impulse;
+  volume_impulse_ += sigma;
+  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
+    trial_[i] -= sigma * volume_answers_[i];
+  }
+}
+
+void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
+  auto& nodes = springs_.nodes();
+  for (std::size_t i = 0; i < change_.size(); ++i) nodes[i].vector = wide(change_[i]);
+  springs_.apply(product_);
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    residual_[i] -= product_[i].head<3>().cast<double>();
+  }
+  for (const ContactRow& row : rows) {
+    const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
+    for (int k = 0; k < 3; ++k) residual_[row.nodes[k]] += row.weights[k] * impulse;
+  }
+  if (!volume_row_) return;
+  const auto& gradient = volume_row_->at.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) residual_[i] -= volume_impulse_ * gradient[i];
+}
+
+void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
+  using Gradient = std::span<const Vec3>;
+  projection_.prepare(mobilities_, volume_row_ ? Gradient(volume_row_->at.gradient) : Gradient(),
+                      rows);
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    inner_residual_[i] = wide(residual_[i]);
+    inner_change_[i].setZero();
+  }
+  conjugate_gradients();
+  projection_.take_impulses(rows, volume_impulse_, inner_residual_);
+  for (std::size_t i = 0; i < residual_.size(); ++i) {
+    change_[i] += inner_change_[i].head<3>().cast<double>();
+    residual_[i] = inner_residual_[i].head<3>().cast<double>();
+  }
+}
+
+void BackwardEuler::conjugate_gradients() {
+  const double negligible = total_mass_ * kVelocityTolerance * kVelocityTolerance;
+  auto& nodes = springs_.nodes();  // their vectors are the direction
+  double descent = projection_.project(inner_residual_, projected_);
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].vector = projected_[i];
+  // Stops after max_iterations_, or when nothing worth the name is left to gain.
+  iterations_used_ = 0;
+  while (iterations_used_ < max_iterations_ && descent > negligible) {
+    const double step = descent / springs_.apply(product_);
+    const double last = descent;
+    descent =
+        projection_.descend(step, nodes, product_, inner_change_, inner_residual_, projected_);
+    if (++iterations_used_ < max_iterations_) projection_.turn(descent / last, projected_, nodes);
+  }
+}
+
+/// Truncated iterations leave a little of the total momentum undone. An organ that nothing holds
+/// can be given it: a common velocity strains no spring and changes no volume.
+void BackwardEuler::keep_momentum(double h, std::span<const ContactRow> rows,
+                                  const OrganState& state) {
+  if (!model_.fixed_nodes.empty()) return;
+  for (const ContactRow& row : rows) {
+    if (row.normal_impulse > 0) return;
+  }
+  const double mass_factor = 1 + h * model_.drag;
+  Vec3 missing = Vec3::Zero();
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    missing += model_.masses[i] * (h * (model_.gravity - model_.drag * state.velocities[i]) -
+                                   mass_factor * change_[i]);
+  }
+  const Vec3 shift = missing / (mass_factor * total_mass_);
+  for (Vec3& change : change_) change += shift;
+}
+
+void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganState& state) {
+  evaluate_volume(model_, state.positions, free_.volume);
+  if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
+  trial_ = state.velocities;
+  hold_rows(h, rows, StartImpulses::kApplied);
+  for (std::size_t i = 0; i < trial_.size(); ++i) {
+    state.positions[i] += h * (trial_[i] - state.velocities[i]);
+  }
+  state.velocities = trial_;
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,94 @@
+// One step of an organ by backward Euler, contacts and volume inside.
+//
+//   M (v⁺ − v) = h (F(x⁺, v⁺) + M (gravity − drag v⁺)) − Bᵀ (impulses),   x⁺ = x + h v⁺
+// by one Newton iteration from the free flight x̃ = x + h v, with the springs as they are there
+// (spring_linearization.h). For Δv = v⁺ − v:
+//   A Δv = h F(x̃, v) + h M (gravity − drag v) − Bᵀ (impulses)
+// under the same conditions as in contact_solve.h: Φ(x̃) + h g·Δv = 0, no contact is penetrated or
+// pulls, friction lies in Coulomb's cone.
+//
+// Solved in two movements, each with W ∝ (3×3 diagonal blocks of A)⁻¹ as the nodes' mobility:
+//   impulses   one step down the gradient, Δv ← Δv + W r, then contacts and volume by Gauss–Seidel.
+//              W is half the inverse blocks: A ⪯ 2 D, so this never overshoots. It decides which
+//              contacts are closed and which slide.
+//   springs    conjugate gradients with closed contacts and the volume held in every iterate
+//              (constraint_projection.h), at most `iterations` of them.
+// and the impulses once more, so that every condition holds at the step's end, however few
+// iterations were made. What they leave of the residual acts on in the next step: an organ at rest
+// is at the equilibrium of symplectic Euler, one that moves lags and is damped a little more.
+//
+// A mode of frequency ω loses by this the part 1 − 1/√(1 + h²ω²) of its amplitude per step.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "deformation/contact/constraint_projection.h"
+#include "deformation/springs/kernel/spring_kernel.h"
+#include "deformation/springs/spring_product.h"
+#include "deformation/steppers/organ_dynamics.h"
+
+namespace palpate::deformation {
+
+class BackwardEuler : public OrganDynamics {
+ public:
+  static constexpr int kIterations = 12;
+  /// Not for stability: contacts and volume are taken as flat over a step [s].
+  static constexpr double kLargestStep = 0.01;
+  /// Passes over all springs in a step: forces, residual, one product per iteration.
+  static constexpr int passes(int iterations) { return iterations + 2; }
+
+  /// @param model       outlives this
+  /// @param iterations  of conjugate gradients per step, at most
+  explicit BackwardEuler(const OrganModel& model, int iterations = kIterations);
+
+  double largest_step() const override { return kLargestStep; }
+  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return kernel_.elastic_energy(state.positions);
+  }
+
+  /// Of the last step.
+  int iterations_used() const { return iterations_used_; }
+
+ private:
+  void solve(double h, std::span<ContactRow> rows, const OrganState& state);
+  void push_with(double volume_impulse, double h, std::span<ContactRow> rows,
+                 const OrganState& state);
+  void linearise_springs(double h, const OrganState& state);
+  /// Φ + h g·(v⁺ − velocities) = 0 with `volume` as it would be by these velocities.
+  /// @returns false if g vanished
+  bool linearise_volume(double h, double target_volume, VolumeGradient& volume,
+                        const std::vector<Vec3>& velocities);
+  /// Δv ← Δv + W r and impulses on top of it.
+  void solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
+                      StartImpulses start);
+  /// Turns the unconstrained velocities in trial_ into v⁺, and adds σ to the volume's impulse.
+  void hold_rows(double h, std::span<ContactRow> rows, StartImpulses start);
+  /// r −= A Δv + Bᵀ (impulses)
+  void update_residual(std::span<const ContactRow> rows);
+  void relax_springs(std::span<ContactRow> rows);
+  void conjugate_gradients();
+  void keep_momentum(double h, std::span<const ContactRow> rows, const OrganState& state);
+  void correct_volume(double h, std::span<ContactRow> rows, OrganState& state);
+
+  const OrganModel& model_;
+  int max_iterations_, iterations_used_ = 0;
+  double total_mass_ = 0;
+  SpringProduct springs_;
+  ConstraintProjection projection_;
+  SpringKernel kernel_;
+  OrganState flight_;                    ///< x̃, v
+  FreeStep free_;                        ///< what the springs do there in h, and the volume
+  std::optional<VolumeRow> volume_row_;  ///< none: contents not kept, or g vanished
+  double volume_impulse_ = 0;            ///< σ [Pa·s]
+  std::vector<Mat3> mobilities_;         ///< W [1/kg]
+  std::vector<Vec3> volume_answers_;     ///< W g [m²/kg]
+  std::vector<Vec3> change_;             ///< Δv [m/s]
+  std::vector<Vec3> residual_;           ///< r [N·s]
+  std::vector<Vec3> trial_;
+  std::vector<Vec4f> inner_change_, inner_residual_, projected_, product_;
+};
+
+}  // namespace palpate::deformation

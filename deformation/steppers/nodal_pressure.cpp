@@ -1,0 +1,197 @@
+#include "deformation/steppers/nodal_pressure.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpate::deformation {
+namespace {
+
+/// ∂v/∂x by columns, v the volume of the tetrahedron [m²].
+Mat34 area_vectors(const geometry::Tetrahedron& t, const std::vector<Vec3>& x) {
+  const Vec3 u = x[t[1]] - x[t[0]], v = x[t[2]] - x[t[0]], w = x[t[3]] - x[t[0]];
+  Mat34 areas;
+  areas.col(1) = v.cross(w) / 6;
+  areas.col(2) = w.cross(u) / 6;
+  areas.col(3) = u.cross(v) / 6;
+  areas.col(0) = -(areas.col(1) + areas.col(2) + areas.col(3));
+  return areas;
+}
+
+/// Bound of the largest singular value, exact where the other two are equal: H. Wolkowicz,
+/// G. Styan, Linear Algebra Appl. 29, 1980.
+double largest_stretch(const Mat3& F) {
+  const Mat3 C = F.transpose() * F;
+  const double mean = C.trace() / 3;
+  const double spread = std::max(0.0, C.squaredNorm() / 3 - mean * mean);
+  return std::sqrt(mean + std::sqrt(2 * spread));
+}
+
+/// ∂²v/∂x_a∂x_b = [x_c − x_d]×/6 for the corners {a, b, c, d}.
+constexpr std::array<std::array<std::size_t, 4>, 6> kOppositeEdges{
+    {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
+
+/// [e]×
+Block4f skew(const Vec4f& e) {
+  return {Vec4f(0, e[2], -e[1], 0), Vec4f(-e[2], 0, e[0], 0), Vec4f(e[1], -e[0], 0, 0)};
+}
+
+}  // namespace
+
+NodalPressure::NodalPressure(const OrganModel& model, const NodalPressureSettings& settings)
+    : model_(model),
+      tetrahedra_(model),
+      pairs_(model.node_count(), model.solid.tetrahedra),
+      matrix_(pairs_) {
+  const double nu = model.solid.poisson_ratio;
+  mu_ = model.solid.youngs_modulus / (2 * (1 + nu));
+  alpha_ = settings.stabilisation * mu_;
+  // κ/μ = 2(1+ν)/(3(1−2ν)), infinite at ν = 1/2
+  const double ratio =
+      std::min(settings.largest_bulk_modulus, 2 * (1 + nu) / std::max(3 * (1 - 2 * nu), 1e-9));
+  nodal_modulus_ = std::max(0.0, ratio * mu_ - (alpha_ - mu_ / 3));
+  node_volumes_.assign(model.node_count(), 0);
+  shape_weights_.assign(pairs_.pair_count(), 0);
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
+    const double volume = tetrahedra_.volumes[e];
+    for (const auto node : tetrahedra_.corners[e]) node_volumes_[node] += volume / 4;
+    const Eigen::Matrix4d weights =
+        volume * tetrahedra_.gradients[e].transpose() * tetrahedra_.gradients[e];
+    for (int k = 0; k < 16; ++k) {
+      shape_weights_[pairs_.of_tetrahedra[e][static_cast<std::size_t>(k)]] += weights(k / 4, k % 4);
+    }
+  }
+  areas_.resize(tetrahedra_.size());
+  volumes_.resize(tetrahedra_.size());
+  node_pressures_.resize(model.node_count());
+  volume_rows_.resize(pairs_.pair_count());
+  forces_.assign(model.node_count(), Vec3::Zero());
+  diagonal_.assign(model.node_count(), Mat3::Zero());
+}
+
+void NodalPressure::linearise(const std::vector<Vec3>& positions, double h) {
+  const double h2 = h * h;
+  take_volumes(positions);
+  matrix_.set_zero();
+  add_shape_forces(positions);
+  std::fill(volume_rows_.begin(), volume_rows_.end(), Vec4f::Zero());
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e) add_tetrahedron(e, positions, h2);
+  for (std::size_t i = 0; i < model_.node_count(); ++i) {
+    matrix_.add(pairs_.diagonals[i], static_cast<float>((1 + h * model_.drag) * model_.masses[i]));
+    for (auto k = pairs_.diagonals[i]; k < pairs_.row_starts[i + 1]; ++k) {
+      matrix_.add(k, static_cast<float>(h2 * mu_ * shape_weights_[k]));
+    }
+  }
+  matrix_.mirror();
+  add_pressures(h2);
+}
+
+void NodalPressure::take_volumes(const std::vector<Vec3>& positions) {
+  std::fill(node_pressures_.begin(), node_pressures_.end(), 0);
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
+    const auto& corners = tetrahedra_.corners[e];
+    areas_[e] = area_vectors(corners, positions);
+    volumes_[e] = areas_[e].col(3).dot(positions[corners[3]] - positions[corners[0]]);
+    for (const auto node : corners) node_pressures_[node] += volumes_[e] / 4;
+  }
+  for (std::size_t i = 0; i < node_volumes_.size(); ++i) {
+    node_pressures_[i] = nodal_modulus_ * (node_pressures_[i] / node_volumes_[i] - 1);
+  }
+}
+
+/// −μ Σ_e V_e (g_a·g_b) x_b; the weights of a row have sum 0.
+void NodalPressure::add_shape_forces(const std::vector<Vec3>& positions) {
+  for (std::size_t i = 0; i < forces_.size(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    for (auto k = pairs_.row_starts[i]; k < pairs_.row_starts[i + 1]; ++k) {
+      sum += shape_weights_[k] * (positions[i] - positions[pairs_.columns[k]]);
+    }
+    forces_[i] = mu_ * sum;
+  }
+}
+
+void NodalPressure::add_tetrahedron(std::size_t e, const std::vector<Vec3>& positions, double h2) {
+  const auto& corners = tetrahedra_.corners[e];
+  const auto& pairs = pairs_.of_tetrahedra[e];
+  const double J = volumes_[e] / tetrahedra_.volumes[e];
+  double pull = alpha_ * (J - 1) - mu_;
+  for (const auto node : corners) pull += node_pressures_[node] / 4;
+  std::array<Vec4f, 4> areas, scaled;
+  const float own = static_cast<float>(h2 * alpha_ / tetrahedra_.volumes[e]);
+  for (std::size_t a = 0; a < 4; ++a) {
+    forces_[corners[a]] -= pull * areas_[e].col(static_cast<int>(a));
+    areas[a] = wide(areas_[e].col(static_cast<int>(a)));
+    scaled[a] = own * areas[a];
+    for (std::size_t b = 0; b < 4; ++b) volume_rows_[pairs[4 * b + a]] += areas[a];
+  }
+  const double stretch = largest_stretch(tetrahedra_.deformation_gradient(e, positions));
+  const double kept = kept_turning(pull, stretch, J);
+  const double made_up = 2 * stretch * std::abs(pull - kept) * tetrahedra_.volumes[e];
+  const Eigen::Matrix4d shape =
+      h2 * made_up * tetrahedra_.gradients[e].transpose() * tetrahedra_.gradients[e];
+  const auto add_shape = [&](std::size_t a, std::size_t b, Block4f block) {
+    const auto own_shape = static_cast<float>(shape(static_cast<int>(a), static_cast<int>(b)));
+    for (int k = 0; k < 3; ++k) block[static_cast<std::size_t>(k)][k] += own_shape;
+    matrix_.add(pairs[4 * a + b], block);
+  };
+  for (std::size_t a = 0; a < 4; ++a) add_shape(a, a, outer(scaled[a], areas[a]));
+  for (auto [a, b, c, d] : kOppositeEdges) {
+    if (corners[a] > corners[b]) std::swap(a, b), std::swap(c, d);
+    Block4f block = outer(scaled[a], areas[b]);
+    const Vec3 edge = positions[corners[c]] - positions[corners[d]];
+    const Block4f turn = skew(wide(h2 / 6 * kept * edge));
+    for (std::size_t k = 0; k < 3; ++k) block[k] += turn[k];
+    add_shape(a, b, block);
+  }
+}
+
+/// Not above μ/σ for shears and rotations; for the three stretches σ_i, after scaling by them,
+/// from (t − αJ) J Σ 1/(μσ_i² + tJ) ≤ 1 with σ_i ≥ J/σ² and t = −c'.
+double NodalPressure::kept_turning(double c, double stretch, double J) const {
+  const double fourth = std::pow(stretch, 4);
+  const double limit = std::min(mu_ / stretch, std::max(J, 0.0) * (3 * alpha_ + mu_ / fourth) / 2);
+  return std::clamp(c, -limit, 0.0);
+}
+
+/// Scales the volumes' gradients, and takes the diagonal.
+void NodalPressure::add_pressures(double h2) {
+  for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] = matrix_.diagonal(i);
+  for (std::size_t i = 0; i < node_volumes_.size(); ++i) {
+    const auto scale = static_cast<float>(std::sqrt(h2 * nodal_modulus_ / node_volumes_[i]) / 4);
+    for (auto k = pairs_.row_starts[i]; k < pairs_.row_starts[i + 1]; ++k) {
+      volume_rows_[k] *= scale;
+      const Vec3 row = volume_rows_[k].head<3>().cast<double>();
+      diagonal_[pairs_.columns[k]] += row * row.transpose();
+    }
+  }
+}
+
+void NodalPressure::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) {
+  matrix_.apply(p, out);
+  for (std::size_t i = 0; i < node_volumes_.size(); ++i) {
+    Vec4f products = Vec4f::Zero();
+    for (auto k = pairs_.row_starts[i]; k < pairs_.row_starts[i + 1]; ++k) {
+      products += volume_rows_[k].cwiseProduct(p[pairs_.columns[k]]);
+    }
+    const float rate = products.sum();
+    for (auto k = pairs_.row_starts[i]; k < pairs_.row_starts[i + 1]; ++k) {
+      out[pairs_.columns[k]] += rate * volume_rows_[k];
+    }
+  }
+}
+
+double NodalPressure::energy(const std::vector<Vec3>& positions) {
+  take_volumes(positions);
+  double sum = 0;
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
+    const Mat3 F = tetrahedra_.deformation_gradient(e, positions);
+    const double change = volumes_[e] / tetrahedra_.volumes[e] - 1;
+    sum += tetrahedra_.volumes[e] *
+           (mu_ / 2 * (F.squaredNorm() - 3) - mu_ * change + alpha_ / 2 * change * change);
+  }
+  for (std::size_t i = 0; i < node_volumes_.size() && nodal_modulus_ > 0; ++i) {
+    sum += node_volumes_[i] * node_pressures_[i] * node_pressures_[i] / (2 * nodal_modulus_);
+  }
+  return sum;
+}
+
+}  // namespace palpate::deformation

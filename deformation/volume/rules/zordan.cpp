@@ -1,0 +1,68 @@
+#include "deformation/volume/rules/zordan.h"
+
+#include <algorithm>
+
+namespace palpate::deformation {
+
+Zordan::Zordan(const OrganModel& model)
+    : model_(model), pyramids_(build_pyramids(model)), kernel_(model) {
+  largest_step_ = largest_explicit_step(model, squared_frequency_bound());
+}
+
+double Zordan::stiffness(const Pyramid& pyramid) const {
+  return kModulus / (pyramid.area_share * model_.rest_volume);
+}
+
+double Zordan::squared_frequency_bound() const {
+  // Row i of M⁻¹ Σ_t k_t g_t g_tᵀ, block norms: Σ_t k_t ‖g_ti‖ Σ_j ‖g_tj‖ / m_i.
+  std::vector<double> rows(model_.node_count(), 0);
+  for (const Pyramid& pyramid : pyramids_) {
+    const auto at_rest = evaluate_pyramid(pyramid, model_.network.rest_positions);
+    double sum = 0;
+    for (const Vec3& g : at_rest.gradient) sum += g.norm();
+    for (std::size_t k = 0; k < 4; ++k) {
+      rows[pyramid.nodes[k]] += stiffness(pyramid) * at_rest.gradient[k].norm() * sum;
+    }
+  }
+  double bound = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    bound = std::max(bound, rows[i] * model_.inverse_masses[i]);
+  }
+  return bound;
+}
+
+double Zordan::stored_energy(const OrganState& state) const {
+  const double filling = state.target_volume / model_.rest_volume;
+  double energy = 0;
+  for (const Pyramid& pyramid : pyramids_) {
+    const double lost =
+        filling * pyramid.rest_volume - evaluate_pyramid(pyramid, state.positions).volume;
+    energy += 0.5 * stiffness(pyramid) * lost * lost;
+  }
+  return energy;
+}
+
+StepReport Zordan::step(double h, std::span<ContactRow> rows, OrganState& state) {
+  // 1. springs, damping, drag, gravity
+  kernel_.free_step(h, state, free_);
+
+  // 2. pressures of the pyramids
+  const double filling = state.target_volume / model_.rest_volume;
+  state.pressure = 0;
+  for (const Pyramid& pyramid : pyramids_) {
+    const auto at = evaluate_pyramid(pyramid, state.positions);
+    const double pressure = stiffness(pyramid) * (filling * pyramid.rest_volume - at.volume);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t node = pyramid.nodes[k];
+      free_.velocities[node] += (h * pressure * model_.inverse_masses[node]) * at.gradient[k];
+    }
+    state.pressure += pyramid.area_share * pressure;
+  }
+
+  // 3. contacts; 4. positions
+  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
+  kernel_.finish_step(h, 0, free_, state);
+  return {};
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,265 @@
+#include "deformation/world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "deformation/contact/probe_contacts.h"
+#include "deformation/springs/spring_forces.h"
+#include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/error.h"
+
+namespace palpate::deformation {
+namespace {
+
+constexpr double kLeastStep = 1e-6;  // [s]
+/// The contact model is believed within this part of the mean edge: the touched nodes stay the
+/// same.
+constexpr double kValidityOfEdge = 0.5;
+/// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
+constexpr double kFarthestContact = 10;
+
+struct WorldOrgan {
+  SimulatedOrgan simulated;
+  IntegratorChoice integrator;
+  SurfaceTopology topology;
+  std::vector<ContactRow> rows;
+  double mean_edge = 0;
+  bool replaced = false;  ///< its state, at the end of the last advance
+};
+
+SurfaceTopology make_topology(const scene::Organ& organ, std::uint32_t index,
+                              const OrganModel& model) {
+  SurfaceTopology topology;
+  topology.organ = index;
+  topology.generation = 1;
+  topology.name = organ.name;
+  topology.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count());
+  for (const Vec3& p : model.network.rest_positions) {
+    for (int axis = 0; axis < 3; ++axis) {
+      topology.rest_positions.push_back(static_cast<float>(p[axis]));
+    }
+  }
+  topology.triangles = model.triangles;
+  topology.fixed_nodes = model.fixed_nodes;
+  for (std::size_t s = 0; s < model.network.springs.size(); ++s) {
+    const Spring& spring = model.network.springs[s];
+    topology.springs.push_back({spring.node_a, spring.node_b, model.network.family(s)});
+  }
+  return topology;
+}
+
+WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
+                      double period, const geometry::OrganShape& shape, ChunkRunner* runner,
+                      Guarding guarding) {
+  auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
+  auto dynamics = make_dynamics(organ, *model, period, runner);
+  if (dynamics->largest_step() < kLeastStep) {
+    std::ostringstream message;
+    message << "organ '" << organ.name << "': its largest stable step is "
+            << dynamics->largest_step() << " s, less than " << kLeastStep
+            << " s; soften the tissue or even out the mesh ('nodes')";
+    throw InputError(message.str());
+  }
+  const IntegratorChoice integrator = choose_integrator(organ, *model, period);
+  SurfaceTopology topology = make_topology(organ, index, *model);
+  return {SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
+          integrator,
+          std::move(topology),
+          {},
+          geometry::mean_edge_length(shape.surface)};
+}
+
+}  // namespace
+
+struct DeformationWorld::Impl {
+  std::vector<WorldOrgan> organs;
+  std::vector<ProbeContacts> probes;
+  Contacts accepted;  ///< buffer of set_contacts()
+  double time = 0;
+  bool contact_refused = false;  ///< since the last advance
+
+  bool names_our_triangle(const Contact& contact) const {
+    return contact.organ < organs.size() &&
+           contact.triangle < organs[contact.organ].simulated.model().triangles.size();
+  }
+
+  bool is_near(const Contact& contact, const Pose& probe) const {
+    const SimulatedOrgan& organ = organs[contact.organ].simulated;
+    const auto& nodes = organ.model().triangles[contact.triangle];
+    Vec3 tissue = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      tissue += contact.barycentric[k] * organ.state().positions[nodes[k]];
+    }
+    return (contact.point_on_probe - tissue).stableNorm() <= kFarthestContact &&
+           (contact.point_on_probe - probe.position).stableNorm() <= kFarthestContact;
+  }
+
+  bool believes(const Contact& contact, const Pose& probe) {
+    if (!names_our_triangle(contact)) return false;
+    const bool near = is_near(contact, probe);
+    contact_refused |= !near;
+    return near;
+  }
+
+  /// One organ through one advance, all probes moving along.
+  void advance_organ(std::uint32_t index, double period, AdvanceReport& report) {
+    WorldOrgan& organ = organs[index];
+    const int substeps = organ.simulated.substeps(period);
+    const double h = period / substeps;
+    for (int step = 1; step <= substeps; ++step) {
+      const double fraction = static_cast<double>(step) / substeps;
+      organ.rows.clear();
+      const bool aloof = organ.simulated.aloof();
+      for (auto& probe : probes) {
+        if (aloof) break;
+        probe.append_rows(index, organ.simulated.model(), organ.simulated.state(), h, fraction,
+                          organ.rows);
+      }
+      organ.simulated.step(time + fraction * period, h, organ.rows, report);
+      std::size_t first = 0;
+      for (auto& probe : probes) {
+        if (aloof) break;
+        first += probe.take_rows(index, fraction, organ.rows.data() + first);
+      }
+    }
+    organ.replaced = !organ.simulated.finish(period, report);
+  }
+
+  /// Impulses that a state not believed gave are no force on anybody.
+  void drop_contacts(std::uint32_t organ) {
+    for (auto& probe : probes) {
+      const auto& contacts = probe.contacts();
+      const bool near = std::any_of(contacts.begin(), contacts.end(),
+                                    [&](const CarriedContact& c) { return c.organ == organ; });
+      if (near) probe.reset();
+    }
+  }
+
+  /// No patch of tissue answers stiffer than its touched nodes with all their neighbours held.
+  double stiffness_limit(const ProbeContacts& probe) const {
+    double limit = 0;
+    for (const CarriedContact& contact : probe.contacts()) {
+      if (contact.normal_impulse <= 0) continue;
+      const OrganModel& model = organs[contact.organ].simulated.model();
+      for (int k = 0; k < 3; ++k) {
+        limit += contact.weights[k] * model.node_stiffness[model.triangles[contact.triangle][k]];
+      }
+    }
+    return limit;
+  }
+};
+
+DeformationWorld::DeformationWorld(const scene::Scene& scene,
+                                   std::vector<geometry::OrganShape> rest_shapes,
+                                   ChunkRunner* runner, Guarding guarding)
+    : impl_(std::make_unique<Impl>()) {
+  PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
+  for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
+    impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
+                                       1 / scene.rates.deformation, rest_shapes[i], runner,
+                                       guarding));
+  }
+  for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
+}
+
+DeformationWorld::~DeformationWorld() = default;
+DeformationWorld::DeformationWorld(DeformationWorld&&) noexcept = default;
+
+std::size_t DeformationWorld::organ_count() const { return impl_->organs.size(); }
+std::size_t DeformationWorld::probe_count() const { return impl_->probes.size(); }
+
+const SurfaceTopology& DeformationWorld::topology(std::size_t organ) const {
+  return impl_->organs.at(organ).topology;
+}
+
+void DeformationWorld::set_probe(const ProbeState& probe) {
+  if (probe.probe < impl_->probes.size()) impl_->probes[probe.probe].set_pose(probe.pose);
+}
+
+void DeformationWorld::set_contacts(const Contacts& contacts) {
+  if (contacts.probe >= impl_->probes.size()) return;
+  Contacts& accepted = impl_->accepted;
+  accepted.probe_pose = contacts.probe_pose;
+  accepted.contacts.clear();
+  for (const Contact& contact : contacts.contacts) {
+    if (impl_->believes(contact, contacts.probe_pose)) accepted.contacts.push_back(contact);
+  }
+  impl_->probes[contacts.probe].set_contacts(accepted);
+}
+
+AdvanceReport DeformationWorld::advance(double period) {
+  AdvanceReport report;
+  report.contact_refused = std::exchange(impl_->contact_refused, false);
+  for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
+  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
+    impl_->advance_organ(i, period, report);
+  }
+  for (auto& probe : impl_->probes) probe.end(impl_->stiffness_limit(probe));
+  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
+    if (impl_->organs[i].replaced) impl_->drop_contacts(i);
+  }
+  impl_->time += period;
+  return report;
+}
+
+void DeformationWorld::reset() {
+  for (auto& organ : impl_->organs) {
+    organ.simulated.reset();
+    ++organ.topology.generation;
+  }
+  for (auto& probe : impl_->probes) probe.reset();
+  impl_->time = 0;
+}
+
+double DeformationWorld::time() const { return impl_->time; }
+
+double DeformationWorld::stable_step(std::size_t organ) const {
+  return impl_->organs.at(organ).simulated.dynamics().largest_step();
+}
+
+const IntegratorChoice& DeformationWorld::integrator(std::size_t organ) const {
+  return impl_->organs.at(organ).integrator;
+}
+
+int DeformationWorld::substeps(std::size_t organ, double period) const {
+  return impl_->organs.at(organ).simulated.substeps(period);
+}
+
+void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositions& out) const {
+  const WorldOrgan& organ = impl_->organs.at(organ_index);
+  const OrganModel& model = organ.simulated.model();
+  const OrganState& state = organ.simulated.state();
+  out.organ = static_cast<std::uint32_t>(organ_index);
+  out.generation = organ.topology.generation;
+  out.volume = geometry::enclosed_volume(state.positions, model.triangles);
+  out.target_volume = std::max(state.target_volume, 0.0);
+  out.pressure = state.pressure;
+  out.kinetic_energy = kinetic_energy(model, state.velocities);
+  // A difference of large sums may come out a little below its least value, rest.
+  out.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
+  out.positions.resize(3 * model.node_count());
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      out.positions[3 * i + static_cast<std::size_t>(axis)] =
+          static_cast<float>(state.positions[i][axis]);
+    }
+  }
+}
+
+void DeformationWorld::write_contact_model(std::size_t probe_index, ContactModel& out) const {
+  const ProbeContacts& probe = impl_->probes.at(probe_index);
+  out.probe = static_cast<std::uint32_t>(probe_index);
+  probe.response().write(out);
+  out.friction_coefficient = probe.friction();
+  out.validity_radius = 0;
+  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
+    if (probe.touches(i)) {
+      out.validity_radius =
+          std::max(out.validity_radius, kValidityOfEdge * impl_->organs[i].mean_edge);
+    }
+  }
+}
+
+}  // namespace palpate::deformation

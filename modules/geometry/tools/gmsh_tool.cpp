@@ -1,0 +1,199 @@
+#include "modules/geometry/tools/gmsh_tool.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "modules/core/error.h"
+#include "modules/geometry/gmsh_file.h"
+
+namespace palpate::geometry {
+namespace {
+
+/// A folder that vanishes with its owner.
+class WorkFolder {
+ public:
+  WorkFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "palpate_gmsh_XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    path_ = name;
+  }
+  ~WorkFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Runs the program found in PATH, both outputs into `log`. @returns exit status, -1 if not found
+int run(std::vector<std::string> words, const std::filesystem::path& log) {
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
+                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = 0;
+  const int error =
+      ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) return -1;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// Lines of Gmsh's log that say what is wrong.
+std::string complaints(const std::filesystem::path& log) {
+  std::ifstream stream(log);
+  std::string found;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.rfind("Error", 0) != 0) continue;
+    if (!found.empty()) found += "; ";
+    found += line.substr(line.find(':') + 2);
+  }
+  return found;
+}
+
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  return text.str();
+}
+
+std::string point(const Vec3& p) {
+  std::string text = number(p.x());
+  text.append(", ").append(number(p.y())).append(", ").append(number(p.z()));
+  return text;
+}
+
+/// Edge lengths from an expression everywhere, not from corners or the boundary.
+std::string size_field(const std::string& size) {
+  std::string text = "Mesh.CharacteristicLengthFromPoints = 0;\n";
+  text.append("Mesh.CharacteristicLengthExtendFromBoundary = 0;\n");
+  text.append("Field[1] = MathEval;\nField[1].F = \"").append(size).append("\";\n");
+  text.append("Background Field = 1;\n");
+  return text;
+}
+
+TetMesh run_gmsh_with(const WorkFolder& folder, std::vector<std::string> options) {
+  const auto output = folder / "solid.msh", log = folder / "log";
+  std::vector<std::string> words{"gmsh", "-format", "msh22", "-nt", "1", "-o", output.string()};
+  words.insert(words.end(), options.begin(), options.end());
+  const int status = run(std::move(words), log);
+  if (status == -1 || status == 127) {
+    throw InputError("gmsh: not found; tetrahedra are made by it (apt-get install gmsh)");
+  }
+  const std::string wrong = complaints(log);
+  if (status != 0 || !wrong.empty()) {
+    throw InputError("gmsh: exit status " + std::to_string(status) + ": " + wrong);
+  }
+  try {
+    return read_gmsh(output);
+  } catch (const InputError& error) {  // "/tmp/…/solid.msh:12: what": nobody knows that file
+    const std::string text = error.what();
+    throw InputError(text.substr(text.find(": ") + 2));
+  }
+}
+
+TetMesh run_gmsh_in(const WorkFolder& folder, const std::string& script) {
+  const auto input = folder / "solid.geo";
+  std::ofstream(input) << script;
+  return run_gmsh_with(folder, {"-3", input.string()});
+}
+
+bool is_msh_2(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string section, version, kind;
+  stream >> section >> version >> kind;
+  return section == "$MeshFormat" && version == "2.2" && kind == "0";
+}
+
+}  // namespace
+
+TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(WorkFolder(), script); }
+
+TetMesh read_tetrahedra(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) {
+    throw InputError(file.string() + ": no such mesh file");
+  }
+  if (is_msh_2(file)) return read_gmsh(file);
+  try {
+    return run_gmsh_with(WorkFolder(), {"-save_all", "-save", file.string()});
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
+  }
+}
+
+TetMesh fill_surface(const TriangleSurface& surface, double size) {
+  const WorkFolder folder;
+  const auto file = folder / "surface.msh";
+  write_gmsh(surface, file);
+  std::string script = "Merge \"";
+  script.append(file.string()).append("\";\nSurface Loop(1) = {1};\nVolume(1) = {1};\n");
+  script.append("Mesh.SaveAll = 1;\n");
+  script.append("Mesh.CharacteristicLengthMax = ").append(number(size)).append(";\n");
+  TetMesh mesh = run_gmsh_in(folder, script);
+  const std::size_t count = surface.nodes.size();
+  // Gmsh writes 16 digits; a node that is not where it was has been moved or renumbered.
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i >= mesh.nodes.size() ||
+        (mesh.nodes[i] - surface.nodes[i]).norm() > 1e-12 * (1 + surface.nodes[i].norm())) {
+      throw InputError("gmsh: node " + std::to_string(i) + " of the surface was not kept");
+    }
+    mesh.nodes[i] = surface.nodes[i];
+  }
+  if (boundary_triangles(mesh).size() != surface.triangles.size()) {
+    throw InputError("gmsh: the triangles of the surface were not kept");
+  }
+  return mesh;
+}
+
+TetMesh mesh_ball(double radius, BallPart part, const std::string& size) {
+  std::string script = "SetFactory(\"OpenCASCADE\");\nSphere(1) = {0, 0, 0, ";
+  script.append(number(radius));
+  script.append(part == BallPart::kOctant ? ", 0, Pi/2, Pi/2};\n" : "};\n")
+      .append(size_field(size));
+  TetMesh mesh = run_gmsh(script);
+  // Gmsh leaves 1e-17 where symmetry says 0, and 1e-9 of the radius on the sphere.
+  for (Vec3& node : mesh.nodes) {
+    for (int i = 0; i < 3; ++i) {
+      if (std::abs(node[i]) < 1e-9 * radius) node[i] = 0;
+    }
+    if (std::abs(node.norm() - radius) < 1e-6 * radius) node *= radius / node.norm();
+  }
+  return mesh;
+}
+
+TetMesh mesh_block(const Vec3& low, const Vec3& high, const std::string& size) {
+  std::string script = "SetFactory(\"OpenCASCADE\");\nBox(1) = {";
+  script.append(point(low)).append(", ").append(point(high - low)).append("};\n");
+  TetMesh mesh = run_gmsh(script + size_field(size));
+  const double snap = 1e-9 * (high - low).norm();
+  for (Vec3& node : mesh.nodes) {
+    for (int i = 0; i < 3; ++i) {
+      if (std::abs(node[i] - low[i]) < snap) node[i] = low[i];
+      if (std::abs(node[i] - high[i]) < snap) node[i] = high[i];
+    }
+  }
+  return mesh;
+}
+
+}  // namespace palpate::geometry

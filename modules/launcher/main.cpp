@@ -1,3 +1,0 @@
-#include "modules/launcher/command_line.h"
-
-int main(int argc, char** argv) { return palpate::launcher::palpate_command(argc, argv); }

@@ -1,0 +1,115 @@
+#include "palpate/child_process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <stdexcept>
+
+namespace palpate::launcher {
+namespace {
+
+/// In the child, after fork: only what is safe there. Returns only if the program cannot start.
+int become(const char* program, char* const* arguments, int output, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) return ESRCH;  // the launcher died before the line above
+  setpgid(0, 0);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
+  execv(program, arguments);
+  return errno;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& program, int system_error) {
+  throw std::runtime_error("cannot start " + program.string() + ": " + std::strerror(system_error));
+}
+
+}  // namespace
+
+std::string describe_exit(int wait_status) {
+  if (WIFSIGNALED(wait_status)) {
+    const int number = WTERMSIG(wait_status);
+    return "killed by signal " + std::to_string(number) + " (" + strsignal(number) + ")";
+  }
+  return "exit code " + std::to_string(WEXITSTATUS(wait_status));
+}
+
+ChildProcess::ChildProcess(const std::filesystem::path& program,
+                           const std::vector<std::string>& arguments) {
+  const std::string path = program.string();
+  std::vector<char*> argv{const_cast<char*>(path.c_str())};
+  for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  int output[2], failure[2];
+  if (pipe2(output, O_CLOEXEC) != 0) fail(program, errno);
+  if (pipe2(failure, O_CLOEXEC) != 0) {
+    close(output[0]);
+    close(output[1]);
+    fail(program, errno);
+  }
+  const pid_t launcher = getpid();
+  process_id_ = fork();
+  if (process_id_ == 0) {
+    const int error = become(path.c_str(), argv.data(), output[1], launcher);
+    const auto written = write(failure[1], &error, sizeof error);
+    _exit(written == sizeof error ? 127 : 126);
+  }
+  close(output[1]);
+  close(failure[1]);
+  output_ = output[0];
+  // closed by a successful exec: then nothing is read
+  int error = process_id_ < 0 ? errno : 0;
+  const auto got = process_id_ < 0 ? 0 : read(failure[0], &error, sizeof error);
+  close(failure[0]);
+  if (process_id_ < 0 || got == sizeof error) {
+    if (process_id_ > 0) waitpid(process_id_, nullptr, 0);
+    close(output_);
+    fail(program, error);
+  }
+  fcntl(output_, F_SETFL, fcntl(output_, F_GETFL) | O_NONBLOCK);
+}
+
+ChildProcess::~ChildProcess() {
+  if (!ended()) {
+    signal(SIGKILL);
+    waitpid(process_id_, nullptr, 0);
+  }
+  close(output_);
+}
+
+std::optional<int> ChildProcess::ended() {
+  int status = 0;
+  if (!wait_status_ && waitpid(process_id_, &status, WNOHANG) == process_id_) wait_status_ = status;
+  return wait_status_;
+}
+
+std::vector<std::string> ChildProcess::take_lines() {
+  const bool last_words = ended().has_value();
+  char block[4096];
+  for (ssize_t got = read(output_, block, sizeof block); got > 0;
+       got = read(output_, block, sizeof block)) {
+    partial_line_.append(block, static_cast<std::size_t>(got));
+  }
+  std::vector<std::string> lines;
+  for (auto end = partial_line_.find('\n'); end != std::string::npos;
+       end = partial_line_.find('\n')) {
+    lines.push_back(partial_line_.substr(0, end));
+    partial_line_.erase(0, end + 1);
+  }
+  if (last_words && !partial_line_.empty()) {
+    lines.push_back(partial_line_);
+    partial_line_.clear();
+  }
+  return lines;
+}
+
+void ChildProcess::signal(int number) {
+  if (!wait_status_) kill(process_id_, number);
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,114 @@
+#include "palpate/replay_command.h"
+
+#include <stdlib.h>
+
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <ostream>
+
+#include "modules/core/error.h"
+#include "modules/recording/commands.h"
+#include "modules/recording/player.h"
+#include "modules/recording/sample_reader.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/module_group.h"
+#include "palpate/run_command.h"
+
+namespace palpate::launcher {
+namespace {
+
+/// A folder that lasts as long as this object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) {
+      throw std::runtime_error("cannot make a folder in " + pattern);
+    }
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    const auto file = path_ / name;
+    std::ofstream stream(file);
+    if (!(stream << text << std::flush)) throw std::runtime_error("cannot write " + file.string());
+    return file;
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The resolved text of the scene that was recorded.
+std::string recorded_scene(const std::filesystem::path& recording) {
+  recording::SampleReader reader(recording);
+  while (const auto sample = reader.next()) {
+    recording::AnyMessage message;
+    if (sample->topic->name != bus::kScene.name) continue;
+    if (sample->topic->decode(sample->payload, message) != nullptr) continue;
+    if (const auto* scene = std::get_if<SceneDescription>(&message)) return scene->resolved_text;
+  }
+  throw InputError(recording.string() + ": holds no scene: it began after the session or is torn");
+}
+
+int show(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
+         std::ostream& log) {
+  const runtime::StopSignal stop;
+  const TemporaryFolder folder;
+  RunOptions viewing = run;
+  viewing.scene = folder.write("scene.yaml", recorded_scene(recording));
+  viewing.only = {"visualizer"};
+  viewing.record.clear();
+  ModuleGroup visualizer(module_commands(viewing, own_program_folder()), log);
+  const bool shown = visualizer.any_running();
+  if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
+
+  const auto stop_requested = [&] {
+    visualizer.poll();
+    return stop.requested() || (shown && !visualizer.any_running());
+  };
+  const recording::ReplayOptions options{recording, run.bus};
+  const int code = recording::run_replay_command(options, stop_requested, out, log);
+  visualizer.stop();
+  return code;
+}
+
+/// The scene with the probes of the recording moving as they moved.
+scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::path& recording,
+                                  const std::filesystem::path& folder, std::ostream& log) {
+  std::vector<std::string> warnings;
+  const auto trajectories = recording::extract_probe_trajectories(recording, folder, warnings);
+  for (const auto& warning : warnings) log << "palpate: " << warning << '\n';
+  for (const auto& trajectory : trajectories) {
+    if (trajectory.probe >= scene.probes.size()) {
+      throw InputError(recording.string() + ": moves probe " + std::to_string(trajectory.probe) +
+                       ", the scene has only " + std::to_string(scene.probes.size()));
+    }
+    scene.probes[trajectory.probe].device = scene::TrajectoryDevice{trajectory.file, {}, false};
+  }
+  return scene;
+}
+
+}  // namespace
+
+int replay_command(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
+                   std::ostream& log) {
+  if (run.scene.empty()) return show(recording, run, out, log);
+  const TemporaryFolder folder;
+  const scene::Scene scene =
+      with_recorded_motion(scene::load_scene(run.scene), recording, folder.path(), log);
+  RunOptions again = run;
+  again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+  return run_command(again, out, log);
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,18 @@
+// `palpate replay`: a recording shown as it was, or its probes' motion as input of a new run.
+#pragma once
+
+#include <iosfwd>
+
+#include "palpate/run_options.h"
+
+namespace palpate::launcher {
+
+/// Without a scene in `run`: plays every sample into the session, with a visualizer that shows it
+/// (unless run.headless without frames). With one: runs that scene, every probe of the recording
+/// moving as it moved then; all else is computed anew.
+/// @return an exit code of core/error.h
+/// @throws InputError for a recording or scene that cannot be used
+int replay_command(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
+                   std::ostream& log);
+
+}  // namespace palpate::launcher

@@ -1,0 +1,177 @@
+#include "palpate/run_command.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <fstream>
+#include <ostream>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/runtime/clock.h"
+#include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/session.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/module_group.h"
+#include "palpate/session_monitor.h"
+#include "palpate/session_text.h"
+
+namespace palpate::launcher {
+namespace {
+
+constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
+/// A session that already runs has been heard by then: twice the longest discovery measured.
+constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
+constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
+
+SceneDescription describe(const scene::Scene& scene, const std::string& digest) {
+  SceneDescription description;
+  description.name = scene.name;
+  description.digest = digest;
+  description.resolved_text = scene::resolved_text(scene);
+  return description;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// One run from start to summary.
+class Run {
+ public:
+  Run(const RunOptions& options, std::ostream& out, std::ostream& log)
+      : options_(options),
+        out_(out),
+        log_(log),
+        scene_(scene::load_scene(options.scene)),
+        digest_(scene::scene_digest(scene_)),
+        modules_(module_commands(options, own_program_folder()), log),
+        bus_(options.bus),
+        session_(bus_, digest_),
+        conductor_(bus_),
+        scenes_(bus_.writer(bus::kScene)),
+        monitor_(bus_, scene_),
+        loop_(scene_.rates.deformation) {
+    duration_ = options.duration > 0 ? options.duration : scene_.duration;
+  }
+
+  int perform() {
+    SceneDescription description = describe(scene_, digest_);
+    scenes_.write(description);
+    log_ << fmt::format("palpate: session {} of scene {}\n", options_.bus.session, scene_.name);
+    if (wait_until_ready()) {
+      start();
+      while (next_cycle() && !is_over()) report_each_second();
+    }
+    finish();
+    return exit_code_;
+  }
+
+ private:
+  /// One round of listening. False when a signal says stop or no module is left.
+  bool next_cycle() {
+    loop_.wait_for_period();
+    session_.poll();
+    monitor_.poll();
+    for (const auto& end : modules_.poll()) note(end);
+    return !stop_.requested() && modules_.any_running();
+  }
+
+  /// False if the session cannot start.
+  bool wait_until_ready() {
+    const auto expected = modules_.reporting_modules();
+    const std::int64_t begin_ns = runtime::monotonic_now_ns();
+    const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : kDiscoveryNs);
+    std::int64_t line_ns = begin_ns + kWaitingLineEveryNs;
+    while (next_cycle()) {
+      const auto waiting = monitor_.not_ready(expected);
+      if (waiting.empty() && loop_.woke_ns() >= earliest_ns) return true;
+      if (exit_code_ != kExitDone) return false;
+      if (waiting.empty() || loop_.woke_ns() < line_ns) continue;
+      line_ns += kWaitingLineEveryNs;
+      log_ << "palpate: waiting for " << joined(waiting) << std::endl;
+    }
+    return false;
+  }
+
+  void start() {
+    began_ns_ = line_ns_ = loop_.woke_ns();
+    joined_ = session_.phase() != runtime::SessionPhase::kWaiting;
+    if (!joined_) {
+      conductor_.command(session_.state(), SessionCommand::kStart);
+    } else {
+      log_ << "palpate: joining the session that already runs\n";
+    }
+    monitor_.tally().start();
+  }
+
+  bool is_over() {
+    const bool duration_reached = duration_ > 0 && session_.time(loop_.woke_ns()) >= duration_;
+    return duration_reached || session_.phase() == runtime::SessionPhase::kStopped;
+  }
+
+  void report_each_second() {
+    if (session_.take_reset() && session_.phase() == runtime::SessionPhase::kWaiting) {
+      conductor_.command(session_.state(), SessionCommand::kStart);
+    }
+    if (loop_.woke_ns() - line_ns_ < kLineEveryNs) return;
+    line_ns_ += kLineEveryNs;
+    if (!joined_) conductor_.repeat(session_.state());
+    out_ << status_line(monitor_.tally()) << std::endl;
+  }
+
+  void note(const ModuleEnd& end) {
+    if (end.failed) {
+      exit_code_ = end.bad_input ? kExitBadInput : kExitFailed;
+      failures_[end.module] = end.how;
+    }
+    log_ << fmt::format("palpate: {} ended: {}", end.module, end.how);
+    if (!end.last_error.empty()) log_ << fmt::format("; it said: {}", end.last_error);
+    log_ << "\npalpate: the rest goes on; to start it again: " << end.start_again << std::endl;
+  }
+
+  void finish() {
+    const std::int64_t now = runtime::monotonic_now_ns();
+    SessionEnd end{scene_.name, session_.time(now), 0, {}, failures_};
+    if (began_ns_ != 0) end.wall_time = seconds_from_ns(now - began_ns_);
+    if (!joined_) conductor_.command(session_.state(), SessionCommand::kStop);
+    modules_.stop();
+    monitor_.poll();
+    if (began_ns_ == 0) return;
+    end.last_words = modules_.last_words();
+    const std::string text = summary(monitor_.tally(), end);
+    out_ << text << std::flush;
+    if (options_.summary.empty()) return;
+    std::ofstream file(options_.summary);
+    if (!(file << text << std::flush)) {
+      throw std::runtime_error("cannot write " + options_.summary.string());
+    }
+  }
+
+  const RunOptions& options_;
+  std::ostream& out_;
+  std::ostream& log_;
+  runtime::StopSignal stop_;
+  scene::Scene scene_;
+  std::string digest_;
+  ModuleGroup modules_;  // before the bus: processes are born from a program of one thread
+  bus::Bus bus_;
+  runtime::Session session_;
+  runtime::SessionConductor conductor_;
+  bus::Writer<SceneDescription> scenes_;
+  SessionMonitor monitor_;
+  runtime::PeriodicLoop loop_;
+  double duration_ = 0;  ///< 0: until stopped [s]
+  std::int64_t began_ns_ = 0, line_ns_ = 0;
+  bool joined_ = false;  ///< another launcher conducts the session
+  int exit_code_ = kExitDone;
+  std::map<std::string, std::string> failures_;
+};
+
+}  // namespace
+
+int run_command(const RunOptions& options, std::ostream& out, std::ostream& log) {
+  return Run(options, out, log).perform();
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,99 @@
+#include "palpate/run_options.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <string_view>
+
+#include "modules/core/error.h"
+
+namespace palpate::launcher {
+namespace {
+
+constexpr std::array<std::string_view, 4> kModules{"deformation", "collision", "haptics",
+                                                   "visualizer"};
+
+void check_names(const std::vector<std::string>& only) {
+  for (const auto& name : only) {
+    if (std::find(kModules.begin(), kModules.end(), name) == kModules.end()) {
+      throw InputError("--only: there is no module '" + name +
+                       "'; there are deformation, collision, haptics, visualizer");
+    }
+  }
+}
+
+std::vector<std::string> session_arguments(const bus::BusOptions& bus) {
+  return {"--session", bus.session, "--domain", std::to_string(bus.domain)};
+}
+
+bool wanted(const RunOptions& options, std::string_view module) {
+  if (module == "visualizer") {
+    const bool seen_by_someone = !options.headless || !options.frames.empty();
+    if (!options.visualizer || !seen_by_someone) return false;
+  }
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), module) != options.only.end();
+}
+
+ModuleCommand module_command(const RunOptions& options, std::string_view module,
+                             const std::filesystem::path& folder) {
+  ModuleCommand command;
+  command.module = module;
+  command.program = folder / ("palpate-" + command.module);
+  command.arguments = {std::filesystem::absolute(options.scene).string()};
+  for (auto& argument : session_arguments(options.bus)) command.arguments.push_back(argument);
+  if (!options.realtime) command.arguments.push_back("--no-realtime");
+  if (module == "visualizer") {
+    if (options.headless) command.arguments.push_back("--headless");
+    if (!options.frames.empty()) {
+      command.arguments.insert(command.arguments.end(),
+                               {"--frames", options.frames.string(), "--frame-interval-s",
+                                fmt::format("{}", options.frame_interval)});
+    }
+  }
+  return command;
+}
+
+}  // namespace
+
+std::vector<ModuleCommand> module_commands(const RunOptions& options,
+                                           const std::filesystem::path& program_folder) {
+  check_names(options.only);
+  std::vector<ModuleCommand> commands;
+  if (!options.record.empty()) {
+    ModuleCommand recorder{
+        "recorder", program_folder / "palpate-recorder", {options.record.string()}, false};
+    for (auto& argument : session_arguments(options.bus)) recorder.arguments.push_back(argument);
+    commands.push_back(std::move(recorder));
+  }
+  for (const auto module : kModules) {
+    if (wanted(options, module))
+      commands.push_back(module_command(options, module, program_folder));
+  }
+  return commands;
+}
+
+std::string command_text(const ModuleCommand& command) {
+  std::string text = command.program.string();
+  for (const auto& argument : command.arguments) {
+    const bool plain = argument.find_first_of(" '\"\\$`") == std::string::npos;
+    text += plain ? " " + argument : " '" + argument + "'";
+  }
+  return text;
+}
+
+std::string random_session_name() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::random_device random;
+  std::string name = "s";
+  for (int i = 0; i < 8; ++i) name += kDigits[random() % kDigits.size()];
+  return name;
+}
+
+std::filesystem::path own_program_folder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+}
+
+}  // namespace palpate::launcher

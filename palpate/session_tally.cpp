@@ -1,0 +1,83 @@
+#include "palpate/session_tally.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "modules/core/units.h"
+
+namespace palpate::launcher {
+namespace {
+
+/// Without the count that a guard's text ends in from its second time on: " (3 times)".
+std::string_view without_count(std::string_view text) {
+  return text.ends_with(" times)") ? text.substr(0, text.rfind(" (")) : text;
+}
+
+}  // namespace
+
+double ModuleTally::on_time_fraction() const {
+  const auto periods = static_cast<double>(cycles() + overruns());
+  return periods > 0 ? static_cast<double>(cycles()) / periods : 1;
+}
+
+SessionTally::SessionTally(const scene::Scene& scene) {
+  for (const auto& organ : scene.organs) organs_.push_back({organ.name, 0, 0, 0, 0});
+  for (const auto& probe : scene.probes) probes_.push_back({probe.name, 0, 0, 0});
+}
+
+void SessionTally::start() {
+  started_ = true;
+  for (auto& [name, module] : modules_) {
+    module.cycles_before = module.newest.cycles;
+    module.overruns_before = module.newest.overruns;
+  }
+}
+
+void SessionTally::receive(const ModuleStatus& status) {
+  ModuleTally& module = modules_[status.module];
+  if (module.newest.process_id != status.process_id) module = {};  // started again
+  module.newest = status;
+  if (!started_ || status.state != ModuleState::kDegraded || status.last_error.empty()) return;
+  const std::string text = status.module + ": " + status.last_error;
+  const auto same = std::find_if(troubles_.begin(), troubles_.end(), [&](const auto& known) {
+    return without_count(known) == without_count(text);
+  });
+  if (same == troubles_.end()) {
+    troubles_.push_back(text);
+  } else {
+    *same = text;
+  }
+}
+
+void SessionTally::receive(const NodePositions& positions) {
+  if (positions.organ >= organs_.size() || positions.target_volume <= 0) return;
+  OrganTally& organ = organs_[positions.organ];
+  organ.volume_ratio = positions.volume / positions.target_volume;
+  sim_time_ = seconds_from_ns(positions.header.sim_time_ns);
+  if (!started_) return;
+  organ.worst_volume_error = std::max(organ.worst_volume_error, std::abs(organ.volume_ratio - 1));
+  organ.lowest_pressure = std::min(organ.lowest_pressure, positions.pressure);
+  organ.highest_pressure = std::max(organ.highest_pressure, positions.pressure);
+}
+
+void SessionTally::receive(const HapticForce& force) {
+  if (force.probe >= probes_.size()) return;
+  ProbeTally& probe = probes_[force.probe];
+  probe.force = force.force.norm();
+  if (!started_) return;
+  probe.greatest_force = std::max(probe.greatest_force, probe.force);
+  probe.limits |= force.limits;
+}
+
+const ModuleTally* SessionTally::module(const std::string& name) const {
+  const auto found = modules_.find(name);
+  return found == modules_.end() ? nullptr : &found->second;
+}
+
+double SessionTally::real_time_factor() const {
+  const ModuleTally* deformation = module("deformation");
+  return deformation == nullptr ? 0 : deformation->newest.real_time_factor;
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,67 @@
+// What is counted and kept of a session while it runs, for the status line and the summary. Pure.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "modules/messages/messages.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::launcher {
+
+struct OrganTally {
+  std::string name;
+  double volume_ratio = 0;                           ///< newest V/V*; 0 before the first
+  double worst_volume_error = 0;                     ///< largest |V−V*|/V* since the start
+  double lowest_pressure = 0, highest_pressure = 0;  ///< since the start [Pa]
+};
+
+struct ProbeTally {
+  std::string name;
+  double force = 0;           ///< newest magnitude [N]
+  double greatest_force = 0;  ///< since the start [N]
+  std::uint32_t limits = 0;   ///< ForceLimit bits that ever acted since the start
+};
+
+struct ModuleTally {
+  ModuleStatus newest;
+  std::uint64_t cycles_before = 0, overruns_before = 0;  ///< before the session started
+
+  std::uint64_t cycles() const { return newest.cycles - cycles_before; }
+  std::uint64_t overruns() const { return newest.overruns - overruns_before; }
+  /// Periods that had their cycle since the start, of all [0 … 1].
+  double on_time_fraction() const;
+};
+
+class SessionTally {
+ public:
+  explicit SessionTally(const scene::Scene& scene);
+
+  /// What comes from now on counts for the extremes and sums.
+  void start();
+
+  void receive(const ModuleStatus& status);
+  void receive(const NodePositions& positions);
+  void receive(const HapticForce& force);
+
+  const std::vector<OrganTally>& organs() const { return organs_; }
+  const std::vector<ProbeTally>& probes() const { return probes_; }
+  const std::map<std::string, ModuleTally>& modules() const { return modules_; }
+  /// "module: what its status said while degraded", each once, in the order of its first time.
+  const std::vector<std::string>& troubles() const { return troubles_; }
+  /// nullptr if nothing was heard of it.
+  const ModuleTally* module(const std::string& name) const;
+  double sim_time() const { return sim_time_; }  ///< of the newest node positions [s]
+  double real_time_factor() const;               ///< deformation's; 0 before the first
+
+ private:
+  bool started_ = false;
+  double sim_time_ = 0;
+  std::vector<OrganTally> organs_;
+  std::vector<ProbeTally> probes_;
+  std::map<std::string, ModuleTally> modules_;
+  std::vector<std::string> troubles_;
+};
+
+}  // namespace palpate::launcher

@@ -1,0 +1,102 @@
+#include "palpate/session_text.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+#include <utility>
+
+namespace palpate::launcher {
+namespace {
+
+std::string organ_lines(const SessionTally& tally) {
+  std::string text;
+  for (const auto& organ : tally.organs()) {
+    text += fmt::format("organ {:<14} |V-V0|/V0 at most {:.2e}   pressure {:.1f} to {:.1f} Pa\n",
+                        organ.name, organ.worst_volume_error, organ.lowest_pressure,
+                        organ.highest_pressure);
+  }
+  return text;
+}
+
+std::string probe_lines(const SessionTally& tally) {
+  std::string text;
+  for (const auto& probe : tally.probes()) {
+    text += fmt::format("probe {:<14} force at most {:.3f} N   limits that acted: {}\n", probe.name,
+                        probe.greatest_force, limit_names(probe.limits));
+  }
+  return text;
+}
+
+std::string module_lines(const SessionTally& tally) {
+  std::string text;
+  for (const auto& [name, module] : tally.modules()) {
+    const ModuleStatus& status = module.newest;
+    std::uint64_t received = 0, dropped = 0, rejected = 0;
+    for (const auto& input : status.inputs) {
+      received += input.received;
+      dropped += input.dropped;
+      rejected += input.rejected;
+    }
+    text += fmt::format(
+        "{:<12} {} cycles, {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms "
+        "since its start, busy {:.0f} %\n"
+        "             samples: {} taken, {} lost or overtaken by newer ones, {} refused\n",
+        name, module.cycles(), 100 * module.on_time_fraction(), status.nominal_rate_hz,
+        status.realtime_priority ? ", real-time priority" : "", 1e3 * status.worst_lateness,
+        100 * status.busy_fraction, received, dropped, rejected);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string limit_names(std::uint32_t limits) {
+  constexpr std::array<std::pair<ForceLimit, const char*>, 6> kNames{
+      {{kForceSaturated, "saturated"},
+       {kForceSlewLimited, "slew"},
+       {kForceStaleFade, "stale"},
+       {kForcePassivity, "passivity"},
+       {kForceNotFinite, "not finite"},
+       {kForceOutOfValidity, "out of validity"}}};
+  std::string text;
+  for (const auto& [bit, name] : kNames) {
+    if ((limits & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(name);
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string status_line(const SessionTally& tally) {
+  std::string line =
+      fmt::format("{:7.1f} s  real time {:.2f}", tally.sim_time(), tally.real_time_factor());
+  for (const auto& organ : tally.organs()) {
+    line += fmt::format("  V/V0 {} {:.6f}", organ.name, organ.volume_ratio);
+  }
+  for (const auto& probe : tally.probes()) {
+    line += fmt::format("  force {} {:.3f} N", probe.name, probe.force);
+  }
+  for (const auto& [name, module] : tally.modules()) {
+    line += fmt::format("  {} {:.0f} Hz", name, module.newest.rate_hz);
+    if (module.overruns() > 0) line += fmt::format(" ({} missed)", module.overruns());
+    if (!module.newest.last_error.empty()) line += fmt::format(" [{}]", module.newest.last_error);
+  }
+  return line;
+}
+
+std::string summary(const SessionTally& tally, const SessionEnd& end) {
+  std::string text = fmt::format(
+      "scene {}: {:.1f} s in {:.1f} s, {:.1f} s simulated, real-time factor {:.3f}\n", end.scene,
+      end.session_time, end.wall_time, tally.sim_time(), tally.real_time_factor());
+  text += organ_lines(tally) + probe_lines(tally) + module_lines(tally);
+  for (const auto& trouble : tally.troubles()) {
+    text += fmt::format("degraded for a while: {}\n", trouble);
+  }
+  for (const auto& [module, words] : end.last_words) {
+    if (!words.empty()) text += fmt::format("{} said at last: {}\n", module, words);
+  }
+  for (const auto& [module, failure] : end.failures) {
+    text += fmt::format("FAILED: {}: {}\n", module, failure);
+  }
+  return text;
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,28 @@
+// The session in words: the line of every second, and the summary at the end.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "palpate/session_tally.h"
+
+namespace palpate::launcher {
+
+/// "  12.0 s  real time 1.00  V/V0 stomach 1.000000  force probe 0.53 N  haptics 1000 Hz …"
+std::string status_line(const SessionTally& tally);
+
+struct SessionEnd {
+  std::string scene;
+  double session_time = 0;                        ///< [s]
+  double wall_time = 0;                           ///< from start to stop [s]
+  std::map<std::string, std::string> last_words;  ///< of each module: its last line
+  std::map<std::string, std::string> failures;    ///< module → how it ended
+};
+
+/// One screen.
+std::string summary(const SessionTally& tally, const SessionEnd& end);
+
+/// "saturated, stale": the names of ForceLimit bits; "none".
+std::string limit_names(std::uint32_t limits);
+
+}  // namespace palpate::launcher

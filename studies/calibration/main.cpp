@@ -1,0 +1,132 @@
+// palpate-calibrate: fits and checks spring stiffness against squeezed balls of finite elements.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+
+#include "modules/core/error.h"
+#include "modules/runtime/stop_signal.h"
+#include "studies/calibration/report.h"
+
+namespace {
+
+using namespace palpate;
+using calibration::Case;
+
+struct Options {
+  std::filesystem::path reference = PALPATE_REFERENCE_DIR;
+  std::filesystem::path csv;
+  std::string only;
+  std::vector<int> nodes{642, 2562};
+  std::optional<double> bending_ratio, inner_ratio;
+  bool quick = false, outer_surface = false;
+};
+
+void add_options(CLI::App& app, Options& options) {
+  app.add_flag("--quick", options.quick, "Only compare, do not fit (under a minute)");
+  app.add_option("--case", options.only, "Only this one: hollow or solid")
+      ->check(CLI::IsMember({"hollow", "solid"}));
+  app.add_option("--nodes", options.nodes, "Meshes: of 162, 642, 2562, 10242")
+      ->check(CLI::IsMember({162, 642, 2562, 10242}))
+      ->delimiter(',')
+      ->capture_default_str();
+  app.add_option("--bending-ratio", options.bending_ratio, "Instead of the shipped one")
+      ->check(CLI::Range(0.0, 10.0));
+  app.add_option("--inner-ratio", options.inner_ratio, "Instead of the shipped one")
+      ->check(CLI::Range(0.0, 100.0));
+  app.add_flag("--outer-surface", options.outer_surface,
+               "Nodes on the outer surface instead of the middle of the wall");
+  app.add_option("--csv", options.csv, "File for the comparison");
+  app.add_option("--reference", options.reference, "Folder of the reference tables")
+      ->capture_default_str();
+}
+
+std::vector<int> levels_of(const Options& options) {
+  std::vector<int> levels;
+  for (const int nodes : options.nodes) {
+    int level = 0;
+    while (calibration::node_count(level) < static_cast<std::size_t>(nodes)) ++level;
+    levels.push_back(level);
+  }
+  return levels;
+}
+
+std::vector<Case> cases_of(const Options& options) {
+  std::vector<Case> cases;
+  if (options.only != "solid") cases.push_back(calibration::hollow_ball(options.reference));
+  if (options.only != "hollow") cases.push_back(calibration::solid_ball(options.reference));
+  for (Case& calibrated : cases) {
+    auto& springs = calibrated.ball.organ.springs;
+    springs.bending_ratio = options.bending_ratio.value_or(springs.bending_ratio);
+    springs.inner_ratio = options.inner_ratio.value_or(springs.inner_ratio);
+    if (options.outer_surface) calibrated.ball.surface_depth = 0;
+  }
+  return cases;
+}
+
+void fit(const Case& calibrated, const std::vector<int>& levels,
+         const calibration::StopRequest& stop) {
+  calibration::print_fit_header(calibrated, std::cout);
+  std::vector<double> bending_ratios{calibrated.ball.organ.springs.bending_ratio};
+  if (calibrated.fits_membrane) bending_ratios = {0, 0.1, 0.3, 1};
+  for (const double bending_ratio : bending_ratios) {
+    calibration::print_fit(calibrated, calibration::fit(calibrated, bending_ratio, levels, stop),
+                           std::cout);
+  }
+}
+
+int run(const Options& options) {
+  const runtime::StopSignal signal;
+  const auto stop = [&] { return signal.requested(); };
+  const auto cases = cases_of(options);
+  std::ofstream csv;
+  if (!options.csv.empty()) {
+    csv.open(options.csv);
+    if (!csv) throw InputError(options.csv.string() + ": cannot be written");
+    calibration::write_csv_header(csv);
+  }
+  for (const Case& calibrated : cases) {
+    calibration::print_settings(calibrated, std::cout);
+    std::cout.flush();
+    if (!options.quick) fit(calibrated, levels_of(options), stop);
+    std::vector<calibration::Comparison> comparisons;
+    for (const int level : levels_of(options)) {
+      comparisons.push_back(calibration::compare(calibrated, level, stop));
+    }
+    calibration::print_comparisons(calibrated, comparisons, std::cout);
+    std::cout << std::endl;
+    if (csv.is_open()) calibration::write_csv(calibrated, comparisons, csv);
+  }
+  return kExitDone;
+}
+
+int calibrate(int argc, char** argv) {
+  CLI::App app(
+      "Squeeze balls between plates, fit inner springs and the membrane factor to\n"
+      "finite-element solutions, and print what error is left (docs/calibration.md).");
+  Options options;
+  add_options(app, options);
+  try {
+    app.parse(argc, argv);
+    return run(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  } catch (const InputError& error) {
+    std::cerr << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const calibration::Stopped&) {
+    std::cerr << "stopped\n";
+    return kExitFailed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return calibrate(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "palpate-calibrate: %s\n", error.what());
+    return kExitFailed;
+  }
+}

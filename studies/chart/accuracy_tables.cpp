@@ -1,0 +1,151 @@
+#include "studies/chart/accuracy_tables.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "modules/scene/schema.h"
+#include "studies/report/table_file.h"
+
+namespace palpate::accuracy {
+namespace {
+
+std::string number(double value, const char* format = "{:.8g}") {
+  return std::isnan(value) ? "" : fmt::format(fmt::runtime(format), value);
+}
+
+/// The columns that say which point it is.
+const std::vector<std::string> kKeys{"case", "model", "level", "rate_hz", "iterations"};
+
+std::vector<std::string> columns(const std::vector<std::string>& further) {
+  std::vector<std::string> all = kKeys;
+  all.insert(all.end(), further.begin(), further.end());
+  return all;
+}
+
+std::vector<std::string> row_of(const Point& p, const std::vector<double>& numbers) {
+  std::vector<std::string> row{p.of.name, scene::word_of(p.setting.model),
+                               std::to_string(p.setting.level), number(p.setting.rate),
+                               std::to_string(p.setting.iterations)};
+  for (const double value : numbers) row.push_back(number(value));
+  return row;
+}
+
+void write_points(const std::vector<Point>& points, const std::filesystem::path& file) {
+  bench::TableFile table(
+      file, columns({"surface_nodes", "inner_nodes", "tetrahedra", "step_s", "cost_s_per_s",
+                     "force_error", "shape_error_m", "field_error_m", "contact_radius_error",
+                     "profile_error_m", "volume_error", "diverged"}));
+  for (const Point& p : points) {
+    const Measurement& m = p.measurement;
+    table.write_row(
+        row_of(p, {double(m.surface_nodes), double(m.inner_nodes), double(m.tetrahedra), m.step,
+                   m.cost, force_error(m), shape_error(m), field_error(m), contact_radius_error(m),
+                   profile_error(m), m.volume_error, double(m.diverged)}));
+  }
+  table.finish();
+}
+
+void write_samples(const std::vector<Point>& points, const std::filesystem::path& file) {
+  bench::TableFile table(
+      file, columns({"load", "force", "reference_force", "shape_m", "reference_shape_m",
+                     "field_error_m", "contact_radius_m", "reference_contact_radius_m"}));
+  for (const Point& p : points) {
+    for (const Sample& s : p.measurement.samples) {
+      table.write_row(row_of(p, {s.load, s.force, s.reference_force, s.shape, s.reference_shape,
+                                 s.field_error, s.contact_radius, s.reference_contact_radius}));
+    }
+  }
+  table.finish();
+}
+
+void write_profiles(const std::vector<Point>& points, const std::filesystem::path& file) {
+  bench::TableFile table(file, columns({"load", "distance_m", "displacement_m", "reference_m"}));
+  for (const Point& p : points) {
+    for (const Sample& s : p.measurement.samples) {
+      for (std::size_t i = 0; i < kProfilePlaces.size(); ++i) {
+        if (std::isnan(s.profile[i])) continue;
+        table.write_row(
+            row_of(p, {s.load, kProfilePlaces[i], s.profile[i], s.reference_profile[i]}));
+      }
+    }
+  }
+  table.finish();
+}
+
+void write_truths(const std::vector<TruthPoint>& truths, const std::filesystem::path& file) {
+  bench::TableFile table(file, {"case", "level", "surface_nodes", "inner_nodes", "tetrahedra",
+                                "load", "force", "shape_m"});
+  for (const TruthPoint& truth : truths) {
+    for (std::size_t level = 0; level < truth.levels.size(); ++level) {
+      const Measurement& m = truth.levels[level];
+      for (const Sample& s : m.samples) {
+        table.write_row(std::vector<std::string>{
+            truth.of.name, std::to_string(level), std::to_string(m.surface_nodes),
+            std::to_string(m.inner_nodes), std::to_string(m.tetrahedra), number(s.load),
+            number(s.force), number(s.shape)});
+      }
+    }
+  }
+  table.finish();
+}
+
+std::string short_number(double value) { return number(value, "{:.3g}"); }
+
+std::string per_cent(double value) { return number(100 * value, "{:.2f} %"); }
+
+/// The coarser mesh (or larger step) judged by the finer one.
+void print_truth(const TruthPoint& truth, std::ostream& out) {
+  Measurement coarse = truth.levels.front();
+  const Measurement& fine = truth.levels.back();
+  for (Sample& sample : coarse.samples) {
+    sample.reference_force = sample.reference_shape = kUnknown;
+  }
+  refer(fine, coarse);
+  out << fmt::format("truth of {}: {} nodes; the coarser of {} differs by", truth.of.name,
+                     fine.surface_nodes + fine.inner_nodes,
+                     coarse.surface_nodes + coarse.inner_nodes);
+  const auto say = [&](const char* what, const std::string& value) {
+    if (!value.empty()) out << ' ' << what << ' ' << value;
+  };
+  say("force", per_cent(force_error(coarse)));
+  say("shape [mm]", short_number(1e3 * shape_error(coarse)));
+  say("profile [mm]", short_number(1e3 * profile_error(coarse)));
+  out << '\n';
+}
+
+}  // namespace
+
+void write_tables(const SweepResult& result, const std::filesystem::path& folder) {
+  write_points(result.points, folder / "points.csv");
+  write_samples(result.points, folder / "samples.csv");
+  write_profiles(result.points, folder / "profiles.csv");
+  write_truths(result.truths, folder / "truths.csv");
+}
+
+void print(const SweepResult& result, std::ostream& out) {
+  out << fmt::format(
+      "{:<10} {:<19} {:>5} {:>6} {:>5} {:>7} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+      "case", "model", "level", "[Hz]", "iter.", "nodes", "h [ms]", "cost/s", "force", "shape[mm]",
+      "field[mm]", "contact", "profile", "volume");
+  for (const Point& p : result.points) {
+    const Measurement& m = p.measurement;
+    out << fmt::format(
+        "{:<10} {:<19} {:>5} {:>6g} {:>5} {:>7} {:>8.3g} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} "
+        "{:>9}{}\n",
+        p.of.name, scene::word_of(p.setting.model), p.setting.level, p.setting.rate,
+        p.setting.iterations > 0 ? std::to_string(p.setting.iterations) : "",
+        m.surface_nodes + m.inner_nodes, 1e3 * m.step, short_number(m.cost),
+        per_cent(force_error(m)), short_number(1e3 * shape_error(m)),
+        short_number(1e3 * field_error(m)), per_cent(contact_radius_error(m)),
+        short_number(1e3 * profile_error(m)), number(m.volume_error, "{:.1e}"),
+        m.diverged ? "  diverged" : "");
+  }
+  out << "cost: processor seconds of one core per simulated second; force, contact (its radius): "
+         "root mean square over the loads of the relative error; shape, field, profile: root mean "
+         "square in mm.\n";
+  for (const TruthPoint& truth : result.truths) print_truth(truth, out);
+}
+
+}  // namespace palpate::accuracy

@@ -1,0 +1,111 @@
+// What the models are judged by: loads applied to an organ, and what the truth answers to them.
+//   ball      solid ball between frictionless plates      reference solutions (case A)
+//   block     block with bonded ends, compressed          reference (case C), measured Truth Cube
+//   indent    block under a frictionless 5 mm sphere      reference (case D)
+//   vibration free ball, its ellipsoidal mode             Lamb's exact root (case E)
+//   squeeze   the ball, squeezed within 50 ms             the accurate rung in small steps
+//   beam      a cantilever bends under its weight         equilibrium of the accurate rung
+//   (truths.h) liver, stomach   pressed by a sphere                  the same
+// All but vibration and squeeze move slowly and come to rest at each load.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "studies/chart/rungs.h"
+
+namespace palpate::accuracy {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Where the surface's profile is looked at: this far from the axis of the indenter [m].
+inline constexpr std::array kProfilePlaces{6e-3, 8e-3, 10e-3, 12e-3, 15e-3, 20e-3, 25e-3, 30e-3};
+/// Along the indenter's axis, outward [m].
+using Profile = std::array<double, kProfilePlaces.size()>;
+
+inline constexpr Profile unknown_profile() {
+  Profile profile{};
+  profile.fill(kUnknown);
+  return profile;
+}
+
+/// One load and the answers to it; kUnknown where there is none.
+struct Sample {
+  double load = 0;  ///< compression [1], depth [m], time [s]; exact frequency [Hz] of vibration
+  double force = kUnknown;  ///< on the probe [N]; the frequency [Hz] of vibration
+  double reference_force = kUnknown;
+  double shape = kUnknown;  ///< see Case::shape_name [m]
+  double reference_shape = kUnknown;
+  double field_error = kUnknown;     ///< RMS distance of points from where they should be [m]
+  double contact_radius = kUnknown;  ///< of the touching nodes' share of the surface [m]
+  double reference_contact_radius = kUnknown;
+  Profile profile = unknown_profile();
+  Profile reference_profile = unknown_profile();
+};
+
+struct Measurement {
+  std::size_t surface_nodes = 0, inner_nodes = 0, tetrahedra = 0;
+  double step = 0;          ///< h used [s]
+  double cost = 0;          ///< processor seconds per simulated second
+  double volume_error = 0;  ///< largest |V − V*|/V*
+  bool diverged = false;
+  bool is_course = false;  ///< samples are times of one motion, where forces may pass through 0
+  std::vector<Sample> samples;
+};
+
+/// Asked at every period; may throw to end a run.
+using KeepGoing = std::function<void()>;
+
+/// Who knows the answers.
+enum class Truth {
+  kReference,  ///< a reference, all of them
+  kPartly,     ///< a reference all but the profile, which truths.h has
+  kOwn         ///< truths.h alone
+};
+
+struct Case {
+  const char* name;
+  const char* load_name;   ///< with unit, for axes
+  const char* shape_name;  ///< what Sample::shape is; empty: nothing
+  int level_count;         ///< meshes there are
+  bool dynamic;            ///< needs velocities: kinematic models are left out
+  Truth truth;
+};
+
+const std::vector<Case>& cases();
+/// @throws InputError listing what there is
+const Case& find_case(const std::string& name);
+
+struct Source {
+  std::filesystem::path references;           ///< folder of reference tables
+  std::filesystem::path scenes;               ///< folder of scenes and their meshes
+  std::optional<std::filesystem::path> data;  ///< third-party data, if there
+};
+
+/// @throws InputError if gmsh, a mesh or a reference is missing; what `keep_going` throws
+Measurement measure(const Case& of, const Setting& setting, const Source& source,
+                    const KeepGoing& keep_going);
+
+/// What no reference knows, on a finer mesh the higher the level, below kTruthLevels (truths.h).
+/// @param of  not Truth::kReference alone @throws as measure()
+Measurement measure_truth(const Case& of, int level, const Source& source,
+                          const KeepGoing& keep_going);
+/// Answers of the truth become references where there is none.
+void refer(const Measurement& truth, Measurement& measurement);
+
+/// √ mean of the squared relative errors of force, of a course over time over the course's own √
+/// mean square; kUnknown if none is known.
+double force_error(const Measurement& measurement);
+/// √ mean of the squared differences of shape; kUnknown if none is known [m].
+double shape_error(const Measurement& measurement);
+/// √ mean of the squared field errors; kUnknown if none is known [m].
+double field_error(const Measurement& measurement);
+/// √ mean of the squared relative errors of the contact's radius; kUnknown if none is known.
+double contact_radius_error(const Measurement& measurement);
+/// √ mean of the squared differences of the profile; kUnknown if none is known [m].
+double profile_error(const Measurement& measurement);
+
+}  // namespace palpate::accuracy

@@ -1,0 +1,106 @@
+#include "studies/chart/point_store.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "studies/report/measures.h"
+#include "studies/report/reference_table.h"
+#include "studies/report/table_file.h"
+
+namespace palpate::accuracy {
+namespace {
+
+/// Of what is stored; raised when a case, a model or its constants change.
+constexpr int kVersion = 3;
+
+/// Visits all that is stored of a measurement and one of its samples, as numbers.
+template <class Visit>
+void visit_numbers(const Visit& visit) {
+  const auto count = [&](const char* name, std::size_t Measurement::*member) {
+    visit(name, [=](Measurement& m, Sample&, double* value) {
+      if (value != nullptr) m.*member = static_cast<std::size_t>(*value);
+      return static_cast<double>(m.*member);
+    });
+  };
+  const auto flag = [&](const char* name, bool Measurement::*member) {
+    visit(name, [=](Measurement& m, Sample&, double* value) {
+      if (value != nullptr) m.*member = *value != 0;
+      return static_cast<double>(m.*member);
+    });
+  };
+  const auto number = [&](const char* name, double Measurement::*member) {
+    visit(name, [=](Measurement& m, Sample&, double* value) {
+      return value != nullptr ? m.*member = *value : m.*member;
+    });
+  };
+  const auto answer = [&](const std::string& name, auto&& place) {
+    visit(name, [=](Measurement&, Sample& s, double* value) {
+      return value != nullptr ? place(s) = *value : place(s);
+    });
+  };
+  count("surface_nodes", &Measurement::surface_nodes);
+  count("inner_nodes", &Measurement::inner_nodes);
+  count("tetrahedra", &Measurement::tetrahedra);
+  number("step_s", &Measurement::step);
+  number("cost_s_per_s", &Measurement::cost);
+  number("volume_error", &Measurement::volume_error);
+  flag("diverged", &Measurement::diverged);
+  flag("is_course", &Measurement::is_course);
+  answer("load", [](Sample& s) -> double& { return s.load; });
+  answer("force", [](Sample& s) -> double& { return s.force; });
+  answer("reference_force", [](Sample& s) -> double& { return s.reference_force; });
+  answer("shape_m", [](Sample& s) -> double& { return s.shape; });
+  answer("reference_shape_m", [](Sample& s) -> double& { return s.reference_shape; });
+  answer("field_error_m", [](Sample& s) -> double& { return s.field_error; });
+  answer("contact_radius_m", [](Sample& s) -> double& { return s.contact_radius; });
+  answer("reference_contact_radius_m",
+         [](Sample& s) -> double& { return s.reference_contact_radius; });
+  for (std::size_t i = 0; i < kProfilePlaces.size(); ++i) {
+    answer(fmt::format("profile_at_{:g}_m", kProfilePlaces[i]),
+           [i](Sample& s) -> double& { return s.profile[i]; });
+  }
+}
+
+}  // namespace
+
+std::string truth_key(int level) { return fmt::format("truth-{}", level); }
+
+PointStore::PointStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+  bench::make_out_folder(folder_);
+}
+
+std::filesystem::path PointStore::file_of(const Case& of, const std::string& key) const {
+  return folder_ / fmt::format("{}-{}-v{}.csv", of.name, key, kVersion);
+}
+
+bool PointStore::read(const Case& of, const std::string& key, Measurement& out) const {
+  const auto file = file_of(of, key);
+  if (!std::filesystem::exists(file)) return false;
+  const bench::ReferenceTable table(file);
+  out = {};
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    Sample& sample = out.samples.emplace_back();
+    visit_numbers([&](const std::string& name, const auto& access) {
+      double value = table.at(name, row);
+      access(out, sample, &value);
+    });
+  }
+  return !out.samples.empty();
+}
+
+void PointStore::write(const Case& of, const std::string& key,
+                       const Measurement& measurement) const {
+  std::vector<std::string> names;
+  visit_numbers([&](const std::string& name, const auto&) { names.push_back(name); });
+  bench::TableFile table(file_of(of, key), names);
+  Measurement whole = measurement;
+  for (Sample& sample : whole.samples) {
+    std::vector<double> row;
+    visit_numbers([&](const std::string&, const auto& access) {
+      row.push_back(access(whole, sample, nullptr));
+    });
+    table.write_row(std::span<const double>(row));
+  }
+  table.finish();
+}
+
+}  // namespace palpate::accuracy

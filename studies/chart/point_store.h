@@ -1,0 +1,30 @@
+// Results of earlier runs, one file per case and setting, which appears whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "studies/chart/cases.h"
+
+namespace palpate::accuracy {
+
+class PointStore {
+ public:
+  /// @param folder  made if need be
+  explicit PointStore(std::filesystem::path folder);
+
+  /// @param key  Setting::key() or truth_key()
+  /// @returns false if it has not been measured, or by another version of this program
+  bool read(const Case& of, const std::string& key, Measurement& out) const;
+  void write(const Case& of, const std::string& key, const Measurement& measurement) const;
+
+ private:
+  std::filesystem::path file_of(const Case& of, const std::string& key) const;
+
+  std::filesystem::path folder_;
+};
+
+/// "truth-1"
+std::string truth_key(int level);
+
+}  // namespace palpate::accuracy

@@ -1,0 +1,58 @@
+// The ball squeezed within a few hundredths of a second and held: forces over time.
+#include <cmath>
+
+#include "studies/chart/case_parts.h"
+#include "studies/chart/truths.h"
+
+namespace palpate::accuracy {
+namespace {
+
+constexpr double kCompression = 0.2, kClosing = 0.06, kDuration = 0.3;  // [1], [s], [s]
+/// What a force is the mean over: the longest period there is, for a period has no finer answer
+/// [s].
+constexpr double kWindow = 0.02;
+constexpr double kDrag = 10;  // [1/s]; no other damping: its laws differ between models
+
+/// Height of the upper plate at `time` [s], above the middle [m].
+double height_at(double time) {
+  return kBallRadius * (1 - kCompression * std::min(1.0, time / kClosing));
+}
+
+}  // namespace
+
+Measurement measure_squeeze(const Setting& setting, const Source&, const KeepGoing& keep_going) {
+  const auto shape = ball_shape(setting);
+  scene::Scene scene = ball_scene(setting, kDrag);
+  scene.organs[0].tissue.damping_ratio = 0;
+  auto poses = add_plates(scene);
+  Stage stage(scene, shape, poses);
+  const int steps = static_cast<int>(std::lround(kWindow / stage.period()));
+  std::vector<Sample> samples;
+  while (stage.time() < kDuration - kWindow / 2 && !stage.diverged()) {
+    keep_going();
+    double sum = 0;
+    for (int k = 0; k < steps; ++k) {
+      const double height = height_at(stage.time() + stage.period());
+      poses[0].position.z() = height;
+      poses[1].position.z() = -height;
+      stage.advance(poses);
+      sum += (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+    }
+    Sample& sample = samples.emplace_back();
+    sample.load = kWindow * static_cast<double>(samples.size());
+    sample.force = sum / steps;
+  }
+  Measurement result = summary(stage, shape);
+  result.is_course = true;
+  result.samples = samples;
+  return result;
+}
+
+Measurement squeeze_in_small_steps(int level, const Source& source, const KeepGoing& keep_going) {
+  constexpr std::array kRates{1000.0, 2000.0};  // [Hz]
+  return measure_squeeze(
+      {scene::Model::kQuadraticElements, 1, kRates[static_cast<std::size_t>(level)]}, source,
+      keep_going);
+}
+
+}  // namespace palpate::accuracy

@@ -1,0 +1,171 @@
+#include "studies/chart/sweep.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "modules/scene/schema.h"
+#include "studies/chart/truths.h"
+
+namespace palpate::accuracy {
+namespace {
+
+bool is_slow(scene::Model model) { return model == scene::Model::kQuadraticElements; }
+
+bool wanted(const Case& of, const Setting& setting, Extent extent) {
+  const int finest = extent == Extent::kQuick ? 0 : extent == Extent::kUsual ? 1 : 2;
+  if (setting.level > std::min(finest, of.level_count - 1)) return false;
+  if (extent == Extent::kFull || !is_slow(setting.model)) return true;
+  // What takes longer than all other models together is left to --full.
+  const std::string name = of.name;
+  if (name == "indent" && (extent == Extent::kQuick || setting.level > 0)) return false;
+  return setting.rate < 101;
+}
+
+std::vector<double> rates_of(Extent extent) {
+  if (extent == Extent::kQuick) return {100};
+  if (extent == Extent::kUsual) return {50, 250};
+  return {50, 100, 250, 1000};
+}
+
+/// Beside the model's own count: fewer and more.
+std::vector<std::size_t> iterations_of(scene::Model model) {
+  if (!scene::has_iterations(model)) return {};
+  const bool xpbd = model == scene::Model::kXpbdSprings || model == scene::Model::kXpbdTetrahedra;
+  return xpbd ? std::vector<std::size_t>{2, 4, 8} : std::vector<std::size_t>{5, 10, 80};
+}
+
+/// Usually on one mesh of one case, where all else is the model's own.
+bool sweeps_iterations(const Case& of, const Setting& setting, Extent extent) {
+  if (extent == Extent::kFull) return true;
+  return extent == Extent::kUsual && std::string(of.name) == "ball" && setting.level == 0 &&
+         setting.rate < 51;
+}
+
+bool is_wanted(const std::vector<scene::Model>& models, scene::Model model) {
+  return std::find(models.begin(), models.end(), model) != models.end();
+}
+
+/// How much is left, from what the points of this run took.
+class Pace {
+ public:
+  void begin() { start_ = Clock::now(); }
+  void finish(double weight) {
+    seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
+    weight_ += weight;
+  }
+  double seconds_for(double weight) const {
+    return weight_ > 0 ? seconds_ / weight_ * weight : kUnknown;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_;
+  double seconds_ = 0, weight_ = 0;
+};
+
+/// One thing to measure, and where its result goes.
+struct Job {
+  std::string name;
+  Case of;
+  std::string key;
+  double weight = 1;
+  std::function<Measurement()> measure;
+  Measurement* result = nullptr;
+};
+
+void run(std::vector<Job>& jobs, const PointStore& store,
+         const std::function<void(const Outlook&)>& begin) {
+  double left = 0;
+  for (const Job& job : jobs) {
+    if (!store.read(job.of, job.key, *job.result)) left += job.weight;
+  }
+  Pace pace;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (!jobs[i].result->samples.empty()) continue;
+    begin(
+        {jobs[i].name, static_cast<int>(i), static_cast<int>(jobs.size()), pace.seconds_for(left)});
+    pace.begin();
+    *jobs[i].result = jobs[i].measure();
+    store.write(jobs[i].of, jobs[i].key, *jobs[i].result);
+    pace.finish(jobs[i].weight);
+    left -= jobs[i].weight;
+  }
+}
+
+}  // namespace
+
+// Steps per second grow with the rate, and cost per step with nodes: eight times per level, more
+// for direct solvers; fitted to the usual chart, good to a factor of two or three.
+double weight_of(const Setting& setting) {
+  const bool springs = setting.model < scene::Model::kXpbdSprings;
+  const bool implicit = setting.model == scene::Model::kCorotational ||
+                        setting.model == scene::Model::kNodalPressure || is_slow(setting.model);
+  const double model = is_slow(setting.model) ? 12 : springs ? 0.3 : 1;
+  const double growth = is_slow(setting.model) ? 20 : 7;
+  return model * std::pow(growth, setting.level) * (implicit ? setting.rate / 100 : 1);
+}
+
+std::vector<Setting> settings_of(const Case& of, Extent extent) {
+  std::vector<Setting> settings;
+  if (of.truth == Truth::kOwn && extent == Extent::kQuick) return settings;  // truths take minutes
+  for (const scene::Model model : ladder()) {
+    for (int level = 0; level < of.level_count; ++level) {
+      for (const double rate : rates_of(extent)) {
+        Setting setting{model, level, rate};
+        if (!wanted(of, setting, extent)) continue;
+        settings.push_back(setting);
+        if (!sweeps_iterations(of, setting, extent)) continue;
+        for (const std::size_t count : iterations_of(model)) {
+          setting.iterations = count;
+          settings.push_back(setting);
+        }
+      }
+    }
+  }
+  return settings;
+}
+
+SweepResult sweep(const std::vector<Case>& of, Extent extent,
+                  const std::vector<scene::Model>& models, const Source& source,
+                  const PointStore& store, const std::function<void(const Outlook&)>& begin,
+                  const KeepGoing& keep_going) {
+  SweepResult result;
+  for (const Case& each : of) {
+    for (const Setting& setting : settings_of(each, extent)) {
+      if (is_wanted(models, setting.model)) result.points.push_back({each, setting, {}});
+    }
+    if (each.truth != Truth::kReference && extent != Extent::kQuick) {
+      result.truths.push_back({each, std::vector<Measurement>(kTruthLevels)});
+    }
+  }
+  constexpr double kTruthWeight = 100;
+  std::vector<Job> jobs;
+  for (TruthPoint& truth : result.truths) {
+    for (int level = 0; level < kTruthLevels; ++level) {
+      jobs.push_back({fmt::format("{}: truth, level {}", truth.of.name, level), truth.of,
+                      truth_key(level), kTruthWeight,
+                      [&, level] { return measure_truth(truth.of, level, source, keep_going); },
+                      &truth.levels[static_cast<std::size_t>(level)]});
+    }
+  }
+  for (Point& point : result.points) {
+    jobs.push_back({fmt::format("{}: {}", point.of.name, point.setting.name()), point.of,
+                    point.setting.key(), weight_of(point.setting),
+                    [&] { return measure(point.of, point.setting, source, keep_going); },
+                    &point.measurement});
+  }
+  run(jobs, store, begin);
+  for (Point& point : result.points) {
+    for (const TruthPoint& truth : result.truths) {
+      if (std::string(truth.of.name) == point.of.name) {
+        refer(truth.levels.back(), point.measurement);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace palpate::accuracy

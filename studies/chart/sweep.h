@@ -1,0 +1,51 @@
+// Which settings of which models are measured in which case.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "studies/chart/point_store.h"
+
+namespace palpate::accuracy {
+
+enum class Extent { kQuick, kUsual, kFull };
+
+/// All settings of a case, cheap ones first.
+std::vector<Setting> settings_of(const Case& of, Extent extent);
+
+/// How long a point takes in all, up to a factor common to all: to tell how much is left.
+double weight_of(const Setting& setting);
+
+struct Point {
+  Case of;
+  Setting setting;
+  Measurement measurement;
+};
+
+/// A truth of our own on its meshes, coarse to fine.
+struct TruthPoint {
+  Case of;
+  std::vector<Measurement> levels;
+};
+
+struct SweepResult {
+  std::vector<Point> points;
+  std::vector<TruthPoint> truths;
+};
+
+/// What is about to be measured.
+struct Outlook {
+  std::string job;
+  int done = 0, total = 0;
+  double seconds_left = kUnknown;  ///< as this run has gone so far
+};
+
+/// Measures what is not in the store yet, truths first.
+/// @param begin  told of each job before it is done
+/// @throws what a measurement throws; finished points stay in the store
+SweepResult sweep(const std::vector<Case>& of, Extent extent,
+                  const std::vector<scene::Model>& models, const Source& source,
+                  const PointStore& store, const std::function<void(const Outlook&)>& begin,
+                  const KeepGoing& keep_going);
+
+}  // namespace palpate::accuracy

@@ -1,0 +1,40 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#include "modules/core/error.h"
+#include "modules/runtime/stop_signal.h"
+#include "studies/elements/elements_command.h"
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  CLI::App app("Finite elements against reference solutions: errors and orders of convergence.",
+               "palpate-elements");
+  elements_bench::ElementsOptions options;
+  options.reference_folder = PALPATE_REFERENCE_DIR;
+  app.add_option("--case", options.cases, "Only these: A, C, D, E; or all")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"A", "C", "D", "E", "all"}));
+  app.add_option("--sizes", options.sizes, "Edge lengths, relative to the case's length")
+      ->delimiter(',')
+      ->check(CLI::Range(0.01, 1.5));
+  app.add_option("-o,--out", options.out, "Folder for CSV files");
+  app.add_option("--reference", options.reference_folder, "Folder of the reference tables")
+      ->capture_default_str();
+  app.add_flag("--quick", options.quick, "Coarse meshes, small loads: about a minute");
+  try {
+    app.parse(argc, argv);
+    if (std::count(options.cases.begin(), options.cases.end(), "all") > 0) options.cases.clear();
+    const runtime::StopSignal signal;
+    return elements_bench::run_elements(
+        options, [&] { return signal.requested(); }, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  } catch (const InputError& error) {
+    std::cerr << "palpate-elements: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "palpate-elements: " << error.what() << '\n';
+    return kExitFailed;
+  }
+}

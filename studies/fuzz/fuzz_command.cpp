@@ -1,0 +1,98 @@
+#include "studies/fuzz/fuzz_command.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <map>
+#include <ostream>
+
+#include "modules/core/error.h"
+#include "modules/runtime/stop_signal.h"
+#include "studies/fuzz/block_store.h"
+#include "studies/fuzz/lockstep.h"
+#include "studies/fuzz/minimise.h"
+#include "studies/fuzz/scene_files.h"
+#include "studies/fuzz/tally.h"
+#include "studies/report/progress.h"
+
+namespace palpate::fuzz {
+namespace {
+
+/// Minimising a scene runs it a hundred times; more of one kind say no more.
+constexpr std::size_t kKeptOfAKind = 3;
+
+/// Leaves a failing scene as simple as can be in out/scene_k.
+void keep(const FuzzOptions& options, const ShapeStore& shapes, std::uint64_t number,
+          const std::string& kind, std::ostream& log) {
+  const auto fails = [&](const RandomScene& scene) {
+    const Outcome outcome = run_apart(scene, shapes);
+    return outcome.ending == Ending::kFailed && outcome.kind() == kind;
+  };
+  const RandomScene small = minimised(random_scene(options.seed, number), fails);
+  const auto file = write_scene(small, shapes, options.out / fmt::format("scene_{}", number));
+  log << fmt::format("scene {} failed ({}): {}", number, kind, file.string()) << std::endl;
+}
+
+/// One scene with all that is to say of it.
+int run_one(const FuzzOptions& options, const ShapeStore& shapes, std::ostream& out,
+            std::ostream& log) {
+  const std::uint64_t number = *options.only;
+  const RandomScene scene = random_scene(options.seed, number);
+  out << text_of(scene);
+  const Outcome outcome = run_and_compare(scene, shapes);
+  Tally tally;
+  tally.add(number, outcome);
+  tally.print(out);
+  out << fmt::format("simulated {:.4g} s; {}\n", outcome.time,
+                     outcome.what.empty() ? "ran" : outcome.what);
+  if (outcome.ending != Ending::kFailed) return kExitDone;
+  keep(options, shapes, number, outcome.kind(), log);
+  return kExitFailed;
+}
+
+/// Blocks in order; finished ones are read.
+void run_all(const FuzzOptions& options, const ShapeStore& shapes, bench::Progress& progress,
+             Tally& tally, std::ostream& log) {
+  const auto folder = options.out / "blocks";
+  if (options.again) std::filesystem::remove_all(folder);
+  const BlockStore store(folder, options.seed);
+  std::map<std::string, std::size_t> kept;
+  for (std::uint64_t first = 0; first < options.scenes; first += kBlock) {
+    const std::size_t count = std::min(kBlock, options.scenes - first);
+    std::vector<Outcome> outcomes;
+    if (!store.read(first, count, outcomes)) {
+      outcomes.clear();
+      for (std::uint64_t k = first; k < first + count; ++k) {
+        progress.at(double(k), double(options.scenes), "scenes");
+        outcomes.push_back(run_and_compare(random_scene(options.seed, k), shapes));
+        const std::string kind = outcomes.back().kind();
+        if (outcomes.back().ending != Ending::kFailed || ++kept[kind] > kKeptOfAKind) continue;
+        keep(options, shapes, k, kind, log);
+      }
+      store.write(first, outcomes);
+    }
+    for (std::size_t i = 0; i < count; ++i) tally.add(first + i, outcomes[i]);
+  }
+}
+
+}  // namespace
+
+int run_fuzz(const FuzzOptions& options, std::ostream& out, std::ostream& log) {
+  const ShapeStore shapes(options.root / "scenes");
+  if (options.only) return run_one(options, shapes, out, log);
+  const runtime::StopSignal stop;
+  bench::Progress progress(log, [&] { return stop.requested(); });
+  progress.begin(fmt::format("fuzz, seed {}", options.seed));
+  Tally tally;
+  try {
+    run_all(options, shapes, progress, tally, log);
+  } catch (const bench::Stopped&) {
+    tally.print(out);
+    log << "stopped; finished blocks are not run again" << std::endl;
+    return bench::kExitStopped;
+  }
+  tally.print(out);
+  return tally.failed() == 0 ? kExitDone : kExitFailed;
+}
+
+}  // namespace palpate::fuzz

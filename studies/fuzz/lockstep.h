@@ -1,0 +1,26 @@
+// A random scene through the libraries of all processes, one after the other, every message looked
+// at as the processes' codecs do, some spoilt on the way.
+#pragma once
+
+#include "deformation/simulated_organ.h"
+#include "studies/fuzz/outcome.h"
+#include "studies/fuzz/random_scene.h"
+#include "studies/fuzz/shape_store.h"
+
+namespace palpate::fuzz {
+
+/// Runs for the scene's duration, or until it has cost as much as a few milliseconds of a small
+/// mesh (counted in nodes and steps, not by a clock). A failure ends it.
+/// @param guarding  off: also fails if an organ is found shaking, grown or turned inside out at
+///                  the end (organ_watch.h)
+Outcome run_lockstep(const RandomScene& scene, const ShapeStore& shapes,
+                     deformation::Guarding guarding = deformation::Guarding::kOn);
+
+/// The same in a process of its own: a crash or a hang is a failure of the scene, not ours.
+Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes,
+                  deformation::Guarding guarding = deformation::Guarding::kOn);
+
+/// And, where a guard of the state acted, once more without them.
+Outcome run_and_compare(const RandomScene& scene, const ShapeStore& shapes);
+
+}  // namespace palpate::fuzz

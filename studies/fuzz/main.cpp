@@ -1,0 +1,33 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "modules/core/error.h"
+#include "studies/fuzz/fuzz_command.h"
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  CLI::App app("Random scenes, looking for one that fails without a guard noticing.",
+               "palpate fuzz");
+  fuzz::FuzzOptions options;
+  options.root = PALPATE_SOURCE_DIR;
+  app.add_option("-o,--out", options.out, "Folder for outcomes and failing scenes")
+      ->capture_default_str();
+  app.add_option("--scenes", options.scenes, "How many")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "Of the scenes")->capture_default_str();
+  app.add_option("--scene", options.only, "Only this one, in detail");
+  app.add_flag("--again", options.again, "Run anew what earlier runs have left in --out");
+  try {
+    app.parse(argc, argv);
+    return fuzz::run_fuzz(options, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  } catch (const InputError& error) {
+    std::cerr << "palpate fuzz: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "palpate fuzz: " << error.what() << '\n';
+    return kExitFailed;
+  }
+}

@@ -1,0 +1,95 @@
+#include "studies/fuzz/random_probe.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+namespace palpate::fuzz {
+namespace {
+
+constexpr double kPeakOfMean = 1.875;  // speeds of a minimum-jerk move
+
+scene::ProbeShape random_shape(RandomStream& random, double size) {
+  switch (random.below(8)) {
+    case 0:
+    case 1:
+      return scene::SphereShape{size * random.log_uniform(0.01, 0.8)};
+    case 2:
+      return scene::CapsuleShape{1e-4, size * random.uniform(0.5, 2)};  // a needle
+    case 3:
+      return scene::CapsuleShape{size * random.log_uniform(0.01, 0.3),
+                                 size * random.uniform(0.1, 2)};
+    case 4:
+      return scene::BoxShape{Vec3(2 * size, 2 * size, 0.02 * size + 1e-4)};  // a plate
+    case 5:
+      return scene::BoxShape{Vec3::Constant(size * random.log_uniform(0.02, 1))};
+    case 6:
+      return scene::PlaneShape{};
+    default:
+      return scene::MeshShape{};
+  }
+}
+
+scene::ScriptedDevice::Move move_to(RandomStream& random, const Vec3& from, const Vec3& to) {
+  const double speed = random.log_uniform(0.01, 5);
+  const double duration = kPeakOfMean * (to - from).norm() / speed;
+  return {to, random.chance(0.15) ? 1e-3 : std::clamp(duration, 1e-3, 3600.0)};  // or a jump
+}
+
+scene::ScriptedDevice random_way(RandomStream& random, const Vec3& center, double size) {
+  scene::ScriptedDevice way;
+  const double far = random.chance(0.1) ? 0.1 : random.uniform(0.5, 1.2);  // or begins inside
+  way.start = center + size * far * random.direction();
+  if (random.chance(0.7)) way.rotation = random.rotation();
+  Vec3 at = way.start;
+  for (std::size_t i = 1 + random.below(4); i > 0; --i) {
+    if (random.chance(0.2)) {
+      way.moves.push_back({std::nullopt, random.log_uniform(1e-3, 0.1)});
+      continue;
+    }
+    const Vec3 to = center + size * random.uniform(0, 0.8) * random.direction();
+    way.moves.push_back(move_to(random, at, to));
+    at = to;
+  }
+  return way;
+}
+
+/// Two plates meet in the organ's middle, but for a small gap.
+void add_plates(RandomStream& random, const Vec3& center, double size, RandomScene& scene) {
+  const Vec3 axis = random.direction();
+  const double time = scene.scene.duration * random.uniform(0.3, 1);
+  const double thickness = 0.05 * size;
+  for (const double side : {1.0, -1.0}) {
+    scene::ScriptedDevice way;
+    way.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), axis);
+    way.start = center + side * 0.7 * size * axis;
+    way.moves.push_back({center + side * (thickness / 2 + 0.01 * size) * axis, time});
+    scene.scene.probes.push_back(
+        {"", scene::BoxShape{Vec3(3 * size, 3 * size, thickness)}, 0.1, way});
+  }
+}
+
+}  // namespace
+
+void add_probes(RandomStream& random, RandomScene& scene) {
+  const Vec3 center = scene.scene.organs[0].pose.position;
+  const double size = scene.organ_shapes[0].size.maxCoeff();
+  auto& probes = scene.scene.probes;
+  if (random.chance(0.1)) add_plates(random, center, size, scene);
+  for (std::size_t i = probes.empty() ? 1 + random.below(3) : random.below(2); i > 0; --i) {
+    const auto shape = random_shape(random, size);
+    probes.push_back({"", shape, 0.1, random_way(random, center, size)});
+  }
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    probes[i].name = fmt::format("probe_{}", i);
+    probes[i].friction = random.chance(0.2) ? 0 : random.uniform(0, 2);
+    PlacedShape mesh{static_cast<Shape>(random.below(kShapeCount)),
+                     Vec3::Constant(size * random.log_uniform(0.05, 0.5))};
+    if (auto* shape = std::get_if<scene::MeshShape>(&probes[i].shape)) {
+      shape->mesh.file = fmt::format("probe_{}_{}.ply", i, name_of(mesh.shape));
+    }
+    scene.probe_shapes.push_back(mesh);
+  }
+}
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,56 @@
+// A random scene, with what is done to its messages, from two numbers alone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modules/scene/scene.h"
+#include "studies/fuzz/shape_store.h"
+
+namespace palpate::fuzz {
+
+/// What a message is spoilt with, once.
+enum class Insult : std::uint8_t {
+  kPoseNotANumber,
+  kPoseInfinite,
+  kPoseDenormal,
+  kPoseHuge,
+  kRotationZero,
+  kGapNotANumber,
+  kNormalNotANumber,
+  kNormalDenormal,
+  kPointInfinite,
+  kPointHuge,
+  kGapHuge,
+  kUnknownOrgan,
+  kUnknownTriangle,
+  kUnknownProbe,
+  kManyContacts,
+  kModelNotANumber,
+  kModelHuge,
+  kDeviceNotANumber
+};
+inline constexpr std::size_t kInsultCount = 18;
+const char* name_of(Insult insult);
+
+struct TimedInsult {
+  Insult insult = Insult::kPoseNotANumber;
+  std::uint32_t probe = 0;
+  double time = 0;  ///< simulated [s]
+};
+
+struct RandomScene {
+  scene::Scene scene;
+  std::vector<PlacedShape> organ_shapes;  ///< one per organ
+  std::vector<PlacedShape> probe_shapes;  ///< one per probe; used by MeshShape alone
+  std::vector<TimedInsult> insults;
+};
+
+/// @param number  k: scenes of one seed differ by it alone
+RandomScene random_scene(std::uint64_t seed, std::uint64_t number);
+
+/// YAML, the shapes and insults as comments: all there is.
+std::string text_of(const RandomScene& scene);
+
+}  // namespace palpate::fuzz

@@ -1,0 +1,56 @@
+#include "studies/report/plot_script.h"
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace palpate::bench {
+
+int run_program(const std::vector<std::string>& words) {
+  std::vector<char*> arguments;
+  for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  pid_t process = 0;
+  if (posix_spawnp(&process, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) {
+    return -1;
+  }
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+namespace {
+
+/// The first python3 that has matplotlib; empty if none has.
+std::string find_python() {
+  constexpr const char* kHasMatplotlib =
+      "import importlib.util, sys; sys.exit(importlib.util.find_spec('matplotlib') is None)";
+  for (const std::string python : {"python3", "/usr/bin/python3"}) {
+    if (run_program({python, "-c", kHasMatplotlib}) == 0) return python;
+  }
+  return {};
+}
+
+}  // namespace
+
+void draw_figures(const std::filesystem::path& script, const std::filesystem::path& folder) {
+  const std::string python = find_python();
+  if (python.empty()) {
+    throw std::runtime_error(
+        "no pictures: python3 with matplotlib is missing (Debian: apt install "
+        "python3-matplotlib); the CSV files in " +
+        folder.string() + " stay");
+  }
+  if (run_program({python, script.string(), folder.string()}) != 0) {
+    throw std::runtime_error("no pictures: " + script.string() + " failed; the CSV files in " +
+                             folder.string() + " stay");
+  }
+}
+
+}  // namespace palpate::bench

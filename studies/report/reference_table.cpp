@@ -1,0 +1,57 @@
+#include "studies/report/reference_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "modules/core/error.h"
+
+namespace palpate::bench {
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+}  // namespace
+
+ReferenceTable::ReferenceTable(std::filesystem::path file) : file_(std::move(file)) {
+  std::ifstream stream(file_);
+  std::string line;
+  if (!std::getline(stream, line)) throw InputError(file_.string() + ": no such reference table");
+  names_ = cells_of(line);
+  while (std::getline(stream, line)) rows_.push_back(cells_of(line));
+}
+
+double ReferenceTable::at(const std::string& column, std::size_t row) const {
+  const auto name = std::find(names_.begin(), names_.end(), column);
+  if (name == names_.end()) {
+    throw InputError(file_.string() + ":1: column '" + column + "' is missing");
+  }
+  const auto place = static_cast<std::size_t>(name - names_.begin());
+  const auto& cells = rows_.at(row);
+  const std::string cell = place < cells.size() ? cells[place] : "";
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size()) {
+    throw InputError(file_.string() + ":" + std::to_string(row + 2) + ": column " + column +
+                     ": not a number");
+  }
+  return value;
+}
+
+std::size_t ReferenceTable::row_of(const std::string& column, double value) const {
+  for (std::size_t row = 0; row < size(); ++row) {
+    if (std::abs(at(column, row) - value) < 1e-9) return row;
+  }
+  std::ostringstream text;
+  text << file_.string() << ": no row with " << column << " = " << value;
+  throw InputError(text.str());
+}
+
+}  // namespace palpate::bench

@@ -1,0 +1,180 @@
+#include "studies/stability/locking.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <fstream>
+#include <stdexcept>
+
+#include "modules/geometry/primitives.h"
+#include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/scene/schema.h"
+#include "studies/chart/case_parts.h"
+#include "studies/elements/load_path.h"
+#include "studies/report/table_file.h"
+
+namespace palpate::stability {
+namespace {
+
+using scene::Model;
+
+constexpr int kVersion = 1;           // of what is stored
+constexpr double kDensity = 1060;     // [kg/m³]
+constexpr double kPlateSpeed = 0.02;  // [m/s]
+constexpr double kDrag = 60;          // about critical for the slowest mode [1/s]
+constexpr double kRate = 100;         // steps asked for per second [Hz]
+constexpr double kPenalty = 3e4 * kLockingModulus / kRadius;  // as in bench/elements [Pa/m]
+constexpr double kStride = 0.025;                             // of compression
+constexpr double kEdge = 0.16;  // of the reference\'s mesh at the surface, of the radius
+
+geometry::OrganShape solid_ball() {
+  const auto surface = geometry::make_ball(kRadius, 2);
+  const auto edges = geometry::edges_of(surface.triangles);
+  double sum = 0;
+  for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
+  return geometry::shape_of(
+      geometry::fill_surface(surface, sum / static_cast<double>(edges.size())));
+}
+
+scene::Scene plates_scene(Model model, double poisson_ratio) {
+  scene::Scene scene;
+  const accuracy::Setting setting{model, 0, kRate};
+  scene.organs.push_back(accuracy::solid_organ(setting, kRadius, 1, kLockingModulus, kDensity));
+  scene.organs[0].solid.poisson_ratio = poisson_ratio;
+  scene.organs[0].tissue.drag = kDrag;
+  scene.rates.deformation = kRate;
+  for (const char* name : {"upper_plate", "lower_plate"}) {
+    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
+  }
+  return scene;
+}
+
+/// An octant, three times coarser in the middle, where nothing happens.
+elements::MixedSolid octant(double poisson_ratio) {
+  auto mesh = elements::make_quadratic(geometry::mesh_ball(
+      kRadius, geometry::BallPart::kOctant,
+      fmt::format("{:g} - {:g}*(x*x+y*y+z*z)", 3 * kEdge * kRadius, 2 * kEdge / kRadius)));
+  elements::curve_onto_sphere(mesh, Vec3::Zero(), kRadius);
+  return {std::move(mesh), elements::NeoHookean::from_engineering(kLockingModulus, poisson_ratio),
+          kDensity};
+}
+
+std::vector<char> symmetry_of(const elements::MixedSolid& solid) {
+  std::vector<char> held;
+  for (const Vec3& p : solid.mesh().nodes) {
+    for (int axis = 0; axis < 3; ++axis) held.push_back(p[axis] == 0);
+  }
+  return held;
+}
+
+std::vector<std::uint32_t> outer_faces(const elements::MixedSolid& solid) {
+  std::vector<std::uint32_t> faces;
+  const auto& mesh = solid.mesh();
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    bool outside = true;
+    for (int k = 0; k < 3; ++k) {
+      outside &= mesh.nodes[mesh.face_node(mesh.faces[f], k)].norm() > (1 - 1e-6) * kRadius;
+    }
+    if (outside) faces.push_back(f);
+  }
+  return faces;
+}
+
+/// Force and divergence in a file of their own, measured if it is not there.
+LockingPoint kept(const std::filesystem::path& file, const std::function<LockingPoint()>& measure) {
+  std::ifstream stream(file);
+  LockingPoint point;
+  char comma = 0;
+  if (std::string title; std::getline(stream, title) && stream >> point.force >> comma) {
+    int diverged = 0;
+    stream >> diverged;
+    point.diverged = diverged != 0;
+    return point;
+  }
+  point = measure();
+  bench::TableFile table(file, {"force_n", "diverged"});
+  table.write_row({point.force, double(point.diverged)});
+  table.finish();
+  return point;
+}
+
+}  // namespace
+
+double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
+  const elements::MixedSolid solid = octant(poisson_ratio);
+  elements::RigidContact contact(solid, outer_faces(solid), kPenalty);
+  elements::EquilibriumSolver solver(solid, symmetry_of(solid), &contact);
+  const elements_bench::Setting setting{{},
+                                        false,
+                                        [&] {
+                                          keep_going();
+                                          return false;
+                                        },
+                                        [](const std::string&) {}};
+  elements_bench::LoadPath path(solid, solver, &contact, setting);
+  path.set_longest_stride(kStride);
+  const bool done = path.advance_to(kLockingCompression, [&](double at, elements::SolidState&) {
+    contact.set_obstacles({elements::Plane{Vec3(0, 0, kRadius * (1 - at)), -Vec3::UnitZ()}});
+  });
+  if (!done) {
+    throw std::runtime_error(
+        fmt::format("locking: no equilibrium of the reference at ν = {:g}", poisson_ratio));
+  }
+  return 4 * contact.outcomes(path.state())[0].force.z();
+}
+
+LockingPoint locking_point(Model model, double poisson_ratio, const KeepGoing& keep_going) {
+  static const geometry::OrganShape kBall = solid_ball();
+  std::vector<Pose> poses{accuracy::plate(kRadius, false), accuracy::plate(-kRadius, true)};
+  accuracy::Stage stage(plates_scene(model, poisson_ratio), kBall, poses);
+  const double height = kRadius * (1 - kLockingCompression);
+  accuracy::move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed,
+                            keep_going);
+  LockingPoint point{model, poisson_ratio, 0, 0, stage.diverged()};
+  point.force = (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+  return point;
+}
+
+std::vector<double> locking_ratios(bool quick) {
+  if (quick) return {0.3, 0.45, 0.499};
+  return {0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4999};
+}
+
+std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
+                                          const std::filesystem::path& folder,
+                                          const KeepGoing& keep_going) {
+  std::vector<LockingPoint> points;
+  for (const Model model : {Model::kCorotational, Model::kXpbdTetrahedra, Model::kNodalPressure}) {
+    for (const double ratio : ratios) {
+      const auto file = [&](const char* what) {
+        return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kVersion);
+      };
+      const double reference = kept(file("reference"), [&] {
+                                 LockingPoint truth;
+                                 truth.force = locking_reference(ratio, keep_going);
+                                 return truth;
+                               }).force;
+      LockingPoint point = kept(file(scene::word_of(model)),
+                                [&] { return locking_point(model, ratio, keep_going); });
+      point.model = model;
+      point.poisson_ratio = ratio;
+      point.reference_force = reference;
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+void write_locking(const std::vector<LockingPoint>& points, const std::filesystem::path& file) {
+  bench::TableFile table(
+      file, {"model", "poisson_ratio", "force_n", "reference_force_n", "force_error", "diverged"});
+  for (const LockingPoint& p : points) {
+    table.write_row(std::vector<std::string>{
+        scene::word_of(p.model), fmt::format("{:.6g}", p.poisson_ratio),
+        fmt::format("{:.8g}", p.force), fmt::format("{:.8g}", p.reference_force),
+        fmt::format("{:.6g}", p.error()), p.diverged ? "1" : "0"});
+  }
+  table.finish();
+}
+
+}  // namespace palpate::stability

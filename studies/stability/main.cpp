@@ -1,0 +1,32 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "modules/core/error.h"
+#include "studies/stability/stability_command.h"
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  CLI::App app("Stability atlas: where each method fails, measured and predicted.",
+               "palpate stability");
+  stability::StabilityOptions options;
+  options.root = PALPATE_SOURCE_DIR;
+  app.add_option("-o,--out", options.out, "Folder for tables and charts")->capture_default_str();
+  app.add_option("--only", options.only_maps, "Only these maps")
+      ->delimiter(',')
+      ->check(CLI::IsMember(stability::map_names()));
+  app.add_option("--series", options.only_series, "Only these models or loops")->delimiter(',');
+  app.add_flag("--quick", options.quick, "Fewer models and values: under 90 s");
+  app.add_flag("--again", options.again, "Measure anew what earlier runs have left in --out");
+  try {
+    app.parse(argc, argv);
+    return stability::run_stability(options, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+  } catch (const InputError& error) {
+    std::cerr << "palpate stability: " << error.what() << '\n';
+    return kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "palpate stability: " << error.what() << '\n';
+    return kExitFailed;
+  }
+}

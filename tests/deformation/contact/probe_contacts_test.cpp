@@ -1,0 +1,126 @@
+#include "deformation/contact/probe_contacts.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/deformation/organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+constexpr double kPeriod = 4e-3;
+
+Pose pose_at(const Vec3& position, double turn_about_z = 0) {
+  return {position, Quat(Eigen::AngleAxisd(turn_about_z, Vec3::UnitZ()))};
+}
+
+/// One contact per named triangle, all at p with normal n, found at `pose`.
+Contacts contacts_on(std::vector<std::uint32_t> triangles, const Pose& pose, const Vec3& p,
+                     const Vec3& n) {
+  Contacts contacts;
+  contacts.probe_pose = pose;
+  for (const auto triangle : triangles) {
+    Contact contact;
+    contact.triangle = triangle;
+    contact.barycentric = Vec3(0.2, 0.3, 0.5);
+    contact.point_on_probe = p;
+    contact.normal = n;
+    contacts.contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+scene::Probe plate(double friction) {
+  return {"plate", scene::PlaneShape{}, friction, scene::ScriptedDevice{}};
+}
+
+struct Ball {
+  OrganModel model = testing::ball_model(1);
+  OrganState state = rest_state(model);
+};
+
+TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
+  // Oracle: rigid motion by hand; a quarter turn takes +x to +y.
+  const Ball ball;
+  ProbeContacts probe(plate(0.3));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  probe.begin(kPeriod);
+  probe.end(1e9);
+  probe.set_contacts(contacts_on({4}, pose_at(Vec3::Zero()), Vec3(0.01, 0, 0), Vec3::UnitX()));
+  probe.set_pose(pose_at(Vec3(0, 0, 0.002), M_PI / 2));
+  REQUIRE(probe.begin(kPeriod));
+  std::vector<ContactRow> rows;
+  probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+  REQUIRE(rows.size() == 1);
+  CHECK((rows[0].normal - Vec3::UnitY()).norm() < 1e-12);
+  const Vec3 moved = Vec3(0, 0.01, 0.002) - Vec3(0.01, 0, 0);
+  CHECK((rows[0].probe_velocity - moved / kPeriod).norm() < 1e-9);
+  Vec3 tissue = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k) {
+    tissue += rows[0].weights[static_cast<int>(k)] * ball.state.positions[rows[0].nodes[k]];
+  }
+  CHECK(rows[0].gap == Approx(Vec3::UnitY().dot(Vec3(0.01, 0, 0) - tissue)).epsilon(1e-12));
+  CHECK(rows[0].friction == 0.3);
+}
+
+TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
+  // Oracle: the sum of the parts is the whole way.
+  const Ball ball;
+  ProbeContacts probe(plate(0));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  probe.begin(kPeriod);
+  probe.end(1e9);
+  probe.set_contacts(contacts_on({0}, pose_at(Vec3::Zero()), Vec3::Zero(), Vec3::UnitZ()));
+  probe.set_pose(pose_at(Vec3(0.001, 0, 0)));
+  probe.begin(kPeriod);
+  Vec3 way = Vec3::Zero();
+  for (int step = 1; step <= 4; ++step) {
+    std::vector<ContactRow> rows;
+    probe.append_rows(0, ball.model, ball.state, kPeriod / 4, step / 4.0, rows);
+    way += rows[0].probe_velocity * kPeriod / 4;
+  }
+  CHECK((way - Vec3(0.001, 0, 0)).norm() < 1e-15);
+}
+
+TEST_CASE("probe contacts: a triangle touched again starts from its last impulses") {
+  // Oracle: definition; triangles 2 and 5 stay, 3 is new, 7 is gone.
+  const Ball ball;
+  ProbeContacts probe(plate(0.1));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  probe.set_contacts(contacts_on({2, 5, 7}, Pose(), Vec3::Zero(), Vec3::UnitZ()));
+  probe.begin(kPeriod);
+  std::vector<ContactRow> rows;
+  probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = 1.0 + double(i);
+  CHECK(probe.take_rows(0, 1.0, rows.data()) == 3);
+  probe.end(1e9);
+  CHECK(probe.touches(0));
+  CHECK_FALSE(probe.touches(1));
+  probe.set_contacts(contacts_on({2, 3, 5}, Pose(), Vec3::Zero(), Vec3::UnitZ()));
+  REQUIRE(probe.contacts().size() == 3);
+  CHECK(probe.contacts()[0].normal_impulse == 1);
+  CHECK(probe.contacts()[1].normal_impulse == 0);
+  CHECK(probe.contacts()[2].normal_impulse == 2);
+}
+
+TEST_CASE("probe contacts: force and torque are impulses over the period") {
+  // Oracle: analytic; a unit impulse along −n on the tissue at 1 cm beside the probe's origin.
+  const Ball ball;
+  ProbeContacts probe(plate(0.5));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  probe.set_contacts(contacts_on({0}, Pose(), Vec3(0.01, 0, 0), Vec3::UnitZ()));
+  probe.begin(kPeriod);
+  std::vector<ContactRow> rows;
+  probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+  rows[0].normal_impulse = 2e-3;
+  rows[0].tangential_impulse = Vec3(0, 1e-3, 0);
+  probe.take_rows(0, 1.0, rows.data());
+  probe.end(1e9);
+  ContactModel model;
+  probe.response().write(model);
+  CHECK(model.touching);
+  CHECK((model.force - Vec3(0, -0.25, 0.5)).norm() < 1e-12);
+  CHECK((model.torque - Vec3(0.01, 0, 0).cross(model.force)).norm() < 1e-14);
+}
+
+}  // namespace
+}  // namespace palpate::deformation

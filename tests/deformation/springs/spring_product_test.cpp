@@ -1,0 +1,183 @@
+#include "deformation/springs/spring_product.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <thread>
+
+#include "deformation/springs/spring_linearization.h"
+#include "tests/deformation/organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+using testing::ball_model;
+using testing::ball_organ;
+
+constexpr double kStep = 5e-3;  // [s]
+
+std::vector<Vec3> disturbed(const OrganModel& model, double amplitude) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  auto positions = model.network.rest_positions;
+  for (Vec3& p : positions)
+    p += amplitude * Vec3(uniform(random), uniform(random), uniform(random));
+  return positions;
+}
+
+std::vector<Vec4f> directions(const OrganModel& model) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<Vec4f> p;
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    p.push_back(wide(Vec3(uniform(random), uniform(random), uniform(random))));
+  }
+  return p;
+}
+
+double apply(SpringProduct& product, const std::vector<Vec4f>& p, std::vector<Vec4f>& out) {
+  for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
+  return product.apply(out);
+}
+
+void check_agrees(const OrganModel& model) {
+  const auto positions = disturbed(model, 3e-3);
+  const auto p = directions(model);
+  SpringLinearization plain(model);
+  plain.linearise(positions, kStep);
+  std::vector<Vec4f> expected(p.size()), found(p.size());
+  plain.apply(p, expected);
+  for (const InstructionSet set : available_instruction_sets()) {
+    INFO(name_of(set));
+    SpringProduct fast(model, nullptr, set);
+    fast.linearise(positions, kStep);
+    const double found_dot = apply(fast, p, found);
+    CHECK(found_dot == Approx(dot(p, found)).epsilon(1e-5));
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      // Couplings have eight binary digits: each of a node's terms is off by 2e-3 at most.
+      const double size = plain.diagonal()[i].norm();
+      CHECK((found[i] - expected[i]).norm() < 4e-3 * size);
+      CHECK((fast.diagonal()[i] - plain.diagonal()[i]).norm() < 2e-3 * size);
+    }
+  }
+}
+
+TEST_CASE("spring product: agrees with the plain linearisation, whatever the mesh size") {
+  // Oracle: spring_linearization.h. Compressed and stretched springs, odd ends, several chunks.
+  auto organ = ball_organ();
+  organ.tissue.drag = 3;
+  check_agrees(ball_model(GENERATE(0, 1, 2, 3), organ));
+}
+
+TEST_CASE("spring product: agrees without virtual nodes, bending springs or damping") {
+  // Oracle: spring_linearization.h.
+  auto organ = ball_organ();
+  SECTION("no virtual nodes") { organ.springs = {0.1, 0, 0}; }
+  SECTION("no bending springs") { organ.springs.bending_ratio = 0; }
+  SECTION("no damping") { organ.tissue.damping_ratio = 0; }
+  check_agrees(ball_model(2, organ));
+}
+
+TEST_CASE("spring product: springs without length give nothing and no NaN") {
+  // Oracle: definition: masses are left.
+  const auto model = ball_model(1);
+  const std::vector<Vec3> positions(model.node_count(), Vec3(0.1, 0.2, 0.3));
+  const auto p = directions(model);
+  for (const InstructionSet set : available_instruction_sets()) {
+    SpringProduct product(model, nullptr, set);
+    product.linearise(positions, kStep);
+    std::vector<Vec4f> out(p.size());
+    apply(product, p, out);
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const auto mass = static_cast<float>((1 + kStep * model.drag) * model.masses[i]);
+      CHECK((out[i] - mass * p[i]).norm() < 1e-6f * mass);
+    }
+  }
+}
+
+TEST_CASE("spring product: rounded couplings leave the matrix symmetric, and its blocks its own") {
+  // Oracle: invariant a·A b = b·A a, to the rounding of float sums; and the blocks by probing one
+  // coordinate of one node at a time.
+  const auto model = ball_model(2);
+  const auto a = directions(model);
+  auto b = a;
+  std::reverse(b.begin(), b.end());
+  std::vector<Vec4f> image_a(a.size()), image_b(a.size());
+  for (const InstructionSet set : available_instruction_sets()) {
+    SpringProduct product(model, nullptr, set);
+    product.linearise(disturbed(model, 3e-3), kStep);
+    const double a_a = apply(product, a, image_a), b_b = apply(product, b, image_b);
+    CHECK(a_a > 0);
+    CHECK(std::abs(dot(a, image_b) - dot(b, image_a)) < 1e-6 * (a_a + b_b));
+    for (const std::size_t node : {std::size_t{0}, std::size_t{77}, model.node_count() - 1}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        std::vector<Vec4f> unit(a.size(), Vec4f::Zero());
+        unit[node][axis] = 1;
+        apply(product, unit, image_a);
+        const Vec3 column = image_a[node].head<3>().cast<double>();
+        const Mat3& block = product.diagonal()[node];
+        CHECK((column - block.col(axis)).norm() < 3e-6 * block.norm());
+      }
+    }
+  }
+}
+
+class Threads : public ChunkRunner {
+ public:
+  explicit Threads(std::size_t count) : count_(count) {}
+  void run(std::size_t chunks, ChunkBody body) override {
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < count_; ++t) {
+      threads.emplace_back([=, this] {
+        for (std::size_t chunk = t; chunk < chunks; chunk += count_) body(chunk);
+      });
+    }
+    for (auto& thread : threads) thread.join();
+  }
+
+ private:
+  std::size_t count_;
+};
+
+TEST_CASE("spring product: the same bits for all instruction sets with fused multiply-add") {
+  // Oracle: each other.
+  const auto sets = available_instruction_sets();
+  if (sets.size() < 3) {
+    WARN("SKIPPED: this CPU has no two instruction sets with fused multiply-add");
+    return;
+  }
+  const auto model = ball_model(3);
+  const auto p = directions(model);
+  std::vector<Vec4f> first(p.size()), second(p.size());
+  SpringProduct narrow(model, nullptr, sets[1]), wide(model, nullptr, sets[2]);
+  narrow.linearise(disturbed(model, 3e-3), kStep);
+  wide.linearise(disturbed(model, 3e-3), kStep);
+  CHECK(apply(narrow, p, first) == apply(wide, p, second));
+  CHECK(first == second);
+  CHECK(narrow.diagonal() == wide.diagonal());
+}
+
+TEST_CASE("spring product: the same bits for any number of threads") {
+  // Oracle: itself on one thread.
+  const auto model = ball_model(3);
+  const auto positions = disturbed(model, 3e-3);
+  const auto p = directions(model);
+  for (const InstructionSet set : available_instruction_sets()) {
+    std::vector<Vec4f> expected(p.size()), found(p.size());
+    SpringProduct serial(model, nullptr, set);
+    serial.linearise(positions, kStep);
+    apply(serial, p, expected);
+    for (std::size_t threads = 2; threads <= 3; ++threads) {
+      Threads runner(threads);
+      SpringProduct product(model, &runner, set);
+      product.linearise(positions, kStep);
+      apply(product, p, found);
+      CHECK(found == expected);
+      CHECK(product.diagonal() == serial.diagonal());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::deformation

@@ -1,0 +1,210 @@
+#include "deformation/world.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "modules/core/error.h"
+#include "organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+using testing::ball_organ;
+using testing::ball_scene;
+using testing::kBallRadius;
+using testing::plate_contacts;
+using testing::probe_at;
+
+constexpr double kPeriod = 4e-3;
+
+DeformationWorld ball_world(int levels, std::size_t probes,
+                            const scene::Organ& organ = ball_organ()) {
+  return DeformationWorld(ball_scene(probes, organ), {geometry::make_ball(kBallRadius, levels)});
+}
+
+TEST_CASE("deformation world: the contact model predicts the force of a slow press") {
+  // Oracle: the world's own force 2 mm further. 20 %: tissue stiffens along the way, node by node.
+  auto organ = ball_organ();
+  organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
+  organ.tissue.drag = 10;
+  auto world = ball_world(3, 1, organ);
+  double height = kBallRadius;
+  ContactModel model;
+  const auto press_to = [&](double target) {
+    while (height > target) {
+      height -= 10e-3 * kPeriod;  // 10 mm/s
+      world.set_contacts(plate_contacts(world, 0, height, 1, 2e-3));
+      world.set_probe(probe_at(0, Vec3(0, 0, height)));
+      world.advance(kPeriod);
+      world.write_contact_model(0, model);
+    }
+  };
+  press_to(kBallRadius - 0.015);
+  REQUIRE(model.touching);
+  CHECK((model.anchor - Vec3(0, 0, height)).norm() < 1e-12);
+  CHECK(model.normal.z() == Approx(1).epsilon(1e-6));
+  CHECK(model.stiffness.isApprox(model.stiffness.transpose()));
+  CHECK(model.validity_radius > 0);
+  const ContactModel before = model;
+  press_to(height - 0.002);
+  const double measured = (model.force - before.force).z();
+  const double predicted = (before.stiffness * (before.anchor - model.anchor)).z();
+  CHECK(predicted == Approx(measured).epsilon(0.2));
+}
+
+TEST_CASE("deformation world: a probe that leaves gives no force") {
+  // Oracle: definition of a contact.
+  auto world = ball_world(2, 1);
+  double height = kBallRadius + 1e-3;
+  ContactModel model;
+  for (int direction : {-1, 1}) {
+    for (int cycle = 0; cycle < 200; ++cycle) {
+      height += direction * 0.04 * kPeriod;
+      world.set_contacts(plate_contacts(world, 0, height, 1, 2e-3));
+      world.set_probe(probe_at(0, Vec3(0, 0, height)));
+      world.advance(kPeriod);
+      world.write_contact_model(0, model);
+      CHECK(model.force.z() >= 0);
+    }
+    CHECK(model.touching == (direction < 0));
+  }
+  CHECK(model.force == Vec3::Zero());
+  CHECK(model.stiffness == Mat3::Zero());
+}
+
+TEST_CASE("deformation world: a probe that jumps drops its contacts and says so") {
+  // Oracle: kMaxProbeSpeed.
+  auto world = ball_world(2, 1);
+  world.set_probe(probe_at(0, Vec3(0, 0, 0.049)));
+  world.set_contacts(plate_contacts(world, 0, 0.049, 1, 2e-3));
+  CHECK_FALSE(world.advance(kPeriod).probe_jumped);
+  world.set_probe(probe_at(0, Vec3(0, 0, -0.2)));
+  CHECK(world.advance(kPeriod).probe_jumped);
+  ContactModel model;
+  world.write_contact_model(0, model);
+  CHECK_FALSE(model.touching);
+  NodePositions nodes;
+  world.write_node_positions(0, nodes);
+  CHECK(nodes.kinetic_energy < 1e-2);
+}
+
+TEST_CASE(
+    "deformation world: contacts far from their tissue or probe are refused, and it says so") {
+  // Oracle: a torque about the probe's origin that is a number, and no more than any contact there
+  // is could exert.
+  for (const bool far_probe : {false, true}) {
+    auto world = ball_world(2, 1);
+    world.set_probe(probe_at(0, Vec3(0, 0, 0.049)));
+    Contacts contacts = plate_contacts(world, 0, 0.049, 1, 2e-3);
+    REQUIRE(contacts.contacts.size() > 1);
+    contacts.contacts[0].point_on_probe = Vec3(1e300, 0, 0.049);
+    if (far_probe) contacts.probe_pose.position = Vec3(0, 1e308, 0);
+    world.set_contacts(contacts);
+    CHECK(world.advance(kPeriod).contact_refused);
+    ContactModel model;
+    world.write_contact_model(0, model);
+    CHECK(model.touching != far_probe);
+    CHECK(model.torque.norm() <= 0.05 * model.force.norm());
+    CHECK_FALSE(world.advance(kPeriod).contact_refused);
+  }
+}
+
+TEST_CASE("deformation world: contacts that name nothing here are ignored") {
+  // Oracle: definition.
+  auto world = ball_world(1, 1);
+  Contacts contacts;
+  Contact contact;
+  contact.barycentric = Vec3(1, 0, 0);
+  contact.organ = 7;
+  contacts.contacts.push_back(contact);
+  contact.organ = 0;
+  contact.triangle = 1u << 30;
+  contacts.contacts.push_back(contact);
+  world.set_contacts(contacts);
+  contacts.probe = 99;
+  world.set_contacts(contacts);
+  world.set_probe(probe_at(99, Vec3::Zero()));
+  world.advance(kPeriod);
+  NodePositions nodes;
+  world.write_node_positions(0, nodes);
+  CHECK(nodes.volume == Approx(nodes.target_volume).epsilon(1e-12));
+}
+
+TEST_CASE("deformation world: a not finite contact restores the last good state and says so") {
+  // Oracle: definition of AdvanceReport::diverged.
+  auto world = ball_world(1, 1);
+  world.set_probe(probe_at(0, Vec3(0, 0, kBallRadius)));
+  auto contacts = plate_contacts(world, 0, kBallRadius, 1, 2e-3);
+  REQUIRE(!contacts.contacts.empty());
+  contacts.contacts[0].normal = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  world.set_contacts(contacts);
+  CHECK(world.advance(kPeriod).diverged);
+  NodePositions nodes;
+  world.write_node_positions(0, nodes);
+  for (const float x : nodes.positions) REQUIRE(std::isfinite(x));
+  CHECK(std::isfinite(nodes.pressure));
+  world.set_contacts(Contacts{});
+  CHECK_FALSE(world.advance(kPeriod).diverged);
+}
+
+TEST_CASE("deformation world: reset goes back to rest under a new generation") {
+  // Oracle: definition.
+  auto world = ball_world(2, 1);
+  NodePositions rest, moved, again;
+  world.write_node_positions(0, rest);
+  world.set_probe(probe_at(0, Vec3(0, 0, 0.045)));
+  world.set_contacts(plate_contacts(world, 0, 0.045, 1, 2e-3));
+  for (int i = 0; i < 10; ++i) world.advance(kPeriod);
+  world.write_node_positions(0, moved);
+  CHECK(moved.positions != rest.positions);
+  world.reset();
+  world.write_node_positions(0, again);
+  CHECK(again.positions == rest.positions);
+  CHECK(again.generation == rest.generation + 1);
+  CHECK(world.time() == 0);
+}
+
+TEST_CASE("deformation world: sub-steps are whole, stable and cover the period") {
+  // Oracle: definition.
+  auto world = ball_world(3, 1);
+  for (const double period : {1e-3, 4e-3, 20e-3}) {
+    const int substeps = world.substeps(0, period);
+    CHECK(period / substeps <= world.stable_step(0));
+    if (substeps > 1) CHECK(period / (substeps - 1) > world.stable_step(0));
+  }
+}
+
+TEST_CASE("deformation world: the topology names nodes, triangles, springs and fixed nodes") {
+  // Oracle: counts of a closed genus-0 surface, E = 3 V − 6.
+  auto organ = ball_organ();
+  organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, -0.05), 0.02});
+  const auto world = ball_world(2, 1, organ);
+  const auto& topology = world.topology(0);
+  CHECK(topology.name == "ball");
+  CHECK(topology.surface_node_count == 162);
+  CHECK(topology.triangles.size() == 320);
+  CHECK(topology.rest_positions.size() == 3 * (162 + organ.springs.virtual_nodes));
+  CHECK(!topology.fixed_nodes.empty());
+  std::size_t structural = 0, inner = 0;
+  for (const auto& spring : topology.springs) {
+    structural += spring.family == SpringFamily::kStructural;
+    inner += spring.family == SpringFamily::kInner;
+  }
+  CHECK(structural == 3 * 162 - 6);
+  CHECK(inner == 162);
+}
+
+TEST_CASE("deformation world: an organ that would need steps below 1 µs is refused by name") {
+  // Oracle: definition.
+  auto organ = ball_organ();
+  organ.tissue.youngs_modulus = 1e7;
+  organ.tissue.wall_thickness = 0.05;
+  organ.tissue.density = 100;
+  organ.integrator = scene::Integrator::kSymplecticEuler;
+  auto tiny = geometry::make_ball(1e-4, 3);
+  CHECK_THROWS_WITH(DeformationWorld(ball_scene(1, organ), {tiny}),
+                    Catch::Contains("organ 'ball': its largest stable step is"));
+}
+
+}  // namespace
+}  // namespace palpate::deformation

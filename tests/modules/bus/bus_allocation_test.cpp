@@ -1,0 +1,99 @@
+// The haptic loop may not allocate: counts operator new in the calling thread.
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "tests/modules/bus/loopback.h"
+#include "tests/modules/bus/random_messages.h"
+
+namespace {
+
+thread_local std::size_t allocations = 0;
+
+void* counted(std::size_t bytes) {
+  ++allocations;
+  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return counted(bytes); }
+void* operator new[](std::size_t bytes) { return counted(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept {
+  return operator new(bytes, tag);
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace palpate::bus {
+namespace {
+
+using testing::Pair;
+using testing::Random;
+using testing::random_message;
+using testing::take_soon;
+
+struct Allocations {
+  std::size_t in_write = 0, in_take = 0;
+};
+
+// Sends the same message again and again; counts after the first half.
+template <class Message>
+Allocations count_allocations(const TopicOf<Message>& topic) {
+  Pair<Message> pair(topic);
+  REQUIRE(pair.matched);
+  Random random(31);
+  Message sent = random_message<Message>(random), received;
+  Allocations counted;
+  constexpr int kRounds = 100;
+  for (int round = 0; round < kRounds; ++round) {
+    std::size_t before = allocations;
+    const bool written = pair.writer.write(sent);
+    const std::size_t in_write = allocations - before;
+    const bool arrived = pair.reader.wait(testing::kDeadline);
+    before = allocations;
+    const bool taken = pair.reader.take(received);
+    const std::size_t in_take = allocations - before;
+    REQUIRE((written && arrived && taken));
+    if (round < kRounds / 2) continue;
+    counted.in_write += in_write;
+    counted.in_take += in_take;
+  }
+  return counted;
+}
+
+template <class Message>
+void check_no_allocation(const TopicOf<Message>& topic) {
+  CAPTURE(topic.name);
+  const Allocations counted = count_allocations(topic);
+  CHECK(counted.in_write == 0);
+  CHECK(counted.in_take == 0);
+}
+
+}  // namespace
+
+TEST_CASE("bus: the counter of allocations counts", "[bus]") {
+  // Oracle: one allocation made by hand.
+  const std::size_t before = allocations;
+  const auto memory = std::make_unique<int>(1);
+  CHECK(allocations - before == 1);
+  CHECK(*memory == 1);
+}
+
+TEST_CASE("bus: streams are written and taken without allocation after warm-up", "[bus]") {
+  // Oracle: the count of operator new in the calling thread.
+  check_no_allocation(kProbeState);
+  check_no_allocation(kHapticForce);
+  check_no_allocation(kContactModel);
+  check_no_allocation(kContacts);
+  check_no_allocation(kNodePositions);
+}
+
+}  // namespace palpate::bus

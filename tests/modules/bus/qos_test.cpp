@@ -1,0 +1,100 @@
+// The delivery rules, read back from the DDS entities that exist, not from what was asked for.
+#include "modules/bus/qos.h"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <catch2/catch.hpp>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+
+#include "idl/ProbeStatePubSubTypes.h"
+#include "modules/bus/participant.h"
+#include "tests/modules/bus/loopback.h"
+
+namespace palpate::bus {
+namespace {
+
+namespace dds = eprosima::fastdds::dds;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+
+template <class Qos>
+void check_common(const Qos& qos) {
+  CHECK(qos.history().kind == dds::KEEP_LAST_HISTORY_QOS);
+  CHECK(qos.history().depth == 1);
+  CHECK(qos.data_sharing().kind() == dds::OFF);
+  CHECK(qos.resource_limits().max_instances == kMaxKeys);
+  CHECK(qos.endpoint().history_memory_policy ==
+        eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE);
+}
+
+template <class Qos>
+void check_stream(const Qos& qos) {
+  check_common(qos);
+  CHECK(qos.reliability().kind == dds::BEST_EFFORT_RELIABILITY_QOS);
+  CHECK(qos.durability().kind == dds::VOLATILE_DURABILITY_QOS);
+}
+
+template <class Qos>
+void check_state(const Qos& qos) {
+  check_common(qos);
+  CHECK(qos.reliability().kind == dds::RELIABLE_RELIABILITY_QOS);
+  CHECK(qos.durability().kind == dds::TRANSIENT_LOCAL_DURABILITY_QOS);
+}
+
+}  // namespace
+
+TEST_CASE("qos: streams are best effort and state is kept for late joiners", "[bus]") {
+  // Oracle: the table of docs/topics.md.
+  Participant participant(testing::own_options());
+  const auto type = [] { return new idl::ProbeStatePubSubType; };
+  auto* stream_writer = participant.add_writer("stream", Delivery::kStream, type());
+  auto* stream_reader = participant.add_reader("stream", Delivery::kStream, type());
+  auto* state_writer = participant.add_writer("state", Delivery::kState, type());
+  auto* state_reader = participant.add_reader("state", Delivery::kState, type());
+  check_stream(stream_writer->get_qos());
+  check_stream(stream_reader->get_qos());
+  check_state(state_writer->get_qos());
+  check_state(state_reader->get_qos());
+  CHECK(stream_writer->get_qos().publish_mode().kind == dds::SYNCHRONOUS_PUBLISH_MODE);
+  CHECK(state_writer->get_qos().publish_mode().kind == dds::SYNCHRONOUS_PUBLISH_MODE);
+}
+
+TEST_CASE("qos: a participant uses UDP on loopback only, and finds others quickly", "[bus]") {
+  // Oracle: the settings of docs/topics.md.
+  const BusOptions options = testing::own_options();
+  Participant participant(options);
+  dds::DomainParticipant* found = dds::DomainParticipantFactory::get_instance()->lookup_participant(
+      static_cast<std::uint32_t>(options.domain));
+  REQUIRE(found != nullptr);
+  const dds::DomainParticipantQos& qos = found->get_qos();
+  CHECK(std::string(qos.name().c_str()) == options.participant_name);
+  CHECK_FALSE(qos.transport().use_builtin_transports);
+  REQUIRE(qos.transport().user_transports.size() == 1);
+  const auto* udp =
+      dynamic_cast<const UDPv4TransportDescriptor*>(qos.transport().user_transports[0].get());
+  REQUIRE(udp != nullptr);
+  CHECK(udp->interfaceWhiteList == std::vector<std::string>{"127.0.0.1"});
+  CHECK(udp->receiveBufferSize == 4u << 20);
+  CHECK(udp->sendBufferSize == 4u << 20);
+  const auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  CHECK(discovery.initial_announcements.count == 20);
+  CHECK(discovery.leaseDuration.seconds == 86'400);
+}
+
+TEST_CASE("qos: the session is the partition of both publisher and subscriber", "[bus]") {
+  // Oracle: the partition names read back from the entities.
+  const BusOptions options = testing::own_options();
+  Participant participant(options);
+  const auto* writer =
+      participant.add_writer("stream", Delivery::kStream, new idl::ProbeStatePubSubType);
+  const auto* reader =
+      participant.add_reader("stream", Delivery::kStream, new idl::ProbeStatePubSubType);
+  const std::vector<std::string> expected{options.session};
+  CHECK(writer->get_publisher()->get_qos().partition().names() == expected);
+  CHECK(reader->get_subscriber()->get_qos().partition().names() == expected);
+}
+
+}  // namespace palpate::bus

@@ -1,0 +1,262 @@
+#include "modules/messages/message_checks.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/modules/bus/random_messages.h"
+
+namespace palpate::bus {
+namespace {
+
+using testing::Random;
+using testing::random_message;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// The field named after one change to a valid random message; "" if it is still valid.
+template <class Message, class Change>
+std::string named(const Change& change) {
+  Random random(21);
+  Message message = random_message<Message>(random);
+  REQUIRE(first_invalid_field(message) == nullptr);
+  change(message);
+  const char* field = first_invalid_field(message);
+  return field == nullptr ? std::string() : field;
+}
+
+// Each value that is not finite must be refused in each place.
+template <class Message, class Place>
+void check_finite(const std::string& field, const Place& place) {
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    CHECK(named<Message>([&](Message& m) { place(m) = bad; }) == field);
+  }
+}
+
+template <class Message, class Place>
+void check_finite_at_least_zero(const std::string& field, const Place& place) {
+  check_finite<Message>(field, place);
+  CHECK(named<Message>([&](Message& m) { place(m) = -1e-300; }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m) = 0; }).empty());
+}
+
+template <class Message, class Place>
+void check_age(const std::string& field, const Place& place) {
+  CHECK(named<Message>([&](Message& m) { place(m) = kNan; }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m) = -1; }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m) = kInfinity; }).empty());
+}
+
+template <class Message>
+void check_header() {
+  CHECK(named<Message>([](Message& m) { m.header.sequence = 0; }) == "sequence_number");
+  CHECK(named<Message>([](Message& m) { m.header.source_time_ns = -1; }) == "source_time_ns");
+}
+
+template <class Message, class Place>
+void check_unit(const std::string& field, const Place& place) {
+  CHECK(named<Message>([&](Message& m) { place(m) *= 1 + 2 * kUnitTolerance; }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m) *= 0; }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m) *= kNan; }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m) *= 1 + 0.5 * kUnitTolerance; }).empty());
+}
+
+template <class Message, class Place>
+void check_text(const std::string& field, const Place& place) {
+  CHECK(named<Message>([&](Message& m) { place(m).assign(kMaxTextBytes + 1, 'x'); }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m).assign(1, '\0'); }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m).assign(kMaxTextBytes, 'x'); }).empty());
+}
+
+template <class Message, class Place>
+void check_name(const std::string& field, const Place& place) {
+  CHECK(named<Message>([&](Message& m) { place(m).assign(kMaxNameBytes + 1, 'x'); }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m).clear(); }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m).assign(1, '\0'); }) == field);
+  CHECK(named<Message>([&](Message& m) { place(m).assign(kMaxNameBytes, 'x'); }).empty());
+}
+
+}  // namespace
+
+TEST_CASE("message checks: a header counts from 1 and has no negative time", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  check_header<ProbeState>();
+  check_header<Contacts>();
+  check_header<ContactModel>();
+  check_header<NodePositions>();
+  check_header<SurfaceTopology>();
+  check_header<HapticForce>();
+  check_header<ModuleStatus>();
+  check_header<SceneDescription>();
+  check_header<SessionControl>();
+}
+
+TEST_CASE("message checks: ProbeState", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  using M = ProbeState;
+  check_finite<M>("position_m", [](M& m) -> double& { return m.pose.position.y(); });
+  check_finite<M>("linear_velocity_m_per_s", [](M& m) -> double& { return m.twist.linear.z(); });
+  check_finite<M>("angular_velocity_rad_per_s",
+                  [](M& m) -> double& { return m.twist.angular.x(); });
+  check_unit<M>(
+      "rotation_xyzw", [](M & m) -> auto& { return m.pose.rotation.coeffs(); });
+}
+
+TEST_CASE("message checks: Contacts", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  using M = Contacts;
+  check_finite<M>("probe_position_m", [](M& m) -> double& { return m.probe_pose.position.y(); });
+  check_unit<M>(
+      "probe_rotation_xyzw", [](M & m) -> auto& { return m.probe_pose.rotation.coeffs(); });
+  CHECK(named<M>([](M& m) { m.contacts.resize(kMaxContactsPerProbe + 1, m.contacts[0]); }) ==
+        "contacts");
+  CHECK(named<M>([](M& m) { m.contacts.resize(kMaxContactsPerProbe, m.contacts[0]); }).empty());
+  check_finite<M>("contacts.point_on_probe_m",
+                  [](M& m) -> double& { return m.contacts.back().point_on_probe.y(); });
+  check_finite<M>("contacts.gap_m", [](M& m) -> double& { return m.contacts.back().gap; });
+  check_unit<M>(
+      "contacts.normal", [](M & m) -> auto& { return m.contacts.back().normal; });
+  for (const double bad : {-1e-9, 1 + 1e-9, kNan}) {
+    CHECK(named<M>([&](M& m) { m.contacts.back().time_of_impact = bad; }) ==
+          "contacts.time_of_impact");
+  }
+  for (const Vec3& bad : {Vec3(0.5, 0.6, -0.1), Vec3(0.5, 0.5, 0.1), Vec3(kNan, 0.5, 0.5)}) {
+    CHECK(named<M>([&](M& m) { m.contacts.back().barycentric = bad; }) == "contacts.barycentric");
+  }
+}
+
+TEST_CASE("message checks: ContactModel", "[bus]") {
+  // Oracle: the field rules of idl/README.md; eigenvalues of the matrices are known.
+  using M = ContactModel;
+  check_finite<M>("anchor_m", [](M& m) -> double& { return m.anchor.x(); });
+  check_finite<M>("force_n", [](M& m) -> double& { return m.force.y(); });
+  check_finite<M>("torque_n_m", [](M& m) -> double& { return m.torque.z(); });
+  check_finite<M>("stiffness_n_per_m", [](M& m) -> double& { return m.stiffness(2, 1); });
+  check_unit<M>(
+      "normal", [](M & m) -> auto& { return m.normal; });
+  check_finite_at_least_zero<M>("friction_coefficient",
+                                [](M& m) -> double& { return m.friction_coefficient; });
+  check_finite_at_least_zero<M>("validity_radius_m",
+                                [](M& m) -> double& { return m.validity_radius; });
+
+  const auto with = [](const Mat3& stiffness) {
+    return named<M>([&](M& m) { m.stiffness = stiffness; });
+  };
+  const Vec3 n = Vec3(1, 2, 3).normalized();
+  const Mat3 identity = Mat3::Identity();
+  CHECK(with(Mat3::Zero()).empty());
+  CHECK(with(1e4 * n * n.transpose()).empty());                             // eigenvalues 1e4, 0, 0
+  CHECK(with(identity - 1.01 * n * n.transpose()) == "stiffness_n_per_m");  // smallest −0.01
+  Mat3 asymmetric = identity;
+  asymmetric(0, 1) = 1e-5;
+  CHECK(with(asymmetric) == "stiffness_n_per_m");
+}
+
+TEST_CASE("message checks: NodePositions", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  using M = NodePositions;
+  check_finite<M>("volume_m3", [](M& m) -> double& { return m.volume; });
+  check_finite<M>("pressure_pa", [](M& m) -> double& { return m.pressure; });
+  check_finite_at_least_zero<M>("target_volume_m3",
+                                [](M& m) -> double& { return m.target_volume; });
+  check_finite_at_least_zero<M>("kinetic_energy_j",
+                                [](M& m) -> double& { return m.kinetic_energy; });
+  check_finite_at_least_zero<M>("elastic_energy_j",
+                                [](M& m) -> double& { return m.elastic_energy; });
+  CHECK(named<M>([](M& m) { m.positions.clear(); }) == "positions_m");
+  CHECK(named<M>([](M& m) { m.positions.resize(4); }) == "positions_m");
+  CHECK(named<M>([](M& m) { m.positions.resize(3 * kMaxNodes + 3); }) == "positions_m");
+  CHECK(named<M>([](M& m) { m.positions.resize(3 * kMaxNodes); }).empty());
+  // One not finite value anywhere is found, however the loop is vectorized.
+  Random random(22);
+  for (std::size_t place = 0; place < 3 * 20; ++place) {
+    M m = random_message<M>(random);
+    m.positions.assign(3 * 20, std::numeric_limits<float>::max());
+    REQUIRE(first_invalid_field(m) == nullptr);
+    m.positions[place] = place % 2 == 0 ? std::numeric_limits<float>::infinity()
+                                        : std::numeric_limits<float>::quiet_NaN();
+    CHECK(first_invalid_field(m) != nullptr);
+  }
+}
+
+TEST_CASE("message checks: SurfaceTopology", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  using M = SurfaceTopology;
+  const auto nodes = [](const M& m) {
+    return static_cast<std::uint32_t>(m.rest_positions.size() / 3);
+  };
+  check_text<M>(
+      "name", [](M & m) -> auto& { return m.name; });
+  CHECK(named<M>([](M& m) { m.rest_positions.pop_back(); }) == "rest_positions_m");
+  CHECK(named<M>([](M& m) { m.rest_positions[1] = static_cast<float>(kNan); }) ==
+        "rest_positions_m");
+  CHECK(named<M>([&](M& m) { m.surface_node_count = nodes(m) + 1; }) == "surface_node_count");
+  CHECK(named<M>([](M& m) { m.triangles = {{0, 1, 1}}; }) == "triangle_nodes");
+  CHECK(named<M>([](M& m) { m.triangles = {{0, 1, m.surface_node_count}}; }) == "triangle_nodes");
+  CHECK(named<M>([](M& m) {
+          m.triangles.resize(kMaxTriangles + 1, {0, 1, 2});
+        }) == "triangle_nodes");
+  CHECK(named<M>([&](M& m) { m.fixed_nodes = {nodes(m)}; }) == "fixed_nodes");
+  CHECK(named<M>([&](M& m) { m.fixed_nodes.assign(nodes(m) + 1, 0); }) == "fixed_nodes");
+  CHECK(named<M>([](M& m) { m.springs = {{1, 1, SpringFamily::kInner}}; }) == "spring_nodes");
+  CHECK(named<M>([&](M& m) {
+          m.springs = {{0, nodes(m), SpringFamily::kInner}};
+        }) == "spring_nodes");
+  CHECK(named<M>([](M& m) {
+          m.springs.resize(kMaxSprings + 1, {0, 1, SpringFamily::kInner});
+        }) == "spring_nodes");
+  CHECK(named<M>([](M& m) {
+          m.springs = {{0, 1, static_cast<SpringFamily>(3)}};
+        }) == "spring_families");
+}
+
+TEST_CASE("message checks: HapticForce", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  using M = HapticForce;
+  check_finite<M>("force_n", [](M& m) -> double& { return m.force.x(); });
+  check_finite<M>("torque_n_m", [](M& m) -> double& { return m.torque.y(); });
+  check_finite<M>("passivity_energy_j", [](M& m) -> double& { return m.passivity_energy; });
+  check_age<M>("contact_model_age_s", [](M& m) -> double& { return m.contact_model_age; });
+  CHECK(named<M>([](M& m) { m.limits = 64; }) == "limits");
+  CHECK(named<M>([](M& m) { m.limits = 63; }).empty());
+}
+
+TEST_CASE("message checks: ModuleStatus", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  using M = ModuleStatus;
+  check_name<M>(
+      "module_name", [](M & m) -> auto& { return m.module; });
+  CHECK(named<M>([](M& m) { m.state = static_cast<ModuleState>(7); }) == "state");
+  check_finite_at_least_zero<M>("rate_hz", [](M& m) -> double& { return m.rate_hz; });
+  check_finite_at_least_zero<M>("nominal_rate_hz",
+                                [](M& m) -> double& { return m.nominal_rate_hz; });
+  check_finite_at_least_zero<M>("worst_lateness_s",
+                                [](M& m) -> double& { return m.worst_lateness; });
+  check_finite_at_least_zero<M>("busy_fraction", [](M& m) -> double& { return m.busy_fraction; });
+  check_finite_at_least_zero<M>("real_time_factor",
+                                [](M& m) -> double& { return m.real_time_factor; });
+  check_text<M>(
+      "last_error", [](M & m) -> auto& { return m.last_error; });
+  CHECK(named<M>([](M& m) { m.inputs.resize(kMaxInputs + 1, {"topic", 0, 0, 0, 0}); }) == "inputs");
+  const auto input = [](M & m) -> auto& {
+    m.inputs.resize(1, {"topic", 0, 0, 0, 0});
+    return m.inputs[0];
+  };
+  check_name<M>(
+      "inputs", [&](M & m) -> auto& { return input(m).topic; });
+  check_age<M>("inputs", [&](M& m) -> double& { return input(m).age; });
+}
+
+TEST_CASE("message checks: SceneDescription and SessionControl", "[bus]") {
+  // Oracle: the field rules of idl/README.md.
+  check_text<SceneDescription>(
+      "name", [](SceneDescription & m) -> auto& { return m.name; });
+  check_text<SceneDescription>(
+      "digest", [](SceneDescription & m) -> auto& { return m.digest; });
+  check_text<SceneDescription>(
+      "resolved_text", [](SceneDescription & m) -> auto& { return m.resolved_text; });
+  CHECK(named<SessionControl>(
+            [](SessionControl& m) { m.command = static_cast<SessionCommand>(4); }) == "command");
+}
+
+}  // namespace palpate::bus

@@ -1,0 +1,103 @@
+#include "modules/recording/commands.h"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "tests/modules/bus/loopback.h"
+#include "tests/modules/recording/payloads.h"
+#include "tests/modules/recording/recording_files.h"
+
+namespace palpate::recording {
+namespace {
+
+const auto kNeverStop = [] { return false; };
+
+void write_recording(const std::filesystem::path& file, bool close) {
+  SampleFile writer(file, {});
+  writer.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 1'000));
+  writer.add(raw_sample(bus::kNodePositions, node_positions(2, 1e-3, 5), 2'000));
+  writer.flush();
+  if (close) writer.close();
+}
+
+}  // namespace
+
+TEST_CASE("commands: inspect prints the table and warns of a torn file") {
+  // Oracle: exit codes of core/error.h and the texts by hand.
+  TempFolder folder;
+  write_recording(folder / "whole.mcap", true);
+  write_recording(folder / "torn.mcap", false);
+  std::ostringstream out, err;
+  CHECK(run_inspect_command({folder / "whole.mcap", {}}, out, err) == kExitDone);
+  CHECK_THAT(out.str(), Catch::Contains("node_positions"));
+  CHECK(err.str().empty());
+  CHECK(run_inspect_command({folder / "torn.mcap", folder / "csv"}, out, err) == kExitDone);
+  CHECK_THAT(err.str(), Catch::StartsWith("warning: "));
+  CHECK(std::filesystem::exists(folder / "csv/node_positions_0.csv"));
+}
+
+TEST_CASE("commands: a bad recording is bad input, an unwritable CSV folder a failure") {
+  // Oracle: exit codes of core/error.h.
+  TempFolder folder;
+  std::ostringstream out, err;
+  CHECK(run_inspect_command({folder / "none.mcap", {}}, out, err) == kExitBadInput);
+  CHECK_THAT(err.str(), Catch::EndsWith("none.mcap: no such recording\n"));
+  write_bytes(folder / "text.mcap", {'n', 'o'});
+  CHECK(run_inspect_command({folder / "text.mcap", {}}, out, err) == kExitBadInput);
+  CHECK(run_replay_command({folder / "text.mcap", bus::testing::own_options()}, kNeverStop, out,
+                           err) == kExitBadInput);
+  write_recording(folder / "a.mcap", true);
+  CHECK(run_inspect_command({folder / "a.mcap", folder / "text.mcap"}, out, err) == kExitFailed);
+  CHECK(out.str().empty());
+}
+
+TEST_CASE("commands: replay waits for a reader, plays, and says what it played") {
+  // Oracle: the bus's own reader, of a topic that reaches late joiners too.
+  TempFolder folder;
+  {
+    SampleFile writer(folder / "torn.mcap", {});
+    ModuleStatus status;
+    status.header = {3, 0, 1};
+    status.module = "haptics";
+    status.cycles = 77;
+    writer.add(raw_sample(bus::kModuleStatus, status, 1'000));
+    writer.flush();
+  }
+  const auto options = bus::testing::own_options();
+  bus::Bus bus(options);
+  auto statuses = bus.reader(bus::kModuleStatus);
+  const auto nodes = bus.reader(bus::kNodePositions);  // what replay waits for
+  std::ostringstream out, err;
+  CHECK(run_replay_command({folder / "torn.mcap", options}, kNeverStop, out, err) == kExitDone);
+  ModuleStatus status;
+  REQUIRE(bus::testing::take_soon(statuses, status));
+  CHECK(status.cycles == 77);
+  CHECK_THAT(out.str(), Catch::StartsWith("replayed 1 samples, "));
+  CHECK_THAT(err.str(),
+             Catch::StartsWith("warning: ") && Catch::Contains("not closed by its writer"));
+}
+
+TEST_CASE("commands: replay plays although nobody listens, and says so") {
+  // Oracle: the text by hand.
+  TempFolder folder;
+  write_recording(folder / "a.mcap", true);
+  const auto options = bus::testing::own_options();
+  std::ostringstream out, err;
+  CHECK(run_replay_command({folder / "a.mcap", options, 0.05}, kNeverStop, out, err) == kExitDone);
+  CHECK_THAT(err.str(), Catch::Contains("nobody listens in session '" + options.session + "'"));
+  CHECK_THAT(out.str(), Catch::StartsWith("replayed 2 samples"));
+}
+
+TEST_CASE("commands: a stopped replay is done") {
+  // Oracle: exit codes of core/error.h.
+  TempFolder folder;
+  write_recording(folder / "a.mcap", true);
+  std::ostringstream out, err;
+  CHECK(run_replay_command(
+            {folder / "a.mcap", bus::testing::own_options()}, [] { return true; }, out, err) ==
+        kExitDone);
+  CHECK_THAT(out.str(), Catch::StartsWith("stopped after 0 samples"));
+}
+
+}  // namespace palpate::recording

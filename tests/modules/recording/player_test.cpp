@@ -1,0 +1,175 @@
+#include "modules/recording/player.h"
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "tests/modules/bus/loopback.h"
+#include "tests/modules/bus/random_messages.h"
+#include "tests/modules/recording/payloads.h"
+#include "tests/modules/recording/recording_files.h"
+
+namespace palpate::recording {
+namespace {
+
+using bus::testing::own_options;
+using bus::testing::wait_until;
+
+constexpr std::int64_t kMillisecond = 1'000'000;
+
+const auto kNeverStop = [] { return false; };
+
+std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  std::istringstream text(text_of(file));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+TEST_CASE("player: a replay sends the recorded bytes with the recorded spacing") {
+  // Oracle: the recording itself; 20 samples 5 ms apart cannot take less than 95 ms.
+  constexpr int kSamples = 20;
+  TempFolder folder;
+  bus::testing::Random random(11);
+  std::vector<RawSample> recorded;
+  for (int i = 0; i < kSamples; ++i) {
+    recorded.push_back(raw_sample(bus::kHapticForce,
+                                  bus::testing::random_message<HapticForce>(random),
+                                  1000 + 5 * i * kMillisecond));
+    recorded.push_back(raw_sample(bus::kModuleStatus,
+                                  bus::testing::random_message<ModuleStatus>(random),
+                                  1000 + 5 * i * kMillisecond));
+  }
+  SampleFile file(folder / "a.mcap", {});
+  for (const RawSample& sample : recorded) file.add(sample);
+  file.close();
+
+  const auto options = own_options();
+  RawReader reader(options);
+  RawWriter writer(options);
+  REQUIRE(wait_until([&] {
+    return writer.matched_readers(*find_recorded_topic("haptic_force")) == 1 &&
+           writer.matched_readers(*find_recorded_topic("module_status")) == 1 &&
+           reader.matched_writers() == 10;
+  }));
+  SampleReader recording(folder / "a.mcap");
+  const auto begin = std::chrono::steady_clock::now();
+  const PlayReport report = play(recording, writer, kNeverStop);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  CHECK(took.count() >= 0.095);
+  CHECK(report.samples == recorded.size());
+  CHECK(report.refused == 0);
+  CHECK(report.duration == Approx(0.095));
+  CHECK_FALSE(report.stopped);
+
+  std::map<std::string_view, std::vector<std::vector<std::uint8_t>>> sent, heard;
+  for (const RawSample& sample : recorded) sent[sample.topic->name].push_back(sample.payload);
+  std::size_t count = 0;
+  REQUIRE(wait_until([&] {
+    for (const RawSample& sample : reader.take_all()) {
+      heard[sample.topic->name].push_back(sample.payload);
+      ++count;
+    }
+    return count >= recorded.size();
+  }));
+  CHECK(heard == sent);
+}
+
+TEST_CASE("player: stops when asked to") {
+  // Oracle: the second sample lies an hour ahead; stopping must not wait for it.
+  TempFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  const auto state = probe_state(1, 0, 0, Vec3::Zero());
+  file.add(raw_sample(bus::kProbeState, state, 0));
+  file.add(raw_sample(bus::kProbeState, state, 3600 * 1000 * kMillisecond));
+  file.close();
+  RawWriter writer(own_options());
+  SampleReader recording(folder / "a.mcap");
+  int asked = 0;
+  const PlayReport report = play(recording, writer, [&] { return ++asked > 3; });
+  CHECK(report.stopped);
+  CHECK(report.samples == 1);
+}
+
+TEST_CASE("player: extracts one trajectory per probe in session time") {
+  // Oracle: rows written by hand; numbers chosen to be exact in decimal and binary.
+  TempFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  for (int i = 0; i < 3; ++i) {
+    ProbeState state = probe_state(1, i * 500 * kMillisecond, 0, {0.25 * i, 0, -1});
+    state.pose.rotation = Quat(0, 1, 0, 0);  // half a turn about x
+    file.add(raw_sample(bus::kProbeState, state, i));
+    file.add(raw_sample(bus::kProbeState, probe_state(1, i * 500 * kMillisecond, 2, {0, 0, 1}), i));
+    file.add(raw_sample(bus::kProbeInput, probe_state(1, 0, 5, Vec3::Zero()), i));
+  }
+  file.close();
+  std::vector<std::string> warnings;
+  const auto trajectories = extract_probe_trajectories(folder / "a.mcap", folder / "out", warnings);
+  CHECK(warnings.empty());
+  REQUIRE(trajectories.size() == 2);
+  CHECK(trajectories[0].probe == 0);
+  CHECK(trajectories[1].probe == 2);
+  CHECK(trajectories[0].rows == 3);
+  CHECK(trajectories[0].duration == 1);
+  CHECK(trajectories[0].file == folder / "out/probe_0.csv");
+  CHECK(lines_of(trajectories[0].file) ==
+        std::vector<std::string>{"t,x,y,z,qx,qy,qz,qw", "0,0,0,-1,1,0,0,0", "0.5,0.25,0,-1,1,0,0,0",
+                                 "1,0.5,0,-1,1,0,0,0"});
+}
+
+TEST_CASE("player: before the start and while paused the newest pose of a time holds") {
+  // Oracle: times must increase strictly; the last of equal ones by hand.
+  TempFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  const std::int64_t times_ms[] = {0, 0, 250, 250, 500};
+  for (int i = 0; i < 5; ++i) {
+    file.add(raw_sample(bus::kProbeState,
+                        probe_state(1, times_ms[i] * kMillisecond, 0, {1.0 * i, 0, 0}), i));
+  }
+  file.close();
+  std::vector<std::string> warnings;
+  const auto trajectories = extract_probe_trajectories(folder / "a.mcap", folder / "out", warnings);
+  const auto lines = lines_of(trajectories.at(0).file);
+  REQUIRE(lines.size() == 4);
+  CHECK(lines[1] == "0,1,0,0,0,0,0,1");
+  CHECK(lines[2] == "0.25,3,0,0,0,0,0,1");
+}
+
+TEST_CASE("player: after a reset only the last stretch counts, torn and invalid are told") {
+  // Oracle: rows and warnings by hand.
+  TempFolder folder;
+  const auto name = folder / "a.mcap";
+  {
+    SampleFile file(name, {});
+    for (const int ms : {0, 250, 500, 0, 125}) {
+      file.add(raw_sample(bus::kProbeState, probe_state(1, ms * kMillisecond, 0, {1, 0, 0}), ms));
+    }
+    auto broken = raw_sample(bus::kProbeState, probe_state(1, 0, 0, {1, 0, 0}), 600);
+    broken.payload.resize(40);
+    file.add(broken);
+    file.flush();
+  }
+  std::vector<std::string> warnings;
+  const auto trajectories = extract_probe_trajectories(name, folder / "out", warnings);
+  CHECK(trajectories.at(0).rows == 2);
+  CHECK(trajectories.at(0).duration == 0.125);
+  REQUIRE(warnings.size() == 3);
+  CHECK_THAT(warnings[0], Catch::Contains("not closed by its writer"));
+  CHECK_THAT(warnings[1], Catch::EndsWith("1 invalid probe_state samples left out"));
+  CHECK_THAT(warnings[2],
+             Catch::EndsWith("probe_0: only the motion after the last of 1 resets is used"));
+}
+
+TEST_CASE("player: a recording without probes cannot drive a scene") {
+  // Oracle: the message the rule must give.
+  TempFolder folder;
+  SampleFile(folder / "a.mcap", {}).close();
+  std::vector<std::string> warnings;
+  CHECK_THROWS_WITH(extract_probe_trajectories(folder / "a.mcap", folder / "out", warnings),
+                    Catch::EndsWith("a.mcap: holds no motion of a probe (topic probe_state)"));
+}
+
+}  // namespace palpate::recording

@@ -1,0 +1,145 @@
+#include "modules/recording/recorder.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/core/error.h"
+#include "modules/recording/sample_reader.h"
+#include "tests/modules/bus/loopback.h"
+#include "tests/modules/bus/random_messages.h"
+#include "tests/modules/recording/payloads.h"
+#include "tests/modules/recording/recording_files.h"
+
+namespace palpate::recording {
+namespace {
+
+using bus::testing::own_options;
+using bus::testing::wait_until;
+
+// Payloads of a recording by topic, in order.
+std::map<std::string_view, std::vector<std::vector<std::uint8_t>>> payloads_of(
+    SampleReader& reader) {
+  std::map<std::string_view, std::vector<std::vector<std::uint8_t>>> payloads;
+  while (auto sample = reader.next()) payloads[sample->topic->name].push_back(sample->payload);
+  return payloads;
+}
+
+}  // namespace
+
+TEST_CASE("recorder: writes every sample of a session, byte for byte") {
+  // Oracle: the generated wire types' own serialization of the messages that were sent.
+  constexpr int kSamples = 60;
+  TempFolder folder;
+  const auto options = own_options();
+  bus::testing::Random random(5);
+  bus::Bus bus(options);
+  auto scenes = bus.writer(bus::kScene);
+  SceneDescription scene;
+  scene.name = "ball";
+  scene.digest = "0123456789abcdef";
+  scene.header.source_time_ns = 7;
+  REQUIRE(scenes.write(scene));  // before the recorder exists: a late joiner gets it
+
+  Recorder recorder(options, folder / "live.mcap");
+  auto probes = bus.writer(bus::kProbeState);
+  auto nodes = bus.writer(bus::kNodePositions);
+  REQUIRE(wait_until([&] { return recorder.matched_writers() == 3; }));
+  REQUIRE(
+      wait_until([&] { return probes.matched_readers() == 1 && nodes.matched_readers() == 1; }));
+  std::vector<std::vector<std::uint8_t>> sent_probes, sent_nodes;
+  for (int i = 0; i < kSamples; ++i) {
+    auto state = bus::testing::random_message<ProbeState>(random);
+    REQUIRE(probes.write(state));
+    sent_probes.push_back(cdr_of(state));
+    if (i % 4 != 0) continue;
+    auto positions = node_positions(0, 1e-3, i);
+    REQUIRE(nodes.write(positions));
+    sent_nodes.push_back(cdr_of(positions));
+    recorder.poll();
+  }
+  const std::uint64_t expected = 1 + sent_probes.size() + sent_nodes.size();
+  REQUIRE(wait_until([&] {
+    recorder.poll();
+    return recorder.file().statistics().message_count >= expected;
+  }));
+  recorder.close();
+
+  SampleReader reader(folder / "live.mcap");
+  auto payloads = payloads_of(reader);
+  CHECK_FALSE(reader.torn());
+  REQUIRE(payloads["scene"].size() == 1);
+  CHECK(payloads["scene"][0] == cdr_of(scene));
+  CHECK(payloads["probe_state"] == sent_probes);
+  CHECK(payloads["node_positions"] == sent_nodes);
+  CHECK(reader.metadata(kSceneMetadata) ==
+        McapMap{{"name", "ball"}, {"digest", "0123456789abcdef"}});
+}
+
+TEST_CASE("recorder: the file says which session it is of and how its clock relates to the day") {
+  // Oracle: the options given; both clocks read around the recorder's start.
+  TempFolder folder;
+  bus::BusOptions session;
+  session.session = "ward_3";
+  session.domain = 12;
+  const auto unix_ns = [] {
+    return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+  };
+  const auto before = unix_ns();
+  SampleFile(folder / "a.mcap", session).close();
+  SampleReader reader(folder / "a.mcap");
+  CHECK_FALSE(reader.next());
+  const McapMap metadata = reader.metadata(kSessionMetadata);
+  CHECK(metadata.at("session") == "ward_3");
+  CHECK(metadata.at("domain") == "12");
+  CHECK(metadata.at("protocol_version") == std::to_string(kProtocolVersion));
+  CHECK(std::stoll(metadata.at("start_unix_ns")) >= before);
+  CHECK(std::stoll(metadata.at("start_unix_ns")) <= unix_ns());
+  CHECK(std::stoll(metadata.at("start_monotonic_ns")) > 0);
+  CHECK(reader.metadata(kSceneMetadata).empty());
+}
+
+TEST_CASE("recorder: message records carry receive time, source time and sequence") {
+  // Oracle: the values given.
+  TempFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  ProbeState state = probe_state(41, 5, 0, Vec3::Zero());
+  state.header.source_time_ns = 900;
+  file.add(raw_sample(bus::kProbeState, state, 1000));
+  file.close();
+  McapReader reader(folder / "a.mcap");
+  std::optional<McapMessage> message;
+  while (const auto record = reader.next()) {
+    if (std::holds_alternative<McapMessage>(*record)) message = std::get<McapMessage>(*record);
+  }
+  REQUIRE(message);
+  CHECK(message->sequence == 41);
+  CHECK(message->log_time_ns == 1000);
+  CHECK(message->publish_time_ns == 900);
+}
+
+TEST_CASE("recorder: the scene is noted once, and again when another is loaded") {
+  // Oracle: counted metadata records.
+  TempFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  SceneDescription scene;
+  scene.name = "ball";
+  scene.header = {1, 0, 1};
+  for (const char* digest : {"a", "a", "b"}) {
+    scene.digest = digest;
+    file.add(raw_sample(bus::kScene, scene, 1));
+  }
+  CHECK(file.statistics().metadata_count == 3);  // with the session's
+  CHECK(file.statistics().message_count == 3);
+}
+
+TEST_CASE("recorder: a full disk and a bad session are reported, and the latter leaves no file") {
+  // Oracle: the kernel's device that is always full; the rules of bus::BusOptions.
+  CHECK_THROWS_WITH(Recorder(own_options(), "/dev/full"),
+                    "/dev/full: cannot write: No space left on device");
+  TempFolder folder;
+  bus::BusOptions bad;
+  bad.session = "";
+  CHECK_THROWS_AS(Recorder(bad, folder / "a.mcap"), InputError);
+  CHECK_FALSE(std::filesystem::exists(folder / "a.mcap"));
+}
+
+}  // namespace palpate::recording

@@ -1,0 +1,125 @@
+#include "modules/recording/sample_reader.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/core/error.h"
+#include "tests/modules/recording/payloads.h"
+#include "tests/modules/recording/recording_files.h"
+
+namespace palpate::recording {
+namespace {
+
+// What reading the whole file says.
+std::string message_of(const std::filesystem::path& file) {
+  try {
+    SampleReader reader(file);
+    while (reader.next()) {
+    }
+    return "no error";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+// A file with one schema and one channel.
+std::string message_of(const std::filesystem::path& file, const McapSchema& schema,
+                       const std::string& topic, const std::string& encoding = "cdr") {
+  McapWriter writer(file);
+  const auto id = writer.add_schema(schema);
+  writer.add_channel({0, id, topic, encoding, {}});
+  writer.close();
+  return message_of(file);
+}
+
+McapSchema probe_schema() {
+  const RecordedTopic& topic = *find_recorded_topic("probe_state");
+  return {0, std::string(topic.type_name), "omgidl", std::string(topic.idl_text)};
+}
+
+}  // namespace
+
+TEST_CASE("sample reader: gives each sample with its topic, its channel and its time") {
+  // Oracle: round trip with SampleFile; one channel per writer.
+  TempFolder folder;
+  const auto file = folder / "a.mcap";
+  const auto first = raw_sample(bus::kProbeState, probe_state(1, 0, 0, {1, 2, 3}), 1000, 1);
+  const auto second = raw_sample(bus::kProbeState, probe_state(1, 0, 1, {4, 5, 6}), 2000, 2);
+  const auto third = raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 3000, 1);
+  {
+    SampleFile writer(file, {});
+    for (const auto& sample : {first, second, third, first}) writer.add(sample);
+    writer.close();
+  }
+  SampleReader reader(file);
+  std::vector<RecordedSample> samples;
+  while (auto sample = reader.next()) samples.push_back(*sample);
+  REQUIRE(samples.size() == 4);
+  CHECK(samples[0].topic == first.topic);
+  CHECK(samples[2].topic == third.topic);
+  CHECK(samples[0].payload == first.payload);
+  CHECK(samples[1].payload == second.payload);
+  CHECK(samples[1].received_time_ns == 2000);
+  CHECK(samples[0].channel != samples[1].channel);
+  CHECK(samples[0].channel == samples[3].channel);
+  CHECK_FALSE(reader.torn());
+}
+
+TEST_CASE("sample reader: other types, other versions and other encodings are refused") {
+  // Oracle: the message each rule must give, and the record's place: the schema record follows
+  // magic and header, 8 + 24 bytes.
+  TempFolder folder;
+  const auto file = folder / "a.mcap";
+  const std::string schema_place = file.string() + ": offset 32: ";
+  CHECK(message_of(file, probe_schema(), "probe_state") == "no error");
+  CHECK(message_of(file, {0, "std_msgs/String", "ros2msg", "string data"}, "/chatter") ==
+        schema_place + "type 'std_msgs/String' is not one of Palpate's (palpate::idl::…)");
+
+  McapSchema older = probe_schema();
+  older.data.replace(older.data.find("position_m"), 10, "place_m");
+  const std::string differs = schema_place +
+                              "type 'palpate::idl::ProbeState' differs from the present one: "
+                              "recorded by another version of Palpate";
+  CHECK(message_of(file, older, "probe_state") == differs);
+  McapSchema other_encoding = probe_schema();
+  other_encoding.encoding = "ros2idl";
+  CHECK(message_of(file, other_encoding, "probe_state") == differs);
+
+  using Catch::EndsWith;
+  CHECK_THAT(message_of(file, probe_schema(), "tool_state"),
+             EndsWith(": topic 'tool_state' is not one of Palpate's"));
+  CHECK_THAT(message_of(file, probe_schema(), "contacts"),
+             EndsWith(": topic 'contacts' must be of type 'palpate::idl::Contacts'"));
+  CHECK_THAT(message_of(file, probe_schema(), "probe_state", "json"),
+             EndsWith(": topic 'probe_state' is encoded as 'json'; allowed: cdr"));
+}
+
+TEST_CASE("sample reader: comments of an IDL file may change between versions") {
+  // Oracle: the rule of same_idl().
+  TempFolder folder;
+  McapSchema schema = probe_schema();
+  schema.data = "// Reworded.\n" + schema.data;
+  CHECK(message_of(folder / "a.mcap", schema, "probe_state") == "no error");
+}
+
+TEST_CASE("sample reader: a torn file says where it ends") {
+  // Oracle: the sizes of the files, cut in the middle of the last message.
+  TempFolder folder;
+  const auto file = folder / "torn.mcap";
+  std::uint64_t whole = 0;
+  {
+    SampleFile writer(file, {});
+    writer.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 1));
+    whole = writer.bytes_written();
+    writer.add(raw_sample(bus::kNodePositions, node_positions(2, 1e-3, 5), 2));
+    writer.flush();
+  }
+  std::filesystem::resize_file(file, whole + 20);
+  SampleReader reader(file);
+  CHECK(reader.next());
+  CHECK_FALSE(reader.next());
+  CHECK(reader.torn());
+  CHECK(reader.torn_warning() == file.string() + ": not closed by its writer; whole up to byte " +
+                                     std::to_string(whole) + " of " + std::to_string(whole + 20));
+}
+
+}  // namespace palpate::recording

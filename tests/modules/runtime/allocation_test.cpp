@@ -1,0 +1,74 @@
+// The loop of a module may not allocate: counts operator new in the calling thread.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
+
+#include "modules/runtime/module.h"
+#include "modules/scene/scene.h"
+#include "tests/modules/bus/loopback.h"
+
+namespace {
+
+thread_local std::size_t allocations = 0;
+
+void* counted(std::size_t bytes) {
+  ++allocations;
+  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) { return counted(bytes); }
+void* operator new[](std::size_t bytes) { return counted(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  ++allocations;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t& none) noexcept {
+  return operator new(bytes, none);
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+using namespace palpate;
+using namespace palpate::runtime;
+
+TEST_CASE("allocation: a running module allocates nothing but what DDS takes for a status") {
+  // Oracle: the count of operator new, over a second with four statuses.
+  ModuleOptions options;
+  options.bus = bus::testing::own_options();
+  options.realtime = false;
+  Module module(options, scene::Scene{}, "haptics", 500, Priority::kPreferred);
+  auto models = module.bus().reader(bus::kContactModel);
+  module.watch(bus::kContactModel, models);
+  module.ready();
+  bus::Bus listener(options.bus);
+  auto statuses = listener.reader(bus::kModuleStatus);
+  Session session(listener, "");
+  SessionConductor conductor(listener);
+  conductor.command(session.state(), SessionCommand::kStart);
+  REQUIRE(bus::testing::wait_until([&] { return module.next_cycle() && module.running(); }));
+  for (int i = 0; i < 250; ++i) module.next_cycle();  // two statuses to warm up
+
+  ModuleStatus first, last;
+  while (statuses.take(first)) {
+  }
+  int cycles_that_allocated = 0;
+  std::size_t most = 0;
+  for (int i = 0; i < 500; ++i) {
+    module.set_guard(i % 100 < 50 ? "an input is stale" : "");
+    const std::size_t before = allocations;
+    module.next_cycle();
+    cycles_that_allocated += allocations > before;
+    most = std::max(most, allocations - before);
+  }
+  REQUIRE(bus::testing::wait_until([&] { return statuses.take(last); }));
+  const auto written = static_cast<int>(last.header.sequence - first.header.sequence);
+  CHECK(written >= 3);
+  CHECK(cycles_that_allocated <= written);  // only DDS, and only in a status
+  CHECK(most <= 32);
+}

@@ -1,0 +1,111 @@
+#include "modules/runtime/module.h"
+
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "modules/runtime/clock.h"
+#include "modules/scene/scene_reader.h"
+#include "tests/modules/runtime/waiting.h"
+
+using namespace palpate;
+using namespace palpate::runtime;
+using palpate::testing::own_bus_options;
+
+namespace {
+
+/// A module of a scene that nobody loads meshes for, with someone who gives it commands.
+struct Played {
+  ModuleOptions options = [] {
+    ModuleOptions made;
+    made.bus = own_bus_options();
+    made.realtime = false;
+    return made;
+  }();
+  scene::Scene scene;
+  Module module{options, scene, "haptics", 200, Priority::kPreferred};
+  bus::Bus bus{options.bus};
+  Session session{bus, scene::scene_digest(scene)};
+  SessionConductor conductor{bus};
+  bus::Reader<ModuleStatus> statuses = bus.reader(bus::kModuleStatus);
+  ModuleStatus newest;
+
+  void command(SessionCommand wanted) {
+    session.poll();
+    conductor.command(session.state(), wanted);
+  }
+  /// Cycles until the status says so; false after the deadline or if the loop ended.
+  bool cycle_until(ModuleState state, std::string_view error = "") {
+    const auto deadline = monotonic_now_ns() + 20'000'000'000;
+    while (monotonic_now_ns() < deadline && module.next_cycle()) {
+      while (statuses.take(newest)) {
+      }
+      session.poll();
+      if (newest.state == state && newest.last_error == error) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("module: its state follows loading, session and guards") {
+  // Oracle: the states of messages.h.
+  Played played;
+  CHECK(played.cycle_until(ModuleState::kStarting));
+  played.module.ready();
+  CHECK(played.cycle_until(ModuleState::kReady));
+  CHECK_FALSE(played.module.running());
+  played.command(SessionCommand::kStart);
+  CHECK(played.cycle_until(ModuleState::kRunning));
+  CHECK(played.module.running());
+  played.module.set_guard("an input is stale");
+  CHECK(played.cycle_until(ModuleState::kDegraded, "an input is stale"));
+  played.module.set_guard("");
+  CHECK(played.cycle_until(ModuleState::kRunning));
+  played.command(SessionCommand::kPause);
+  CHECK(played.cycle_until(ModuleState::kPaused));
+  const double paused_at = played.module.time();
+  REQUIRE(played.module.next_cycle());
+  CHECK(played.module.time() == paused_at);
+}
+
+TEST_CASE("module: a stop of the session or a signal ends the loop") {
+  // Oracle: definition.
+  Played played;
+  played.module.ready();
+  REQUIRE(played.cycle_until(ModuleState::kReady));
+  SECTION("session") { played.command(SessionCommand::kStop); }
+  SECTION("signal") { raise(SIGTERM); }
+  const auto deadline = monotonic_now_ns() + 20'000'000'000;
+  bool going = true;
+  while (going && monotonic_now_ns() < deadline) going = played.module.next_cycle();
+  CHECK_FALSE(going);
+}
+
+TEST_CASE("module: says goodbye") {
+  // Oracle: its last status.
+  const auto options = own_bus_options();
+  bus::Bus bus(options);
+  auto statuses = bus.reader(bus::kModuleStatus);
+  ModuleStatus newest;
+  {
+    ModuleOptions module_options;
+    module_options.bus = options;
+    module_options.realtime = false;
+    Module module(module_options, scene::Scene{}, "collision", 100, Priority::kPreferred);
+    REQUIRE(
+        palpate::testing::wait_until([&] { return module.next_cycle() && statuses.take(newest); }));
+  }
+  CHECK(palpate::testing::wait_until(
+      [&] { return statuses.take(newest) && newest.state == ModuleState::kStopped; }));
+}
+
+TEST_CASE("module: messages carry the cycle's time") {
+  // Oracle: definition.
+  Played played;
+  REQUIRE(played.module.next_cycle());
+  const Header header = played.module.header();
+  CHECK(header.source_time_ns == played.module.now_ns());
+  CHECK(header.sim_time_ns == 0);
+  CHECK(played.module.period() == Approx(0.005));
+}

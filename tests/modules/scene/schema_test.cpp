@@ -1,0 +1,140 @@
+#include "modules/scene/schema.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "modules/scene/schema_reference.h"
+#include "tests/modules/scene/scene_text.h"
+
+using namespace palpate;
+using namespace palpate::scene;
+using namespace palpate::scene::test;
+
+namespace {
+
+std::string refusal(const std::string& from, const std::string& to) {
+  const SceneFolder folder;
+  return folder.refusal(changed(from, to));
+}
+
+/// The numbers on both sides of the first " … " of a text.
+std::pair<double, double> range_in(const std::string& text) {
+  const auto at = text.find(" … ");
+  if (at == std::string::npos) return {};
+  const auto begin = text.find_last_of("[ ", at - 1) + 1;  // npos + 1 = 0
+  return {std::strtod(text.c_str() + begin, nullptr),
+          std::strtod(text.c_str() + at + std::string(" … ").size(), nullptr)};
+}
+
+}  // namespace
+
+TEST_CASE("schema: inner springs need virtual nodes to hang on") {
+  // Oracle: the rule of the springs' table.
+  const std::string rule =
+      "inner_ratio must be 0 where virtual_nodes is 0 (inner springs hang on virtual nodes)";
+  CHECK(refusal("virtual_nodes: 5", "virtual_nodes: 0") ==
+        "scene.yaml:14: key 'organs[0].springs' = '{…}': " + rule);
+  CHECK(refusal("inner_ratio: 0.7\n      virtual_nodes: 5",
+                "inner_ratio: 0\n      virtual_nodes: 0") == "accepted");
+  CHECK(refusal("inner_ratio: 0.7", "inner_ratio: 0") == "accepted");
+}
+
+TEST_CASE("schema: only models that iterate take a number of iterations") {
+  // Oracle: the rule of the organ's table.
+  const auto of = [](const std::string& model, const std::string& count) {
+    return refusal("model: mass_spring", "model: " + model + "\n    iterations: " + count);
+  };
+  CHECK(of("mass_spring", "0") == "accepted");
+  for (const std::string model :
+       {"xpbd_springs", "xpbd_tetrahedra", "corotational", "nodal_pressure"}) {
+    INFO(model);
+    CHECK(of(model, "8") == "accepted");
+  }
+  for (const std::string model :
+       {"mass_spring", "implicit_volume", "quadratic_elements", "modal"}) {
+    INFO(model);
+    CHECK_THAT(of(model, "8"),
+               Catch::Contains("iterations must be 0 unless model is xpbd_springs"));
+  }
+  CHECK_THAT(of("xpbd_springs", "1001"), Catch::Contains("0 and 1000"));
+}
+
+TEST_CASE("schema: a box has a lowest and a highest corner") {
+  // Oracle: the rule of the box's table, broken in each axis and by a flat box.
+  const std::string message =
+      "scene.yaml:30: key 'organs[0].fixed[1].box' = '{…}': min_m must be below max_m in each of "
+      "x, y, z";
+  for (const std::string max : {"[-1.5, 2, 3]", "[1, -2.5, 3]", "[1, 2, -3.5]", "[1, 2, -3]"}) {
+    INFO(max);
+    CHECK(refusal("max_m: [1, 2, 3]", "max_m: " + max) == message);
+  }
+}
+
+TEST_CASE("schema: a move either goes somewhere in a time, or waits") {
+  // Oracle: every wrong subset of the three keys.
+  const std::string message =
+      "scene.yaml:45: key 'probes[0].device.scripted.moves[1]' = '{…}': must hold either to_m and "
+      "duration_s, or wait_s alone";
+  for (const std::string move :
+       {"{to_m: [0, 0, 0]}", "{duration_s: 1}", "{to_m: [0, 0, 0], wait_s: 1}",
+        "{duration_s: 1, wait_s: 1}", "{to_m: [0, 0, 0], duration_s: 1, wait_s: 1}"}) {
+    INFO(move);
+    CHECK(refusal("{wait_s: 0.5}", move) == message);
+  }
+  CHECK(refusal("{wait_s: 0.5}", "{}") ==
+        "scene.yaml:45: key 'probes[0].device.scripted.moves[1]' = '{}': must hold either to_m "
+        "and duration_s, or wait_s alone");
+}
+
+TEST_CASE("schema: a filling's points rise in time") {
+  // Oracle: the rule, word by word.
+  const SceneFolder folder;
+  CHECK(folder.refusal(changed("{at_s: 5,", "{at_s: 0,")) ==
+        "scene.yaml:21: key 'organs[0].filling' = '{…}': at_s must rise from point to point");
+}
+
+TEST_CASE("schema: an unknown model or integrator is refused with all there are") {
+  // Oracle: the words, written out again.
+  const SceneFolder folder;
+  CHECK(folder.refusal(changed("model: mass_spring", "model: tetrahedra")) ==
+        "scene.yaml:18: key 'organs[0].model' = 'tetrahedra': must be one of: implicit_volume, "
+        "mass_spring, penalty, baumgarte, promayon, post_stabilisation, bourguignon_cani, zordan, "
+        "element_volume, chainmail, xpbd_springs, xpbd_tetrahedra, corotational, nodal_pressure, "
+        "quadratic_elements, modal");
+  CHECK(folder.refusal(changed("backward_euler", "euler")) ==
+        "scene.yaml:20: key 'organs[0].integrator' = 'euler': must be one of: automatic, "
+        "symplectic_euler, backward_euler");
+}
+
+TEST_CASE("schema: the camera does not look at itself") {
+  // Oracle: the rule of the camera's table.
+  CHECK(refusal("target_m: [0, 0, 0.1]", "target_m: [0, -1, 0]") ==
+        "scene.yaml:72: key 'camera' = '{…}': position_m and target_m must differ");
+  CHECK(refusal("position_m: [0, -1, 0], ", "") == "accepted");
+}
+
+TEST_CASE("schema: the comments of scene.h state the keys and ranges that are enforced") {
+  // Oracle: the two texts are written separately; each "`key` … [low … high]" of scene.h must be
+  // a row of the reference with that range.
+  std::ifstream header(PALPATE_SOURCE_DIR "/modules/scene/scene.h");
+  const std::string reference = schema_reference();
+  int count = 0;
+  for (std::string line; std::getline(header, line);) {
+    const auto open = line.find('['), tick = line.find('`');
+    if (open == std::string::npos || tick > open || line.find(" … ") == std::string::npos) continue;
+    const std::string key = line.substr(tick, line.find('`', tick + 1) + 1 - tick);
+    INFO(line);
+    bool found = false;
+    std::istringstream rows(reference);
+    for (std::string row; std::getline(rows, row);) {
+      if (row.starts_with("| " + key + " |")) {
+        found = found || range_in(row) == range_in(line.substr(open + 1));
+      }
+    }
+    CHECK(found);
+    ++count;
+  }
+  CHECK(count >= 25);  // of the 26 that were there when this was written
+}

@@ -1,0 +1,84 @@
+#include "palpate/check_command.h"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "modules/geometry/mesh_io.h"
+#include "modules/geometry/triangle_surface.h"
+#include "modules/scene/scene_reader.h"
+#include "tests/palpate/ball_scene.h"
+
+using namespace palpate;
+using Catch::Contains;
+using testing::BallScene;
+
+TEST_CASE("check: prints the resolved scene, which can be read back") {
+  // Oracle: the scene reader.
+  const BallScene scene;
+  std::ostringstream out;
+  CHECK(launcher::check_command(scene.file(), 0.05, out) == kExitDone);
+  const std::string text = out.str();
+  const std::string resolved = text.substr(0, text.find("\norgan ball:"));
+  const auto loaded = scene::load_scene(scene.file());
+  CHECK(scene::scene_digest(scene::parse_scene(resolved, scene.file())) ==
+        scene::scene_digest(loaded));
+}
+
+TEST_CASE("check: counts, volume and mass are those of the mesh") {
+  // Oracle: Euler's formula (E = 3N − 6, F = 2N − 4) and the enclosed volume of the file.
+  const BallScene scene;
+  std::ostringstream out;
+  launcher::check_command(scene.file(), 0.05, out);
+  const auto ball = geometry::read_surface(scene.folder() / "ball.ply", "m");
+  const double volume = geometry::enclosed_volume(ball.nodes, ball.triangles);
+  char measures[80];
+  std::snprintf(measures, sizeof measures, "volume %.1f cm3, mass %.3f kg", 1e6 * volume,
+                1058 * volume);
+  CHECK_THAT(out.str(), Contains("organ ball: 642 surface nodes + 6 virtual nodes") &&
+                            Contains("1280 triangles") && Contains("1920 structural") &&
+                            Contains(measures));
+}
+
+TEST_CASE("check: tells sub-steps, rates, cost and the real-time factor to expect") {
+  // Oracle: definition.
+  const BallScene scene;
+  std::ostringstream out;
+  launcher::check_command(scene.file(), 0.05, out);
+  CHECK_THAT(out.str(), Contains("largest step") && Contains("sub-steps of") &&
+                            Contains("rates: haptics 1000 Hz, collision 250 Hz") &&
+                            Contains("cost here: ") && Contains("expected real-time factor: "));
+}
+
+TEST_CASE("check: says which integrator steps the springs, who chose it and by what") {
+  // Oracle: the rule. A ball of 642 nodes at 10 kPa is cheap to step explicitly.
+  const BallScene scene;
+  std::ostringstream out;
+  launcher::check_command(scene.file(), 0.05, out);
+  CHECK_THAT(out.str(), Contains("integrator symplectic_euler (automatic): passes over the springs "
+                                 "per simulated second: symplectic_euler ") &&
+                            Contains("backward_euler 3500\n"));
+}
+
+TEST_CASE("check: a bad scene is refused with its place") {
+  // Oracle: the message.
+  const BallScene scene("topic: {start_m: [0, 0, 0.09]}", "wrong_key: 1\n");
+  std::ostringstream out;
+  CHECK_THROWS_WITH(launcher::check_command(scene.file(), 0.05, out),
+                    Contains(scene.file().string() + ":12:") && Contains("wrong_key"));
+  CHECK(out.str().empty());
+}
+
+TEST_CASE("check: a recording that cannot be used is refused by file and line, gaps are told") {
+  // Oracle: what the haptics process says of the same file
+  // (tests/haptics/trajectory_file_test.cpp).
+  const BallScene scene("trajectory: {file: moves.csv}");
+  const auto file = scene.folder() / "moves.csv";
+  std::ostringstream out;
+  std::ofstream(file) << "t,x,y,z\n0,0,0,0\n";
+  CHECK_THROWS_WITH(launcher::check_command(scene.file(), 0.05, out), Contains("moves.csv:1: "));
+  std::ofstream(file) << "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.09,0,0,0,1\nnone,0,0,0.09,0,0,0,1\n"
+                         "0.01,0,0,0.09,0,0,0,1\n";
+  CHECK(launcher::check_command(scene.file(), 0.05, out) == kExitDone);
+  CHECK_THAT(out.str(), Contains("warning: ") && Contains("moves.csv:3: "));
+}

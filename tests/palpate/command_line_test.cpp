@@ -1,0 +1,99 @@
+// The programs as they are typed, in processes of their own.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+
+#include "modules/core/error.h"
+#include "palpate/child_process.h"
+#include "tests/modules/runtime/waiting.h"
+#include "tests/palpate/ball_scene.h"
+
+using namespace palpate;
+using Catch::Contains;
+using testing::BallScene;
+
+namespace {
+
+struct Outcome {
+  int code = -1;
+  std::string said;
+};
+
+Outcome type(const std::string& program, const std::vector<std::string>& arguments) {
+  launcher::ChildProcess child(std::filesystem::path(PALPATE_BIN_DIR) / program, arguments);
+  Outcome outcome;
+  const auto listen = [&] {
+    for (const auto& line : child.take_lines()) outcome.said += line + "\n";
+  };
+  testing::wait_until([&] {
+    listen();
+    return child.ended().has_value();
+  });
+  listen();
+  if (child.ended() && WIFEXITED(*child.ended())) outcome.code = WEXITSTATUS(*child.ended());
+  return outcome;
+}
+
+}  // namespace
+
+TEST_CASE("command line: --help lists every command and is no error") {
+  // Oracle: the commands of the design.
+  const auto help = type("palpate", {"--help"});
+  CHECK(help.code == kExitDone);
+  for (const char* command : {"run", "replay", "inspect", "check", "mesh", "chart"}) {
+    CHECK_THAT(help.said, Contains(command));
+    CHECK(type("palpate", {command, "--help"}).code == kExitDone);
+  }
+  for (const char* program : {"plan", "stability", "fuzz"}) {
+    CHECK_THAT(help.said, Contains(program));
+  }
+}
+
+TEST_CASE("command line: what is not a command or option is bad input") {
+  // Oracle: the exit codes of core/error.h.
+  const std::vector<std::vector<std::string>> wrong{{},
+                                                    {"rum"},
+                                                    {"run"},
+                                                    {"run", "a.yaml", "--domain", "300"},
+                                                    {"run", "a.yaml", "--duration", "-1"},
+                                                    {"check"},
+                                                    {"mesh"}};
+  for (const auto& arguments : wrong) CHECK(type("palpate", arguments).code == kExitBadInput);
+  CHECK_THAT(type("palpate", {"rum"}).said, Contains("no command 'rum'; there are run replay"));
+  CHECK_THAT(type("palpate", {"mesh", "a.ply", "--nodes", "-5"}).said, Contains("-5 not in range"));
+}
+
+TEST_CASE("command line: a bad scene is refused by every program with file and line") {
+  // Oracle: the message and exit code 2.
+  const BallScene scene("topic: {start_m: [0, 0, 0.09]}", "wrong_key: 1\n");
+  const std::string file = scene.file().string();
+  const std::string place = file + ":12: key 'wrong_key'";
+  for (const char* module : {"palpate-haptics", "palpate-collision", "palpate-deformation"}) {
+    const auto outcome = type(module, {file});
+    CHECK(outcome.code == kExitBadInput);
+    CHECK_THAT(outcome.said, Contains(place));
+  }
+  for (const char* command : {"run", "check"}) {
+    const auto outcome = type("palpate", {command, file});
+    CHECK(outcome.code == kExitBadInput);
+    CHECK_THAT(outcome.said, Contains(place));
+  }
+}
+
+TEST_CASE("command line: a recording that is not there is bad input") {
+  // Oracle: the exit codes of core/error.h.
+  const auto outcome = type("palpate", {"inspect", "/nowhere/a.mcap"});
+  CHECK(outcome.code == kExitBadInput);
+  CHECK_THAT(outcome.said, Contains("/nowhere/a.mcap"));
+  CHECK(type("palpate", {"replay", "/nowhere/a.mcap"}).code == kExitBadInput);
+}
+
+TEST_CASE("command line: mesh writes what it was asked for") {
+  // Oracle: the file.
+  const BallScene scene;
+  const auto output = scene.folder() / "out.stl";
+  const auto outcome =
+      type("palpate", {"mesh", (scene.folder() / "ball.ply").string(), "-o", output.string()});
+  CHECK(outcome.code == kExitDone);
+  CHECK(std::filesystem::exists(output));
+}

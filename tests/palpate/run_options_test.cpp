@@ -1,0 +1,97 @@
+#include "palpate/run_options.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "modules/core/error.h"
+
+using namespace palpate::launcher;
+
+namespace {
+
+std::vector<std::string> names(const std::vector<ModuleCommand>& commands) {
+  std::vector<std::string> result;
+  for (const auto& command : commands) result.push_back(command.module);
+  return result;
+}
+
+RunOptions some_run() {
+  RunOptions options;
+  options.scene = "/scenes/a.yaml";
+  options.bus.session = "s1";
+  options.bus.domain = 9;
+  return options;
+}
+
+bool has(const ModuleCommand& command, const std::string& argument) {
+  return std::find(command.arguments.begin(), command.arguments.end(), argument) !=
+         command.arguments.end();
+}
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+TEST_CASE("run options: every module gets the scene and the session") {
+  // Oracle: the command lines, by hand.
+  const auto commands = module_commands(some_run(), "/bin/p");
+  CHECK(names(commands) == Names{"deformation", "collision", "haptics", "visualizer"});
+  CHECK(command_text(commands[2]) ==
+        "/bin/p/palpate-haptics /scenes/a.yaml --session s1 --domain 9");
+}
+
+TEST_CASE("run options: a recorder comes first and is not waited for") {
+  // Oracle: definition.
+  auto options = some_run();
+  options.record = "out.mcap";
+  const auto commands = module_commands(options, "/bin/p");
+  CHECK(command_text(commands[0]) == "/bin/p/palpate-recorder out.mcap --session s1 --domain 9");
+  CHECK_FALSE(commands[0].reports_status);
+  CHECK(commands[1].reports_status);
+}
+
+TEST_CASE("run options: a visualizer that nobody could see is left out") {
+  // Oracle: definition.
+  auto options = some_run();
+  options.headless = true;
+  CHECK(names(module_commands(options, "")) == Names{"deformation", "collision", "haptics"});
+  options.frames = "out";
+  const auto drawing = module_commands(options, "");
+  REQUIRE(drawing.size() == 4);
+  CHECK(has(drawing[3], "--headless"));
+  CHECK(has(drawing[3], "out"));
+  options.visualizer = false;
+  CHECK(module_commands(options, "").size() == 3);
+}
+
+TEST_CASE("run options: --only starts those and refuses names that do not exist") {
+  // Oracle: definition, and the message.
+  auto options = some_run();
+  options.only = {"haptics", "collision"};
+  CHECK(names(module_commands(options, "")) == Names{"collision", "haptics"});
+  options.only = {"haptic"};
+  CHECK_THROWS_WITH(module_commands(options, ""),
+                    "--only: there is no module 'haptic'; there are deformation, collision, "
+                    "haptics, visualizer");
+  CHECK_THROWS_AS(module_commands(options, ""), palpate::InputError);
+}
+
+TEST_CASE("run options: --no-realtime reaches every module") {
+  // Oracle: definition.
+  auto options = some_run();
+  options.realtime = false;
+  for (const auto& command : module_commands(options, "")) CHECK(has(command, "--no-realtime"));
+}
+
+TEST_CASE("run options: random session names are acceptable and differ") {
+  // Oracle: the rule of bus::Bus; 32 random bits repeat within 100 names once in a million.
+  std::set<std::string> seen;
+  for (int i = 0; i < 100; ++i) {
+    const auto name = random_session_name();
+    CHECK(name.size() == 9);
+    CHECK(name.find_first_not_of("s0123456789abcdef") == std::string::npos);
+    seen.insert(name);
+  }
+  CHECK(seen.size() == 100);
+}

@@ -1,0 +1,55 @@
+#include "palpate/session_monitor.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/modules/runtime/waiting.h"
+
+using namespace palpate;
+using namespace palpate::launcher;
+
+TEST_CASE("session monitor: knows who is ready and hears forces and nodes") {
+  // Oracle: what was written.
+  const auto options = palpate::testing::own_bus_options();
+  bus::Bus bus(options), module_bus(options);
+  scene::Scene scene;
+  scene.organs.resize(1);
+  scene.probes.resize(1);
+  SessionMonitor monitor(bus, scene);
+  const std::vector<std::string> both{"haptics", "collision"};
+  CHECK(monitor.not_ready(both) == both);
+
+  auto statuses = module_bus.writer(bus::kModuleStatus);
+  auto forces = module_bus.writer(bus::kHapticForce);
+  auto positions = module_bus.writer(bus::kNodePositions);
+  ModuleStatus status;
+  status.module = "haptics";
+  status.state = ModuleState::kReady;
+  statuses.write(status);
+  status.module = "collision";
+  status.state = ModuleState::kStarting;
+  statuses.write(status);
+  CHECK(palpate::testing::wait_until([&] {
+    monitor.poll();
+    return monitor.not_ready(both) == std::vector<std::string>{"collision"};
+  }));
+  status.state = ModuleState::kReady;
+  statuses.write(status);
+  CHECK(palpate::testing::wait_until([&] {
+    monitor.poll();
+    return monitor.not_ready(both).empty();
+  }));
+
+  HapticForce force;
+  force.force = Vec3(0, 0, 2);
+  NodePositions nodes;
+  nodes.volume = 1.5;
+  nodes.target_volume = 1;
+  nodes.positions = {0, 0, 0};
+  CHECK(palpate::testing::wait_until([&] {
+    forces.write(force);
+    positions.write(nodes);
+    monitor.poll();
+    const auto& tally = monitor.tally();
+    return tally.probes()[0].force == 2 && tally.organs()[0].volume_ratio == 1.5;
+  }));
+}

@@ -1,0 +1,122 @@
+#include "palpate/session_tally.h"
+
+#include <catch2/catch.hpp>
+
+using namespace palpate;
+using namespace palpate::launcher;
+
+namespace {
+
+SessionTally some_tally() {
+  scene::Scene scene;
+  scene.organs.resize(1);
+  scene.organs[0].name = "ball";
+  scene.probes.resize(2);
+  scene.probes[0].name = "left";
+  scene.probes[1].name = "right";
+  return SessionTally(scene);
+}
+
+NodePositions positions(double volume, double pressure = 0) {
+  NodePositions message;
+  message.target_volume = 2;
+  message.volume = volume;
+  message.pressure = pressure;
+  message.header.sim_time_ns = 1'500'000'000;
+  return message;
+}
+
+HapticForce force(std::uint32_t probe, double newtons, std::uint32_t limits = 0) {
+  HapticForce message;
+  message.probe = probe;
+  message.force = Vec3(0, 0, newtons);
+  message.limits = limits;
+  return message;
+}
+
+ModuleStatus status(const char* module, std::uint64_t cycles, std::uint64_t overruns,
+                    std::int64_t process = 1) {
+  ModuleStatus message;
+  message.module = module;
+  message.cycles = cycles;
+  message.overruns = overruns;
+  message.process_id = process;
+  message.real_time_factor = 0.9;
+  return message;
+}
+
+}  // namespace
+
+TEST_CASE("session tally: extremes are of both signs and begin with the session") {
+  // Oracle: by hand.
+  auto tally = some_tally();
+  tally.receive(positions(1.0, -900));
+  tally.receive(force(0, 9, kForceNotFinite));
+  tally.start();
+  tally.receive(positions(2.002, 40));
+  tally.receive(positions(1.99, -10));
+  tally.receive(positions(2.0, 5));
+  tally.receive(force(0, -0.5, kForceSaturated));
+  tally.receive(force(0, 0.2, kForceStaleFade));
+  tally.receive(force(1, 0.1));
+  const OrganTally& organ = tally.organs()[0];
+  CHECK(organ.volume_ratio == Approx(1));
+  CHECK(organ.worst_volume_error == Approx(0.005));
+  CHECK(organ.lowest_pressure == -10);
+  CHECK(organ.highest_pressure == 40);
+  CHECK(tally.probes()[0].force == Approx(0.2));
+  CHECK(tally.probes()[0].greatest_force == Approx(0.5));
+  CHECK(tally.probes()[0].limits == (kForceSaturated | kForceStaleFade));
+  CHECK(tally.probes()[1].greatest_force == Approx(0.1));
+  CHECK(tally.sim_time() == Approx(1.5));
+}
+
+TEST_CASE("session tally: a module's cycles count from the start, or from its own new start") {
+  // Oracle: by hand.
+  auto tally = some_tally();
+  tally.receive(status("haptics", 500, 20));
+  tally.start();
+  tally.receive(status("haptics", 1490, 30));
+  REQUIRE(tally.module("haptics") != nullptr);
+  CHECK(tally.module("haptics")->cycles() == 990);
+  CHECK(tally.module("haptics")->overruns() == 10);
+  CHECK(tally.module("haptics")->on_time_fraction() == Approx(0.99));
+  tally.receive(status("haptics", 100, 0, 2));
+  CHECK(tally.module("haptics")->cycles() == 100);
+  CHECK(tally.module("collision") == nullptr);
+  CHECK(tally.real_time_factor() == 0);
+  tally.receive(status("deformation", 1, 0));
+  CHECK(tally.real_time_factor() == 0.9);
+}
+
+TEST_CASE("session tally: what a status said while degraded is kept once, with its newest count") {
+  // Oracle: the statuses given.
+  auto tally = some_tally();
+  const auto say = [&](ModuleState state, const std::string& text) {
+    auto message = status("deformation", 1, 0);
+    message.state = state;
+    message.last_error = text;
+    tally.receive(message);
+  };
+  say(ModuleState::kDegraded, "before the start");
+  tally.start();
+  say(ModuleState::kDegraded, "a probe jumped");
+  say(ModuleState::kRunning, "");
+  say(ModuleState::kDegraded, "too flat");
+  say(ModuleState::kDegraded, "a probe jumped (2 times)");
+  say(ModuleState::kStopped, "said at the end");
+  CHECK(tally.troubles() ==
+        std::vector<std::string>{"deformation: a probe jumped (2 times)", "deformation: too flat"});
+}
+
+TEST_CASE("session tally: organs and probes the scene does not have change nothing") {
+  // Oracle: definition.
+  auto tally = some_tally();
+  tally.start();
+  auto foreign = positions(7);
+  foreign.organ = 1;
+  tally.receive(foreign);
+  tally.receive(force(2, 5));
+  CHECK(tally.organs()[0].worst_volume_error == 0);
+  CHECK(tally.probes()[1].greatest_force == 0);
+}

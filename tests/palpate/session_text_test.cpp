@@ -1,0 +1,85 @@
+#include "palpate/session_text.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+using namespace palpate;
+using namespace palpate::launcher;
+using Catch::Contains;
+
+namespace {
+
+/// A session of one organ, one probe and two modules, some seconds old.
+SessionTally some_tally() {
+  scene::Scene scene;
+  scene.organs.resize(1);
+  scene.organs[0].name = "stomach";
+  scene.probes.resize(1);
+  scene.probes[0].name = "finger";
+  SessionTally tally(scene);
+  tally.start();
+  NodePositions positions;
+  positions.header.sim_time_ns = 12'000'000'000;
+  positions.target_volume = 1e-3;
+  positions.volume = 1.00005e-3;
+  tally.receive(positions);
+  HapticForce force;
+  force.force = Vec3(0.3, 0.4, 0);
+  force.limits = kForceSlewLimited | kForceStaleFade;
+  tally.receive(force);
+  ModuleStatus haptics;
+  haptics.module = "haptics";
+  haptics.rate_hz = 999.6;
+  haptics.nominal_rate_hz = 1000;
+  haptics.cycles = 11'994;
+  haptics.overruns = 6;
+  haptics.worst_lateness = 2.5e-3;
+  haptics.realtime_priority = true;
+  haptics.inputs.push_back({"contact_model", 0.002, 3000, 17, 1});
+  tally.receive(haptics);
+  ModuleStatus deformation;
+  deformation.module = "deformation";
+  deformation.real_time_factor = 0.97;
+  deformation.state = ModuleState::kDegraded;
+  deformation.last_error = "slower than real time";
+  tally.receive(deformation);
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("status line: one line with time, speed, volume, force, rates and troubles") {
+  // Oracle: the numbers given.
+  const auto line = status_line(some_tally());
+  CHECK(std::count(line.begin(), line.end(), '\n') == 0);
+  CHECK_THAT(line, Contains("12.0 s") && Contains("real time 0.97") &&
+                       Contains("V/V0 stomach 1.000050") && Contains("force finger 0.500 N") &&
+                       Contains("haptics 1000 Hz (6 missed)") &&
+                       Contains("[slower than real time]"));
+}
+
+TEST_CASE("summary: one screen with what the session was and what failed") {
+  // Oracle: the numbers given.
+  SessionEnd end{"stomach_probe", 12, 12.1, {{"haptics", "[haptics] info: bye"}}, {}};
+  end.failures["collision"] = "killed by signal 9 (Killed)";
+  const auto text = summary(some_tally(), end);
+  CHECK(std::count(text.begin(), text.end(), '\n') <= 24);
+  CHECK_THAT(text, Contains("scene stomach_probe: 12.0 s in 12.1 s") &&
+                       Contains("real-time factor 0.970") &&
+                       Contains("|V-V0|/V0 at most 5.00e-05") &&
+                       Contains("force at most 0.500 N   limits that acted: slew, stale"));
+  CHECK_THAT(text, Contains("11994 cycles, 99.950 % on time") &&
+                       Contains("worst lateness 2.50 ms since its start") &&
+                       Contains("real-time priority") &&
+                       Contains("3000 taken, 17 lost or overtaken by newer ones, 1 refused"));
+  CHECK_THAT(text, Contains("degraded for a while: deformation: slower than real time") &&
+                       Contains("[haptics] info: bye") &&
+                       Contains("FAILED: collision: killed by signal 9 (Killed)"));
+}
+
+TEST_CASE("limit names: all bits have one") {
+  // Oracle: the bits of messages.h.
+  CHECK(limit_names(kForceNotLimited) == "none");
+  CHECK(limit_names(kForceSaturated | kForcePassivity | kForceNotFinite | kForceOutOfValidity) ==
+        "saturated, passivity, not finite, out of validity");
+}

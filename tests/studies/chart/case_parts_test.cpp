@@ -1,0 +1,31 @@
+#include "studies/chart/case_parts.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/geometry/primitives.h"
+
+namespace palpate::accuracy {
+namespace {
+
+TEST_CASE("case parts: plates face each other") {
+  // Oracle: a plane is solid below its own z = 0.
+  CHECK(plate(0.1, true).to_world(Vec3::UnitZ()).z() > 0.1);
+  CHECK(plate(0.1, false).to_world(Vec3::UnitZ()).z() < 0.1);
+}
+
+TEST_CASE("case parts: the contact's radius is that of the touching nodes' share") {
+  // Oracle: of a ball cut by a plane at height c, what lies above has the radius √(R² − c²); a
+  // node's share is a third of its triangles, so an edge's length is not resolved.
+  scene::Scene scene;
+  scene.organs.push_back(solid_organ({}, kBallRadius, 1, kYoungsModulus, kDensity));
+  Stage stage(scene, geometry::OrganShape(geometry::make_ball(kBallRadius, 4)), {});
+  for (const double height : {0.03, 0.04}) {
+    const double radius =
+        contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
+    CHECK(radius == Approx(std::sqrt(kBallRadius * kBallRadius - height * height)).epsilon(0.02));
+  }
+  CHECK(contact_radius(stage, Vec3::UnitZ(), [](const Vec3&) { return 1.0; }) == 0);
+}
+
+}  // namespace
+}  // namespace palpate::accuracy

@@ -1,0 +1,70 @@
+#include "studies/chart/equilibria.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "modules/geometry/primitives.h"
+#include "modules/geometry/tools/gmsh_tool.h"
+#include "studies/chart/local_refinement.h"
+#include "tests/modules/geometry/tetrahedra.h"
+
+namespace palpate::accuracy {
+namespace {
+
+TEST_CASE("local refinement: the shape stays closed and the same, edges are as short as asked") {
+  // Oracle: enclosed volume and area, the mesh check, the edges' lengths.
+  const auto ball = geometry::make_ball(0.05, 2);
+  const Vec3 centre(0, 0, 0.05);
+  const auto fine = refine_around(ball, centre, 1e-3, 0.3);
+  CHECK(fine.nodes.size() > 2 * ball.nodes.size());
+  CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==
+        Approx(geometry::enclosed_volume(ball.nodes, ball.triangles)).epsilon(1e-12));
+  CHECK(geometry::surface_area(fine.nodes, fine.triangles) ==
+        Approx(geometry::surface_area(ball.nodes, ball.triangles)).epsilon(1e-12));
+  CHECK(fine.triangles.size() == 2 * fine.nodes.size() - 4);  // Euler
+  for (const auto& [a, b] : geometry::edges_of(fine.triangles)) {
+    const Vec3 &p = fine.nodes[a], &q = fine.nodes[b];
+    CHECK((p - q).norm() <= 1e-3 + 0.3 * ((p + q) / 2 - centre).norm());
+  }
+}
+
+TEST_CASE("equilibria: a beam sags by its weight as beam theory has it") {
+  // Oracle: Timoshenko's beam, q L⁴/(8 E I) + q L²/(2 k G A) with k = 5/6, for a sag of 1 % of the
+  // length and ν = 0, for a held end that cannot narrow is not in the theory. 2 %.
+  if (geometry::testing::without_gmsh()) return;
+  const double E = 200e3, nu = 0, length = 0.1, width = 0.02, g = 0.5;
+  const auto mesh = geometry::mesh_block({0, -width / 2, -width / 2},
+                                         {length, width / 2, width / 2}, "0.01 + 0*x");
+  const elements::MixedSolid solid(elements::make_quadratic(mesh),
+                                   elements::NeoHookean::from_engineering(E, nu), 1060);
+  std::vector<char> held;
+  for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
+  const auto moved = sag_at_rest(solid, held, Vec3(0, 0, -g), {{length, 0, 0}}, [] {});
+  const double q = 1060 * g * width * width, G = E / (2 * (1 + nu));
+  const double bending = q * std::pow(length, 4) / (8 * E * std::pow(width, 4) / 12);
+  const double shear = q * length * length / (2 * 5.0 / 6 * G * width * width);
+  CHECK(-moved[0].z() == Approx(bending + shear).epsilon(0.02));
+}
+
+TEST_CASE("equilibria: a sphere pressed into a block meets the force of Hertz") {
+  // Oracle: Hertz, F = 4/3 E/(1−ν²) √R δ^{3/2}, for a dent small beside sphere and body. The
+  // body is held 40 dents away; 10 %.
+  if (geometry::testing::without_gmsh()) return;
+  const double E = 5e3, nu = 0.499, radius = 5e-3, depth = 5e-4;
+  const auto mesh =
+      geometry::mesh_block({-0.02, -0.02, 0}, {0.02, 0.02, 0.02},
+                           "0.0012 + 0.008*((x*x+y*y+(z-0.02)^2)/(x*x+y*y+(z-0.02)^2+0.0001))^2");
+  const elements::MixedSolid solid(elements::make_quadratic(mesh),
+                                   elements::NeoHookean::from_engineering(E, nu), 1060);
+  std::vector<char> held;
+  for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.z() == 0);
+  const Press press{{0, 0, 0.02}, -Vec3::UnitZ(), radius, {depth}, {{0, 0, 0.02}}};
+  const auto pressed = press_at_rest(solid, held, press, [] {});
+  REQUIRE(pressed.size() == 1);
+  const double hertz = 4.0 / 3 * E / (1 - nu * nu) * std::sqrt(radius) * std::pow(depth, 1.5);
+  CHECK(pressed[0].force == Approx(hertz).epsilon(0.1));
+  CHECK(pressed[0].displacements[0].z() == Approx(-depth).epsilon(0.05));
+}
+
+}  // namespace
+}  // namespace palpate::accuracy

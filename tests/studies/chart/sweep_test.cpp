@@ -1,0 +1,72 @@
+#include "studies/chart/sweep.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "tests/studies/chart/folders.h"
+
+namespace palpate::accuracy {
+namespace {
+
+const KeepGoing kOn = [] {};
+
+TEST_CASE("sweep: what was measured is not measured again and comes back the same") {
+  // Oracle: a second sweep that is stopped at the first measurement finishes all the same.
+  const testing::WorkFolder folder;
+  const PointStore store(folder.path / "points");
+  const std::vector<Case> of{find_case("ball")};
+  const std::vector<scene::Model> models{scene::Model::kMassSpring};
+  const auto begin = [](const Outlook&) {};
+  const auto first = sweep(of, Extent::kQuick, models, testing::source(), store, begin, kOn).points;
+  REQUIRE(first.size() == 1);
+  struct Stop {};
+  const auto again = sweep(of, Extent::kQuick, models, testing::source(), store, begin, [] {
+                       throw Stop{};
+                     }).points;
+  REQUIRE(again.size() == 1);
+  const auto &a = first[0].measurement, &b = again[0].measurement;
+  CHECK(a.surface_nodes == b.surface_nodes);
+  REQUIRE(a.samples.size() == b.samples.size());
+  for (std::size_t i = 0; i < a.samples.size(); ++i) {
+    CHECK(b.samples[i].force == Approx(a.samples[i].force).epsilon(1e-9));
+    CHECK(std::isnan(b.samples[i].field_error));
+  }
+}
+
+TEST_CASE("sweep: quick is less than usual, usual less than full") {
+  // Oracle: the extents' meaning; iterations are swept where a model has them, and only there.
+  for (const Case& of : cases()) {
+    const auto quick = settings_of(of, Extent::kQuick), usual = settings_of(of, Extent::kUsual);
+    CHECK(quick.size() < usual.size());
+    CHECK(usual.size() < settings_of(of, Extent::kFull).size());
+    std::set<std::string> keys;
+    for (const Setting& setting : usual) {
+      CHECK(keys.insert(setting.key()).second);
+      CHECK((setting.iterations == 0 || scene::has_iterations(setting.model)));
+    }
+  }
+  const auto ball = settings_of(find_case("ball"), Extent::kUsual);
+  CHECK(std::count_if(ball.begin(), ball.end(),
+                      [](const Setting& setting) { return setting.iterations > 0; }) == 12);
+}
+
+TEST_CASE("sweep: what it says is left shrinks to nothing as points are done") {
+  // Oracle: a second run has nothing left to say; numbers of jobs count up.
+  const testing::WorkFolder folder;
+  const PointStore store(folder.path / "points");
+  const std::vector<scene::Model> models{scene::Model::kMassSpring, scene::Model::kImplicitVolume};
+  std::vector<Outlook> said;
+  const auto say = [&](const Outlook& outlook) { said.push_back(outlook); };
+  sweep({find_case("vibration")}, Extent::kQuick, models, testing::source(), store, say, kOn);
+  REQUIRE(said.size() == 2);
+  CHECK(std::isnan(said[0].seconds_left));
+  CHECK(said[1].seconds_left > 0);
+  CHECK(said[1].done == 1);
+  CHECK(said[1].total == 2);
+  sweep({find_case("vibration")}, Extent::kQuick, models, testing::source(), store, say, kOn);
+  CHECK(said.size() == 2);
+}
+
+}  // namespace
+}  // namespace palpate::accuracy

@@ -1,0 +1,34 @@
+#include "studies/fuzz/organ_watch.h"
+
+#include <catch2/catch.hpp>
+
+#include "studies/fuzz/outcome.h"
+#include "tests/deformation/organs.h"
+
+namespace palpate::fuzz {
+namespace {
+
+namespace world_of = deformation::testing;
+
+TEST_CASE("organ watch: an organ at rest is fine, one back at rest without a word is not") {
+  // Oracle: definition. A plate dents the ball; reset() puts it back.
+  deformation::DeformationWorld world(world_of::ball_scene(1),
+                                      {geometry::make_ball(world_of::kBallRadius, 1)});
+  const double period = 4e-3;
+  OrganWatch watch(world, 0, 2 * world_of::kBallRadius, period);
+  CHECK(watch.seen().size() == world.topology(0).rest_positions.size() / 3);
+  CHECK_NOTHROW(watch.look_last());
+  for (int k = 0; k < 20; ++k) {
+    const double height = world_of::kBallRadius - 2e-4 * k;
+    world.set_contacts(world_of::plate_contacts(world, 0, height, 1, 2e-3));
+    world.set_probe(world_of::probe_at(0, Vec3(0, 0, height)));
+    world.advance(period);
+    REQUIRE_NOTHROW(watch.look(false));
+  }
+  CHECK_NOTHROW(watch.look_last());
+  world.reset();
+  CHECK_THROWS_AS(watch.look(false), Failure);
+}
+
+}  // namespace
+}  // namespace palpate::fuzz

@@ -1,0 +1,62 @@
+// The program as it is typed.
+#include "studies/paper/paper_command.h"
+
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "palpate/child_process.h"
+#include "studies/report/progress.h"
+#include "tests/modules/runtime/waiting.h"
+#include "tests/studies/paper/temporary_folder.h"
+
+namespace palpate::bench {
+namespace {
+
+using testing::TemporaryFolder;
+
+const std::filesystem::path kProgram = std::filesystem::path(PALPATE_BIN_DIR) / "palpate-paper";
+
+TEST_CASE("paper command: a figure alone leaves its picture, its tables and the summary") {
+  // Oracle: the folder. Pictures need matplotlib, which the tests' machine is to have.
+  const TemporaryFolder folder("paper");
+  std::ostringstream out, log;
+  const PaperOptions options{folder.path(), {"1"}, false, 240, PALPATE_SOURCE_DIR};
+  CHECK(run_paper(options, out, log) == kExitDone);
+  INFO(log.str());
+  CHECK(std::filesystem::file_size(folder.path() / "figure1.png") > 50'000);
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "figure2.png"));
+  CHECK_THAT(testing::text_in(folder.path() / "summary.csv"), Catch::Contains("550"));
+  CHECK_THAT(out.str(), Catch::Contains("paper: 550 nodes, 1,084 triangles"));
+}
+
+TEST_CASE("paper command: a folder that cannot be written is bad input") {
+  // Oracle: the error family.
+  std::ostringstream out, log;
+  CHECK_THROWS_AS(run_paper({"/proc/nowhere", {"1"}, false, 240, PALPATE_SOURCE_DIR}, out, log),
+                  InputError);
+}
+
+TEST_CASE("paper command: Ctrl-C ends it at once, with 130 and nothing half written") {
+  // Oracle: the exit code of shells for SIGINT, and the folder.
+  const TemporaryFolder folder("paper");
+  launcher::ChildProcess child(kProgram, {"--only", "4", "--out", folder.path().string()});
+  std::string said;
+  palpate::testing::wait_until([&] {
+    for (const auto& line : child.take_lines()) said += line + "\n";
+    return said.find("simulated") != std::string::npos;
+  });
+  child.signal(SIGINT);
+  palpate::testing::wait_until([&] { return child.ended().has_value(); });
+  REQUIRE(child.ended());
+  CHECK((WIFEXITED(*child.ended()) && WEXITSTATUS(*child.ended()) == kExitStopped));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    CHECK(entry.path().extension() != ".part");
+  }
+}
+
+}  // namespace
+}  // namespace palpate::bench

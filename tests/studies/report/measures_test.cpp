@@ -1,0 +1,34 @@
+#include "studies/report/measures.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/core/error.h"
+#include "tests/studies/paper/temporary_folder.h"
+
+namespace palpate::bench {
+namespace {
+
+TEST_CASE("measures: median and number text") {
+  // Oracle: by hand.
+  CHECK(median({3, 1, 2}) == 2);
+  CHECK(median({4, 1, 3, 2}) == 3);
+  CHECK(text_of("%.2f s", 1.234) == "1.23 s");
+}
+
+TEST_CASE("measures: the machine has a name") {
+  // Oracle: /proc/cpuinfo of any Linux machine.
+  CHECK(machine_name().find("cores seen") != std::string::npos);
+}
+
+TEST_CASE("measures: a folder that cannot be made is bad input and named") {
+  // Oracle: a file is no folder.
+  const testing::TemporaryFolder folder("measures");
+  make_out_folder(folder.path() / "a/b");
+  CHECK(std::filesystem::is_directory(folder.path() / "a/b"));
+  const auto file = folder.path() / "file";
+  std::ofstream(file) << "x";
+  CHECK_THROWS_AS(make_out_folder(file / "b"), InputError);
+}
+
+}  // namespace
+}  // namespace palpate::bench

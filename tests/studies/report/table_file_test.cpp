@@ -1,0 +1,43 @@
+#include "studies/report/table_file.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/studies/paper/temporary_folder.h"
+
+namespace palpate::bench {
+namespace {
+
+using testing::TemporaryFolder;
+
+TEST_CASE("table file: rows as written, cells with commas quoted") {
+  // Oracle: the text by hand, RFC 4180.
+  const TemporaryFolder folder("table");
+  TableFile table(folder.path() / "a.csv", {"x_m", "word"});
+  table.write_row({0.1, -2e-12});
+  table.write_row(std::vector<std::string>{"a, b", "say \"c\""});
+  table.finish();
+  CHECK(testing::text_in(folder.path() / "a.csv") ==
+        "x_m,word\n0.1,-2e-12\n\"a, b\",\"say \"\"c\"\"\"\n");
+}
+
+TEST_CASE("table file: without finish nothing is left, and what was there stays") {
+  // Oracle: the folder.
+  const TemporaryFolder folder("table");
+  const auto file = folder.path() / "a.csv";
+  std::ofstream(file) << "old";
+  {
+    TableFile table(file, {"x"});
+    table.write_row({1.0});
+    CHECK(testing::text_in(file) == "old");
+  }
+  CHECK(testing::text_in(file) == "old");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}
+
+TEST_CASE("table file: where nothing can be written it says so") {
+  // Oracle: the message.
+  CHECK_THROWS_WITH(TableFile("/nowhere/a.csv", {"x"}), "cannot write /nowhere/a.csv.part");
+}
+
+}  // namespace
+}  // namespace palpate::bench

@@ -1,0 +1,41 @@
+#include "studies/stability/locking.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/studies/chart/folders.h"
+
+namespace palpate::stability {
+namespace {
+
+const KeepGoing kOn = [] {};
+
+TEST_CASE("locking: linear tetrahedra stiffen towards one half, averaged pressures do not") {
+  // Oracle: recorded reference, A_ball_plates.csv: 0.799225 N at 10 %, ν = 0.499; 1 % for the
+  // coarse mesh. Then the theory of locking: nodal_pressure keeps its error within a tenth.
+  const double reference = locking_reference(0.499, kOn);
+  CHECK(reference == Approx(0.799225).epsilon(0.01));
+  const double linear = locking_point(scene::Model::kCorotational, 0.499, kOn).force;
+  const double averaged = locking_point(scene::Model::kNodalPressure, 0.499, kOn).force;
+  CHECK(linear > 1.3 * reference);
+  CHECK(averaged < 1.1 * reference);
+  CHECK(averaged > 0.9 * reference);
+}
+
+TEST_CASE("locking: what was measured is not measured again, and stands in the table") {
+  // Oracle: a second call that is stopped at the first measurement finishes all the same.
+  const accuracy::testing::WorkFolder folder;
+  struct Stop {};
+  CHECK(locking_ratios(true).size() < locking_ratios(false).size());
+  CHECK_THROWS_AS(measure_locking({0.45}, folder.path, [] { throw Stop{}; }), Stop);
+  const auto first = measure_locking({0.45}, folder.path, kOn);
+  const auto again = measure_locking({0.45}, folder.path, [] { throw Stop{}; });
+  REQUIRE(again.size() == first.size());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    CHECK(again[i].error() == Approx(first[i].error()).margin(1e-8));
+  }
+  write_locking(again, folder.path / "locking.csv");
+  CHECK(std::filesystem::file_size(folder.path / "locking.csv") > 0);
+}
+
+}  // namespace
+}  // namespace palpate::stability

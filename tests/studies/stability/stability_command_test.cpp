@@ -1,0 +1,65 @@
+#include "studies/stability/stability_command.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "tests/studies/chart/folders.h"
+
+namespace palpate::stability {
+namespace {
+
+StabilityOptions quick_in(const std::filesystem::path& out) {
+  StabilityOptions options;
+  options.root = PALPATE_SOURCE_DIR;
+  options.out = out;
+  options.quick = true;
+  return options;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+TEST_CASE("stability command: tables and maps appear, and a second run finds the same") {
+  // Oracle: the promised files, theory met, and bit-equal tables of a run that measures nothing.
+  const accuracy::testing::WorkFolder folder;
+  StabilityOptions options = quick_in(folder.path);
+  options.only_maps = {"step_stiffness"};
+  options.only_series = {"implicit_volume"};
+  std::ostringstream out, again, log;
+  REQUIRE(run_stability(options, out, log) == kExitDone);
+  CHECK_THAT(out.str(), Catch::Contains("implicit_volume") && Catch::Contains("3 of 3 frontiers"));
+  CHECK(std::filesystem::exists(folder.path / "stability_step_stiffness.png"));
+  const std::string tries = text_of(folder.path / "atlas.csv");
+  const std::string frontiers = text_of(folder.path / "frontiers.csv");
+  CHECK_THAT(tries, Catch::Contains("stable") && Catch::Contains("diverged"));
+  const auto measured = std::filesystem::last_write_time(
+      std::filesystem::directory_iterator(folder.path / "points")->path());
+  REQUIRE(run_stability(options, again, log) == kExitDone);
+  CHECK(text_of(folder.path / "atlas.csv") == tries);
+  CHECK(text_of(folder.path / "frontiers.csv") == frontiers);
+  CHECK(std::filesystem::last_write_time(
+            std::filesystem::directory_iterator(folder.path / "points")->path()) == measured);
+}
+
+TEST_CASE("stability command: unknown maps and series are refused with what there is") {
+  // Oracle: the messages.
+  const accuracy::testing::WorkFolder folder;
+  StabilityOptions options = quick_in(folder.path);
+  std::ostringstream out, log;
+  options.only_maps = {"weather"};
+  CHECK_THROWS_WITH(run_stability(options, out, log),
+                    "map 'weather': must be one of step_stiffness, squeeze, probe_speed, "
+                    "mesh_quality, haptic_loop, locking");
+  options.only_maps = {"haptic_loop"};
+  options.only_series = {"jelly"};
+  CHECK_THROWS_WITH(run_stability(options, out, log),
+                    Catch::Contains("series 'jelly': must be one of force_1000Hz"));
+}
+
+}  // namespace
+}  // namespace palpate::stability
