@@ -1,0 +1,110 @@
+// Every page stays true to the tree: its links lead somewhere, to what they name.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = PALPATE_SOURCE_DIR;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// All pages of the tree, not of build folders or what a demo left behind.
+std::vector<fs::path> pages() {
+  std::vector<fs::path> found;
+  for (fs::recursive_directory_iterator it(kRoot), end; it != end; ++it) {
+    const std::string name = it->path().filename().string();
+    const bool skipped = name == "build" || name == "out" || (name[0] == '.' && name != ".ci");
+    if (it->is_directory() && skipped) {
+      it.disable_recursion_pending();
+    } else if (it->path().extension() == ".md") {
+      found.push_back(it->path());
+    }
+  }
+  return found;
+}
+
+struct Link {
+  fs::path page;
+  std::string text, target;
+};
+
+/// Links to files of the tree.
+std::vector<Link> links_of(const fs::path& page) {
+  static const std::regex kLink(R"(\[([^\]]*)\]\(([^)#\s]+)(#[^)]*)?\))");
+  static const std::regex kForeign("^[a-z]+:.*");
+  const std::string text = text_of(page);
+  std::vector<Link> links;
+  for (std::sregex_iterator it(text.begin(), text.end(), kLink), end; it != end; ++it) {
+    if (!std::regex_match((*it)[2].str(), kForeign)) links.push_back({page, (*it)[1], (*it)[2]});
+  }
+  return links;
+}
+
+/// Whether a source file declares `name`: "class X", "struct X", or a function, Python's included.
+bool declares(const std::string& source, const std::string& name) {
+  static const std::regex kType("^(class|struct) [A-Za-z]+$");
+  const bool type = std::regex_match(name, kType);
+  return std::regex_search(source, std::regex("\\b" + name + (type ? "\\b" : "\\(")));
+}
+
+TEST_CASE("pages: every relative link leads to a file or folder") {
+  // Oracle: the tree.
+  std::size_t checked = 0;
+  for (const auto& page : pages()) {
+    for (const auto& link : links_of(page)) {
+      INFO(fs::relative(page, kRoot).string() << ": " << link.target);
+      CHECK(fs::exists(page.parent_path() / link.target));
+      ++checked;
+    }
+  }
+  CHECK(checked > 80);  // it did read the pages
+}
+
+TEST_CASE("pages: a linked source file declares the name it is linked from") {
+  // Oracle: the sources. Such a link is [`name`](path): a class, a struct or a function.
+  std::size_t checked = 0;
+  for (const auto& page : pages()) {
+    for (const auto& link : links_of(page)) {
+      const fs::path file = page.parent_path() / link.target;
+      const std::string kind = file.extension().string();
+      if (kind != ".h" && kind != ".cpp" && kind != ".py") continue;
+      if (link.text.size() < 3 || link.text.front() != '`' || !fs::exists(file)) continue;
+      INFO(fs::relative(page, kRoot).string() << ": " << link.text << " in " << link.target);
+      CHECK(declares(text_of(file), link.text.substr(1, link.text.size() - 2)));
+      ++checked;
+    }
+  }
+  CHECK(checked >= 20);
+}
+
+TEST_CASE("pages: the tests they name exist") {
+  // Oracle: the TEST_CASE names of the tree. A page names a test as *"subject: what holds"*.
+  static const std::regex kTest(R"re(\*"([^"]+: [^"]+)"\*)re");
+  std::string tests;
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {
+    if (entry.path().extension() == ".cpp") tests += text_of(entry.path());
+  }
+  std::size_t named = 0;
+  for (const auto& page : pages()) {
+    const std::string text = std::regex_replace(text_of(page), std::regex("\\s+"), " ");
+    for (std::sregex_iterator it(text.begin(), text.end(), kTest), end; it != end; ++it, ++named) {
+      INFO(fs::relative(page, kRoot).string() << ": " << (*it)[1]);
+      CHECK(tests.find("TEST_CASE(\"" + (*it)[1].str() + "\"") != std::string::npos);
+    }
+  }
+  CHECK(named >= 5);
+}
+
+}  // namespace
