@@ -7,6 +7,8 @@
 #include <array>
 #include <vector>
 
+#include "studies/report/measures.h"
+
 namespace palpate::bench {
 namespace {
 
@@ -27,6 +29,18 @@ btTransform at_height(double z) {
 /// A box whose inner face holds nodes at ±height.
 double box_center(int side, double height) { return side * (height + kMargin + kBoxHalf); }
 
+/// Times its search for collisions, contacts' creation included.
+class TimedWorld : public btSoftRigidDynamicsWorld {
+ public:
+  using btSoftRigidDynamicsWorld::btSoftRigidDynamicsWorld;
+  void performDiscreteCollisionDetection() override {
+    const double begin = processor_time();
+    btSoftRigidDynamicsWorld::performDiscreteCollisionDetection();
+    search_seconds += processor_time() - begin;
+  }
+  double search_seconds = 0;
+};
+
 }  // namespace
 
 struct BulletBall::World {
@@ -34,13 +48,16 @@ struct BulletBall::World {
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btSequentialImpulseConstraintSolver solver;
-  btSoftRigidDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+  TimedWorld world{&dispatcher, &broadphase, &solver, &configuration};
   btBoxShape plate_shape{{btScalar(4), btScalar(4), btScalar(kScale* kBoxHalf)}};
   std::array<std::unique_ptr<btRigidBody>, 2> plates;
   std::unique_ptr<btSoftBody> body;
   const std::vector<geometry::Triangle>& triangles;
+  double rest_volume = 0;
+  double step_seconds = 0;
 
-  World(const Ball& ball, const BulletSettings& settings) : triangles(ball.surface.triangles) {
+  World(const Ball& ball, const BulletSettings& settings)
+      : triangles(ball.surface.triangles), rest_volume(ball.model.rest_volume) {
     world.setGravity({0, 0, 0});
     auto& info = world.getWorldInfo();
     info.m_gravity = {0, 0, 0};
@@ -110,7 +127,7 @@ struct BulletBall::World {
 };
 
 BulletBall::BulletBall(const Ball& ball, const BulletSettings& settings)
-    : world_(std::make_unique<World>(ball, settings)) {}
+    : world_(std::make_unique<World>(ball, settings)), settings_(settings) {}
 
 BulletBall::~BulletBall() = default;
 
@@ -119,7 +136,23 @@ void BulletBall::step(double height) {
     world_->plates[static_cast<std::size_t>(i)]->setWorldTransform(
         at_height(box_center(i == 0 ? 1 : -1, height)));
   }
+  const double begin = processor_time();
   world_->world.stepSimulation(btScalar(kStep), 0);
+  world_->step_seconds += processor_time() - begin;
+}
+
+double BulletBall::solver_seconds() const {
+  return world_->step_seconds - world_->world.search_seconds;
+}
+
+double BulletBall::pressure() const {
+  if (settings_.volume_stiffness == 0 && settings_.gas_pressure == 0) return kNone;
+  const double ratio = volume() / world_->rest_volume;
+  return settings_.volume_stiffness * (1 - ratio) + settings_.gas_pressure / ratio;
+}
+
+std::size_t BulletBall::contact_count() const {
+  return std::size_t(world_->body->m_rcontacts.size());
 }
 
 double BulletBall::volume() const {

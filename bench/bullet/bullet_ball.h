@@ -22,6 +22,8 @@ struct BulletSettings {
 /// the method.
 /// Bullet computes in float and recommends objects of about one unit: lengths are scaled so that
 /// the ball's radius is 1.
+/// The solver's time is that of a whole step less the world's search for collisions; it holds the
+/// upkeep of the nodes' bounding volumes, which Bullet does while it moves them.
 class BulletBall : public Squeezer {
  public:
   BulletBall(const Ball& ball, const BulletSettings& settings);
@@ -29,10 +31,15 @@ class BulletBall : public Squeezer {
 
   void step(double height) override;
   double volume() const override;
+  /// By what its volume terms ask for.
+  double pressure() const override;
+  std::size_t contact_count() const override;
+  double solver_seconds() const override;
 
  private:
   struct World;
   std::unique_ptr<World> world_;
+  BulletSettings settings_;
 };
 
 }  // namespace palpate::bench

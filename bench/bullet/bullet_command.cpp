@@ -1,9 +1,12 @@
 #include "bench/bullet/bullet_command.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <ostream>
+#include <set>
+#include <span>
 
 #include "bench/bullet/bullet_ball.h"
 #include "bench/bullet/palpate_ball.h"
@@ -71,31 +74,70 @@ std::vector<Setting> settings_for(const Ball& ball, const Squeeze& squeeze,
   add("backward Euler, one step", {.integrator = Integrator::kBackwardEuler});
   add("backward Euler, one step, 1 correction",
       {.integrator = Integrator::kBackwardEuler, .corrections = 1});
-  add("XPBD springs, one step, 1 pass", {.model = scene::Model::kXpbdSprings, .one_step = true});
-  settings.push_back({"whole pipeline: devices, collision, haptics", true,
+  const Method xpbd{.model = scene::Model::kXpbdSprings};
+  add("XPBD springs, " + std::to_string(PalpateBall(ball, xpbd).substeps()) + " sub-steps", xpbd);
+  add("XPBD springs, 1 step that no scene takes: soft",
+      {.model = scene::Model::kXpbdSprings, .one_step = true});
+  settings.push_back({"whole pipeline as a scene runs it", true,
                       [&ball, squeeze] { return std::make_unique<PipelineBall>(ball, squeeze); }});
   return settings;
 }
 
-bool cheaper(const TableRow& a, const TableRow& b) {
-  return a.outcome.us_per_step < b.outcome.us_per_step;
-}
-bool more_accurate(const TableRow& a, const TableRow& b) { return a.outcome.held < b.outcome.held; }
-
-using Order = bool (*)(const TableRow&, const TableRow&);
-
-/// The first by `order` of the stable rows of one size and side, of those run most often: these
-/// took turns. nullptr if there is none.
-const TableRow* best(const std::vector<TableRow>& rows, std::size_t nodes, bool ours, Order order) {
-  const TableRow* found = nullptr;
+/// Of one size and side, those that are stable, took turns and have a time for `work`.
+std::vector<const TableRow*> candidates(const std::vector<TableRow>& rows, std::size_t nodes,
+                                        bool ours, Work work) {
+  std::size_t most = 0;
+  for (const TableRow& row : rows) {
+    if (row.nodes == nodes) most = std::max(most, row.turns.size());
+  }
+  std::vector<const TableRow*> found;
   for (const TableRow& row : rows) {
     if (row.nodes != nodes || row.ours != ours || !row.outcome.stable()) continue;
-    if (found == nullptr || row.runs > found->runs ||
-        (row.runs == found->runs && order(row, *found))) {
-      found = &row;
-    }
+    if (row.turns.size() < most || std::isnan(time_of(row.outcome.cost, work))) continue;
+    found.push_back(&row);
   }
   return found;
+}
+
+const TableRow* cheapest(const std::vector<const TableRow*>& rows, Work work) {
+  const auto found = std::min_element(rows.begin(), rows.end(), [&](auto* a, auto* b) {
+    return time_of(a->outcome.cost, work) < time_of(b->outcome.cost, work);
+  });
+  return found == rows.end() ? nullptr : *found;
+}
+
+const TableRow* most_accurate(const std::vector<const TableRow*>& rows) {
+  const auto found = std::min_element(
+      rows.begin(), rows.end(), [](auto* a, auto* b) { return a->outcome.held < b->outcome.held; });
+  return found == rows.end() ? nullptr : *found;
+}
+
+Cost median_of(const std::vector<Cost>& turns) {
+  std::vector<double> solver, whole;
+  for (const Cost& turn : turns) {
+    solver.push_back(turn.solver);
+    whole.push_back(turn.whole);
+  }
+  return {median(solver), median(whole)};
+}
+
+/// Runs ours and the best of Bullet's again, in turn.
+void take_turns(const std::vector<Setting>& settings, const Squeeze& squeeze, int timings,
+                Progress& progress, const std::function<void()>& keep_going,
+                std::span<TableRow> rows) {
+  const std::vector<TableRow> first(rows.begin(), rows.end());
+  const auto bullets = candidates(first, rows[0].nodes, false, Work::kWhole);
+  const std::set<const TableRow*> chosen{cheapest(bullets, Work::kSolver),
+                                         cheapest(bullets, Work::kWhole), most_accurate(bullets)};
+  for (int timing = 1; timing <= timings; ++timing) {
+    progress.begin("timing in turn: " + std::to_string(timing));
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      if (!rows[i].ours && chosen.count(&first[i]) == 0) continue;
+      if (timing == 1) rows[i].turns.clear();
+      rows[i].turns.push_back(run(*settings[i].make(), squeeze, keep_going).cost);
+      rows[i].outcome.cost = median_of(rows[i].turns);
+    }
+  }
 }
 
 void compare_size(const BulletOptions& options, std::size_t nodes, Progress& progress,
@@ -108,27 +150,18 @@ void compare_size(const BulletOptions& options, std::size_t nodes, Progress& pro
   for (const Setting& setting : settings) {
     progress.begin(std::to_string(nodes) + " nodes, " + (setting.ours ? "ours" : "Bullet") + ": " +
                    setting.name);
-    rows.push_back({ball.surface.nodes.size(), setting.ours, setting.name,
-                    run(*setting.make(), squeeze, keep_going)});
+    const Outcome outcome = run(*setting.make(), squeeze, keep_going);
+    rows.push_back(
+        {ball.surface.nodes.size(), setting.ours, setting.name, outcome, {outcome.cost}});
   }
-  const std::size_t count = ball.surface.nodes.size();
-  const TableRow* cheapest = best(rows, count, false, cheaper);
-  const TableRow* most_accurate = best(rows, count, false, more_accurate);
-  std::vector<std::vector<double>> times(settings.size());
-  const int timings = options.quick ? 1 : large ? kTimingsOfLarge : kTimings;
-  for (int timing = 1; timing < timings; ++timing) {
-    progress.begin("timing again, in turn: " + std::to_string(timing));
-    for (std::size_t i = 0; i < settings.size(); ++i) {
-      const TableRow& row = rows[first + i];
-      if (!row.ours && &row != cheapest && &row != most_accurate) continue;
-      times[i].push_back(run(*settings[i].make(), squeeze, keep_going).us_per_step);
-    }
-  }
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    times[i].push_back(rows[first + i].outcome.us_per_step);
-    rows[first + i].outcome.us_per_step = median(times[i]);
-    rows[first + i].runs = static_cast<int>(times[i].size());
-  }
+  if (options.quick) return;
+  take_turns(settings, squeeze, large ? kTimingsOfLarge : kTimings, progress, keep_going,
+             std::span(rows).subspan(first));
+}
+
+/// Empty where there is none.
+std::string cell_of(const char* format, double value) {
+  return std::isnan(value) ? "" : text_of(format, value);
 }
 
 std::vector<std::string> cells(const TableRow& row) {
@@ -136,18 +169,67 @@ std::vector<std::string> cells(const TableRow& row) {
   return {std::to_string(row.nodes),
           row.ours ? "ours" : "Bullet",
           row.setting,
-          text_of("%.1f", o.us_per_step),
+          cell_of("%.1f", o.cost.solver),
+          cell_of("%.1f", o.cost.whole),
           text_of("%.2e", o.peak),
           text_of("%.2e", o.held),
-          std::isnan(o.pressure) ? "" : text_of("%.0f", o.pressure),
+          cell_of("%.0f", o.pressure),
+          std::to_string(o.contacts),
           o.verdict()};
 }
 
 const std::vector<std::string>& columns() {
-  static const std::vector<std::string> names{
-      "nodes",       "solver", "setting", "us_per_step", "volume_error_peak", "volume_error_held",
-      "pressure_Pa", "verdict"};
+  static const std::vector<std::string> names{"nodes",
+                                              "solver",
+                                              "setting",
+                                              "solver_us_per_step",
+                                              "whole_us_per_step",
+                                              "volume_error_peak",
+                                              "volume_error_held",
+                                              "pressure_Pa",
+                                              "contacts",
+                                              "verdict"};
   return names;
+}
+
+/// Bullet's time over ours: median, worst and best of the turns.
+std::string times_fewer(const TableRow& bullet, const TableRow& ours, Work work) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < std::min(bullet.turns.size(), ours.turns.size()); ++k) {
+    ratios.push_back(time_of(bullet.turns[k], work) / time_of(ours.turns[k], work));
+  }
+  if (ratios.size() == 1) return text_of("%.2f", ratios[0]);
+  const auto [worst, best] = std::minmax_element(ratios.begin(), ratios.end());
+  return text_of("%.2f", median(ratios)) + " (" + text_of("%.2f", *worst) + " to " +
+         text_of("%.2f", *best) + ")";
+}
+
+void print_ratios_of(const std::vector<TableRow>& rows, std::size_t nodes, Work work,
+                     std::ostream& out) {
+  out << '\n'
+      << nodes << " nodes, "
+      << (work == Work::kSolver
+              ? "solver alone: contacts given on both sides"
+              : "whole step: contacts searched on both sides; ours holds devices, local contact "
+                "models and haptic forces, too")
+      << '\n';
+  const auto bullets = candidates(rows, nodes, false, work);
+  const TableRow *cheap = cheapest(bullets, work), *accurate = most_accurate(bullets);
+  if (cheap == nullptr) {
+    out << "  no setting of Bullet was stable\n";
+    return;
+  }
+  out << "  Bullet cheapest: " << cheap->setting << "; most accurate: " << accurate->setting
+      << '\n';
+  for (const TableRow* row : candidates(rows, nodes, true, work)) {
+    out << "  " << row->setting << ": " << times_fewer(*cheap, *row, work)
+        << " x fewer us per step than the cheapest, " << times_fewer(*accurate, *row, work)
+        << " x than the most accurate; held volume error "
+        << text_of("%.1e", accurate->outcome.held / row->outcome.held)
+        << " x smaller than the latter's; contents push with "
+        << text_of("%.0f Pa", row->outcome.pressure) << ", " << row->outcome.contacts
+        << " contacts\n";
+  }
 }
 
 }  // namespace
@@ -162,12 +244,16 @@ std::vector<TableRow> compare(const BulletOptions& options, std::ostream& log,
   return rows;
 }
 
+double time_of(const Cost& cost, Work work) {
+  return work == Work::kSolver ? cost.solver : cost.whole;
+}
+
 void print_table(const std::vector<TableRow>& rows, std::ostream& out) {
   const auto line = [&](const std::vector<std::string>& c) {
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), "%6s  %-7s %-46s %12s %18s %18s %12s  %s\n",
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(), "%6s  %-7s %-48s %19s %18s %18s %18s %12s %9s  %s\n",
                   c[0].c_str(), c[1].c_str(), c[2].c_str(), c[3].c_str(), c[4].c_str(),
-                  c[5].c_str(), c[6].c_str(), c[7].c_str());
+                  c[5].c_str(), c[6].c_str(), c[7].c_str(), c[8].c_str(), c[9].c_str());
     out << text.data();
   };
   line(columns());
@@ -177,23 +263,8 @@ void print_table(const std::vector<TableRow>& rows, std::ostream& out) {
 void print_ratios(const std::vector<TableRow>& rows, std::ostream& out) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (i > 0 && rows[i].nodes == rows[i - 1].nodes) continue;
-    const TableRow* cheapest = best(rows, rows[i].nodes, false, cheaper);
-    const TableRow* accurate = best(rows, rows[i].nodes, false, more_accurate);
-    out << '\n' << rows[i].nodes << " nodes:";
-    if (cheapest == nullptr) {
-      out << " no setting of Bullet was stable\n";
-      continue;
-    }
-    out << " Bullet cheapest: " << cheapest->setting << "; most accurate: " << accurate->setting
-        << '\n';
-    for (const TableRow& row : rows) {
-      if (row.nodes != rows[i].nodes || !row.ours || !row.outcome.stable()) continue;
-      const double time = cheapest->outcome.us_per_step / row.outcome.us_per_step;
-      const double error = accurate->outcome.held / row.outcome.held;
-      out << "  " << row.setting << ": " << text_of("%.2f", time)
-          << " x fewer us per step (goal 8), held volume error " << text_of("%.1e", error)
-          << " x smaller (goal 1e3)\n";
-    }
+    print_ratios_of(rows, rows[i].nodes, Work::kSolver, out);
+    print_ratios_of(rows, rows[i].nodes, Work::kWhole, out);
   }
 }
 
@@ -211,7 +282,7 @@ int run_bullet(const BulletOptions& options, std::ostream& out, std::ostream& lo
       if (stop.requested()) throw Stopped{};
     });
     out << "ball squeezed to 50 %, h = 2 ms, " << machine_name()
-        << ", one thread, processor time\n";
+        << ", one thread, processor time; on a shared machine only ratios of one run mean much\n";
     print_table(rows, out);
     print_ratios(rows, out);
     if (!options.out.empty()) write_table(rows, options.out / "bullet.csv");

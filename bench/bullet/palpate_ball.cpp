@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "studies/report/measures.h"
+
 namespace palpate::bench {
 namespace {
 
@@ -86,7 +88,9 @@ void PalpateBall::step(double height) {
   const double h = kStep / substeps_, speed = (height - height_) / kStep;
   for (int k = 0; k < substeps_; ++k) {
     find_contacts(height_ + k * h * speed, speed);
+    const double begin = processor_time();
     dynamics_->step(h, rows_, state_);
+    solver_seconds_ += processor_time() - begin;
     keep_impulses();
   }
   height_ = height;
@@ -103,6 +107,9 @@ PipelineBall::PipelineBall(const Ball& ball, const Squeeze& squeeze)
 void PipelineBall::step(double) { pipeline_.tick(); }
 
 double PipelineBall::volume() const { return pipeline_.node_positions(0).volume; }
+std::size_t PipelineBall::contact_count() const {
+  return pipeline_.contacts(0).contacts.size() + pipeline_.contacts(1).contacts.size();
+}
 double PipelineBall::pressure() const { return pipeline_.node_positions(0).pressure; }
 
 }  // namespace palpate::bench

@@ -27,6 +27,9 @@ class PalpateBall : public Squeezer {
   void step(double height) override;
   double volume() const override;
   double pressure() const override { return state_.pressure; }
+  std::size_t contact_count() const override { return rows_.size(); }
+  double solver_seconds() const override { return solver_seconds_; }
+  bool is_whole() const override { return false; }
   int substeps() const { return substeps_; }
 
  private:
@@ -42,16 +45,18 @@ class PalpateBall : public Squeezer {
   std::vector<double> impulses_;  ///< of the last sub-step, per node [N·s]
   double height_ = kBallRadius;
   int substeps_ = 1;
+  double solver_seconds_ = 0;
 };
 
 /// The whole in-process pipeline as a scene runs it: devices, collision on any shape, contact model
-/// and haptic force, once per step.
+/// and haptic force, once per step. A plate's contacts are the deepest of its 1,024 at most.
 class PipelineBall : public Squeezer {
  public:
   PipelineBall(const Ball& ball, const Squeeze& squeeze);
   void step(double height) override;
   double volume() const override;
   double pressure() const override;
+  std::size_t contact_count() const override;
 
  private:
   pipeline::Pipeline pipeline_;

@@ -1,24 +1,16 @@
 #include "bench/bullet/squeezed_ball.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/node_order.h"
 #include "modules/geometry/primitives.h"
+#include "studies/report/measures.h"
 
 namespace palpate::bench {
 
 namespace {
-
-/// Processor time of this thread [s]: what other programs take of the core does not count.
-double thread_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
 
 /// Minimum jerk from 0 to 1.
 double smooth(double t) { return t * t * t * (10 + t * (6 * t - 15)); }
@@ -61,9 +53,9 @@ Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void
   for (int k = 1; k <= steps && outcome.finite; ++k) {
     keep_going();
     const double closed = smooth(std::min(1.0, double(k) / squeeze.closing_steps));
-    const double begin = thread_seconds();
+    const double begin = processor_time();
     squeezer.step(kBallRadius * (1 - squeeze.compression * closed));
-    spent += thread_seconds() - begin;
+    spent += processor_time() - begin;
 
     const double ratio = squeezer.volume() / rest_volume;
     outcome.finite = std::isfinite(ratio);
@@ -76,7 +68,9 @@ Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void
   outcome.held = std::max(std::abs(lowest - 1), std::abs(highest - 1));
   outcome.swing = highest - lowest;
   outcome.pressure = squeezer.pressure();
-  outcome.us_per_step = 1e6 * spent / steps;
+  outcome.contacts = squeezer.contact_count();
+  outcome.cost.solver = 1e6 * squeezer.solver_seconds() / steps;
+  if (squeezer.is_whole()) outcome.cost.whole = 1e6 * spent / steps;
   return outcome;
 }
 

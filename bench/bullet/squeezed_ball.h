@@ -13,6 +13,7 @@
 namespace palpate::bench {
 
 inline constexpr double kBallRadius = 0.05;  ///< [m]
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// What is squeezed. Both solvers get the springs, masses and triangles of `model`.
 struct Ball {
@@ -34,7 +35,14 @@ class Squeezer {
   /// Of the surface now, computed in double precision whatever the solver uses [m³].
   virtual double volume() const = 0;
   /// Of the contents [Pa]; NaN where the solver has none.
-  virtual double pressure() const { return std::numeric_limits<double>::quiet_NaN(); }
+  virtual double pressure() const { return kNone; }
+  /// With both plates, in the last step.
+  virtual std::size_t contact_count() const = 0;
+  /// Processor time of all steps so far, search for contacts left out [s]; NaN where the two are
+  /// not timed apart.
+  virtual double solver_seconds() const { return kNone; }
+  /// Whether step() searches contacts as for any shape, not for these two plates only.
+  virtual bool is_whole() const { return true; }
 };
 
 inline constexpr double kStep = 2e-3;  ///< h [s]
@@ -46,12 +54,19 @@ struct Squeeze {
   int holding_steps = 500;
 };
 
+/// Processor time per step, mean over a run [µs]. Only like is compared with like.
+struct Cost {
+  double solver = kNone;  ///< contacts given: forces, volume, contacts' response, motion
+  double whole = kNone;   ///< with the search for contacts
+};
+
 struct Outcome {
-  double us_per_step = 0;  ///< processor time, mean over the run, without volume()
-  double peak = 0;         ///< largest |V−V₀|/V₀
-  double held = 0;         ///< largest over the last fifth of the holding time
-  double swing = 0;        ///< highest less lowest V/V₀ of that time
-  double pressure = 0;     ///< of the contents at the end, by how much the ball resists [Pa]
+  Cost cost;
+  double peak = 0;           ///< largest |V−V₀|/V₀
+  double held = 0;           ///< largest over the last fifth of the holding time
+  double swing = 0;          ///< highest less lowest V/V₀ of that time
+  double pressure = 0;       ///< of the contents at the end, by how much the ball resists [Pa]
+  std::size_t contacts = 0;  ///< at the end, with both plates
   bool finite = true;
   /// "stable", "swings" (the held volume by more than a twentieth), "collapsed" (no more than half
   /// of the volume is left: no longer the ball of the others) or "blew up".

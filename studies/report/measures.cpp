@@ -1,5 +1,7 @@
 #include "studies/report/measures.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -21,6 +23,12 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 std::string machine_name() {

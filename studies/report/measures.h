@@ -13,6 +13,9 @@ std::string text_of(const char* format, double value);
 /// The middle value; the upper one of the two middle ones. @param values  not empty
 double median(std::vector<double> values);
 
+/// Processor time of this thread [s]: what other programs take of the core does not count.
+double processor_time();
+
 /// Processor and number of cores of this machine, in words.
 std::string machine_name();
 

@@ -46,7 +46,7 @@ TEST_CASE("bullet command: the table has every setting, and ours keeps the volum
   options.quick = true;
   std::ostringstream log, out;
   const auto rows = compare(options, log, [] {});
-  REQUIRE(rows.size() == 3 + 6);
+  REQUIRE(rows.size() == 3 + 7);
   CHECK(rows[0].outcome.held > 0.1);
   for (const TableRow& row : rows) {
     INFO(row.setting);
@@ -62,19 +62,41 @@ TEST_CASE("bullet command: the table has every setting, and ours keeps the volum
   CHECK_THAT(out.str(), Catch::Contains("us_per_step") && Catch::Contains("Bullet cheapest"));
 }
 
-TEST_CASE("bullet command: only what took turns is compared") {
+TEST_CASE("bullet command: a row has a time for the work it did, and no other") {
+  // Oracle: Bullet's step is a search and a solve; ours with contacts given searches nothing, and
+  // the pipeline's solve is not timed apart. Both sides touch both plates.
+  BulletOptions options;
+  options.nodes = {162};
+  options.quick = true;
+  std::ostringstream log;
+  for (const TableRow& row : compare(options, log, [] {})) {
+    INFO(row.setting);
+    const Cost& cost = row.outcome.cost;
+    const bool pipeline = row.setting.find("pipeline") != std::string::npos;
+    CHECK(std::isnan(cost.whole) == (row.ours && !pipeline));
+    CHECK(std::isnan(cost.solver) == pipeline);
+    if (!row.ours) CHECK(cost.solver < cost.whole);
+    if (row.outcome.stable()) CHECK(row.outcome.contacts >= 2);
+  }
+}
+
+TEST_CASE("bullet command: like is compared with like, and only what took turns") {
   // Oracle: by hand. The setting run once was fast because the machine was.
-  const auto row = [](bool ours, const std::string& setting, double time, int runs) {
+  const auto row = [](bool ours, const std::string& setting, std::vector<Cost> turns) {
     Outcome outcome;
-    outcome.us_per_step = time;
+    outcome.cost = turns.front();
     outcome.peak = outcome.held = 1e-3;
-    return TableRow{162, ours, setting, outcome, runs};
+    return TableRow{162, ours, setting, outcome, std::move(turns)};
   };
   std::ostringstream out;
-  print_ratios({row(false, "lucky", 50, 1), row(false, "cheapest", 80, 5), row(true, "one", 10, 5)},
+  print_ratios({row(false, "lucky", {{5, 50}}), row(false, "cheapest", {{20, 80}, {30, 100}}),
+                row(true, "solver", {{10, kNone}, {10, kNone}}),
+                row(true, "pipeline", {{kNone, 40}, {kNone, 40}})},
                out);
   CHECK_THAT(out.str(), Catch::Contains("Bullet cheapest: cheapest;"));
-  CHECK_THAT(out.str(), Catch::Contains("one: 8.00 x fewer us per step"));
+  CHECK_THAT(out.str(), Catch::Contains("solver: 3.00 (2.00 to 3.00) x fewer us per step"));
+  CHECK_THAT(out.str(), Catch::Contains("pipeline: 2.50 (2.00 to 2.50) x fewer us per step"));
+  CHECK_THAT(out.str(), !Catch::Contains("nan"));
 }
 
 }  // namespace

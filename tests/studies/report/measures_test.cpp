@@ -15,6 +15,14 @@ TEST_CASE("measures: median and number text") {
   CHECK(text_of("%.2f s", 1.234) == "1.23 s");
 }
 
+TEST_CASE("measures: processor time runs while this thread works") {
+  // Oracle: a busy loop, ended by the time itself.
+  const double begin = processor_time();
+  while (processor_time() - begin < 1e-3) {
+  }
+  CHECK(processor_time() > begin);
+}
+
 TEST_CASE("measures: the machine has a name") {
   // Oracle: /proc/cpuinfo of any Linux machine.
   CHECK(machine_name().find("cores seen") != std::string::npos);
