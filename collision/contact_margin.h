@@ -7,10 +7,11 @@
 
 namespace palpate::collision {
 
-/// Contacts found now are used until the next search has reached deformation: one period of each.
-/// Until then the probe moves by speed × (T_collision + T_deformation), doubled for a probe that
-/// accelerates; and tissue swings towards it at 0.125 m/s. What enters a probe unseen is pushed out
-/// in a hurry, again and again. Not less than a millimetre: processes are late at times.
+/// The margin is the distance probe and tissue can close before the next contacts arrive, one
+/// period of collision and one of deformation later. In that time the probe moves by
+/// speed × (T_collision + T_deformation), doubled because it may accelerate, and tissue swings
+/// towards it at up to 0.125 m/s. The margin is at least a millimetre because processes are late at
+/// times. Tissue that entered a probe unseen would be thrown out again, step after step.
 /// @param speed  of the probe [m/s]. @return [m]
 inline double contact_margin(const scene::Rates& rates, double speed) {
   constexpr double kTissueSpeed = 0.125, kLeastAllowance = 1e-3;  // [m/s], [m]

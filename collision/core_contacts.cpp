@@ -24,7 +24,7 @@ struct Candidate {
   double side = 0;                    ///< of the core at the end, > 0 in front [m]
   std::optional<Crossing> crossing;
   bool remembered = false;
-  bool on_wall = false;  ///< connected with what the core is behind of
+  bool on_wall = false;  ///< connected with what the core is behind
 
   double gap(const Core& core) const { return pair.distance - core.radius; }
   FoundContact contact(const OrganStep& step, const Core& core) const {
@@ -75,8 +75,8 @@ void append_front(const OrganStep& step, const Core& core, const Candidate& cand
   append_contact(contact, candidate.triangle.nodes, found);
 }
 
-/// Touched in passing but neither in front within the margin nor crossed: the contact of the
-/// closest approach, carried to the end.
+/// Contact of the closest approach, carried to the end, for a triangle touched in passing that is
+/// now neither in front within the margin nor crossed.
 void append_graze(const OrganStep& step, const Core& core, const Candidate& candidate,
                   std::vector<FoundContact>& found) {
   const SweptTriangle& triangle = candidate.triangle;
@@ -96,8 +96,8 @@ void append_graze(const OrganStep& step, const Core& core, const Candidate& cand
   if (contact.gap <= step.margin) append_contact(contact, triangle.nodes, found);
 }
 
-/// How far the rounded core reaches below q against n, on the line through q along n, there where
-/// it is nearest; 1 if that line misses it.
+/// Depth of the rounded core below q, measured against n on the line through q along n, where it is
+/// nearest; 1 if that line misses it.
 double reach_below(const Core& core, const Vec3& nearest, const Vec3& q, const Vec3& n) {
   const double height = n.dot(nearest - q);
   const double sideways_squared = (nearest - q - height * n).squaredNorm();
@@ -105,8 +105,8 @@ double reach_below(const Core& core, const Vec3& nearest, const Vec3& q, const V
   return half_squared > 0 ? height - std::sqrt(half_squared) : 1;
 }
 
-/// Core behind the triangle, which still pushes it out along its outward normal.
-/// @param depth_limit  deeper, the wall is given up [m]
+/// Contact of a core behind the triangle, which pushes it out along the outward normal.
+/// @param depth_limit  a wall crossed deeper than this is given up [m]
 /// @param nearest_of_wall  the core gets this contact even if the triangle is not straight above
 bool append_behind(const OrganStep& step, const Core& core, const Candidate& candidate,
                    double depth_limit, bool nearest_of_wall, std::vector<FoundContact>& found) {
@@ -127,7 +127,7 @@ bool append_behind(const OrganStep& step, const Core& core, const Candidate& can
   return true;
 }
 
-/// Crossed in this step and already off to the side or deep: the contact of the crossing.
+/// Contact of the crossing itself, for a core that is already off to the side or deep.
 void append_crossed(const OrganStep& step, const Core& core, const Candidate& candidate,
                     std::vector<FoundContact>& found) {
   FoundContact contact = candidate.contact(step, core);
@@ -139,8 +139,8 @@ void append_crossed(const OrganStep& step, const Core& core, const Candidate& ca
   append_contact(contact, candidate.triangle.nodes, found);
 }
 
-/// Marks what is connected, over nodes shared by triangles facing like the wall, with the
-/// crossed and remembered triangles.
+/// Marks the triangles connected with the crossed and remembered ones over nodes shared by
+/// triangles that face like the wall.
 void mark_wall(std::vector<Candidate>& candidates) {
   Vec3 outward = Vec3::Zero();
   std::vector<std::uint32_t> nodes;
@@ -168,7 +168,7 @@ void mark_wall(std::vector<Candidate>& candidates) {
   }
 }
 
-/// Contacts of a core that is behind the wall. @returns the triangles it is behind of now
+/// Contacts of a core that is behind the wall. @returns the triangles it is behind now
 std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, double depth_limit,
                                        std::vector<Candidate>& candidates,
                                        std::vector<FoundContact>& found) {
@@ -195,9 +195,9 @@ std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, 
   return behind;
 }
 
-/// Whether the core, remembered to be behind a wall, is out of the organ by another way, or beyond
-/// the wall's edge: all that is nearest to it faces it, and does not face against the wall, as the
-/// far side does of an organ that was passed through.
+/// Whether a core remembered to be behind a wall has left the organ by another way or lies beyond
+/// the wall's edge. It has if every nearest triangle faces it and none faces against the wall, as
+/// the far side of an organ does once it has been passed through.
 bool is_out(const std::vector<Candidate>& candidates) {
   double nearest = std::numeric_limits<double>::infinity();
   Vec3 outward = Vec3::Zero();
@@ -280,7 +280,7 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
   for (const Candidate& c : near) {
     if (c.side > 0 && c.gap(core) <= step.margin) {
       append_front(step, core, c, found);
-    } else if (before.empty()) {  // who has just left touched walls from behind
+    } else if (before.empty()) {  // a core that has just left touched walls from behind
       append_graze(step, core, c, found);
     }
   }

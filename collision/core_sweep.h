@@ -20,7 +20,7 @@ struct Core {
 geometry::SegmentAndTriangle closest(const Core& core, const geometry::TriangleCorners& triangle);
 
 /// Lower bound, up to a millionth of the radius, of the first time core and triangle are closer
-/// than the radius; 1 if they are not. Conservative advancement: no corner moves further than
+/// than the radius; 1 if they never are. Conservative advancement: no corner moves further than
 /// `travel`, so neither does the distance change faster.
 double time_of_touch(const Core& core, const SweptTriangle& triangle);
 

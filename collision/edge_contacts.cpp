@@ -27,7 +27,8 @@ struct Edges {
     if (normal.norm() <= kParallel * (a1 - a0).norm() * (b1 - b0).norm()) return Vec3::Zero();
     return normal.dot(outward) < 0 ? Vec3(-normal.normalized()) : normal.normalized();
   }
-  /// Of the probe's edge over the organ's, along the perpendicular: the same all along the edges.
+  /// Height of the probe's edge over the organ's along the perpendicular, the same anywhere on
+  /// them.
   double height() const { return perpendicular().dot(a0 - b0); }
 };
 
@@ -156,7 +157,7 @@ void EdgeContacts::find_pair(const OrganStep& step, const SharpMesh& probe, cons
       append_edge_contact(step, pair.second, at.t, contact, found);
       now_.push_back({step.organ_index, pair, limit});
     } else if (impact) {
-      // Slid off each other since: the contact of the crossing, carried to the end.
+      // The edges have slid off each other: the contact of the crossing is carried to the end.
       contact.point = end.a0 + impact->u * (end.a1 - end.a0);
       contact.gap = end.height();
       append_edge_contact(step, pair.second, impact->v, contact, found);

@@ -83,7 +83,7 @@ void NodeContacts::find_node(const OrganStep& step, const ProbeSolid& solid, std
     }
   }
   if (!face && node.near && faces(node.normal, node.near->outward)) {
-    // Inside without having been seen entering: believed only where the face is beyond doubt.
+    // A node that was never seen entering counts only where its face is beyond doubt.
     if (std::abs(node.near->distance) > step.margin && !node.near->one_sided) return;
     face = Face{node.near->point, node.near->outward};
     if (!is_outside) kept = Kept{*face, step.depth_limit};

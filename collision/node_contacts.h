@@ -49,7 +49,7 @@ class NodeContacts {
     std::optional<SolidEntry> entry;
   };
 
-  /// The face a node shall be in front of although it is inside, or in the shadow of, the solid.
+  /// The face a node is pushed back in front of while it is inside the solid or in its shadow.
   std::optional<Kept> kept_face(const OrganStep& step, const SweptNode& node) const;
   const Hold* held(const OrganStep& step, std::uint32_t node) const;
   void find_node(const OrganStep& step, const ProbeSolid& solid, std::uint32_t node,

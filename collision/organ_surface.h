@@ -20,10 +20,10 @@ class OrganSurface {
  public:
   explicit OrganSurface(std::vector<geometry::Triangle> triangles);
 
-  /// New positions; those before them are kept if something was found on them. Positions that are
+  /// Takes new positions; the ones before them are kept if a search used them. Positions that are
   /// not finite take the organ out until finite ones come.
   void update(std::span<const Vec3> positions);
-  /// Says that the newest positions were used.
+  /// Notes that a search used the newest positions.
   void mark_found() { found_ = true; }
 
   bool present() const { return present_; }

@@ -21,7 +21,8 @@ struct Builder {
   }
   void operator()(const scene::CapsuleShape& capsule) const {
     const Vec3 end = 0.5 * capsule.length * Vec3::UnitZ();
-    // The ends of their own: lying on a flat place, the axis gives one of many closest points.
+    // The ends are cores of their own: an axis lying on a flat place gives one of many closest
+    // points.
     model.cores = {Core{0, -end, end, capsule.radius}, Core{1, -end, -end, capsule.radius},
                    Core{2, end, end, capsule.radius}};
     set_bounds(Vec3::Constant(capsule.radius) + end);

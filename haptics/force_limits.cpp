@@ -8,7 +8,7 @@ namespace palpate::haptics {
 const Vec3& ForceLimiter::limit(const Vec3& wanted, std::uint32_t& limits) {
   const bool finite = wanted.allFinite();
   if (!finite) limits |= kForceNotFinite;
-  // Halved, so that the difference of two finite numbers can not overflow.
+  // Both are halved so that the difference of two finite numbers cannot overflow.
   const Vec3 half_step = finite ? Vec3(0.5 * wanted - 0.5 * output_) : Vec3(-0.5 * output_);
   if (is_longer_than(half_step, 0.5 * max_step_)) {
     limits |= kForceSlewLimited;

@@ -1,4 +1,5 @@
-// The last word on what reaches a device: not finite → zero, then change per tick, then magnitude.
+// Final limits on what reaches a device: a value that is not finite becomes zero, then the change
+// per tick is limited, then the magnitude.
 //
 // Both bounds hold at once: the previous output lies in the ball |f| ≤ max; the slew step moves it
 // by at most max_step; projecting onto a ball never lengthens a distance and leaves the previous

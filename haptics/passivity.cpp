@@ -6,8 +6,9 @@
 namespace palpate::haptics {
 namespace {
 
-constexpr double kReserve = 2;        ///< times the returnable energy
-constexpr double kStandstill = 1e-6;  ///< [m/s]; slower, no power to speak of: 3 N give 3 µW
+constexpr double kReserve = 2;  ///< times the returnable energy
+/// Slower than this there is no power to speak of: 3 N give 3 µW [m/s].
+constexpr double kStandstill = 1e-6;
 
 }  // namespace
 

@@ -10,7 +10,7 @@
 //
 // E is kept within [−debt, 2 W], W what the contact could return at most: the energy in a spring of
 // its force and stiffness. The rest was lost in tissue or friction and must not pay for a later
-// leak. Twice, because contacts are no linear springs: a Hertz contact holds 1.2 W.
+// leak. The factor is two because contacts are not linear springs: a Hertz contact holds 1.2 W.
 #pragma once
 
 #include "modules/core/types.h"

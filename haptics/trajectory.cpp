@@ -72,7 +72,7 @@ void Trajectory::set_slopes() {
         monotone_slope(before.length, after.length, before.turn, after.turn);
   };
   for (std::size_t i = 1; i + 1 < knots_.size(); ++i) join(knots_[i], interval(i - 1), interval(i));
-  if (!loop_) return;  // ends at rest: the pose is held outside
+  if (!loop_) return;  // the pose is held, at rest, before and after
   join(knots_.front(), interval(knots_.size() - 2), interval(0));
   knots_.back().velocity = knots_.front().velocity;
   knots_.back().angular_velocity_body = knots_.front().angular_velocity_body;

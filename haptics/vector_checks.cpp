@@ -7,7 +7,7 @@ namespace palpate::haptics {
 bool is_longer_than(const Vec3& v, double limit) {
   const double largest = v.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return false;
-  // Scaled by the largest component, so that squares neither overflow nor vanish.
+  // The vector is scaled by its largest component so that squares neither overflow nor vanish.
   return (v / largest).norm() > limit / largest;
 }
 

@@ -30,7 +30,7 @@ struct Pixel {
   double depth = 0;  ///< [m]
 };
 
-/// Where a point appears; empty if it is not in front of the eye.
+/// Place of a point in the window; empty if it is not in front of the eye.
 std::optional<Pixel> project(const Camera& camera, const Vec3& p_W);
 
 /// The point seen at a pixel at that depth, in W.

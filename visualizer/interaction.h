@@ -25,7 +25,7 @@ struct InputEvent {
   std::string key;         ///< of kKey: "h", "1", "space", …
 };
 
-/// What the person asked for that others have to carry out.
+/// Requests of the person that others have to carry out.
 struct Requests {
   bool close = false, screenshot = false, pause_or_resume = false, reset = false;
   std::optional<ProbeState> probe_input;  ///< pose of the held probe; header is the sender's

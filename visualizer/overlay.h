@@ -63,7 +63,7 @@ inline constexpr Rgb kText{232, 236, 241}, kQuiet{158, 168, 182}, kPanel{22, 27,
     kCurve{126, 203, 255};
 }  // namespace palette
 
-/// Where the parts of the window lie.
+/// Places of the window's parts.
 struct Layout {
   Box2 scene;                 ///< the 3-D part, from the lower left corner
   std::array<Box2, 3> plots;  ///< volume error, pressure, force
@@ -71,7 +71,7 @@ struct Layout {
 };
 Layout make_layout(int width, int height);
 
-/// Everything flat: title, colour bar, plots, table, arrow labels, notices, help.
+/// The flat parts of the picture: title, colour bar, plots, table, arrow labels, notices, help.
 /// @param now_ns  monotonic clock, for ages
 Overlay make_overlay(const SceneView& view, const DrawList& list, const Interaction& interaction,
                      const Layout& layout, std::int64_t now_ns);

@@ -1,4 +1,4 @@
-// Taking a probe with the mouse: which one is under the cursor, and where a drag moves it.
+// Drags probes with the mouse: finds the one under the cursor and where a drag moves it.
 #pragma once
 
 #include <cstdint>

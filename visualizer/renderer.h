@@ -33,7 +33,7 @@ class Renderer {
   int width() const;
   int height() const;
 
-  /// What happened in the window since the last call.
+  /// Events in the window since the last call.
   std::vector<InputEvent> take_events();
 
   /// Writes the picture drawn last; whole file or nothing.

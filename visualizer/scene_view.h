@@ -1,4 +1,4 @@
-// What the visualizer knows: the newest message of every topic, the histories of the plots, and
+// State the visualizer shows: the newest message of every topic, the histories of the plots, and
 // what the picture derives from node positions. No DDS, no VTK; time is an argument.
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the picture derives from node positions: normals, displacement, strain.
+// Normals, displacement and strain, derived from node positions for the picture.
 //
 // Strain of a triangle: with the edge matrices D₀ (rest) and D (now) in the triangle's plane,
 // C = (D D₀⁻¹)ᵀ(D D₀⁻¹) has the eigenvalues λ₁², λ₂² of the principal stretches; shown is the

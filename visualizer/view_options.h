@@ -1,4 +1,4 @@
-// What the person looking has switched on.
+// Parts of the picture that the person looking has switched on.
 #pragma once
 
 #include <array>

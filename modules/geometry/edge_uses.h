@@ -1,4 +1,4 @@
-// Which triangles use which edge, in which direction.
+// Lists which triangles use each edge, and in which direction.
 #pragma once
 
 #include "modules/geometry/triangle_surface.h"

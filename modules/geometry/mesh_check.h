@@ -1,4 +1,4 @@
-// What is right and wrong with a surface that shall hold a volume.
+// Checks whether a surface can enclose a volume, and reports what is wrong if it cannot.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// From what users hand over to an organ surface: repair what is safe, resample, load.
+// Turns a user's mesh into an organ's surface: loads it, repairs what is safe, resamples.
 #pragma once
 
 #include <filesystem>
@@ -27,7 +27,7 @@ RepairLog repair_surface(TriangleSurface& surface);
 /// @throws InputError if the surface cannot be resampled.
 TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count);
 
-/// read → repair → (resample if node_count > 0) → check.
+/// Reads, repairs, resamples if node_count > 0, and checks.
 /// @throws InputError naming file, problems and what to do if the result cannot hold a volume.
 TriangleSurface load_organ_surface(const std::filesystem::path& file, std::string_view unit,
                                    std::size_t node_count);

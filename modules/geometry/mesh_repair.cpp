@@ -11,7 +11,7 @@
 namespace palpate::geometry {
 namespace {
 
-// Of the extent: a few roundings of single precision, and far below any triangle worth having.
+// Part of the extent: a few roundings of single precision, far below any triangle worth having.
 constexpr double kCrackWidth = 1e-6;
 
 double extent_of(const TriangleSurface& surface) {

@@ -10,7 +10,7 @@ namespace palpate::geometry {
 /// to one plane than 1e-9 of their size count as coplanar. Triangles without area are skipped.
 std::vector<std::array<std::uint32_t, 2>> find_self_intersections(const TriangleSurface& surface);
 
-/// As above, for one pair.
+/// The same for one pair.
 bool triangles_intersect(std::span<const Vec3> nodes, const Triangle& first,
                          const Triangle& second);
 

@@ -34,7 +34,7 @@ std::vector<std::vector<std::uint32_t>> ordered_one_rings(const std::vector<Tria
 }
 
 std::vector<Fan> fans_of(const std::vector<std::vector<std::uint32_t>>& rings) {
-  // Of each node, whether the triangle from its k-th neighbour to the next is still in no fan.
+  // left[node][k]: the triangle from the k-th neighbour to the next is still in no fan.
   std::vector<std::vector<char>> left;
   std::set<std::pair<std::ptrdiff_t, std::uint32_t>> order;  // −triangles left, node
   for (std::uint32_t node = 0; node < rings.size(); ++node) {
@@ -53,7 +53,7 @@ std::vector<Fan> fans_of(const std::vector<std::vector<std::uint32_t>>& rings) {
   while (!order.empty()) {
     const std::uint32_t center = order.begin()->second;
     const auto& ring = rings[center];
-    // From a triangle that is taken on, or from anywhere if none is.
+    // The fan starts after a triangle that another fan has, or anywhere if there is none.
     const auto start = static_cast<std::size_t>(
         std::find(left[center].begin(), left[center].end(), 0) - left[center].begin());
     bool open = false;

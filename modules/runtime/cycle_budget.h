@@ -11,7 +11,7 @@ class CycleBudget {
   /// @param period  of a cycle [s]   @param least  smallest useful amount, one sub-step [s]
   CycleBudget(double period, double least) : period_(period), least_(least) {}
 
-  /// Simulated time of the next cycle [s]: from `least` to one period.
+  /// Simulated time of the next cycle [s], between `least` and one period.
   double next() const;
   /// The last cycle simulated `simulated` in `wall` [s].
   void took(double simulated, double wall);

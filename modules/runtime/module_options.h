@@ -1,4 +1,4 @@
-// What every module's command line has, and what happens around its run function.
+// Options common to all modules' command lines, and the frame around a module's run function.
 #pragma once
 
 #include <filesystem>

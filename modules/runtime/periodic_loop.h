@@ -7,7 +7,7 @@
 
 namespace palpate::runtime {
 
-/// Where a loop that wakes at `now_ns` for the period that began at `scheduled_ns` goes on.
+/// The period a loop belongs to when it wakes, and how many it slept through.
 struct PeriodStart {
   std::int64_t scheduled_ns = 0;  ///< begin of the period this cycle belongs to
   std::uint64_t missed = 0;       ///< periods that passed entirely without a cycle

@@ -20,7 +20,7 @@ bool has_capability(int capability) {
   return (data[CAP_TO_INDEX(capability)].effective & CAP_TO_MASK(capability)) != 0;
 }
 
-/// With a finite limit, locking what is mapped later makes mmap itself fail one day.
+/// Under a finite limit, locking future mappings makes mmap itself fail once the limit is reached.
 bool may_lock_everything() {
   rlimit limit{};
   return has_capability(CAP_IPC_LOCK) ||

@@ -1,4 +1,4 @@
-// What the system may grant a module beyond its share.
+// Privileges the system may grant a module: real-time priority, locked memory, niceness.
 #pragma once
 
 #include <string>

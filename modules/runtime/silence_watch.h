@@ -1,4 +1,4 @@
-// Which of several sources have gone silent, so that nothing old is taken for the present.
+// Tells which of several sources have gone silent, so that nothing old is taken for the present.
 #pragma once
 
 #include <cstdint>

@@ -71,7 +71,7 @@ void StatusReporter::fill_inputs(std::int64_t now_ns) {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const bus::ReaderStatistics& from = *inputs_[i];
     ModuleStatus::Input& to = status_.inputs[i];
-    // a sample may have been written after this cycle began
+    // A sample may have been written after this cycle began: its age is not negative.
     const std::int64_t age_ns = std::max<std::int64_t>(0, now_ns - from.newest_source_time_ns);
     to.age = from.newest_source_time_ns == 0 ? std::numeric_limits<double>::infinity()
                                              : seconds_from_ns(age_ns);

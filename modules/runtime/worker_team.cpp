@@ -31,7 +31,8 @@ WorkerTeam::~WorkerTeam() {
 }
 
 void WorkerTeam::run(std::size_t count, ChunkBody body) {
-  // Closed while it changes: a worker late from the last run must not take its end for a chunk.
+  // The ticket is closed while the run changes, or a worker late from the last one takes its end
+  // for a chunk.
   ticket_ = kClosed;
   body_ = &body;
   count_ = count;

@@ -21,7 +21,7 @@ class WorkerTeam : public ChunkRunner {
   WorkerTeam& operator=(const WorkerTeam&) = delete;
 
   std::size_t size() const { return workers_.size() + 1; }
-  /// Only ever called from one thread at a time; the body must not throw.
+  /// Called from one thread at a time; the body must not throw.
   void run(std::size_t count, ChunkBody body) override;
 
  private:

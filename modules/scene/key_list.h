@@ -1,4 +1,4 @@
-// Which keys an object of the scene may have.
+// The keys an object of the scene may have.
 #pragma once
 
 #include <string>

@@ -77,7 +77,7 @@ constexpr bool has_iterations(Model model) {
   return model >= Model::kXpbdSprings && model <= Model::kNodalPressure;
 }
 
-/// What models of solids need beside the tissue.
+/// Parameters that models of solids need beside the tissue.
 struct Solid {
   double poisson_ratio = 0.499;  ///< `poisson_ratio` [0 … 0.5]
   double element_size = 0;       ///< `element_size_m`, edges inside; 0 = mean edge of the surface
@@ -177,7 +177,7 @@ struct Rates {
   double visualizer = 30;    ///< `visualizer_hz` [1 … 120]
 };
 
-/// What `palpate plan` looks for: the cheapest model, mesh and step that give this.
+/// Needs of a scene: `palpate plan` looks for the cheapest model, mesh and step that meet them.
 struct Needs {
   enum class Contents { kFluid, kSolid };
   /// `contents`: what the organ is, whatever models it: a wall filled with fluid, or one solid.

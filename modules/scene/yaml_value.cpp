@@ -169,7 +169,7 @@ Quat rotation_from(const YamlValue& value) {
     value.refuse("must be a unit quaternion [x, y, z, w] (length 1 within 0.001, here " +
                  number_text(result.norm()) + ")");
   }
-  // What one normalisation left is taken as it is, so that written scenes read back bit by bit.
+  // A quaternion normalised once is taken as it is, so that written scenes read back bit by bit.
   if (std::abs(result.squaredNorm() - 1) > kNormalisedWithin) result.normalize();
   return result;
 }

@@ -12,13 +12,13 @@
 
 namespace palpate::scene {
 
-/// Where a text comes from.
+/// Origin of a text.
 struct Source {
   std::string name;              ///< as shown in messages
   std::filesystem::path folder;  ///< that relative file names refer to
 };
 
-/// What a message may repeat of a text: one line, at most 60 bytes.
+/// The part of a text that a message repeats: one line, at most 60 bytes.
 std::string shortened(std::string text);
 /// "file:line"
 std::string place_in(const Source& source, int line);
