@@ -33,6 +33,18 @@ std::string integrator_text(const scene::Organ& organ,
       choice.symplectic_passes, choice.backward_passes);
 }
 
+/// A warning where a shell's inner springs are neither of the two fitted to finite elements
+/// (docs/calibration.md): its forces are then a choice, not a prediction.
+std::string calibration_text(const scene::Organ& organ) {
+  constexpr double kFittedSolid = 10;
+  const double fitted = scene::Springs{}.inner_ratio, ratio = organ.springs.inner_ratio;
+  if (ratio == fitted || ratio == kFittedSolid) return "";
+  return fmt::format(
+      "  warning: inner_ratio {:g} is not calibrated (fitted: {:g} for a filled shell, {:g} for a "
+      "solid, docs/calibration.md)\n",
+      ratio, fitted, kFittedSolid);
+}
+
 std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& shape,
                        const deformation::DeformationWorld& world, std::size_t index,
                        double period) {
@@ -54,6 +66,7 @@ std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& sh
                             springs[1], springs[2]);
   text += fmt::format("  volume {:.1f} cm3, mass {:.3f} kg, model {}\n", 1e6 * volume,
                       organ.tissue.density * volume, scene::word_of(organ.model));
+  if (!shape.is_solid()) text += calibration_text(organ);
   if (!deformation::has_own_steps(organ.model))
     text += integrator_text(organ, world.integrator(index));
   text += fmt::format("  largest step {:.1f} us: {} sub-steps of {:.1f} us in a period\n",

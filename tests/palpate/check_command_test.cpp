@@ -1,6 +1,8 @@
 #include "palpate/check_command.h"
 
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "modules/core/error.h"
@@ -58,6 +60,21 @@ TEST_CASE("check: says which integrator steps the springs, who chose it and by w
   CHECK_THAT(out.str(), Contains("integrator symplectic_euler (automatic): passes over the springs "
                                  "per simulated second: symplectic_euler ") &&
                             Contains("backward_euler 3500\n"));
+}
+
+TEST_CASE("check: springs that are not the fitted ones are named") {
+  // Oracle: docs/calibration.md. The ball's inner_ratio of 0.5 is ten times the fitted one.
+  const BallScene scene;
+  std::ostringstream out;
+  launcher::check_command(scene.file(), 0.05, out);
+  CHECK_THAT(out.str(), Contains("warning: inner_ratio 0.5 is not calibrated"));
+  std::ostringstream fitted;
+  std::ifstream file(scene.file());
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  text.replace(text.find("inner_ratio: 0.5"), 16, "inner_ratio: 0.05");
+  std::ofstream(scene.file()) << text;
+  launcher::check_command(scene.file(), 0.05, fitted);
+  CHECK_THAT(fitted.str(), !Contains("calibrated"));
 }
 
 TEST_CASE("check: a bad scene is refused with its place") {
