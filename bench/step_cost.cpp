@@ -185,8 +185,8 @@ void measure(const scene::Organ& organ, const Vec3& gravity,
     for (Variant& v : variants) v.seconds.push_back(seconds_per_step(v, steps));
   }
 
-  const std::size_t springs = model.network.springs.size();
-  std::printf("%zu nodes, %zu springs\n", model.surface_node_count(), springs);
+  const std::size_t springs = model.network().springs.size();
+  std::printf("%zu nodes, %zu springs\n", model.surface_node_count, springs);
   std::printf("  %-22s %11s %9s %9s\n", "", "us/step", "ns/spring", "speed-up");
   for (const Variant& v : variants) print(v, variants[0], springs);
   const Variant& best = variants[1 + sets.size()];

@@ -99,7 +99,8 @@ bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   const bool far = holds_volume_ && volume_is_far();
   if (far) release_volume();
   report.volume_released |= far;
-  const bool inverted = inverted_tetrahedra(*model_, state_.positions) > 0;
+  const bool inverted =
+      model_->is_solid() && inverted_tetrahedra(model_->mesh(), state_.positions) > 0;
   report.tissue_inverted |= inverted;
   folded_ = inverted && !has_rest_volume();
   if (!guard_.suspicious() && !far && !folded_ && collapsed_time_ == 0) last_good_ = state_;

@@ -35,17 +35,19 @@ SurfaceTopology make_topology(const scene::Organ& organ, std::uint32_t index,
   topology.organ = index;
   topology.generation = 1;
   topology.name = organ.name;
-  topology.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count());
-  for (const Vec3& p : model.network.rest_positions) {
+  topology.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count);
+  for (const Vec3& p : model.rest_positions) {
     for (int axis = 0; axis < 3; ++axis) {
       topology.rest_positions.push_back(static_cast<float>(p[axis]));
     }
   }
   topology.triangles = model.triangles;
   topology.fixed_nodes = model.fixed_nodes;
-  for (std::size_t s = 0; s < model.network.springs.size(); ++s) {
-    const Spring& spring = model.network.springs[s];
-    topology.springs.push_back({spring.node_a, spring.node_b, model.network.family(s)});
+  if (model.is_solid()) return topology;
+  const SpringNetwork& network = model.network();
+  for (std::size_t s = 0; s < network.springs.size(); ++s) {
+    const Spring& spring = network.springs[s];
+    topology.springs.push_back({spring.node_a, spring.node_b, network.family(s)});
   }
   return topology;
 }

@@ -87,11 +87,11 @@ struct BulletBall::World {
   }
 
   void add_body(const Ball& ball) {
-    const auto& network = ball.model.network;
+    const auto& network = ball.model.network();
     std::vector<btVector3> positions;
     std::vector<btScalar> masses;
     for (std::size_t i = 0; i < ball.model.node_count(); ++i) {
-      positions.push_back(scaled(network.rest_positions[i]));
+      positions.push_back(scaled(ball.model.rest_positions[i]));
       masses.push_back(btScalar(ball.model.masses[i]));
     }
     body = std::make_unique<btSoftBody>(&world.getWorldInfo(), int(positions.size()),

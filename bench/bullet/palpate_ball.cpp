@@ -54,8 +54,8 @@ PalpateBall::PalpateBall(const Ball& ball, const Method& method)
       model_(corrected(ball.model, method.corrections)),
       dynamics_(deformation::make_dynamics(stepped_by(method, ball.organ), model_, kStep)),
       state_(deformation::rest_state(model_)),
-      corners_(model_.surface_node_count()),
-      impulses_(model_.surface_node_count(), 0),
+      corners_(model_.surface_node_count),
+      impulses_(model_.surface_node_count, 0),
       substeps_(method.one_step ? 1 : substeps_of(*dynamics_)) {
   for (const auto& t : model_.triangles) {
     for (std::size_t k = 0; k < 3; ++k) corners_[t[k]] = {t[k], t[(k + 1) % 3], t[(k + 2) % 3]};

@@ -63,7 +63,7 @@ void run(const std::string& name, scene::Model model, const std::string& size) {
       kStep);
   std::printf("\n%s %s, size %s: %zu nodes, %zu of the surface, %zu tetrahedra\n", name.c_str(),
               scene::word_of(model), size.c_str(), solid.model().node_count(),
-              solid.model().surface_node_count(), solid.model().solid.tetrahedra.size());
+              solid.model().surface_node_count, solid.model().mesh().tetrahedra.size());
   print_loads(solid, ball ? kBallLoads : kBlockLoads);
 }
 

@@ -87,7 +87,7 @@ void PressedSolid::advance_to(double depth) {
 void PressedSolid::touch_nodes(std::size_t press) {
   const Press& plate = presses_[press];
   const Vec3 point = plate.start + plate.share * depth_ * plate.direction;
-  for (std::uint32_t i = 0; i < model_.surface_node_count(); ++i) {
+  for (std::uint32_t i = 0; i < model_.surface_node_count; ++i) {
     add_row(press, i, {i, i, i}, Vec3::UnitX(), (point - state_.positions[i]), -plate.direction);
   }
 }

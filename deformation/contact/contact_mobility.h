@@ -12,7 +12,7 @@ namespace palpate::deformation {
 /// W = M⁻¹.
 class MassMobility {
  public:
-  explicit MassMobility(const OrganModel& model) : inverse_masses_(model.inverse_masses) {}
+  explicit MassMobility(const Body& body) : inverse_masses_(body.inverse_masses) {}
 
   std::size_t node_count() const { return inverse_masses_.size(); }
   /// W impulse: the velocity that node takes [m/s].

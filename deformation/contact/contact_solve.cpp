@@ -222,28 +222,28 @@ ContactSolveReport solve_all(const Mobility& mobility, const VolumeRow* volume, 
   return report;
 }
 
-bool has_vanished(const OrganModel& model, const VolumeRow* volume) {
+bool has_vanished(const Body& body, const VolumeRow* volume) {
   return volume != nullptr &&
-         !(volume->at.denominator > kVanishedDenominator * model.rest_denominator);
+         !(volume->at.denominator > kVanishedDenominator * body.rest_denominator);
 }
 
 }  // namespace
 
-ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const VolumeRow* volume,
-                                             double h, std::span<ContactRow> rows,
+ContactSolveReport solve_contacts_and_volume(const Body& body, const VolumeRow* volume, double h,
+                                             std::span<ContactRow> rows,
                                              std::vector<Vec3>& velocities, StartImpulses start) {
-  const bool vanished = has_vanished(model, volume);
+  const bool vanished = has_vanished(body, volume);
   auto report =
-      solve_all(MassMobility(model), vanished ? nullptr : volume, h, rows, velocities, start);
+      solve_all(MassMobility(body), vanished ? nullptr : volume, h, rows, velocities, start);
   report.volume_skipped = vanished;
   return report;
 }
 
-ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volume,
-                                  double volume_velocity, double h, std::span<ContactRow> rows,
+ContactSolveReport solve_contacts(const Body& body, const VolumeRow* volume, double volume_velocity,
+                                  double h, std::span<ContactRow> rows,
                                   std::vector<Vec3>& velocities, StartImpulses start) {
-  const bool vanished = has_vanished(model, volume);
-  auto report = solve(MassMobility(model), vanished ? nullptr : volume, volume_velocity, h, rows,
+  const bool vanished = has_vanished(body, volume);
+  auto report = solve(MassMobility(body), vanished ? nullptr : volume, volume_velocity, h, rows,
                       velocities, start);
   report.volume_skipped = vanished;
   return report;

@@ -18,7 +18,6 @@
 #include <span>
 #include <vector>
 
-#include "deformation/model/organ_model.h"
 #include "deformation/volume/volume_constraint.h"
 
 namespace palpate::deformation {
@@ -62,15 +61,15 @@ enum class StartImpulses { kToApply, kApplied };
 
 /// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.
 /// Sweeps end when no contact velocity changes by more than 1e-9 m/s, or after 60.
-ContactSolveReport solve_contacts_and_volume(const OrganModel& model, const VolumeRow* volume,
-                                             double h, std::span<ContactRow> rows,
+ContactSolveReport solve_contacts_and_volume(const Body& body, const VolumeRow* volume, double h,
+                                             std::span<ContactRow> rows,
                                              std::vector<Vec3>& velocities,
                                              StartImpulses start = StartImpulses::kToApply);
 
 /// The same for a caller that knows g·v̂ and itself takes the volume's impulse: turns v̂ into w.
 /// @param volume_velocity  g·v̂ [m³/s]
-ContactSolveReport solve_contacts(const OrganModel& model, const VolumeRow* volume,
-                                  double volume_velocity, double h, std::span<ContactRow> rows,
+ContactSolveReport solve_contacts(const Body& body, const VolumeRow* volume, double volume_velocity,
+                                  double h, std::span<ContactRow> rows,
                                   std::vector<Vec3>& velocities,
                                   StartImpulses start = StartImpulses::kToApply);
 

@@ -83,9 +83,9 @@ Pose ProbeContacts::pose_at(double fraction) const {
           start_.rotation.slerp(fraction, target_.rotation)};
 }
 
-void ProbeContacts::measure_again(const OrganModel& model, const OrganState& state,
-                                  const Pose& pose, CarriedContact& contact) const {
-  const auto& nodes = model.triangles[contact.triangle];
+void ProbeContacts::measure_again(const Body& body, const OrganState& state, const Pose& pose,
+                                  CarriedContact& contact) const {
+  const auto& nodes = body.triangles[contact.triangle];
   const auto closest = geometry::closest_of_segment_and_triangle(
       pose.to_world(core_->end_a), pose.to_world(core_->end_b),
       {state.positions[nodes[0]], state.positions[nodes[1]], state.positions[nodes[2]]});
@@ -100,15 +100,14 @@ void ProbeContacts::measure_again(const OrganModel& model, const OrganState& sta
   contact.point_P = pose.to_body(closest.on_segment - core_->radius * normal);
 }
 
-void ProbeContacts::append_rows(std::uint32_t organ, const OrganModel& model,
-                                const OrganState& state, double h, double fraction,
-                                std::vector<ContactRow>& rows) {
+void ProbeContacts::append_rows(std::uint32_t organ, const Body& body, const OrganState& state,
+                                double h, double fraction, std::vector<ContactRow>& rows) {
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
-    if (core_) measure_again(model, state, before, contact);
+    if (core_) measure_again(body, state, before, contact);
     ContactRow row;
-    row.nodes = model.triangles[contact.triangle];
+    row.nodes = body.triangles[contact.triangle];
     row.weights = contact.weights;
     row.normal = after.rotation * contact.normal_P;
     Vec3 tissue = Vec3::Zero();

@@ -6,6 +6,7 @@
 
 #include "deformation/contact/contact_response.h"
 #include "deformation/contact/contact_solve.h"
+#include "deformation/model/organ_state.h"
 #include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
@@ -51,7 +52,7 @@ class ProbeContacts {
 
   /// Appends the rows of this probe's contacts with `organ` at `fraction` (0, 1] of the advance.
   /// A row at the sub-step's start is given by the probe at its end, minus the way it moves.
-  void append_rows(std::uint32_t organ, const OrganModel& model, const OrganState& state, double h,
+  void append_rows(std::uint32_t organ, const Body& body, const OrganState& state, double h,
                    double fraction, std::vector<ContactRow>& rows);
   /// Takes the solved rows back, in the order they were appended. @returns their number
   std::size_t take_rows(std::uint32_t organ, double fraction, const ContactRow* rows);
@@ -64,7 +65,7 @@ class ProbeContacts {
  private:
   Pose pose_at(double fraction) const;
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
-  void measure_again(const OrganModel& model, const OrganState& state, const Pose& pose,
+  void measure_again(const Body& body, const OrganState& state, const Pose& pose,
                      CarriedContact& contact) const;
 
   double friction_;

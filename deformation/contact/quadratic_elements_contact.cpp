@@ -20,11 +20,11 @@ Vec3 no_longer_than(double most, const Vec3& v) {
 
 }  // namespace
 
-QuadraticElementsContact::QuadraticElementsContact(const OrganModel& model,
+QuadraticElementsContact::QuadraticElementsContact(const Body& body,
                                                    const elements::MixedSolid& solid)
-    : model_(model),
+    : body_(body),
       solid_(solid),
-      elements_of_node_(model.node_count()),
+      elements_of_node_(body.node_count()),
       rows_of_element_(solid.element_count()) {
   for (std::size_t e = 0; e < solid.element_count(); ++e) {
     for (const auto node : solid.mesh().elements[e]) elements_of_node_[node].push_back(e);
@@ -67,7 +67,7 @@ void QuadraticElementsContact::take(std::span<const ContactRow> rows, double h,
     locate(row);
     for (int k = 0; k < 3; ++k) {
       row.penalty += kPenaltyFactor * given.weights[k] * given.weights[k] *
-                     model_.node_stiffness[given.nodes[k]];
+                     body_.node_stiffness[given.nodes[k]];
     }
     row.start = given.normal.dot(point(row, positions));
     row.multiplier = given.normal_impulse / h;

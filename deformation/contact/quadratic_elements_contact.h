@@ -29,8 +29,8 @@ class QuadraticElementsContact : public elements::Contact {
   /// the worse the harder the kink. What sticks creeps back within a few steps, as λ_t takes over.
   static constexpr double kSlidingPenalty = 0.01;
 
-  /// @param model, solid  outlive this; the solid's nodes are the model's
-  QuadraticElementsContact(const OrganModel& model, const elements::MixedSolid& solid);
+  /// @param body, solid  outlive this; the solid's nodes are the body's
+  QuadraticElementsContact(const Body& body, const elements::MixedSolid& solid);
 
   /// Takes the rows of a step of h [s], which starts at these positions; the multipliers are their
   /// impulses / h.
@@ -71,7 +71,7 @@ class QuadraticElementsContact : public elements::Contact {
   Vec3 point(const Row& row, const std::vector<Vec3>& positions) const;
   Force force(const Row& row, const std::vector<Vec3>& positions) const;
 
-  const OrganModel& model_;
+  const Body& body_;
   const elements::MixedSolid& solid_;
   std::vector<std::vector<std::size_t>> elements_of_node_;
   std::vector<Row> rows_;

@@ -4,8 +4,8 @@
 
 namespace palpate::deformation {
 
-LinearTetrahedra::LinearTetrahedra(const OrganModel& model) : corners(model.solid.tetrahedra) {
-  const auto& x = model.network.rest_positions;
+LinearTetrahedra::LinearTetrahedra(const OrganModel& model) : corners(model.mesh().tetrahedra) {
+  const auto& x = model.rest_positions;
   for (const auto& t : corners) {
     Mat3 edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = x[t[static_cast<std::size_t>(k) + 1]] - x[t[0]];

@@ -11,27 +11,27 @@ namespace palpate::deformation {
 namespace {
 
 /// Σ m x of the nodes that move [kg·m].
-Vec3 first_moment(const OrganModel& model, const std::vector<Vec3>& positions) {
+Vec3 first_moment(const Body& body, const std::vector<Vec3>& positions) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (model.inverse_masses[i] > 0) sum += model.masses[i] * positions[i];
+    if (body.inverse_masses[i] > 0) sum += body.masses[i] * positions[i];
   }
   return sum;
 }
 
-double moving_mass(const OrganModel& model) {
+double moving_mass(const Body& body) {
   double sum = 0;
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    if (model.inverse_masses[i] > 0) sum += model.masses[i];
+  for (std::size_t i = 0; i < body.node_count(); ++i) {
+    if (body.inverse_masses[i] > 0) sum += body.masses[i];
   }
   return sum;
 }
 
 /// At most twice the largest distance from the first node.
-double largest_rest_distance(const OrganModel& model) {
+double largest_rest_distance(const Body& body) {
   double squared = 0;
-  for (const Vec3& p : model.network.rest_positions) {
-    squared = std::max(squared, (p - model.network.rest_positions[0]).squaredNorm());
+  for (const Vec3& p : body.rest_positions) {
+    squared = std::max(squared, (p - body.rest_positions[0]).squaredNorm());
   }
   return std::sqrt(squared);
 }
@@ -52,24 +52,24 @@ bool knows_energy(scene::Model model) {
   }
 }
 
-StateGuard::StateGuard(const OrganModel& model, bool knows_energy)
-    : model_(model),
+StateGuard::StateGuard(const Body& body, bool knows_energy)
+    : body_(body),
       knows_energy_(knows_energy),
-      total_mass_(moving_mass(model)),
-      largest_distance_(kMaxGrowth * largest_rest_distance(model)),
+      total_mass_(moving_mass(body)),
+      largest_distance_(kMaxGrowth * largest_rest_distance(body)),
       calm_energy_(total_mass_ * kCalmSpeed * kCalmSpeed / 2),
       largest_unpaid_(total_mass_ * kMaxSeparationSpeed * kMaxSeparationSpeed) {}
 
 void StateGuard::begin(const OrganState& state, double elastic_energy) {
   double kinetic = 0;
   for (std::size_t i = 0; i < state.velocities.size(); ++i) {
-    kinetic += model_.masses[i] * state.velocities[i].squaredNorm() / 2;
+    kinetic += body_.masses[i] * state.velocities[i].squaredNorm() / 2;
   }
   // Tissue pressed flat may have no energy that is a number; it is judged from the next look on.
   ledger_ =
       std::isfinite(elastic_energy) ? kinetic + elastic_energy : std::numeric_limits<double>::max();
   unpaid_ = 0;
-  first_moment_ = first_moment(model_, state.positions);
+  first_moment_ = first_moment(body_, state.positions);
   seen_ = state.positions;
   suspicious_ = false;
 }
@@ -105,15 +105,15 @@ Disbelief StateGuard::look(const OrganState& state, double period) {
     const double distance = (state.positions[i] - first).squaredNorm();
     const double moved = (state.positions[i] - seen_[i]).squaredNorm();
     sound &= (speed <= fast) & (moved <= way) & (distance <= far);  // false for NaN
-    twice_energy += model_.masses[i] * speed;
+    twice_energy += body_.masses[i] * speed;
   }
   suspicious_ = false;
   if (!sound) return explain(state, period);
   seen_ = state.positions;
   kinetic_energy_ = twice_energy / 2;
-  if (!model_.gravity.isZero(0)) {
-    const Vec3 moment = first_moment(model_, state.positions);
-    ledger_ += model_.gravity.dot(moment - first_moment_);
+  if (!body_.gravity.isZero(0)) {
+    const Vec3 moment = first_moment(body_, state.positions);
+    ledger_ += body_.gravity.dot(moment - first_moment_);
     first_moment_ = moment;
   }
   return judge_energy(kinetic_energy_);
@@ -123,8 +123,8 @@ Disbelief StateGuard::look_thoroughly(const OrganState& state, double period,
                                       OrganDynamics& dynamics) {
   const Disbelief seen = look(state, period);
   if (seen != Disbelief::kNone) return seen;
-  const double volume = geometry::enclosed_volume(state.positions, model_.triangles);
-  if (volume < -kTurnedVolume * model_.rest_volume) return Disbelief::kTurnedInside;
+  const double volume = geometry::enclosed_volume(state.positions, body_.triangles);
+  if (volume < -kTurnedVolume * body_.rest_volume) return Disbelief::kTurnedInside;
   if (!knows_energy_) return Disbelief::kNone;
   const double energy = kinetic_energy_ + dynamics.elastic_energy(state);
   const bool was_suspicious = suspicious_;
@@ -153,17 +153,6 @@ Disbelief StateGuard::explain(const OrganState& state, double period) const {
   }
   if (!finite) return Disbelief::kNotFinite;
   return speed > kMaxNodeSpeed ? Disbelief::kTooFast : Disbelief::kTooLarge;
-}
-
-std::size_t inverted_tetrahedra(const OrganModel& model, const std::vector<Vec3>& positions) {
-  return static_cast<std::size_t>(std::count_if(model.solid.tetrahedra.begin(),
-                                                model.solid.tetrahedra.end(),
-                                                [&](const geometry::Tetrahedron& t) {
-                                                  const Vec3 a = positions[t[1]] - positions[t[0]];
-                                                  const Vec3 b = positions[t[2]] - positions[t[0]];
-                                                  const Vec3 c = positions[t[3]] - positions[t[0]];
-                                                  return !(a.dot(b.cross(c)) > 0);
-                                                }));
 }
 
 }  // namespace palpate::deformation

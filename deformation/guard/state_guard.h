@@ -57,9 +57,9 @@ bool knows_energy(scene::Model model);
 
 class StateGuard {
  public:
-  /// @param model  outlives this
+  /// @param body  outlives this
   /// @param knows_energy  false: the ledger is not kept
-  StateGuard(const OrganModel& model, bool knows_energy);
+  StateGuard(const Body& body, bool knows_energy);
 
   /// Begins anew with `state`, whose stored energy is `elastic_energy` [J].
   void begin(const OrganState& state, double elastic_energy);
@@ -87,7 +87,7 @@ class StateGuard {
   Disbelief judge_energy(double energy);
   Disbelief explain(const OrganState& state, double period) const;
 
-  const OrganModel& model_;
+  const Body& body_;
   bool knows_energy_;
   double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_unpaid_ = 0;
   double ledger_ = 0, unpaid_ = 0, kinetic_energy_ = 0;  ///< [J]
@@ -95,8 +95,5 @@ class StateGuard {
   std::vector<Vec3> seen_;                               ///< positions of the last look [m]
   bool suspicious_ = false;
 };
-
-/// How many tetrahedra enclose no positive volume.
-std::size_t inverted_tetrahedra(const OrganModel& model, const std::vector<Vec3>& positions);
 
 }  // namespace palpate::deformation

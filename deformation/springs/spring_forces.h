@@ -15,7 +15,5 @@ void add_spring_forces(const OrganModel& model, const OrganState& state, std::ve
 
 double elastic_energy(const OrganModel& model,
                       const std::vector<Vec3>& positions);  ///< Σ ½k(l−l₀)² [J]
-double kinetic_energy(const OrganModel& model,
-                      const std::vector<Vec3>& velocities);  ///< Σ ½mv² [J]
 
 }  // namespace palpate::deformation

@@ -14,11 +14,11 @@ SpringLinearization::SpringLinearization(const OrganModel& model)
       positions_(model.node_count()),
       masses_(model.node_count()),
       diagonal_(model.node_count()) {
-  for (std::size_t s = 0; s < model.network.springs.size(); ++s) {
-    const Spring& spring = model.network.springs[s];
+  for (std::size_t s = 0; s < model.network().springs.size(); ++s) {
+    const Spring& spring = model.network().springs[s];
     constants_.push_back({static_cast<float>(spring.rest_length),
                           static_cast<float>(spring.stiffness),
-                          static_cast<float>(model.spring_damping[s])});
+                          static_cast<float>(model.network().damping[s])});
     couplings_.push_back({spring.node_a, spring.node_b, 0, 0});
   }
 }

@@ -18,7 +18,7 @@ Vec3 missing(const ChainMail::Link& link, const Vec3& along) {
 
 ChainMail::ChainMail(const OrganModel& model)
     : model_(model), links_of_(model.node_count()), kernel_(model) {
-  const SpringNetwork& network = model.network;
+  const SpringNetwork& network = model.network();
   for (std::size_t s = 0; s < network.springs.size(); ++s) {
     if (network.family(s) == SpringFamily::kBending) continue;
     const Spring& spring = network.springs[s];

@@ -77,9 +77,9 @@ Mat3 nearest_rotation(const Mat3& F) {
 Corotational::Corotational(const OrganModel& model)
     : model_(model),
       tetrahedra_(model),
-      pairs_(model.node_count(), model.solid.tetrahedra),
+      pairs_(model.node_count(), model.mesh().tetrahedra),
       matrix_(pairs_) {
-  const double E = model.solid.youngs_modulus, nu = model.solid.poisson_ratio;
+  const double E = model.mesh().youngs_modulus, nu = model.mesh().poisson_ratio;
   mu_ = E / (2 * (1 + nu));
   lambda_ = E * nu / ((1 + nu) * (1 - 2 * nu));
   forces_.assign(model.node_count(), Vec3::Zero());

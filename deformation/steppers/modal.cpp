@@ -81,7 +81,7 @@ StepReport Modal::step(double h, std::span<ContactRow> rows, OrganState& state) 
 
 void Modal::read(const OrganState& state) {
   if (left_.positions == state.positions && left_.velocities == state.velocities) return;
-  const auto rest = coordinates(model_.network.rest_positions);
+  const auto rest = coordinates(model_.rest_positions);
   amplitudes_ = momenta_.transpose() * (coordinates(state.positions) - rest);
   rates_ = momenta_.transpose() * coordinates(state.velocities);
   left_.positions = state.positions;
@@ -94,7 +94,7 @@ void Modal::write(OrganState& state) {
   const Eigen::MatrixX2d moved = modes_ * both;
   for (std::size_t i = 0; i < model_.node_count(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
-    state.positions[i] = model_.network.rest_positions[i] + moved.block<3, 1>(at, 0);
+    state.positions[i] = model_.rest_positions[i] + moved.block<3, 1>(at, 0);
     state.velocities[i] = moved.block<3, 1>(at, 1);
   }
   state.pressure = pressures_.dot(amplitudes_);

@@ -40,10 +40,10 @@ Block4f skew(const Vec4f& e) {
 NodalPressure::NodalPressure(const OrganModel& model, const NodalPressureSettings& settings)
     : model_(model),
       tetrahedra_(model),
-      pairs_(model.node_count(), model.solid.tetrahedra),
+      pairs_(model.node_count(), model.mesh().tetrahedra),
       matrix_(pairs_) {
-  const double nu = model.solid.poisson_ratio;
-  mu_ = model.solid.youngs_modulus / (2 * (1 + nu));
+  const double nu = model.mesh().poisson_ratio;
+  mu_ = model.mesh().youngs_modulus / (2 * (1 + nu));
   alpha_ = settings.stabilisation * mu_;
   // κ/μ = 2(1+ν)/(3(1−2ν)), infinite at ν = 1/2
   const double ratio =

@@ -37,7 +37,7 @@ void check_integrator(const scene::Organ& organ) {
 void check_neighbour(const scene::Organ& organ, const OrganModel& model) {
   const bool pyramids =
       organ.model == scene::Model::kZordan || organ.model == scene::Model::kElementVolume;
-  if (pyramids && model.node_count() == model.surface_node_count()) {
+  if (pyramids && model.node_count() == model.surface_node_count) {
     throw InputError("organ '" + organ.name + "': model " + scene::word_of(organ.model) +
                      " needs virtual nodes as apexes of its pyramids; springs: virtual_nodes must "
                      "be at least 1 and inner_ratio above 0");

@@ -21,12 +21,11 @@ Eigen::VectorXd corner_volumes(const elements::QuadraticMesh& mesh) {
 }
 
 elements::MixedSolid quadratic_solid(const OrganModel& model) {
-  const SolidElements& solid = model.solid;
+  const TetMesh& solid = model.mesh();
   PALPATE_DEMAND(!solid.edge_nodes.empty());
-  return {
-      elements::make_quadratic(model.network.rest_positions, solid.tetrahedra, solid.edge_nodes),
-      elements::NeoHookean::from_engineering(solid.youngs_modulus, solid.poisson_ratio),
-      solid.density};
+  return {elements::make_quadratic(model.rest_positions, solid.tetrahedra, solid.edge_nodes),
+          elements::NeoHookean::from_engineering(solid.youngs_modulus, solid.poisson_ratio),
+          solid.density};
 }
 
 QuadraticElements::QuadraticElements(const OrganModel& model)

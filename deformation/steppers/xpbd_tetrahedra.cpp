@@ -26,12 +26,12 @@ Gradients by_corners(const Mat3& by_gradient, const Mat3& inverse_edges) {
 
 XpbdTetrahedra::XpbdTetrahedra(const OrganModel& model, int iterations)
     : model_(model), iterations_(iterations), velocities_(model.node_count()) {
-  const SolidElements& solid = model.solid;
+  const TetMesh& solid = model.mesh();
   PALPATE_DEMAND(!solid.tetrahedra.empty() && solid.poisson_ratio < 0.5);
   const double nu = solid.poisson_ratio;
   shear_modulus_ = solid.youngs_modulus / (2 * (1 + nu));
   lame_ = shear_modulus_ * (2 * nu / (1 - 2 * nu) + 1);
-  const auto& x = model.network.rest_positions;
+  const auto& x = model.rest_positions;
   for (const auto& [a, b, c, d] : solid.tetrahedra) {
     Mat3 edges;
     edges << x[b] - x[a], x[c] - x[a], x[d] - x[a];
@@ -46,7 +46,7 @@ double XpbdTetrahedra::squared_frequency_bound() const {
     const Gradients shapes = by_corners(Mat3::Identity(), elements_[e].inverse_edges);
     const Eigen::RowVector4d sizes = shapes.colwise().norm();
     for (int k = 0; k < 4; ++k) {
-      rows[model_.solid.tetrahedra[e][static_cast<std::size_t>(k)]] +=
+      rows[model_.mesh().tetrahedra[e][static_cast<std::size_t>(k)]] +=
           shear_modulus_ * elements_[e].volume * sizes[k] * sizes.sum();
     }
   }
@@ -59,7 +59,7 @@ double XpbdTetrahedra::squared_frequency_bound() const {
 
 Mat3 XpbdTetrahedra::deformation_gradient(std::size_t element,
                                           const std::vector<Vec3>& positions) const {
-  const auto& [a, b, c, d] = model_.solid.tetrahedra[element];
+  const auto& [a, b, c, d] = model_.mesh().tetrahedra[element];
   Mat3 edges;
   edges << positions[b] - positions[a], positions[c] - positions[a], positions[d] - positions[a];
   return edges * elements_[element].inverse_edges;
@@ -95,7 +95,7 @@ StepReport XpbdTetrahedra::step(double h, std::span<ContactRow> rows, OrganState
 
 // [∇C_i·M⁻¹∇C_j + α_ij] Δλ = −C − α λ,   Δx = M⁻¹ ∇Cᵀ Δλ
 double XpbdTetrahedra::relax(std::size_t element, double h) {
-  const auto& nodes = model_.solid.tetrahedra[element];
+  const auto& nodes = model_.mesh().tetrahedra[element];
   const auto& [inverse_edges, volume] = elements_[element];
   const Mat3 F = deformation_gradient(element, positions_);
   const double size = F.norm();  // C_D

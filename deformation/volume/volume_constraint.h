@@ -12,24 +12,9 @@
 // which is the form used here, because contacts enter it as further impulses on v̂.
 #pragma once
 
-#include <vector>
-
-#include "modules/core/types.h"
+#include "deformation/model/volume_gradient.h"
 
 namespace palpate::deformation {
-
-struct OrganModel;
-
-struct VolumeGradient {
-  double volume = 0;           ///< V [m³]
-  std::vector<Vec3> gradient;  ///< g_i = ∂V/∂x_i [m²]  (surface_node_count)
-  double denominator = 0;      ///< gᵀM⁻¹g [m⁴/kg]
-};
-
-/// V, g and gᵀM⁻¹g at these positions, taken about a node of the surface so that an organ far from
-/// the origin keeps its digits.
-void evaluate_volume(const OrganModel& model, const std::vector<Vec3>& positions,
-                     VolumeGradient& out);
 
 /// Below this fraction of its rest value gᵀM⁻¹g is taken as vanished (a surface flattened or held
 /// all over): no multiplier can change the volume, and the step goes on without one.

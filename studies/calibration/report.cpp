@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <ostream>
 
-#include "deformation/springs/spring_network.h"
+#include "deformation/model/spring_network.h"
 
 namespace palpate::calibration {
 namespace {

@@ -67,7 +67,7 @@ double equatorial_radius(const Stage& stage) {
 double ellipsoid(const deformation::OrganModel& model, const deformation::OrganState& state) {
   double sum = 0, norm = 0;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    const Vec3& x = model.network.rest_positions[i];
+    const Vec3& x = model.rest_positions[i];
     const Vec3 mode(-x.x(), -x.y(), 2 * x.z());
     sum += model.masses[i] * mode.dot(state.positions[i] - x);
     norm += model.masses[i] * mode.squaredNorm();

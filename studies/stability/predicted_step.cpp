@@ -32,14 +32,14 @@ class Operator {
   /// out = (a K + b C) v
   void apply(const Vectors& v, double a, double b, Vectors& out) const {
     out.assign(v.size(), Vec3::Zero());
-    const auto& springs = model_.network.springs;
+    const auto& springs = model_.network().springs;
     for (std::size_t s = 0; s < springs.size(); ++s) {
       const auto& spring = springs[s];
       const Vec3 along = positions_[spring.node_b] - positions_[spring.node_a];
       const double length = along.norm();
       const Vec3 u = along / length, change = v[spring.node_b] - v[spring.node_a];
       const double tension = a * spring.stiffness * (1 - spring.rest_length / length);
-      const double axial = a * spring.stiffness + b * model_.spring_damping[s] - tension;
+      const double axial = a * spring.stiffness + b * model_.network().damping[s] - tension;
       const Vec3 force = axial * u.dot(change) * u + tension * change;
       out[spring.node_a] -= force;
       out[spring.node_b] += force;

@@ -27,8 +27,8 @@ double random_share(std::mt19937& random) { return random() / double(random.max(
 /// The rotation that fits the surface's rest positions to `x` best (Kabsch); none if x is no
 /// number.
 Mat3 best_rotation(const OrganModel& model, const std::vector<Vec3>& x) {
-  const auto& rest = model.network.rest_positions;
-  const std::size_t count = model.surface_node_count();
+  const auto& rest = model.rest_positions;
+  const std::size_t count = model.surface_node_count;
   Vec3 rest_mean = Vec3::Zero(), mean = Vec3::Zero();
   for (std::size_t i = 0; i < count; ++i) {
     rest_mean += rest[i] / static_cast<double>(count);
@@ -101,7 +101,7 @@ Swing swing_of(const Subject& subject, double youngs_modulus, Specimen& specimen
 }  // namespace
 
 void Touch::step(std::span<const Obstacle> obstacles, double h, Specimen& specimen) {
-  const std::size_t nodes = specimen.model().surface_node_count();
+  const std::size_t nodes = specimen.model().surface_node_count;
   impulses_.resize(obstacles.size() * nodes, 0);
   rows_.clear();
   slots_.clear();
@@ -162,12 +162,12 @@ bool Watch::see(Specimen& specimen) {
 }
 
 double inverted_share(const OrganModel& model, const std::vector<Vec3>& x) {
-  if (!model.solid.tetrahedra.empty()) {
-    return double(deformation::inverted_tetrahedra(model, x)) /
-           double(model.solid.tetrahedra.size());
+  if (model.is_solid()) {
+    return double(deformation::inverted_tetrahedra(model.mesh(), x)) /
+           double(model.mesh().tetrahedra.size());
   }
   const Mat3 rotation = best_rotation(model, x);
-  const auto& rest = model.network.rest_positions;
+  const auto& rest = model.rest_positions;
   std::size_t turned = 0;
   for (const auto& [a, b, c] : model.triangles) {
     const Vec3 now = (x[b] - x[a]).cross(x[c] - x[a]);

@@ -106,11 +106,11 @@ TEST_CASE("simulated organ: a volume far from its target comes back at the scene
 std::vector<ContactRow> shell_rows(const SimulatedOrgan& organ, double shrunk, double h,
                                    double speed) {
   std::vector<ContactRow> rows;
-  for (std::uint32_t i = 0; i < organ.model().surface_node_count(); ++i) {
+  for (std::uint32_t i = 0; i < organ.model().surface_node_count; ++i) {
     ContactRow row;
     row.nodes = {i, i, i};
     row.weights = Vec3(1, 0, 0);
-    row.normal = organ.model().network.rest_positions[i].normalized();
+    row.normal = organ.model().rest_positions[i].normalized();
     row.probe_velocity = -speed * row.normal;
     row.gap = testing::kBallRadius * (1 - shrunk) + speed * h -
               row.normal.dot(organ.state().positions[i]);
@@ -151,7 +151,7 @@ TEST_CASE(
   const auto model =
       testing::ball_model(2, testing::undamped_ball_with(scene::Model::kImplicitVolume));
   VolumeGradient volume;
-  evaluate_volume(model, model.network.rest_positions, volume);
+  evaluate_volume(model, model.rest_positions, volume);
   const auto outward = [&](OrganDynamics& dynamics, double target) {
     OrganState state = rest_state(model);
     state.pressure_limit = limit;
@@ -159,7 +159,7 @@ TEST_CASE(
     CHECK(dynamics.step(h, {}, state).pressure_capped == (target != 1));
     if (target != 1) CHECK(state.pressure == Approx(std::copysign(limit, target - 1)));
     double momentum = 0, expected = 0;
-    for (std::size_t i = 0; i < model.surface_node_count(); ++i) {
+    for (std::size_t i = 0; i < model.surface_node_count; ++i) {
       momentum += model.masses[i] * state.velocities[i].dot(volume.gradient[i].normalized());
       expected += limit * h * volume.gradient[i].norm();
     }
@@ -188,7 +188,7 @@ TEST_CASE("simulated organ: a state put back inside a probe is pushed out gently
     }
     ContactRow row;
     row.weights = Vec3(1, 0, 0);
-    row.normal = organ.model().network.rest_positions[0].normalized();
+    row.normal = organ.model().rest_positions[0].normalized();
     row.gap = -0.01;
     const Vec3 before = organ.state().positions[0];
     const double h = kPeriod / organ.substeps(kPeriod);

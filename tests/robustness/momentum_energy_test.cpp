@@ -46,10 +46,11 @@ struct Sums {
 /// M v of each node [kg m/s]. Quadratic models move by the mass of their elements, not by lumps.
 std::vector<Vec3> momenta(const Moving& m) {
   std::vector<Vec3> momenta(m.model.node_count(), Vec3::Zero());
-  for (std::size_t i = 0; m.model.solid.edge_nodes.empty() && i < momenta.size(); ++i) {
+  const bool lumped = !m.model.is_solid() || m.model.mesh().edge_nodes.empty();
+  for (std::size_t i = 0; lumped && i < momenta.size(); ++i) {
     momenta[i] = m.model.masses[i] * m.state.velocities[i];
   }
-  if (m.model.solid.edge_nodes.empty()) return momenta;
+  if (lumped) return momenta;
   const auto solid = quadratic_solid(m.model);
   for (std::size_t e = 0; e < solid.element_count(); ++e) {
     const auto& nodes = solid.mesh().elements[e];

@@ -63,10 +63,10 @@ inline Story run(SimulatedOrgan& organ, double seconds) {
 /// Largest distance of a surface node from where it rests, after the rigid motion that fits best,
 /// over the cube root of the rest volume.
 inline double shape_error(const OrganModel& model, const std::vector<Vec3>& positions) {
-  const auto count = static_cast<Eigen::Index>(model.surface_node_count());
+  const auto count = static_cast<Eigen::Index>(model.surface_node_count);
   Eigen::Matrix3Xd rest(3, count), now(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    rest.col(i) = model.network.rest_positions[static_cast<std::size_t>(i)];
+    rest.col(i) = model.rest_positions[static_cast<std::size_t>(i)];
     now.col(i) = positions[static_cast<std::size_t>(i)];
   }
   const Eigen::Matrix4d fit = Eigen::umeyama(rest, now, false);

@@ -75,8 +75,8 @@ TEST_CASE("parameter insults: half of a ball a million times stiffer than the ot
   OrganModel model = testing::ball_model(2, organ);
   const double soft_bound = stable_step_bound(model);
   std::fill(model.node_stiffness.begin(), model.node_stiffness.end(), 0);
-  for (Spring& spring : model.network.springs) {
-    if (model.network.rest_positions[spring.node_a].z() > 0) spring.stiffness *= 1e6;
+  for (Spring& spring : model.network().springs) {
+    if (model.rest_positions[spring.node_a].z() > 0) spring.stiffness *= 1e6;
     model.node_stiffness[spring.node_a] += spring.stiffness;
     model.node_stiffness[spring.node_b] += spring.stiffness;
   }
@@ -103,7 +103,7 @@ TEST_CASE("parameter insults: spring families a million times apart") {
   scene.springs.inner_ratio = 1e-6;
   auto organ = simulated_ball(2, scene);
   double least = 1e300, most = 0;
-  for (const Spring& spring : organ.model().network.springs) {
+  for (const Spring& spring : organ.model().network().springs) {
     least = std::min(least, spring.stiffness);
     most = std::max(most, spring.stiffness);
   }
@@ -228,7 +228,7 @@ TEST_CASE("parameter insults: an organ of a million springs") {
   // Oracle: invariants of a swing; counts.
   auto scene = ball_with(scene::Integrator::kAutomatic);
   auto organ = simulated_ball(7, scene);
-  CHECK(organ.model().network.springs.size() > 1'000'000);
+  CHECK(organ.model().network().springs.size() > 1'000'000);
   OrganState state = organ.state();
   for (Vec3& p : state.positions) p.z() *= 1.05;
   organ.put(state);

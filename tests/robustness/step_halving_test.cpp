@@ -110,7 +110,7 @@ std::vector<Vec3> press(OrganDynamics& dynamics, const OrganModel& model, int st
     const double height = state.positions[i].z() / testing::kBallRadius + 1;
     state.velocities[i].z() = -kSpeed * height / 2;
   }
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
     if (state.positions[i].z() < testing::kBallRadius - 1e-9) continue;
     ContactRow& row = rows.emplace_back();
     row.nodes = {i, i, i};

@@ -33,10 +33,10 @@ constexpr std::size_t kForces = 3 * kernel::kLanes;
 /// Floats are taken from a point amid the organ: the mean of some nodes spread over it.
 Vec3 packing_origin(const OrganModel& model, const std::vector<Vec3>& positions) {
   constexpr std::size_t kSamples = 16;
-  const std::size_t stride = model.surface_node_count() / kSamples + 1;
+  const std::size_t stride = model.surface_node_count / kSamples + 1;
   Vec3 sum = Vec3::Zero();
   double count = 0;
-  for (std::size_t i = 0; i < model.surface_node_count(); i += stride, ++count) {
+  for (std::size_t i = 0; i < model.surface_node_count; i += stride, ++count) {
     sum += positions[i];
   }
   return sum / count;
@@ -100,7 +100,7 @@ void SpringKernel::pack(const std::vector<Vec3>& positions, const std::vector<Ve
 /// The kernel reads nodes four doubles at a time. Virtual nodes follow the surface nodes in memory;
 /// without any, a copy has one more node behind it.
 const double* SpringKernel::readable_beyond(const std::vector<Vec3>& positions) {
-  if (positions.size() > model_.surface_node_count()) return coordinates(positions);
+  if (positions.size() > model_.surface_node_count) return coordinates(positions);
   padded_positions_ = positions;
   padded_positions_.push_back(Vec3::Zero());
   return coordinates(padded_positions_);
@@ -109,8 +109,8 @@ const double* SpringKernel::readable_beyond(const std::vector<Vec3>& positions) 
 kernel::Step SpringKernel::make_step(double h, const std::vector<Vec3>& positions,
                                      const std::vector<Vec3>& velocities, FreeStep& out) {
   out.velocities.resize(model_.node_count());
-  if (out.volume.gradient.size() != model_.surface_node_count()) {
-    out.volume.gradient.assign(model_.surface_node_count(), Vec3::Zero());
+  if (out.volume.gradient.size() != model_.surface_node_count) {
+    out.volume.gradient.assign(model_.surface_node_count, Vec3::Zero());
   }
   kernel::Step step;
   step.h = h;
@@ -161,7 +161,7 @@ void SpringKernel::sum_chunks(FreeStep& out) const {
 }
 
 void SpringKernel::finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const {
-  const std::size_t surface_count = model_.surface_node_count();
+  const std::size_t surface_count = model_.surface_node_count;
   const std::size_t virtual_count = model_.node_count() - surface_count;
   for (std::size_t k = 0; k < virtual_count; ++k) {
     std::array<double, kForces> lanes{};

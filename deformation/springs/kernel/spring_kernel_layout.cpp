@@ -21,11 +21,11 @@ struct Alike {
 
 Alike common_values(const OrganModel& model, std::size_t first, std::size_t count) {
   if (count == 0) return {};
-  const double stiffness = model.network.springs[first].stiffness;
-  const double damping = model.spring_damping[first];
+  const double stiffness = model.network().springs[first].stiffness;
+  const double damping = model.network().damping[first];
   for (std::size_t s = first; s < first + count; ++s) {
-    PALPATE_DEMAND(model.network.springs[s].stiffness == stiffness);
-    PALPATE_DEMAND(model.spring_damping[s] == damping);
+    PALPATE_DEMAND(model.network().springs[s].stiffness == stiffness);
+    PALPATE_DEMAND(model.network().damping[s] == damping);
   }
   return {stiffness, damping / stiffness};
 }
@@ -38,9 +38,9 @@ std::uint32_t packed_offset(std::size_t node) {
 
 SpringKernelLayout::Rows SpringKernelLayout::rows_of(const OrganModel& model, std::size_t first,
                                                      std::size_t count) {
-  Rows rows(model.surface_node_count());
+  Rows rows(model.surface_node_count);
   for (std::size_t s = first; s < first + count; ++s) {
-    const Spring& spring = model.network.springs[s];
+    const Spring& spring = model.network().springs[s];
     rows[spring.node_a].push_back({spring.node_b, spring.rest_length});
     rows[spring.node_b].push_back({spring.node_a, spring.rest_length});
   }
@@ -62,7 +62,7 @@ void SpringKernelLayout::put_in_order(const std::vector<std::vector<std::uint32_
 }
 
 SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
-  const std::size_t node_count = model.surface_node_count();
+  const std::size_t node_count = model.surface_node_count;
   scalars_.surface_node_count = node_count;
   scalars_.virtual_node_count = model.node_count() - node_count;
   scalars_.slice_count = (node_count + kernel::kLanes - 1) / kernel::kLanes;
@@ -71,7 +71,7 @@ SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
   scalars_.chunk_count =
       (scalars_.slice_count + scalars_.slices_per_chunk - 1) / scalars_.slices_per_chunk;
 
-  const auto& network = model.network;
+  const auto& network = model.network();
   const Alike structural = common_values(model, 0, network.structural_count);
   const Alike bending = common_values(model, network.structural_count, network.bending_count);
   scalars_.structural_stiffness = static_cast<float>(structural.stiffness);
@@ -193,17 +193,17 @@ void SpringKernelLayout::add_inner_springs(const OrganModel& model) {
   inner_rest_lengths_.assign(rows, 0);
   inner_stiffnesses_.assign(rows, 0);
   inner_dampings_.assign(rows, 0);
-  const auto& network = model.network;
+  const auto& network = model.network();
   for (std::size_t s = network.springs.size() - network.inner_count; s < network.springs.size();
        ++s) {
     const Spring& spring = network.springs[s];
     const std::size_t row = spring.node_a;
-    PALPATE_DEMAND(row < network.surface_node_count && spring.node_b >= network.surface_node_count);
+    PALPATE_DEMAND(row < model.surface_node_count && spring.node_b >= model.surface_node_count);
     PALPATE_DEMAND(inner_stiffnesses_[row] == 0);  // one per node
     inner_nodes_[row] = packed_offset(spring.node_b);
     inner_rest_lengths_[row] = static_cast<float>(spring.rest_length);
     inner_stiffnesses_[row] = static_cast<float>(spring.stiffness);
-    inner_dampings_[row] = static_cast<float>(model.spring_damping[s]);
+    inner_dampings_[row] = static_cast<float>(model.network().damping[s]);
   }
   for (std::size_t slice = 0; slice < slices_.size(); ++slice) add_links(slice);
 }

@@ -24,7 +24,7 @@ Eigen::Map<Vec3> place(AlignedVector<double>& nodes, std::size_t node) {
 
 /// Springs still to visit, from the first node on.
 std::vector<std::size_t> from_node_to_node(const OrganModel& model) {
-  const auto& springs = model.network.springs;
+  const auto& springs = model.network().springs;
   std::vector<std::size_t> order;
   for (std::size_t s = 0; s < springs.size(); ++s) {
     const bool moves =
@@ -40,7 +40,7 @@ std::vector<std::size_t> from_node_to_node(const OrganModel& model) {
 class Chooser {
  public:
   explicit Chooser(const OrganModel& model)
-      : springs_(model.network.springs),
+      : springs_(model.network().springs),
         order_(from_node_to_node(model)),
         last_batch_(model.node_count(), -2) {}
 
@@ -102,12 +102,12 @@ void SpringVisits::add_batches(const OrganModel& model) {
     std::ranges::fill(batch.flexibilities, 1.0);
     std::size_t lane = 0;
     for (const std::size_t s : chooser.next_batch()) {
-      const Spring& spring = model.network.springs[s];
+      const Spring& spring = model.network().springs[s];
       batch.nodes_a[lane] = offset(spring.node_a);
       batch.nodes_b[lane] = offset(spring.node_b);
       batch.rest_lengths[lane] = spring.rest_length;
       batch.flexibilities[lane] = 1 / spring.stiffness;
-      batch.damping_times[lane] = model.spring_damping[s] / spring.stiffness;
+      batch.damping_times[lane] = model.network().damping[s] / spring.stiffness;
       ++lane;
     }
     batches_.push_back(batch);

@@ -6,10 +6,10 @@
 namespace palpate::deformation {
 
 BourguignonCani::BourguignonCani(const OrganModel& model) : model_(model), kernel_(model) {
-  const auto& areas = model.network.node_areas;
+  const auto& areas = model.network().node_areas;
   rest_area_ = std::accumulate(areas.begin(), areas.end(), 0.0);
   for (const double area : areas) shares_.push_back(area / rest_area_);
-  rest_distance_ = evaluate(model.network.rest_positions);
+  rest_distance_ = evaluate(model.rest_positions);
   stiffness_ = 3 * kModulus * rest_area_ / rest_distance_;
   // The Hessian at rest is k u uᵀ: of rank one.
   double squared = 0;

@@ -10,7 +10,7 @@ ElementVolume::ElementVolume(const OrganModel& model)
       kernel_(model) {
   for (const Pyramid& pyramid : pyramids_) {
     mean_denominator_ +=
-        inverse_mass_along(pyramid, evaluate_pyramid(pyramid, model.network.rest_positions));
+        inverse_mass_along(pyramid, evaluate_pyramid(pyramid, model.rest_positions));
   }
   mean_denominator_ /= static_cast<double>(pyramids_.size());
 }

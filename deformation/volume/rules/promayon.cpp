@@ -15,7 +15,7 @@ StepReport Promayon::step(double h, std::span<ContactRow> rows, OrganState& stat
 
   // 2. constraint: along d = M⁻¹g(x̂), as far as V* asks
   evaluate_volume(model_, state.positions, end_);
-  directions_.assign(model_.surface_node_count(), Vec3::Zero());
+  directions_.assign(model_.surface_node_count, Vec3::Zero());
   add_along_gradient(model_, end_.gradient, 1, directions_);
   auto cubic = volume_along_line(model_.triangles, state.positions, directions_);
   cubic[0] -= state.target_volume;

@@ -9,11 +9,12 @@ namespace {
 
 /// The one nearest to the centre of the surface at rest.
 std::uint32_t central_virtual_node(const OrganModel& model) {
-  const auto& nodes = model.network.rest_positions;
-  const auto count = static_cast<std::uint32_t>(model.surface_node_count());
+  const auto& nodes = model.rest_positions;
+  const auto count = static_cast<std::uint32_t>(model.surface_node_count);
   Vec3 centre = Vec3::Zero();
-  for (std::uint32_t i = 0; i < count; ++i) centre += nodes[i] * model.network.node_areas[i];
-  centre /= std::accumulate(model.network.node_areas.begin(), model.network.node_areas.end(), 0.0);
+  for (std::uint32_t i = 0; i < count; ++i) centre += nodes[i] * model.network().node_areas[i];
+  centre /=
+      std::accumulate(model.network().node_areas.begin(), model.network().node_areas.end(), 0.0);
   std::uint32_t nearest = count;
   for (std::uint32_t v = count; v < nodes.size(); ++v) {
     if ((nodes[v] - centre).norm() < (nodes[nearest] - centre).norm()) nearest = v;
@@ -24,8 +25,8 @@ std::uint32_t central_virtual_node(const OrganModel& model) {
 }  // namespace
 
 std::vector<Pyramid> build_pyramids(const OrganModel& model) {
-  PALPATE_DEMAND(model.node_count() > model.surface_node_count());
-  const auto& nodes = model.network.rest_positions;
+  PALPATE_DEMAND(model.node_count() > model.surface_node_count);
+  const auto& nodes = model.rest_positions;
   const std::uint32_t apex = central_virtual_node(model);
   std::vector<Pyramid> pyramids;
   double area = 0;

@@ -17,7 +17,7 @@ double Zordan::squared_frequency_bound() const {
   // Row i of M⁻¹ Σ_t k_t g_t g_tᵀ, block norms: Σ_t k_t ‖g_ti‖ Σ_j ‖g_tj‖ / m_i.
   std::vector<double> rows(model_.node_count(), 0);
   for (const Pyramid& pyramid : pyramids_) {
-    const auto at_rest = evaluate_pyramid(pyramid, model_.network.rest_positions);
+    const auto at_rest = evaluate_pyramid(pyramid, model_.rest_positions);
     double sum = 0;
     for (const Vec3& g : at_rest.gradient) sum += g.norm();
     for (std::size_t k = 0; k < 4; ++k) {

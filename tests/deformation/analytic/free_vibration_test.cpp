@@ -28,7 +28,7 @@ struct Tetrahedron {
     organ.model = scene::Model::kMassSpring;
     organ.springs.inner_ratio = organ.springs.bending_ratio = 0;
     model = build_organ_model(organ, Vec3::Zero(), geometry::make_tetrahedron(0.05));
-    frequency = std::sqrt(4 * model.network.springs[0].stiffness / model.masses[0]);
+    frequency = std::sqrt(4 * model.network().springs[0].stiffness / model.masses[0]);
   }
 
   /// √(a² + (ȧ/ω)²) of its breath after `steps`, over what it was.
@@ -39,7 +39,7 @@ struct Tetrahedron {
     for (std::size_t i = 0; i < 4; ++i)
       state.velocities[i] = speed * state.positions[i].normalized();
     for (int s = 0; s < steps; ++s) dynamics.step(h, {}, state);
-    const double displacement = outward.dot(state.positions[0] - model.network.rest_positions[0]);
+    const double displacement = outward.dot(state.positions[0] - model.rest_positions[0]);
     return std::hypot(displacement, outward.dot(state.velocities[0]) / frequency) / kAmplitude;
   }
 };
@@ -75,7 +75,7 @@ std::vector<double> swing(OrganDynamics& dynamics, const OrganModel& model, doub
                           double duration) {
   auto state = rest_state(model);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    const Vec3& p = model.network.rest_positions[i];
+    const Vec3& p = model.rest_positions[i];
     state.velocities[i] = 0.1 * Vec3(-0.5 * p.x(), -0.5 * p.y(), p.z());
   }
   const auto moment = [&](const std::vector<Vec3>& positions) {

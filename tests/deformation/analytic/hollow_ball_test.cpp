@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "deformation/springs/spring_network.h"
+#include "deformation/model/spring_network.h"
 #include "studies/calibration/calibration.h"
 
 namespace palpate::calibration {

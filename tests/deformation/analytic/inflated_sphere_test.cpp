@@ -35,7 +35,7 @@ void inflate(const OrganModel& model, double volume_ratio, OrganDynamics& dynami
 /// T = √3 k (l − l₀)/l, so p = 2 √3 k (1 − 1/L)/(r₀ L) with the stretch L. Its limit point is L
 /// = 2.
 double laplace_pressure(const OrganModel& model, double stretch) {
-  const double k = model.network.springs[0].stiffness;
+  const double k = model.network().springs[0].stiffness;
   return 2 * std::sqrt(3.0) * k * (1 - 1 / stretch) / (testing::kBallRadius * stretch);
 }
 

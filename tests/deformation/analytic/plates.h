@@ -14,7 +14,7 @@ namespace palpate::deformation::testing {
 class Plates {
  public:
   Plates(const OrganModel& model, double height) : model_(model), height_(height) {
-    impulses_.resize(2 * model.surface_node_count(), 0);
+    impulses_.resize(2 * model.surface_node_count, 0);
   }
 
   double height() const { return height_; }
@@ -25,7 +25,7 @@ class Plates {
     VolumeGradient volume;
     evaluate_volume(model_, state.positions, volume);
     double area = 0;
-    for (std::size_t i = 0; i < model_.surface_node_count(); ++i) {
+    for (std::size_t i = 0; i < model_.surface_node_count; ++i) {
       if (impulses_[2 * i] > 0) area += volume.gradient[i].z();
     }
     return area;
@@ -35,7 +35,7 @@ class Plates {
     rows_.clear();
     slots_.clear();
     for (const int side : {1, -1}) {
-      for (std::uint32_t i = 0; i < model_.surface_node_count(); ++i) {
+      for (std::uint32_t i = 0; i < model_.surface_node_count; ++i) {
         const double gap = height_ - side * state.positions[i].z();
         if (gap < 0.1 * height_) add_row(i, side, gap, (new_height - height_) / h);
       }

@@ -23,7 +23,7 @@ struct Fixture {
   Vec3 random_vector() { return {uniform(random), uniform(random), uniform(random)}; }
 
   Fixture() {
-    evaluate_volume(model, model.network.rest_positions, volume);
+    evaluate_volume(model, model.rest_positions, volume);
     for (std::size_t i = 0; i < model.node_count(); ++i) {
       Mat3 factor;
       for (int column = 0; column < 3; ++column) factor.col(column) = random_vector();
@@ -220,7 +220,7 @@ TEST_CASE("constraint projection: contacts that hold every node leave the volume
   projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
   std::vector<Vec4f> z(f.r.size());
   projection.project(f.r, z);
-  for (std::size_t i = 0; i < f.model.surface_node_count(); ++i) CHECK(z[i].norm() < 1e-4f);
+  for (std::size_t i = 0; i < f.model.surface_node_count; ++i) CHECK(z[i].norm() < 1e-4f);
 }
 
 }  // namespace

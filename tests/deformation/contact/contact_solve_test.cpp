@@ -22,7 +22,7 @@ Case random_case(unsigned seed, std::size_t count, double friction) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   const auto any = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
-  evaluate_volume(c.model, c.model.network.rest_positions, c.at);
+  evaluate_volume(c.model, c.model.rest_positions, c.at);
   for (std::size_t i = 0; i < c.model.node_count(); ++i) c.free_velocities.push_back(0.05 * any());
   std::uniform_int_distribution<std::size_t> pick(0, c.model.triangles.size() - 1);
   while (c.rows.size() < count) {
@@ -31,7 +31,7 @@ Case random_case(unsigned seed, std::size_t count, double friction) {
     row.nodes = triangle;
     const Vec3 weights = any().cwiseAbs() + Vec3::Constant(0.05);
     row.weights = weights / weights.sum();
-    row.normal = geometry::area_vector(c.model.network.rest_positions, triangle).normalized();
+    row.normal = geometry::area_vector(c.model.rest_positions, triangle).normalized();
     row.gap = 1e-5 * uniform(random);
     row.probe_velocity = -0.1 * row.normal + 0.05 * any();
     row.friction = friction;
@@ -324,13 +324,13 @@ TEST_CASE("contact solve: a contact on fixed nodes leaves everything finite") {
   organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, -0.05), 0.04});
   const auto model = testing::ball_model(1, organ);
   VolumeGradient at;
-  evaluate_volume(model, model.network.rest_positions, at);
+  evaluate_volume(model, model.rest_positions, at);
   std::vector<ContactRow> rows;
   for (const auto& triangle : model.triangles) {
     ContactRow row;
     row.nodes = triangle;
     row.weights = Vec3::Constant(1.0 / 3);
-    row.normal = geometry::area_vector(model.network.rest_positions, triangle).normalized();
+    row.normal = geometry::area_vector(model.rest_positions, triangle).normalized();
     row.probe_velocity = -0.1 * row.normal;
     rows.push_back(row);
   }

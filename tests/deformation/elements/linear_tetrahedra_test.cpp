@@ -13,7 +13,7 @@ TEST_CASE("linear tetrahedra: an affine map has its matrix as deformation gradie
   Mat3 A;
   A << 1.2, 0.3, -0.1, 0, 0.7, 0.2, 0.4, -0.5, -0.9;
   std::vector<Vec3> positions;
-  for (const Vec3& X : model.network.rest_positions) positions.emplace_back(A * X + Vec3(1, 2, 3));
+  for (const Vec3& X : model.rest_positions) positions.emplace_back(A * X + Vec3(1, 2, 3));
   double volume = 0;
   for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
     CHECK((tetrahedra.deformation_gradient(e, positions) - A).norm() < 1e-12);

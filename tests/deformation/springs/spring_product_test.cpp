@@ -20,7 +20,7 @@ constexpr double kStep = 5e-3;  // [s]
 std::vector<Vec3> disturbed(const OrganModel& model, double amplitude) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  auto positions = model.network.rest_positions;
+  auto positions = model.rest_positions;
   for (Vec3& p : positions)
     p += amplitude * Vec3(uniform(random), uniform(random), uniform(random));
   return positions;

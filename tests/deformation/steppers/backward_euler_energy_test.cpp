@@ -16,7 +16,7 @@ using testing::kBallRadius;
 std::vector<ContactRow> rows_of_plates(const OrganModel& model, const OrganState& state,
                                        double height, std::vector<double>& impulses) {
   std::vector<ContactRow> rows;
-  impulses.resize(2 * model.surface_node_count());
+  impulses.resize(2 * model.surface_node_count);
   for (std::uint32_t i = 0; i < impulses.size(); ++i) {
     const auto node = static_cast<std::uint32_t>(i / 2);
     const int side = i % 2 == 0 ? 1 : -1;

@@ -112,7 +112,7 @@ TEST_CASE("backward Euler: a free organ falls by g h² n(n+1)/2, and drag slows 
   for (int s = 0; s < steps; ++s) dynamics.step(kStep, {}, state);
   const Vec3 fall = 0.5 * steps * (steps + 1) * kStep * kStep * gravity;
   for (std::size_t i = 0; i < falling.node_count(); ++i) {
-    CHECK((state.positions[i] - falling.network.rest_positions[i] - fall).norm() < 1e-7);
+    CHECK((state.positions[i] - falling.rest_positions[i] - fall).norm() < 1e-7);
   }
   organ.tissue.drag = 5;
   const auto drifting = testing::ball_model(1, organ);
@@ -139,7 +139,7 @@ TEST_CASE("backward Euler: without forces from outside momentum is kept, however
     return sum;
   };
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    const Vec3& p = model.network.rest_positions[i];
+    const Vec3& p = model.rest_positions[i];
     state.velocities[i] = Vec3(0.1 + p.y(), 3 * p.z(), -p.x());
   }
   const Vec3 before = momentum();
@@ -158,7 +158,7 @@ TEST_CASE("backward Euler: fixed nodes stay, a resting organ stays and costs no 
   for (int s = 0; s < 100; ++s) dynamics.step(kStep, {}, state);
   CHECK(dynamics.iterations_used() == 0);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    CHECK((state.positions[i] - model.network.rest_positions[i]).norm() < 2e-8);
+    CHECK((state.positions[i] - model.rest_positions[i]).norm() < 2e-8);
   }
   // All of them: nothing can move, nor can the volume.
   std::fill(model.inverse_masses.begin(), model.inverse_masses.end(), 0);
@@ -173,11 +173,11 @@ TEST_CASE("backward Euler: fixed nodes stay, a resting organ stays and costs no 
 /// Rows that hold every surface node against planes moving inward at `speed`.
 std::vector<ContactRow> rows_on_all_nodes(const OrganModel& model, double speed, double friction) {
   std::vector<ContactRow> rows;
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
     ContactRow row;
     row.nodes = {i, i, i};
     row.weights = Vec3(1, 0, 0);
-    row.normal = model.network.rest_positions[i].normalized();
+    row.normal = model.rest_positions[i].normalized();
     row.probe_velocity = -speed * row.normal;
     row.friction = friction;
     rows.push_back(row);

@@ -9,8 +9,8 @@ namespace {
 /// Presses the topmost node down to `height` [m] as a fixed probe would.
 std::vector<ContactRow> press_top(const OrganModel& model, const OrganState& state, double height) {
   std::uint32_t top = 0;
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
-    if (model.network.rest_positions[i].z() > model.network.rest_positions[top].z()) top = i;
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
+    if (model.rest_positions[i].z() > model.rest_positions[top].z()) top = i;
   }
   ContactRow row;
   row.nodes = {top, top, top};
@@ -36,7 +36,7 @@ TEST_CASE("ChainMail: an untouched organ stays where it is, to the last bit") {
   ChainMail chain(model);
   OrganState state = rest_state(model);
   for (int s = 0; s < 10; ++s) chain.step(1e-3, {}, state);
-  CHECK(state.positions == model.network.rest_positions);
+  CHECK(state.positions == model.rest_positions);
 }
 
 TEST_CASE("ChainMail: links keep their bounds while a node is pushed in by half the radius") {
@@ -62,7 +62,7 @@ TEST_CASE("ChainMail: a push within the slack of the links moves nothing else in
   chain.step(1e-3, rows, state);
   std::size_t moved = 0;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    moved += state.positions[i] != model.network.rest_positions[i];
+    moved += state.positions[i] != model.rest_positions[i];
   }
   CHECK(moved == 1);
 }
@@ -112,7 +112,7 @@ TEST_CASE("ChainMail: fixed nodes hold the chain") {
     chain.step(1e-3, rows, state);
   }
   for (const auto node : model.fixed_nodes) {
-    CHECK(state.positions[node] == model.network.rest_positions[node]);
+    CHECK(state.positions[node] == model.rest_positions[node]);
   }
 }
 

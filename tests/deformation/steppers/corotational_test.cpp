@@ -47,7 +47,7 @@ TEST_CASE("corotational: the matrix is the forces' derivative at rest, turned or
   // Oracle: finite differences; without strain the turning of R makes no difference. Floats.
   const auto model = cube_model(solid_organ(scene::Model::kCorotational, 0.4), Vec3::Zero(), 2);
   Corotational tissue(model);
-  auto positions = model.network.rest_positions;
+  auto positions = model.rest_positions;
   CHECK(matrix_error(tissue, model, positions, 0.01, 1e-7) < 1e-5);
   const Quat turn(Eigen::AngleAxisd(2, Vec3(1, 2, -1).normalized()));
   for (Vec3& x : positions) x = turn * x;
@@ -60,14 +60,14 @@ TEST_CASE("corotational: a block in uniaxial stretch has the force of linear ela
   const double strain = 0.1;
   const auto model = cube_model(solid_organ(scene::Model::kCorotational, 0.3));
   Corotational tissue(model);
-  auto positions = model.network.rest_positions;
+  auto positions = model.rest_positions;
   for (Vec3& x : positions) {
     x = x.cwiseProduct(Vec3(1 - 0.3 * strain, 1 - 0.3 * strain, 1 + strain));
   }
   tissue.linearise(positions, 0.01);
   double pull = 0, across = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (model.network.rest_positions[i].z() > 0.0599) pull -= tissue.forces()[i].z();
+    if (model.rest_positions[i].z() > 0.0599) pull -= tissue.forces()[i].z();
     across = std::max(across, std::abs(tissue.forces()[i].x()));
   }
   CHECK(pull == Approx(5e3 * 0.06 * 0.06 * strain).epsilon(1e-9));

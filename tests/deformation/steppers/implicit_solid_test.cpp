@@ -26,7 +26,7 @@ Vec3 momentum(const OrganModel& model, const OrganState& state) {
 std::vector<ContactRow> plate(const OrganModel& model, const OrganState& state, double height,
                               double speed, double side) {
   std::vector<ContactRow> rows;
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
     const double gap = side * (height - state.positions[i].z());
     if (gap > 2e-3) continue;
     ContactRow row;
@@ -51,7 +51,7 @@ TEST_CASE("implicit solid: at rest it stays at rest") {
     auto state = rest_state(model);
     for (int k = 0; k < 20; ++k) dynamics->step(0.01, {}, state);
     for (std::size_t i = 0; i < model.node_count(); ++i) {
-      CHECK((state.positions[i] - model.network.rest_positions[i]).norm() < 1e-12);
+      CHECK((state.positions[i] - model.rest_positions[i]).norm() < 1e-12);
     }
     CHECK(std::abs(dynamics->elastic_energy(state)) < 1e-12);
   }
@@ -73,7 +73,7 @@ TEST_CASE("implicit solid: falls freely, slowed by drag") {
       height += 0.01 * speed;
     }
     for (std::size_t i = 0; i < model.node_count(); ++i) {
-      const Vec3 fall = state.positions[i] - model.network.rest_positions[i];
+      const Vec3 fall = state.positions[i] - model.rest_positions[i];
       CHECK((fall - Vec3(0, 0, height)).norm() < 1e-5);
     }
   }
@@ -93,7 +93,7 @@ TEST_CASE("implicit solid: shaken, it keeps its momentum, loses energy, and come
     for (int k = 0; k < 200; ++k) dynamics->step(0.01, {}, state);
     CHECK((momentum(model, state) - before).norm() < 1e-6 * before.norm());
     CHECK(dynamics->elastic_energy(state) < 1e-3 * energy);
-    for (const auto& t : model.solid.tetrahedra) {
+    for (const auto& t : model.mesh().tetrahedra) {
       const auto& x = state.positions;
       CHECK(geometry::tetrahedron_volume(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) > 0);
     }
@@ -118,9 +118,9 @@ TEST_CASE("implicit solid: fixed nodes do not move, and steps are the same every
     CHECK(state.positions == again.positions);
     REQUIRE(model.fixed_nodes.size() == 25);
     for (const auto i : model.fixed_nodes) {
-      CHECK(state.positions[i] == model.network.rest_positions[i]);
+      CHECK(state.positions[i] == model.rest_positions[i]);
     }
-    CHECK(state.positions.back() != model.network.rest_positions.back());
+    CHECK(state.positions.back() != model.rest_positions.back());
   }
 }
 

@@ -67,7 +67,7 @@ TEST_CASE("modal: free fall is exact for any step") {
   for (int k = 0; k < 10; ++k) modal.step(0.01, {}, state);
   const Vec3 fallen = 0.5 * 0.1 * 0.1 * model.gravity;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    const Vec3 moved = state.positions[i] - model.network.rest_positions[i];
+    const Vec3 moved = state.positions[i] - model.rest_positions[i];
     REQUIRE((moved - fallen).norm() < 1e-6 * fallen.norm());
   }
 }
@@ -98,7 +98,7 @@ TEST_CASE("modal: a mode swings and decays as a damped oscillator, whatever the 
         const double left = std::exp(-decay * t) * (c + decay * s);
         double error = 0, size = 0;
         for (std::size_t i = 0; i < model.node_count(); ++i) {
-          const Vec3& x = model.network.rest_positions[i];
+          const Vec3& x = model.rest_positions[i];
           size = std::max(size, (start.positions[i] - x).norm());
           error =
               std::max(error, (state.positions[i] - x - left * (start.positions[i] - x)).norm());
@@ -119,7 +119,7 @@ TEST_CASE("modal: a standing block sags like the elements it comes from") {
     for (int k = 0; k < 200; ++k) dynamics.step(0.01, {}, state);
     Vec3 mean = Vec3::Zero();
     for (std::size_t i = 0; i < model.node_count(); ++i) {
-      mean += state.positions[i] - model.network.rest_positions[i];
+      mean += state.positions[i] - model.rest_positions[i];
     }
     return Vec3(mean / static_cast<double>(model.node_count()));
   };
@@ -155,7 +155,7 @@ TEST_CASE("modal: friction stays within Coulomb's cone and drags the organ along
   double rubbed = 0;
   for (int k = 0; k < 20; ++k) {
     rows.clear();
-    for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
+    for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
       const double gap = state.positions[i].z() + 0.03;
       if (gap > 5e-3) continue;
       ContactRow row{.nodes = {i, i, i}, .weights = Vec3(1, 0, 0), .normal = -Vec3::UnitZ()};

@@ -28,7 +28,7 @@ TEST_CASE("nodal pressure: the matrix is the forces' derivative at rest") {
   // Oracle: finite differences; nothing is limited there but what rounding puts above the limit.
   const auto model = small_cube(0.49);
   NodalPressure tissue(model);
-  CHECK(matrix_error(tissue, model, model.network.rest_positions, 0.01, 1e-6) < 1e-4);
+  CHECK(matrix_error(tissue, model, model.rest_positions, 0.01, 1e-6) < 1e-4);
 }
 
 TEST_CASE("nodal pressure: the matrix stays positive however tetrahedra are deformed") {
@@ -107,13 +107,13 @@ TEST_CASE("nodal pressure: stretched without changing volume it is neo-Hookean t
   const auto model = cube_model(solid_organ(scene::Model::kNodalPressure, 0.5));
   NodalPressure tissue(model);
   const double stretch = 0.7, side = 1 / std::sqrt(stretch), mu = 5e3 / 3, area = 0.06 * 0.06;
-  auto positions = model.network.rest_positions;
+  auto positions = model.rest_positions;
   for (Vec3& x : positions) x = x.cwiseProduct(Vec3(side, side, stretch));
   tissue.linearise(positions, 0.01);
   double along = 0, across = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (model.network.rest_positions[i].z() > 0.0599) along -= tissue.forces()[i].z();
-    if (model.network.rest_positions[i].x() > 0.0599) across -= tissue.forces()[i].x();
+    if (model.rest_positions[i].z() > 0.0599) along -= tissue.forces()[i].z();
+    if (model.rest_positions[i].x() > 0.0599) across -= tissue.forces()[i].x();
   }
   // Cauchy stresses along and across differ by what pressure cannot change.
   const double stress = along / (area * side * side) - across / (area * side * stretch);

@@ -78,8 +78,8 @@ TEST_CASE("quadratic elements: a block between smooth plates is pressed as the f
 std::vector<ContactRow> floor_rows(const OrganModel& model, const OrganState& state, double speed,
                                    double friction) {
   std::vector<ContactRow> rows;
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
-    if (model.network.rest_positions[i].z() > -0.0299) continue;
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
+    if (model.rest_positions[i].z() > -0.0299) continue;
     ContactRow row{.nodes = {i, i, i}, .weights = Vec3(1, 0, 0), .normal = -Vec3::UnitZ()};
     row.gap = state.positions[i].z() + 0.03;
     row.friction = friction;

@@ -53,7 +53,7 @@ inline void check_stays_at_rest(const OrganModel& model, OrganDynamics& dynamics
   for (int k = 0; k < 20; ++k) dynamics.step(dynamics.largest_step(), {}, state);
   double moved = 0;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    moved = std::max(moved, (state.positions[i] - model.network.rest_positions[i]).norm());
+    moved = std::max(moved, (state.positions[i] - model.rest_positions[i]).norm());
   }
   CHECK(moved <= tolerance);
 }
@@ -70,7 +70,7 @@ inline void check_free_fall(const OrganModel& model, OrganDynamics& dynamics) {
   }
   double error = 0;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    error = std::max(error, (state.positions[i] - model.network.rest_positions[i] - fallen).norm());
+    error = std::max(error, (state.positions[i] - model.rest_positions[i] - fallen).norm());
   }
   CHECK(error < 1e-7 * fallen.norm());
 }
@@ -80,11 +80,11 @@ inline double rest_error(const OrganModel& model, const OrganState& state) {
   Vec3 middle = Vec3::Zero(), rest_middle = Vec3::Zero();
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     middle += state.positions[i] / static_cast<double>(model.node_count());
-    rest_middle += model.network.rest_positions[i] / static_cast<double>(model.node_count());
+    rest_middle += model.rest_positions[i] / static_cast<double>(model.node_count());
   }
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     worst = std::max(worst, std::abs((state.positions[i] - middle).norm() -
-                                     (model.network.rest_positions[i] - rest_middle).norm()));
+                                     (model.rest_positions[i] - rest_middle).norm()));
   }
   return worst;
 }
@@ -98,7 +98,7 @@ class Squeeze {
   void step(double h, double speed, double friction = 0) {
     const double margin = std::max(5e-3, 3 * speed * h);
     rows_.clear();
-    for (std::uint32_t i = 0; i < model_.surface_node_count(); ++i) {
+    for (std::uint32_t i = 0; i < model_.surface_node_count; ++i) {
       for (const int side : {1, -1}) {
         const double gap = height_ - side * state_.positions[i].z();
         if (gap > margin) continue;
@@ -135,7 +135,7 @@ class Squeeze {
   }
   double equatorial_radius() const {
     double radius = 0;
-    for (std::size_t i = 0; i < model_.surface_node_count(); ++i) {
+    for (std::size_t i = 0; i < model_.surface_node_count; ++i) {
       radius = std::max(radius, state_.positions[i].head<2>().norm());
     }
     return radius;
@@ -145,7 +145,7 @@ class Squeeze {
   bool failed() const { return failed_; }
   double deepest() const {
     double deepest = 0;
-    for (std::size_t i = 0; i < model_.surface_node_count(); ++i) {
+    for (std::size_t i = 0; i < model_.surface_node_count; ++i) {
       deepest = std::max(deepest, std::abs(state_.positions[i].z()) - height_);
     }
     return deepest;

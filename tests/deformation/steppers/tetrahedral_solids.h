@@ -32,7 +32,7 @@ inline OrganModel cube_model(const scene::Organ& organ, const Vec3& gravity = Ve
 inline std::vector<Vec3> shaken(const OrganModel& model, double by) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);
-  std::vector<Vec3> positions = model.network.rest_positions;
+  std::vector<Vec3> positions = model.rest_positions;
   for (Vec3& x : positions) x += by * Vec3(any(random), any(random), any(random));
   return positions;
 }

@@ -19,17 +19,17 @@ scene::Organ spring_ball(double drag) {
 /// Springs one after another on a tetrahedron, whose other nodes are held; the volume is not kept.
 OrganModel model_of_springs(const std::vector<double>& masses, std::vector<Spring> springs) {
   OrganModel model;
-  model.network.surface_node_count = 4;
-  model.network.structural_count = 1;
-  model.network.bending_count = springs.size() - 1;
+  model.surface_node_count = 4;
+  model.network().structural_count = 1;
+  model.network().bending_count = springs.size() - 1;
   for (std::size_t i = 0; i < 4; ++i) {
-    model.network.rest_positions.emplace_back(0.01 * static_cast<double>(i), 0, 0);
+    model.rest_positions.emplace_back(0.01 * static_cast<double>(i), 0, 0);
     model.masses.push_back(i < masses.size() ? masses[i] : 1);
     model.inverse_masses.push_back(i < masses.size() ? 1 / masses[i] : 0);
   }
   model.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
-  model.spring_damping.assign(springs.size(), 0);
-  model.network.springs = std::move(springs);
+  model.network().damping.assign(springs.size(), 0);
+  model.network().springs = std::move(springs);
   model.preserve_volume = false;
   return model;
 }
@@ -37,7 +37,7 @@ OrganModel model_of_springs(const std::vector<double>& masses, std::vector<Sprin
 TEST_CASE("XPBD springs: alone, a damped spring is stepped by backward Euler exactly") {
   // Oracle: analytic. L⁺ (1 + h²kw + hcw) = L + hL' + hcw L, L the stretch, w = 1/m_a + 1/m_b.
   OrganModel model = model_of_springs({0.002, 0.003}, {{0, 1, 0.01, 400}});
-  model.spring_damping = {0.05};
+  model.network().damping = {0.05};
   XpbdSprings xpbd(model);
   OrganState state = rest_state(model);
   state.positions[1].x() += 2e-3;

@@ -83,7 +83,7 @@ TEST_CASE("predicted step: agrees with all eigenvalues of the springs' forces by
   const bool deformed = GENERATE(false, true), damped = GENERATE(false, true),
              kept = GENERATE(false, true);
   const OrganModel model = small_ball(damped ? 0.2 : 0, damped ? 10 : 0);
-  auto positions = model.network.rest_positions;
+  auto positions = model.rest_positions;
   if (deformed) {
     for (Vec3& p : positions) p = Vec3(1.3 * p.x() + 0.1 * p.y(), 1.1 * p.y(), 0.7 * p.z());
   }
@@ -104,7 +104,7 @@ TEST_CASE("predicted step: stiff contents shorten it, Gershgorin's bound is on t
   // Oracle: analytic. A pressure alone has the one squared frequency s gᵀM⁻¹g; with the springs the
   // two add up at most. Gershgorin's circles hold every eigenvalue.
   const OrganModel model = small_ball(0, 0);
-  const auto& rest = model.network.rest_positions;
+  const auto& rest = model.rest_positions;
   const double springs = predicted_step(model, rest, {});
   CHECK(springs > deformation::stable_step_bound(model));
   const double stiffness = 1e9 / model.rest_volume;

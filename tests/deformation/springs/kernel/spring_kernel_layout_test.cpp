@@ -39,7 +39,7 @@ TEST_CASE("spring kernel layout: holds every spring of the network once from eac
   const auto model = testing::ball_model(GENERATE(1, 2));
   const SpringKernelLayout layout(model);
   const auto found = half_springs(layout.view());
-  const auto& network = model.network;
+  const auto& network = model.network();
   const std::size_t surface_springs = network.structural_count + network.bending_count;
   CHECK(found.size() == 2 * surface_springs);
   for (std::size_t s = 0; s < surface_springs; ++s) {
@@ -145,7 +145,7 @@ TEST_CASE("spring kernel layout: links name each row's virtual node once") {
   const auto model = testing::ball_model(2);
   const SpringKernelLayout layout(model);
   const auto view = layout.view();
-  const auto& network = model.network;
+  const auto& network = model.network();
   for (std::size_t i = 0; i < network.inner_count; ++i) {
     const Spring& spring = network.springs[network.springs.size() - network.inner_count + i];
     const kernel::Slice& slice = view.slices[spring.node_a / kernel::kLanes];

@@ -36,12 +36,12 @@ TEST_CASE("spring visits: every spring that can move a node once, four at a time
   for_springs(visits, model.node_count(), [&](const auto&, std::size_t, auto a, auto b) {
     visited.insert({a, b});
   });
-  for (const Spring& spring : model.network.springs) {
+  for (const Spring& spring : model.network().springs) {
     if (model.inverse_masses[spring.node_a] + model.inverse_masses[spring.node_b] > 0) {
       wanted.insert({spring.node_a, spring.node_b});
     }
   }
-  CHECK(wanted.size() < model.network.springs.size());
+  CHECK(wanted.size() < model.network().springs.size());
   CHECK(visited == wanted);
   for (const auto& batch : visits.batches()) {
     std::multiset<std::uint32_t> nodes(std::begin(batch.nodes_a), std::end(batch.nodes_a));
@@ -116,12 +116,12 @@ TEST_CASE("spring visits: the plain formula to rounding, the same bits by every 
 TEST_CASE("spring visits: a spring without length pulls at nothing") {
   // Oracle: the formula's limit; and that nothing is divided by zero.
   OrganModel model;
-  model.network.rest_positions = {Vec3::Zero(), Vec3(0.01, 0, 0)};
-  model.network.surface_node_count = 2;
-  model.network.springs = {{0, 1, 0.01, 400}};
+  model.rest_positions = {Vec3::Zero(), Vec3(0.01, 0, 0)};
+  model.surface_node_count = 2;
+  model.network().springs = {{0, 1, 0.01, 400}};
   model.masses = {0.002, 0.003};
   model.inverse_masses = {500, 1 / 0.003};
-  model.spring_damping = {0.05};
+  model.network().damping = {0.05};
   const std::vector<Vec3> together(2, Vec3(0.02, 0.01, 0));
   for (const InstructionSet set : available_instruction_sets()) {
     std::vector<Vec3> positions, velocities(2, Vec3::Zero());

@@ -85,7 +85,7 @@ TEST_CASE("neighbours: fixed nodes never move") {
     OrganState state = testing::shaken_state(model, 1e-3, 0.1);
     for (int s = 0; s < 50; ++s) dynamics->step(kStep, {}, state);
     for (const auto node : model.fixed_nodes) {
-      CHECK(state.positions[node] == model.network.rest_positions[node]);
+      CHECK(state.positions[node] == model.rest_positions[node]);
     }
   }
 }

@@ -43,10 +43,10 @@ struct Spring {
 };
 
 struct SpringNetwork {
-  std::size_t surface_node_count = 0;
-  std::vector<Vec3> rest_positions;  ///< surface nodes, then virtual nodes [m]
-  std::vector<double> node_areas;    ///< a third of the adjacent triangles' areas [m²], surface
-  std::vector<Spring> springs;       ///< by family: structural, bending, inner
+  std::vector<Vec3> virtual_nodes;  ///< at rest [m]; numbered after the surface nodes
+  std::vector<double> node_areas;   ///< a third of the adjacent triangles' areas [m²], surface
+  std::vector<Spring> springs;      ///< by family: structural, bending, inner
+  std::vector<double> damping;      ///< axial, per spring [N·s/m]; by build_spring_organ()
   std::size_t structural_count = 0, bending_count = 0, inner_count = 0;
 
   SpringFamily family(std::size_t spring) const;

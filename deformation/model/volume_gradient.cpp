@@ -1,15 +1,12 @@
-#include "deformation/volume/volume_constraint.h"
-
-#include "deformation/model/organ_model.h"
+#include "deformation/model/volume_gradient.h"
 
 namespace palpate::deformation {
 
-void evaluate_volume(const OrganModel& model, const std::vector<Vec3>& positions,
-                     VolumeGradient& out) {
+void evaluate_volume(const Body& body, const std::vector<Vec3>& positions, VolumeGradient& out) {
   const Vec3& origin = positions[0];
   double six_volumes = 0;
-  out.gradient.assign(model.surface_node_count(), Vec3::Zero());
-  for (const auto& [i, j, k] : model.triangles) {
+  out.gradient.assign(body.surface_node_count, Vec3::Zero());
+  for (const auto& [i, j, k] : body.triangles) {
     // Twice the area vector goes to each corner: around a node of a closed surface, these sum to
     // the same as the products of its neighbours' positions.
     const Vec3 &a = positions[i], normal = (positions[j] - a).cross(positions[k] - a);
@@ -22,7 +19,7 @@ void evaluate_volume(const OrganModel& model, const std::vector<Vec3>& positions
   out.denominator = 0;
   for (std::size_t i = 0; i < out.gradient.size(); ++i) {
     out.gradient[i] *= 1.0 / 6;
-    out.denominator += out.gradient[i].squaredNorm() * model.inverse_masses[i];
+    out.denominator += out.gradient[i].squaredNorm() * body.inverse_masses[i];
   }
 }
 

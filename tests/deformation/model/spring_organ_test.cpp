@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
+#include "deformation/model/body.h"
 #include "deformation/steppers/symplectic_euler.h"
 #include "modules/core/error.h"
 #include "tests/deformation/organs.h"
@@ -18,8 +19,8 @@ using testing::ball_organ;
 Eigen::MatrixXd dense_dynamic_matrix(const OrganModel& model) {
   const auto n = static_cast<Eigen::Index>(3 * model.node_count());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-  for (const Spring& spring : model.network.springs) {
-    const auto& x = model.network.rest_positions;
+  for (const Spring& spring : model.network().springs) {
+    const auto& x = model.rest_positions;
     const Vec3 u = (x[spring.node_b] - x[spring.node_a]).normalized();
     const Mat3 block = spring.stiffness * u * u.transpose();
     const auto a = static_cast<Eigen::Index>(3 * spring.node_a);
@@ -42,8 +43,8 @@ TEST_CASE("organ model: masses sum to density times volume and fixed nodes have 
   CHECK(std::accumulate(model.masses.begin(), model.masses.end(), 0.0) ==
         Approx(organ.tissue.density * model.rest_volume).epsilon(1e-12));
   REQUIRE(!model.fixed_nodes.empty());
-  for (std::uint32_t i = 0; i < model.surface_node_count(); ++i) {
-    const bool inside = (model.network.rest_positions[i] - Vec3(0, 0, -0.05)).norm() <= 0.02;
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
+    const bool inside = (model.rest_positions[i] - Vec3(0, 0, -0.05)).norm() <= 0.02;
     CHECK((model.inverse_masses[i] == 0) == inside);
   }
 }
@@ -54,8 +55,8 @@ TEST_CASE("organ model: a box region fixes what lies inside it") {
   organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, 0.03), Vec3(1, 1, 1)});
   const auto model = ball_model(2, organ);
   std::size_t expected = 0;
-  for (std::size_t i = 0; i < model.surface_node_count(); ++i) {
-    expected += model.network.rest_positions[i].z() >= 0.03;
+  for (std::size_t i = 0; i < model.surface_node_count; ++i) {
+    expected += model.rest_positions[i].z() >= 0.03;
   }
   CHECK(model.fixed_nodes.size() == expected);
 }
@@ -121,7 +122,7 @@ double excursion(const OrganModel& model, double h, int steps) {
   for (int s = 0; s < steps; ++s) symplectic_euler_step(model, h, {}, state, buffers);
   double largest = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    const double moved = (state.positions[i] - model.network.rest_positions[i]).norm();
+    const double moved = (state.positions[i] - model.rest_positions[i]).norm();
     if (!(moved <= largest)) largest = moved;
   }
   return largest;

@@ -1,27 +1,18 @@
-#include "deformation/model/organ_model.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
-#include "deformation/model/solid_model.h"
-#include "deformation/volume/volume_constraint.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/model/volume_gradient.h"
 #include "modules/core/error.h"
 
 namespace palpate::deformation {
 namespace {
 
-bool contains(const scene::Region& region, const Vec3& p) {
-  if (const auto* sphere = std::get_if<scene::SphereRegion>(&region)) {
-    return (p - sphere->center).norm() <= sphere->radius;
-  }
-  const auto& box = std::get<scene::BoxRegion>(region);
-  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-}
-
 /// Σ_j k_ij of each node [N/m].
-std::vector<double> stiffness_sums(const SpringNetwork& network) {
-  std::vector<double> sums(network.rest_positions.size(), 0);
+std::vector<double> stiffness_sums(const SpringNetwork& network, std::size_t node_count) {
+  std::vector<double> sums(node_count, 0);
   for (const Spring& spring : network.springs) {
     sums[spring.node_a] += spring.stiffness;
     sums[spring.node_b] += spring.stiffness;
@@ -34,13 +25,13 @@ constexpr double kAxialShare = 0.1;
 
 std::vector<double> node_masses(const SpringNetwork& network, const std::vector<double>& stiffness,
                                 double total_mass) {
-  const std::size_t surface_count = network.surface_node_count;
+  const std::size_t surface_count = network.node_areas.size();
   const auto first_virtual = stiffness.begin() + static_cast<long>(surface_count);
   const double area = std::accumulate(network.node_areas.begin(), network.node_areas.end(), 0.0);
   const double surface_stiffness = std::accumulate(stiffness.begin(), first_virtual, 0.0);
   const double axial_stiffness = std::accumulate(first_virtual, stiffness.end(), 0.0);
 
-  std::vector<double> masses(network.rest_positions.size());
+  std::vector<double> masses(stiffness.size());
   for (std::size_t i = 0; i < masses.size(); ++i) {
     masses[i] = i < surface_count
                     ? total_mass * network.node_areas[i] / area
@@ -55,9 +46,9 @@ std::vector<double> node_masses(const SpringNetwork& network, const std::vector<
 /// Axial damping coefficients c of all springs [N·s/m].
 std::vector<double> axial_damping(const SpringNetwork& network, const std::vector<double>& masses,
                                   double damping_ratio) {
-  const auto first_virtual = masses.begin() + static_cast<long>(network.surface_node_count);
+  const auto first_virtual = masses.begin() + static_cast<long>(network.node_areas.size());
   const double mean_mass = std::accumulate(masses.begin(), first_virtual, 0.0) /
-                           static_cast<double>(network.surface_node_count);
+                           static_cast<double>(network.node_areas.size());
   std::vector<double> damping(network.springs.size());
   for (std::size_t s = 0; s < damping.size(); ++s) {
     const Spring& spring = network.springs[s];
@@ -78,76 +69,48 @@ bool wants_volume(scene::Model model) {
 
 }  // namespace
 
-bool is_fixed(const scene::Organ& organ, const Vec3& rest_position) {
-  return std::any_of(organ.fixed.begin(), organ.fixed.end(),
-                     [&](const auto& region) { return contains(region, rest_position); });
-}
-
-void fix_nodes(const scene::Organ& organ, std::size_t count, OrganModel& model) {
-  const auto& positions = model.network.rest_positions;
-  std::size_t held = 0;  // of the surface
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (!is_fixed(organ, positions[i])) continue;
-    model.inverse_masses[i] = 0;
-    model.fixed_nodes.push_back(i);
-    held += i < model.surface_node_count() ? 1 : 0;
-  }
-  if (held == model.surface_node_count()) {
-    throw InputError("organ '" + organ.name + "': key 'fixed' holds every one of its " +
-                     std::to_string(model.surface_node_count()) +
-                     " nodes; leave some free to move");
-  }
-}
-
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
                              const geometry::OrganShape& rest_shape) {
-  if (rest_shape.is_solid()) return build_solid_model(organ, gravity, rest_shape);
-  const geometry::TriangleSurface& rest_surface = rest_shape.surface;
+  return rest_shape.is_solid() ? build_solid(organ, gravity, rest_shape)
+                               : build_spring_organ(organ, gravity, rest_shape.surface);
+}
+
+OrganModel build_spring_organ(const scene::Organ& organ, const Vec3& gravity,
+                              const geometry::TriangleSurface& rest_surface) {
   OrganModel model;
   model.rest_volume = geometry::enclosed_volume(rest_surface.nodes, rest_surface.triangles);
   if (!(model.rest_volume > 0)) {
     throw InputError("organ '" + organ.name + "': its surface encloses no positive volume");
   }
-  model.network = build_spring_network(rest_surface, organ.tissue, organ.springs);
+  SpringNetwork network = build_spring_network(rest_surface, organ.tissue, organ.springs);
+  model.surface_node_count = rest_surface.nodes.size();
+  model.rest_positions = rest_surface.nodes;
+  model.rest_positions.insert(model.rest_positions.end(), network.virtual_nodes.begin(),
+                              network.virtual_nodes.end());
   model.triangles = rest_surface.triangles;
-  model.node_stiffness = stiffness_sums(model.network);
+  model.node_stiffness = stiffness_sums(network, model.rest_positions.size());
   model.masses =
-      node_masses(model.network, model.node_stiffness, organ.tissue.density * model.rest_volume);
+      node_masses(network, model.node_stiffness, organ.tissue.density * model.rest_volume);
   for (const double mass : model.masses) model.inverse_masses.push_back(1 / mass);
-  fix_nodes(organ, model.surface_node_count(), model);
-  model.spring_damping = axial_damping(model.network, model.masses, organ.tissue.damping_ratio);
+  fix_nodes(organ, model.surface_node_count, model);
+  network.damping = axial_damping(network, model.masses, organ.tissue.damping_ratio);
+  model.material = std::move(network);
   model.gravity = gravity;
   model.drag = organ.tissue.drag;
   model.preserve_volume = wants_volume(organ.model);
   model.volume_corrections = static_cast<int>(organ.volume_corrections);
 
   VolumeGradient at_rest;
-  evaluate_volume(model, model.network.rest_positions, at_rest);
+  evaluate_volume(model, model.rest_positions, at_rest);
   model.rest_denominator = at_rest.denominator;
   return model;
 }
 
-OrganState rest_state(const OrganModel& model) {
-  OrganState state;
-  state.positions = model.network.rest_positions;
-  state.velocities.assign(model.node_count(), Vec3::Zero());
-  state.volume = state.target_volume = model.rest_volume;
-  return state;
-}
-
-double highest_squared_frequency_bound(const OrganModel& model) {
-  double bound = 0;
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    bound = std::max(bound, 2 * model.node_stiffness[i] * model.inverse_masses[i]);
-  }
-  return bound;
-}
-
 double stable_step_bound(const OrganModel& model) {
   std::vector<double> damping_sums(model.node_count(), 0);
-  for (std::size_t s = 0; s < model.network.springs.size(); ++s) {
-    damping_sums[model.network.springs[s].node_a] += model.spring_damping[s];
-    damping_sums[model.network.springs[s].node_b] += model.spring_damping[s];
+  for (std::size_t s = 0; s < model.network().springs.size(); ++s) {
+    damping_sums[model.network().springs[s].node_a] += model.network().damping[s];
+    damping_sums[model.network().springs[s].node_b] += model.network().damping[s];
   }
   double d = 0;
   for (std::size_t i = 0; i < damping_sums.size(); ++i) {

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
-#include "deformation/model/solid_model.h"
+#include "deformation/model/organ_model.h"
 #include "modules/core/error.h"
 #include "modules/scene/assets.h"
 #include "tests/modules/geometry/tetrahedra.h"

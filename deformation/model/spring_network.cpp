@@ -1,4 +1,4 @@
-#include "deformation/springs/spring_network.h"
+#include "deformation/model/spring_network.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,9 +43,9 @@ std::vector<NodePair> secondary_pairs(std::size_t node_count, const std::vector<
   return pairs;
 }
 
-std::size_t nearest(const std::vector<Vec3>& points, std::size_t first, const Vec3& p) {
-  std::size_t best = first;
-  for (std::size_t i = first; i < points.size(); ++i) {
+std::size_t nearest(const std::vector<Vec3>& points, const Vec3& p) {
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
     if ((points[i] - p).squaredNorm() < (points[best] - p).squaredNorm()) best = i;
   }
   return best;
@@ -74,14 +74,15 @@ void add_membrane_springs(const geometry::TriangleSurface& surface, const scene:
   network.bending_count = pairs.size();
 }
 
-void add_inner_springs(const scene::Tissue& tissue, double inner_ratio, SpringNetwork& network) {
-  const std::size_t surface_count = network.surface_node_count;
+void add_inner_springs(const geometry::TriangleSurface& surface, const scene::Tissue& tissue,
+                       double inner_ratio, SpringNetwork& network) {
+  const std::size_t surface_count = surface.nodes.size();
   double length_sum = 0;
   for (std::uint32_t i = 0; i < surface_count; ++i) {
-    const auto& nodes = network.rest_positions;
-    const auto virtual_node = static_cast<std::uint32_t>(nearest(nodes, surface_count, nodes[i]));
-    const double length = (nodes[i] - nodes[virtual_node]).norm();
-    network.springs.push_back({i, virtual_node, length, 0});
+    const Vec3& node = surface.nodes[i];
+    const std::size_t inside = nearest(network.virtual_nodes, node);
+    const double length = (node - network.virtual_nodes[inside]).norm();
+    network.springs.push_back({i, static_cast<std::uint32_t>(surface_count + inside), length, 0});
     length_sum += length;
   }
   network.inner_count = surface_count;
@@ -133,8 +134,6 @@ SpringNetwork build_spring_network(const geometry::TriangleSurface& surface,
                                    const scene::Tissue& tissue, const scene::Springs& springs) {
   PALPATE_DEMAND(!surface.nodes.empty() && !surface.triangles.empty());
   SpringNetwork network;
-  network.surface_node_count = surface.nodes.size();
-  network.rest_positions = surface.nodes;
   network.node_areas.assign(surface.nodes.size(), 0);
   for (const auto& triangle : surface.triangles) {
     const double third = geometry::area_vector(surface.nodes, triangle).norm() / 3;
@@ -142,10 +141,8 @@ SpringNetwork build_spring_network(const geometry::TriangleSurface& surface,
   }
   add_membrane_springs(surface, tissue, springs.bending_ratio, network);
   if (springs.inner_ratio > 0 && springs.virtual_nodes > 0) {
-    const auto virtual_nodes = place_virtual_nodes(surface, springs.virtual_nodes);
-    network.rest_positions.insert(network.rest_positions.end(), virtual_nodes.begin(),
-                                  virtual_nodes.end());
-    add_inner_springs(tissue, springs.inner_ratio, network);
+    network.virtual_nodes = place_virtual_nodes(surface, springs.virtual_nodes);
+    add_inner_springs(surface, tissue, springs.inner_ratio, network);
   }
   return network;
 }

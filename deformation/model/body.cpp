@@ -1,0 +1,49 @@
+#include "deformation/model/body.h"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+#include "modules/core/error.h"
+
+namespace palpate::deformation {
+namespace {
+
+bool contains(const scene::Region& region, const Vec3& p) {
+  if (const auto* sphere = std::get_if<scene::SphereRegion>(&region)) {
+    return (p - sphere->center).norm() <= sphere->radius;
+  }
+  const auto& box = std::get<scene::BoxRegion>(region);
+  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
+}
+
+}  // namespace
+
+bool is_fixed(const scene::Organ& organ, const Vec3& rest_position) {
+  return std::any_of(organ.fixed.begin(), organ.fixed.end(),
+                     [&](const auto& region) { return contains(region, rest_position); });
+}
+
+void fix_nodes(const scene::Organ& organ, std::size_t count, Body& body) {
+  std::size_t held = 0;  // of the surface
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_fixed(organ, body.rest_positions[i])) continue;
+    body.inverse_masses[i] = 0;
+    body.fixed_nodes.push_back(i);
+    held += i < body.surface_node_count ? 1 : 0;
+  }
+  if (held == body.surface_node_count) {
+    throw InputError("organ '" + organ.name + "': key 'fixed' holds every one of its " +
+                     std::to_string(body.surface_node_count) + " nodes; leave some free to move");
+  }
+}
+
+double highest_squared_frequency_bound(const Body& body) {
+  double bound = 0;
+  for (std::size_t i = 0; i < body.node_count(); ++i) {
+    bound = std::max(bound, 2 * body.node_stiffness[i] * body.inverse_masses[i]);
+  }
+  return bound;
+}
+
+}  // namespace palpate::deformation

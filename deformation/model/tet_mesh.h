@@ -1,0 +1,23 @@
+// The tetrahedra of a solid organ, and the tissue they are made of.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "modules/geometry/organ_shape.h"
+
+namespace palpate::deformation {
+
+struct TetMesh {
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  std::vector<std::array<std::uint32_t, 6>> edge_nodes;  ///< as in geometry::OrganShape
+  double youngs_modulus = 0;                             ///< [Pa]
+  double poisson_ratio = 0;
+  double density = 0;  ///< [kg/m³]
+};
+
+/// How many tetrahedra enclose no positive volume at these positions [m].
+std::size_t inverted_tetrahedra(const TetMesh& mesh, const std::vector<Vec3>& positions);
+
+}  // namespace palpate::deformation
