@@ -115,12 +115,17 @@ def draw_map(folder, name, cells, frontiers):
     plt.close(figure)
 
 
+# nodal_pressure takes no bulk modulus above 100 shear moduli, whatever ratio it is asked for.
+COMPUTED_WITH = {"nodal_pressure": "nodal_pressure (computed with at most 0.495)"}
+
+
 def draw_locking(folder, rows):
     figure, axis = plt.subplots(figsize=(6, 4))
     for model in dict.fromkeys(row["model"] for row in rows):
         line = [(0.5 - number(row["poisson_ratio"]), 100 * number(row["force_error"]))
                 for row in rows if row["model"] == model and row["diverged"] == "0"]
-        axis.semilogx(*zip(*line), marker="o", markersize=4, label=model)
+        axis.semilogx(*zip(*line), marker="o", markersize=4,
+                      label=COMPUTED_WITH.get(model, model))
     axis.invert_xaxis()
     axis.axhline(0, color="#999", linewidth=0.8)
     axis.set_xlabel("½ − Poisson's ratio")

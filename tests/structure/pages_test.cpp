@@ -89,6 +89,42 @@ TEST_CASE("pages: a linked source file declares the name it is linked from") {
   CHECK(checked >= 20);
 }
 
+TEST_CASE("pages: source files they name exist") {
+  // Oracle: the tree. A path begins with a folder of the tree's top; what it names has a slash.
+  static const std::regex kPath(
+      R"(`((?:modules|deformation|collision|haptics|visualizer|palpate|studies|bench|tests|idl|docs|scenes|scripts|cmake)/[a-z0-9_/]*(?:\.[a-z]+)?)`)");
+  std::size_t named = 0;
+  for (const auto& page : pages()) {
+    // The changelog tells of what was; the pipeline page has a test of its own.
+    if (page.filename() == "CHANGELOG.md" || page.filename() == "pipeline.md") continue;
+    const std::string text = text_of(page);
+    for (std::sregex_iterator it(text.begin(), text.end(), kPath), end; it != end; ++it, ++named) {
+      const std::string path = (*it)[1];
+      INFO(fs::relative(page, kRoot).string() << ": " << path);
+      CHECK((fs::exists(kRoot / path) || fs::exists(page.parent_path() / path)));
+    }
+  }
+  CHECK(named > 30);
+}
+
+TEST_CASE("pages: every folder of sources says what lives there") {
+  // Oracle: a README in each folder that holds code; tests mirror the tree and need none.
+  std::size_t folders = 0;
+  for (const char* top : {"modules", "deformation", "collision", "haptics", "visualizer", "palpate",
+                          "studies", "bench"}) {
+    std::vector<fs::path> found{kRoot / top};
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+      if (entry.is_directory()) found.push_back(entry.path());
+    }
+    for (const auto& folder : found) {
+      INFO(fs::relative(folder, kRoot).string());
+      CHECK(fs::exists(folder / "README.md"));
+      ++folders;
+    }
+  }
+  CHECK(folders > 30);
+}
+
 TEST_CASE("pages: the tests they name exist") {
   // Oracle: the TEST_CASE names of the tree. A page names a test as *"subject: what holds"*.
   static const std::regex kTest(R"re(\*"([^"]+: [^"]+)"\*)re");
