@@ -17,6 +17,7 @@
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/node_order.h"
+#include "modules/runtime/program.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
@@ -220,13 +221,5 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::Range(std::size_t{4}, std::size_t{1'000'000}))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-    return run(scene, sizes);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "palpate-bench-step-cost: %s\n", error.what());
-    return kExitBadInput;
-  }
+  return runtime::run_program(app, argc, argv, [&] { return run(scene, sizes); });
 }

@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -23,6 +24,8 @@
 #include <vector>
 
 #include "modules/bus/bus.h"
+#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 
 namespace {
 
@@ -255,18 +258,7 @@ void measure(const Load& load) {
               topic.quantile(0.999) / udp.quantile(0.999));
 }
 
-int run(const std::vector<std::string>& words) {
-  if (words.size() == 5) {
-    const Load load{std::stoul(words[2]), std::stoi(words[3]), std::stod(words[4])};
-    words[0] == "topic" ? write_topic(words[1], load) : write_udp(std::stoi(words[1]), load);
-    return 0;
-  }
-  if (!words.empty() && (words[0] == "-h" || words[0] == "--help")) {
-    std::printf("usage: palpate-bench-topic-latency [SECONDS=5] [RATE_HZ=250]\n");
-    return 0;
-  }
-  const double seconds = words.size() > 0 ? std::stod(words[0]) : 5;
-  const double rate_hz = words.size() > 1 ? std::stod(words[1]) : 250;
+void run(double seconds, double rate_hz) {
   const int samples = kWarmUpSamples + static_cast<int>(seconds * rate_hz);
   std::printf("one way between two processes at %.0f Hz, %.0f s, microseconds\n", rate_hz, seconds);
   std::printf(
@@ -274,16 +266,30 @@ int run(const std::vector<std::string>& words) {
       "taken)\n");
   measure({1'100, samples, rate_hz});   // 13 KB: twice an organ of 550 nodes in floats
   measure({39'000, samples, rate_hz});  // 468 KB: twice one of 19 500
-  return 0;
+}
+
+/// The writing process: PATH TARGET NODES SAMPLES RATE_HZ.
+void write_as_told(char** words) {
+  const Load load{std::stoul(words[2]), std::stoi(words[3]), std::stod(words[4])};
+  words[0] == std::string("topic") ? write_topic(words[1], load)
+                                   : write_udp(std::stoi(words[1]), load);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(std::vector<std::string>(argv + 1, argv + argc));
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "palpate-bench-topic-latency: %s\n", error.what());
-    return 1;
-  }
+  CLI::App app("Latency of node positions between two processes, beside plain UDP.",
+               "palpate-bench-topic-latency");
+  double seconds = 5, rate_hz = 250;
+  app.add_option("SECONDS", seconds, "Of each measurement")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  app.add_option("RATE_HZ", rate_hz, "Of the samples")
+      ->check(CLI::Range(1.0, 10'000.0))
+      ->capture_default_str();
+  const bool writes = argc == 6;
+  return palpate::runtime::run_program(app, writes ? 1 : argc, argv, [&] {
+    writes ? write_as_told(argv + 1) : run(seconds, rate_hz);
+    return palpate::kExitDone;
+  });
 }

@@ -16,10 +16,10 @@ if(PALPATE_CCACHE)
       ${PALPATE_CCACHE})
 endif()
 
-option(PALPATE_SANITIZE "AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+set(PALPATE_SANITIZE "" CACHE STRING "Sanitizers: address,undefined or thread")
 if(PALPATE_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=address,undefined)
+  add_compile_options(-fsanitize=${PALPATE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${PALPATE_SANITIZE})
 endif()
 
 # Contraction off: the same bits whatever instruction set the optimizer picks. Where the spring kernel
@@ -73,28 +73,47 @@ function(palpate_sources result recurse)
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-# palpate_library(NAME [RECURSE] [EXCEPT pattern …] [DEPENDS …] [PRIVATE_DEPENDS …])
-# All sources of the folder but main.cpp.
+# palpate_library(NAME [RECURSE] [INSTALLED] [EXCEPT pattern …] [DEPENDS …] [PRIVATE_DEPENDS …])
+# All sources of the folder but main.cpp. INSTALLED: part of the package for other projects.
 function(palpate_library name)
-  cmake_parse_arguments(ARG "RECURSE" "" "SOURCES;EXCEPT;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "RECURSE;INSTALLED" "" "SOURCES;EXCEPT;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   if(NOT ARG_SOURCES)
     palpate_sources(ARG_SOURCES ${ARG_RECURSE} main.cpp ${ARG_EXCEPT})
   endif()
   add_library(palpate_${name} STATIC ${ARG_SOURCES})
   add_library(palpate::${name} ALIAS palpate_${name})
-  target_include_directories(palpate_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_include_directories(palpate_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(palpate_${name} PUBLIC ${ARG_DEPENDS}
-                        PRIVATE ${ARG_PRIVATE_DEPENDS} palpate_warnings)
+                        PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:palpate_warnings>)
   palpate_precompile(palpate_${name} core)
+  if(ARG_INSTALLED)
+    palpate_install_library(${name})
+  endif()
 endfunction()
 
-# palpate_program(FILE_NAME SOURCES … DEPENDS …): an executable in build/…/bin
+# Library and headers go to the prefix; find_package(palpate COMPONENTS bus) finds them there.
+function(palpate_install_library name)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  set_target_properties(palpate_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(palpate_${name} PUBLIC cxx_std_20)
+  install(TARGETS palpate_${name} EXPORT palpate-bus
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate)
+  install(DIRECTORY ./ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/palpate/${folder} COMPONENT dev
+          FILES_MATCHING PATTERN *.h)
+endfunction()
+
+# palpate_program(FILE_NAME [NOT_INSTALLED] SOURCES … DEPENDS …): an executable in build/…/bin and,
+# installed, in bin
 function(palpate_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "NOT_INSTALLED" "" "SOURCES;DEPENDS" ${ARGN})
   string(REPLACE "-" "_" target ${name})
   add_executable(${target}_program ${ARG_SOURCES})
   set_target_properties(${target}_program PROPERTIES OUTPUT_NAME ${name})
   target_link_libraries(${target}_program PRIVATE ${ARG_DEPENDS} palpate_warnings)
+  if(NOT ARG_NOT_INSTALLED)
+    install(TARGETS ${target}_program RUNTIME COMPONENT programs)
+  endif()
 endfunction()
 
 # palpate_tests(NAME [RECURSE] [SOURCES … | EXCEPT pattern …] DEPENDS … [LABELS …, else unit] [TIMEOUT seconds] [SERIAL] [DRAWS])
@@ -121,7 +140,10 @@ function(palpate_tests name)
   endif()
   # A test without its data says "SKIPPED: …" and returns; ctest then counts it as skipped, not passed.
   set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_REGULAR_EXPRESSION "SKIPPED:")
-  if(PALPATE_SANITIZE)  # Fast DDS 2.9.1 frees a reader's statistics by their base's size
+  if(PALPATE_SANITIZE STREQUAL "thread")
+    list(APPEND properties ENVIRONMENT
+         "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/tsan_suppressions.txt")
+  elseif(PALPATE_SANITIZE)  # Fast DDS 2.9.1 frees a reader's statistics by their base's size
     set(options "new_delete_type_mismatch=0")
     if(ARG_DRAWS)  # the drivers of OpenGL keep some hundred bytes
       string(APPEND options ":detect_leaks=0")

@@ -9,6 +9,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/commands.h"
 #include "modules/runtime/module_options.h"
+#include "modules/runtime/program.h"
 #include "palpate/chart_command.h"
 #include "palpate/check_command.h"
 #include "palpate/mesh_command.h"
@@ -141,18 +142,6 @@ bool refuse_unknown(const std::string& word, const CLI::App& app) {
   return true;
 }
 
-int report_failure(const Job& job) {
-  try {
-    return job();
-  } catch (const InputError& error) {
-    std::cerr << "palpate: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate: " << error.what() << '\n';
-    return kExitFailed;
-  }
-}
-
 }  // namespace
 
 int palpate_command(int argc, char** argv) {
@@ -179,13 +168,10 @@ int palpate_command(int argc, char** argv) {
   add_program(app, "fuzz", "Run random scenes, looking for one that fails without a guard noticing",
               "palpate-fuzz", job);
   if (argc > 1 && refuse_unknown(argv[1], app)) return kExitBadInput;
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  }
-  if (no_display()) run.headless = replay.headless = true;
-  return report_failure(job);
+  return runtime::run_program(app, argc, argv, [&] {
+    if (no_display()) run.headless = replay.headless = true;
+    return job();
+  });
 }
 
 }  // namespace palpate::launcher

@@ -2,7 +2,7 @@
 #include <iostream>
 
 #include "bench/bullet/bullet_command.h"
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
@@ -15,16 +15,6 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(162, 50000))
       ->capture_default_str();
   app.add_flag("--quick", options.quick, "Few settings, each timed once");
-  try {
-    app.parse(argc, argv);
-    return bench::run_bullet(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate-bench-bullet: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate-bench-bullet: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  return runtime::run_program(app, argc, argv,
+                              [&] { return bench::run_bullet(options, std::cout, std::cerr); });
 }

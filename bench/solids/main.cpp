@@ -9,6 +9,7 @@
 #include "modules/core/error.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/runtime/program.h"
 #include "modules/scene/schema.h"
 
 namespace palpate::solids_bench {
@@ -82,8 +83,7 @@ int main(int argc, char** argv) {
   app.add_option("--cost", mesh, "Only the cost of a step, of this mesh of tetrahedra");
   app.add_option("--ball", ball_sizes, "Edge lengths [m] of case A, the ball between plates");
   app.add_option("--block", block_sizes, "Edge lengths [m] of case D, the indented block");
-  try {
-    app.parse(argc, argv);
+  return runtime::run_program(app, argc, argv, [&] {
     for (const auto model : {scene::Model::kCorotational, scene::Model::kNodalPressure}) {
       if (!mesh.empty()) {
         solids_bench::print_step_cost(model, geometry::read_tetrahedra(mesh));
@@ -93,13 +93,5 @@ int main(int argc, char** argv) {
       for (const auto& size : block_sizes) solids_bench::run("D", model, size);
     }
     return kExitDone;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate-bench-solids: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate-bench-solids: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  });
 }

@@ -6,6 +6,7 @@
 #include "modules/recording/recorder.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 
 namespace {
@@ -33,17 +34,8 @@ int main(int argc, char** argv) {
   std::string file;
   app.add_option("FILE", file, "the recording to write; an existing one is replaced")->required();
   palpate::runtime::add_bus_options(app, session);
-  try {
-    app.parse(argc, argv);
+  return palpate::runtime::run_program(app, argc, argv, [&] {
     record(session, file);
     return palpate::kExitDone;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? palpate::kExitDone : palpate::kExitBadInput;
-  } catch (const palpate::InputError& error) {
-    std::cerr << "[recorder] error: " << error.what() << '\n';
-    return palpate::kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "[recorder] error: " << error.what() << '\n';
-    return palpate::kExitFailed;
-  }
+  });
 }

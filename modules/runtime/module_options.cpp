@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "modules/core/error.h"
+#include "modules/runtime/program.h"
 
 namespace palpate::runtime {
 namespace {
@@ -53,6 +54,7 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   add_bus_options(app, options.bus);
   app.add_flag("--no-realtime", no_realtime, "Do not ask for real-time priority");
   if (program.add_options) program.add_options(app);
+  add_version(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,10 +1,10 @@
 // palpate-calibrate: fits and checks spring stiffness against squeezed balls of finite elements.
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 
 #include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 #include "studies/calibration/report.h"
 
@@ -100,33 +100,21 @@ int run(const Options& options) {
   return kExitDone;
 }
 
-int calibrate(int argc, char** argv) {
-  CLI::App app(
-      "Squeeze balls between plates, fit inner springs and the membrane factor to\n"
-      "finite-element solutions, and print what error is left (docs/calibration.md).");
-  Options options;
-  add_options(app, options);
-  try {
-    app.parse(argc, argv);
-    return run(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const calibration::Stopped&) {
-    std::cerr << "stopped\n";
-    return kExitFailed;
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return calibrate(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "palpate-calibrate: %s\n", error.what());
-    return kExitFailed;
-  }
+  CLI::App app(
+      "Squeeze balls between plates, fit inner springs and the membrane factor to\n"
+      "finite-element solutions, and print what error is left (docs/calibration.md).",
+      "palpate-calibrate");
+  Options options;
+  add_options(app, options);
+  return runtime::run_program(app, argc, argv, [&] {
+    try {
+      return run(options);
+    } catch (const calibration::Stopped&) {
+      std::cerr << "stopped\n";
+      return kExitFailed;
+    }
+  });
 }

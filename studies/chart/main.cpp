@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "studies/chart/accuracy_command.h"
 
 int main(int argc, char** argv) {
@@ -24,18 +24,9 @@ int main(int argc, char** argv) {
   app.add_flag("--full", full, "Fine meshes, four steps: hours")->excludes("--quick");
   app.add_flag("--again", options.again, "Measure anew what earlier runs have left in --out");
   app.add_flag("!--no-peers", options.peers, "Without Bullet");
-  try {
-    app.parse(argc, argv);
+  return runtime::run_program(app, argc, argv, [&] {
     if (quick) options.extent = accuracy::Extent::kQuick;
     if (full) options.extent = accuracy::Extent::kFull;
     return accuracy::run_accuracy(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate chart accuracy: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate chart accuracy: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  });
 }

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 #include "studies/elements/elements_command.h"
 
@@ -22,19 +22,10 @@ int main(int argc, char** argv) {
   app.add_option("--reference", options.reference_folder, "Folder of the reference tables")
       ->capture_default_str();
   app.add_flag("--quick", options.quick, "Coarse meshes, small loads: about a minute");
-  try {
-    app.parse(argc, argv);
+  return runtime::run_program(app, argc, argv, [&] {
     if (std::count(options.cases.begin(), options.cases.end(), "all") > 0) options.cases.clear();
     const runtime::StopSignal signal;
     return elements_bench::run_elements(
         options, [&] { return signal.requested(); }, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate-elements: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate-elements: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  });
 }

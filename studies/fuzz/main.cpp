@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "studies/fuzz/fuzz_command.h"
 
 int main(int argc, char** argv) {
@@ -18,16 +18,6 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "Of the scenes")->capture_default_str();
   app.add_option("--scene", options.only, "Only this one, in detail");
   app.add_flag("--again", options.again, "Run anew what earlier runs have left in --out");
-  try {
-    app.parse(argc, argv);
-    return fuzz::run_fuzz(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate fuzz: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate fuzz: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  return runtime::run_program(app, argc, argv,
+                              [&] { return fuzz::run_fuzz(options, std::cout, std::cerr); });
 }

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "studies/paper/paper_command.h"
 
 int main(int argc, char** argv) {
@@ -19,16 +19,6 @@ int main(int argc, char** argv) {
                  "Wall time after which Figure 4 is cut short, and says so")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-    return bench::run_paper(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate chart paper: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate chart paper: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  return runtime::run_program(app, argc, argv,
+                              [&] { return bench::run_paper(options, std::cout, std::cerr); });
 }

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "studies/plan/plan_command.h"
 
 int main(int argc, char** argv) {
@@ -17,16 +17,6 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", options.seconds, "Of the scene, from its start")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-    return plan::run_plan(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate plan: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate plan: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  return runtime::run_program(app, argc, argv,
+                              [&] { return plan::run_plan(options, std::cout, std::cerr); });
 }

@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "studies/stability/stability_command.h"
 
 int main(int argc, char** argv) {
@@ -17,16 +17,6 @@ int main(int argc, char** argv) {
   app.add_option("--series", options.only_series, "Only these models or loops")->delimiter(',');
   app.add_flag("--quick", options.quick, "Fewer models and values: under 90 s");
   app.add_flag("--again", options.again, "Measure anew what earlier runs have left in --out");
-  try {
-    app.parse(argc, argv);
-    return stability::run_stability(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate stability: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate stability: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  return runtime::run_program(
+      app, argc, argv, [&] { return stability::run_stability(options, std::cout, std::cerr); });
 }

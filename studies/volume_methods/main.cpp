@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "studies/volume_methods/measurements.h"
 #include "studies/volume_methods/neighbours_command.h"
 
@@ -21,16 +21,6 @@ int main(int argc, char** argv) {
   app.add_flag("--quick", options.quick, "Smaller ball, organ pressed for 4 s: under 20 s");
   app.add_option("--scene", options.scene, "Scene whose first organ is pressed")
       ->capture_default_str();
-  try {
-    app.parse(argc, argv);
-    return bench::run_neighbours(options, std::cout, std::cerr);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  } catch (const InputError& error) {
-    std::cerr << "palpate chart neighbours: " << error.what() << '\n';
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    std::cerr << "palpate chart neighbours: " << error.what() << '\n';
-    return kExitFailed;
-  }
+  return runtime::run_program(app, argc, argv,
+                              [&] { return bench::run_neighbours(options, std::cout, std::cerr); });
 }

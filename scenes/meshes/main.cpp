@@ -1,27 +1,26 @@
 // palpate-generate-meshes FOLDER: writes the meshes that ship in scenes/meshes.
+#include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_io.h"
+#include "modules/runtime/program.h"
 #include "scenes/meshes/organ_shapes.h"
 
 int main(int argc, char** argv) {
-  if (argc != 2 || !std::filesystem::is_directory(argv[1])) {
-    std::fprintf(stderr, "usage: palpate-generate-meshes EXISTING_FOLDER\n");
-    return palpate::kExitBadInput;
-  }
-  try {
+  CLI::App app("Writes the meshes that ship in scenes/meshes.", "palpate-generate-meshes");
+  std::filesystem::path folder;
+  app.add_option("FOLDER", folder, "Where to; it must exist")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  return palpate::runtime::run_program(app, argc, argv, [&] {
     for (const auto& [file_name, make] : palpate::meshes::kShippedMeshes) {
       const palpate::geometry::TriangleSurface surface = make();
-      palpate::geometry::write_surface(surface, std::filesystem::path(argv[1]) / file_name);
+      palpate::geometry::write_surface(surface, folder / file_name);
       std::printf("%s: %zu nodes, %zu triangles\n", file_name, surface.nodes.size(),
                   surface.triangles.size());
     }
     return palpate::kExitDone;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return palpate::kExitFailed;
-  }
+  });
 }

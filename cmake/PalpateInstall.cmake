@@ -1,0 +1,62 @@
+# What `cmake --install` puts beside programs, data and headers, and what CPack makes of it: two
+# Debian packages, palpate (component "programs") and palpate-dev (component "dev").
+include(CMakePackageConfigHelpers)
+
+install(DIRECTORY idl/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/idl COMPONENT dev
+        FILES_MATCHING PATTERN *.idl PATTERN README.md)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
+configure_package_config_file(cmake/palpate-config.cmake.in
+  ${PROJECT_BINARY_DIR}/palpate-config.cmake INSTALL_DESTINATION ${package_folder})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/palpate-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/palpate-config.cmake
+              ${PROJECT_BINARY_DIR}/palpate-config-version.cmake
+        DESTINATION ${package_folder} COMPONENT dev)
+install(EXPORT palpate-bus NAMESPACE palpate:: DESTINATION ${package_folder} COMPONENT dev)
+
+# Debian wants licence, changes and reasons for what lintian is told to overlook with each package.
+foreach(package IN ITEMS palpate palpate-dev)
+  set(component programs)
+  if(package STREQUAL "palpate-dev")
+    set(component dev)
+  endif()
+  set(made ${PROJECT_BINARY_DIR}/packaging/${package})
+  configure_file(packaging/debian/changelog.in ${made}/changelog @ONLY)
+  execute_process(COMMAND gzip -9nf ${made}/changelog COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES ${made}/changelog.gz packaging/debian/copyright
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+endforeach()
+install(FILES packaging/debian/lintian-overrides DESTINATION share/lintian/overrides
+        RENAME palpate COMPONENT programs)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME palpate)
+set(CPACK_PACKAGE_CONTACT "Palpate maintainers <maintainers@palpate.example>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_COMPONENTS_ALL programs dev)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION
+"A hand, a recording or a robot moves a probe; the organ gives way, keeps its
+volume and pushes back, a thousand times a second. One process per job, over
+Fast DDS: deformation, contact search, haptics, pictures, recordings. Also
+measures its own speed, accuracy and stability.")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME palpate)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS
+    "gmsh, python3-matplotlib, python3-numpy, xvfb, libgl1-mesa-dri, fonts-dejavu-core")
+set(CPACK_COMPONENT_DEV_DESCRIPTION
+"For device drivers and other programs in a session.
+Headers, static libraries and a CMake package (palpate::bus) to write and read
+the topics of a session, and the message types as IDL for any other DDS.")
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME palpate-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfastrtps-dev, libfastcdr-dev, libeigen3-dev")
+include(CPack)
