@@ -15,6 +15,8 @@ install(FILES ${PROJECT_BINARY_DIR}/palpate-config.cmake
         DESTINATION ${package_folder} COMPONENT dev)
 install(EXPORT palpate-bus NAMESPACE palpate:: DESTINATION ${package_folder} COMPONENT dev)
 
+set(CPACK_PACKAGE_CONTACT "Palpate maintainers <maintainers@palpate.example>")
+
 # Debian wants licence, changes and reasons for what lintian is told to overlook with each package.
 foreach(package IN ITEMS palpate palpate-dev)
   set(component programs)
@@ -32,7 +34,6 @@ install(FILES packaging/debian/lintian-overrides DESTINATION share/lintian/overr
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME palpate)
-set(CPACK_PACKAGE_CONTACT "Palpate maintainers <maintainers@palpate.example>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
