@@ -14,6 +14,7 @@
 
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/steppers/symplectic_euler.h"
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/node_order.h"
@@ -202,7 +203,7 @@ int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {
   const auto scene = scene::load_scene(scene_file);
   const scene::Organ& organ = scene.organs[0];
   const auto surface = scene::load_organ(organ).surface;
-  std::printf("%s; organ '%s'\n", bench::machine_name().c_str(), organ.name.c_str());
+  std::printf("%s; organ '%s'\n", report::machine_name().c_str(), organ.name.c_str());
   for (const std::size_t nodes : sizes) measure(organ, scene.gravity, surface_of(surface, nodes));
   return kExitDone;
 }
@@ -212,7 +213,7 @@ int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {
 int main(int argc, char** argv) {
   CLI::App app("What one deformation step costs, by mesh size and instruction set.",
                "palpate-bench-step-cost");
-  std::string scene = PALPATE_SOURCE_DIR "/scenes/stomach_probe_refined.yaml";
+  auto scene = (data_folder() / "scenes/stomach_probe_refined.yaml").string();
   std::vector<std::size_t> sizes{550, 5'000, 19'362, 200'000};
   app.add_option("--scene", scene, "Scene whose first organ is measured")->capture_default_str();
   app.add_option("--nodes", sizes,

@@ -23,7 +23,7 @@
 #include <thread>
 #include <vector>
 
-#include "modules/bus/bus.h"
+#include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
 #include "modules/runtime/program.h"
 
@@ -79,7 +79,7 @@ palpate::bus::BusOptions bus_options(const std::string& session) {
 }
 
 void write_topic(const std::string& session, const Load& load) {
-  palpate::bus::Bus bus(bus_options(session));
+  palpate::bus::DdsBus bus(bus_options(session));
   auto writer = bus.writer(palpate::bus::kNodePositions);
   while (writer.matched_readers() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   NodePositions message;
@@ -92,7 +92,7 @@ void write_topic(const std::string& session, const Load& load) {
 }
 
 Latencies read_topic(const std::string& session, const Load& load) {
-  palpate::bus::Bus bus(bus_options(session));
+  palpate::bus::DdsBus bus(bus_options(session));
   auto reader = bus.reader(palpate::bus::kNodePositions);
   NodePositions message;
   Latencies latencies;

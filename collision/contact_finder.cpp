@@ -40,7 +40,7 @@ class ProbeSearch {
   }
 
   void find(const ProbeMotion& motion, double margin, std::vector<OrganSurface>& organs,
-            Contacts& result) {
+            std::size_t at_most, ContactSet& result) {
     const RelativeMotion relative(motion, model_.reach, model_.is_round);
     cores_.begin_step();
     nodes_.begin_step();
@@ -58,7 +58,7 @@ class ProbeSearch {
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
-    reduce_contacts(found_, relative, result);
+    reduce_contacts(found_, relative, at_most, result);
   }
 
  private:
@@ -189,7 +189,7 @@ void ContactFinder::reset() {
 }
 
 void ContactFinder::find(std::size_t probe, const ProbeMotion& motion, double margin,
-                         Contacts& result) {
+                         std::size_t at_most, ContactSet& result) {
   PALPATE_DEMAND(probe < impl_->probes.size());
   PALPATE_DEMAND(margin > 0 && std::isfinite(margin));
   result.probe = static_cast<std::uint32_t>(probe);
@@ -197,7 +197,7 @@ void ContactFinder::find(std::size_t probe, const ProbeMotion& motion, double ma
   result.truncated = false;
   result.contacts.clear();
   if (!is_usable(motion.pose_t0) || !is_usable(motion.pose_t1)) return;
-  impl_->probes[probe].find(motion, margin, impl_->organs, result);
+  impl_->probes[probe].find(motion, margin, impl_->organs, at_most, result);
 }
 
 }  // namespace palpate::collision

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "modules/core/touch.h"
 #include "modules/geometry/triangle_surface.h"
-#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::collision {
@@ -42,9 +42,10 @@ class ContactFinder {
 
   /// Contacts of one probe that moved from pose_t0 to pose_t1 since the last call, all with
   /// gap ≤ margin at t1 or swept through in between. Point, normal and gap hold at pose_t1.
-  /// At most kMaxContactsPerProbe; `result.truncated` says if there were more.
+  /// At most `at_most`, the deepest; `result.truncated` says if there were more.
   /// @param margin  how far tissue and probe may approach until the next search [m], > 0
-  void find(std::size_t probe, const ProbeMotion& motion, double margin, Contacts& result);
+  void find(std::size_t probe, const ProbeMotion& motion, double margin, std::size_t at_most,
+            ContactSet& result);
 
  private:
   struct Impl;

@@ -57,16 +57,17 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
 }
 
 void reduce_contacts(std::vector<FoundContact>& found, const RelativeMotion& motion,
-                     Contacts& result) {
+                     std::size_t at_most, ContactSet& result) {
   merge_duplicates(found);
   const auto deeper = [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(order_within(a), std::tie(a.organ, a.triangle, a.feature)) <
            std::tuple_cat(order_within(b), std::tie(b.organ, b.triangle, b.feature));
   };
-  result.truncated = found.size() > kMaxContactsPerProbe;
+  result.truncated = found.size() > at_most;
   if (result.truncated) {
-    std::nth_element(found.begin(), found.begin() + kMaxContactsPerProbe, found.end(), deeper);
-    found.resize(kMaxContactsPerProbe);
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(at_most),
+                     found.end(), deeper);
+    found.resize(at_most);
   }
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.triangle), order_within(a)) <

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "collision/relative_motion.h"
-#include "modules/messages/messages.h"
+#include "modules/core/touch.h"
 
 namespace palpate::collision {
 
@@ -33,9 +33,9 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
                          std::vector<FoundContact>& found);
 
 /// The same place and normal found twice (over triangles that share it) becomes one contact, of the
-/// lowest triangle. Keeps the deepest kMaxContactsPerProbe. Writes them, in W, sorted by
+/// lowest triangle. Keeps the deepest `at_most`. Writes them, in W, sorted by
 /// (organ, triangle), into result.contacts and result.truncated.
 void reduce_contacts(std::vector<FoundContact>& found, const RelativeMotion& motion,
-                     Contacts& result);
+                     std::size_t at_most, ContactSet& result);
 
 }  // namespace palpate::collision

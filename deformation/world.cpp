@@ -21,40 +21,17 @@ constexpr double kValidityOfEdge = 0.5;
 constexpr double kFarthestContact = 10;
 
 struct WorldOrgan {
+  std::string name;
   SimulatedOrgan simulated;
   IntegratorChoice integrator;
-  SurfaceTopology topology;
+  std::uint32_t generation = 1;
   std::vector<ContactRow> rows;
   double mean_edge = 0;
   bool replaced = false;  ///< its state, at the end of the last advance
 };
 
-SurfaceTopology make_topology(const scene::Organ& organ, std::uint32_t index,
-                              const OrganModel& model) {
-  SurfaceTopology topology;
-  topology.organ = index;
-  topology.generation = 1;
-  topology.name = organ.name;
-  topology.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count);
-  for (const Vec3& p : model.rest_positions) {
-    for (int axis = 0; axis < 3; ++axis) {
-      topology.rest_positions.push_back(static_cast<float>(p[axis]));
-    }
-  }
-  topology.triangles = model.triangles;
-  topology.fixed_nodes = model.fixed_nodes;
-  if (model.is_solid()) return topology;
-  const SpringNetwork& network = model.network();
-  for (std::size_t s = 0; s < network.springs.size(); ++s) {
-    const Spring& spring = network.springs[s];
-    topology.springs.push_back({spring.node_a, spring.node_b, network.family(s)});
-  }
-  return topology;
-}
-
-WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3& gravity,
-                      double period, const geometry::OrganShape& shape, ChunkRunner* runner,
-                      Guarding guarding) {
+WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double period,
+                      const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding) {
   auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
   auto dynamics = make_dynamics(organ, *model, period, runner);
   if (dynamics->largest_step() < kLeastStep) {
@@ -65,12 +42,9 @@ WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3
     throw InputError(message.str());
   }
   const IntegratorChoice integrator = choose_integrator(organ, *model, period);
-  SurfaceTopology topology = make_topology(organ, index, *model);
-  return {SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
-          integrator,
-          std::move(topology),
-          {},
-          geometry::mean_edge_length(shape.surface)};
+  return {organ.name, SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
+          integrator, 1,
+          {},         geometry::mean_edge_length(shape.surface)};
 }
 
 }  // namespace
@@ -78,7 +52,7 @@ WorldOrgan make_organ(const scene::Organ& organ, std::uint32_t index, const Vec3
 struct DeformationWorld::Impl {
   std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
-  Contacts accepted;  ///< buffer of set_contacts()
+  ContactSet accepted;  ///< buffer of set_contacts()
   double time = 0;
   bool contact_refused = false;  ///< since the last advance
 
@@ -159,9 +133,8 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
-    impl_->organs.push_back(make_organ(scene.organs[i], i, scene.gravity,
-                                       1 / scene.rates.deformation, rest_shapes[i], runner,
-                                       guarding));
+    impl_->organs.push_back(make_organ(scene.organs[i], scene.gravity, 1 / scene.rates.deformation,
+                                       rest_shapes[i], runner, guarding));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
 }
@@ -172,17 +145,25 @@ DeformationWorld::DeformationWorld(DeformationWorld&&) noexcept = default;
 std::size_t DeformationWorld::organ_count() const { return impl_->organs.size(); }
 std::size_t DeformationWorld::probe_count() const { return impl_->probes.size(); }
 
-const SurfaceTopology& DeformationWorld::topology(std::size_t organ) const {
-  return impl_->organs.at(organ).topology;
+const std::string& DeformationWorld::name(std::size_t organ) const {
+  return impl_->organs.at(organ).name;
 }
 
-void DeformationWorld::set_probe(const ProbeState& probe) {
-  if (probe.probe < impl_->probes.size()) impl_->probes[probe.probe].set_pose(probe.pose);
+const OrganModel& DeformationWorld::model(std::size_t organ) const {
+  return impl_->organs.at(organ).simulated.model();
 }
 
-void DeformationWorld::set_contacts(const Contacts& contacts) {
+std::uint32_t DeformationWorld::generation(std::size_t organ) const {
+  return impl_->organs.at(organ).generation;
+}
+
+void DeformationWorld::set_probe(std::size_t probe, const Pose& pose) {
+  if (probe < impl_->probes.size()) impl_->probes[probe].set_pose(pose);
+}
+
+void DeformationWorld::set_contacts(const ContactSet& contacts) {
   if (contacts.probe >= impl_->probes.size()) return;
-  Contacts& accepted = impl_->accepted;
+  ContactSet& accepted = impl_->accepted;
   accepted.probe_pose = contacts.probe_pose;
   accepted.contacts.clear();
   for (const Contact& contact : contacts.contacts) {
@@ -209,7 +190,7 @@ AdvanceReport DeformationWorld::advance(double period) {
 void DeformationWorld::reset() {
   for (auto& organ : impl_->organs) {
     organ.simulated.reset();
-    ++organ.topology.generation;
+    ++organ.generation;
   }
   for (auto& probe : impl_->probes) probe.reset();
   impl_->time = 0;
@@ -229,30 +210,24 @@ int DeformationWorld::substeps(std::size_t organ, double period) const {
   return impl_->organs.at(organ).simulated.substeps(period);
 }
 
-void DeformationWorld::write_node_positions(std::size_t organ_index, NodePositions& out) const {
+OrganReading DeformationWorld::read(std::size_t organ_index) const {
   const WorldOrgan& organ = impl_->organs.at(organ_index);
   const OrganModel& model = organ.simulated.model();
   const OrganState& state = organ.simulated.state();
-  out.organ = static_cast<std::uint32_t>(organ_index);
-  out.generation = organ.topology.generation;
-  out.volume = geometry::enclosed_volume(state.positions, model.triangles);
-  out.target_volume = std::max(state.target_volume, 0.0);
-  out.pressure = state.pressure;
-  out.kinetic_energy = kinetic_energy(model, state.velocities);
+  OrganReading reading;
+  reading.positions = state.positions;
+  reading.volume = geometry::enclosed_volume(state.positions, model.triangles);
+  reading.target_volume = std::max(state.target_volume, 0.0);
+  reading.pressure = state.pressure;
+  reading.kinetic_energy = kinetic_energy(model, state.velocities);
   // A difference of large sums may come out a little below its least value, rest.
-  out.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
-  out.positions.resize(3 * model.node_count());
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      out.positions[3 * i + static_cast<std::size_t>(axis)] =
-          static_cast<float>(state.positions[i][axis]);
-    }
-  }
+  reading.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
+  return reading;
 }
 
-void DeformationWorld::write_contact_model(std::size_t probe_index, ContactModel& out) const {
+LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {
   const ProbeContacts& probe = impl_->probes.at(probe_index);
-  out.probe = static_cast<std::uint32_t>(probe_index);
+  LocalLaw out;
   probe.response().write(out);
   out.friction_coefficient = probe.friction();
   out.validity_radius = 0;
@@ -262,6 +237,7 @@ void DeformationWorld::write_contact_model(std::size_t probe_index, ContactModel
           std::max(out.validity_radius, kValidityOfEdge * impl_->organs[i].mean_edge);
     }
   }
+  return out;
 }
 
 }  // namespace palpate::deformation

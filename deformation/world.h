@@ -3,15 +3,27 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "deformation/simulated_organ.h"
 #include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/touch.h"
 #include "modules/geometry/organ_shape.h"
-#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
+
+/// What an organ is at the moment. The span holds until the next advance() or reset().
+struct OrganReading {
+  std::span<const Vec3> positions;  ///< surface nodes, then the others, in W [m]
+  double volume = 0;                ///< enclosed [m³]
+  double target_volume = 0;         ///< V* [m³]
+  double pressure = 0;              ///< of the contents over the outside, p = −λ [Pa]
+  double kinetic_energy = 0;        ///< [J]
+  double elastic_energy = 0;        ///< [J]
+};
 
 class DeformationWorld {
  public:
@@ -26,14 +38,17 @@ class DeformationWorld {
 
   std::size_t organ_count() const;
   std::size_t probe_count() const;
-  const SurfaceTopology& topology(std::size_t organ) const;  ///< header is the caller's to fill
+  const std::string& name(std::size_t organ) const;  ///< as the scene calls it
+  const OrganModel& model(std::size_t organ) const;
+  std::uint32_t generation(std::size_t organ) const;  ///< counts up from 1 with each reset
 
-  /// Newest pose of a probe. Contacts are carried along rigidly with it until the next contacts.
-  void set_probe(const ProbeState& probe);
-  /// Newest contacts of a probe; replaces those it had. Entries naming no organ or triangle of
-  /// this world are ignored; those metres away from their tissue or probe are refused, too, and the
-  /// next advance says so.
-  void set_contacts(const Contacts& contacts);
+  /// Newest pose X_WP of a probe. Contacts are carried along rigidly with it until the next ones.
+  /// A probe the scene does not have is ignored.
+  void set_probe(std::size_t probe, const Pose& pose);
+  /// Newest contacts of the probe they name; replaces those it had. Entries naming no organ or
+  /// triangle of this world are ignored; those metres away from their tissue or probe are refused,
+  /// too, and the next advance says so.
+  void set_contacts(const ContactSet& contacts);
 
   /// Advances every organ by `period` [s] in its stable sub-steps. Contacts hold unilaterally,
   /// with friction, inside the volume solve.
@@ -47,10 +62,10 @@ class DeformationWorld {
   int substeps(std::size_t organ, double period) const;
   const IntegratorChoice& integrator(std::size_t organ) const;
 
-  /// Positions, volume, pressure and energies after the last advance(). Headers are the caller's.
-  void write_node_positions(std::size_t organ, NodePositions& out) const;
+  /// After the last advance().
+  OrganReading read(std::size_t organ) const;
   /// Mean force over the last advance() and how it varies with the probe's position.
-  void write_contact_model(std::size_t probe, ContactModel& out) const;
+  LocalLaw local_law(std::size_t probe) const;
 
  private:
   struct Impl;

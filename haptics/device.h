@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/messages/messages.h"
+#include "modules/core/types.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::haptics {
@@ -43,9 +43,9 @@ class TopicDevice : public Device {
   static constexpr double kRampDelay = 0.02;    ///< how far behind a steady motion it is [s]
 
   explicit TopicDevice(const scene::TopicDevice& config);
-  /// New commanded pose, received at session time `time` [s]. Its quaternion is normalised; its
-  /// twist is not used. Ignored if not finite, beyond 1000 m, or without a rotation.
-  void command(const ProbeState& commanded, double time);
+  /// New commanded pose. Its quaternion is normalised. Ignored if not finite, beyond 1000 m, or
+  /// without a rotation.
+  void command(const Pose& commanded, std::uint32_t buttons);
   DeviceSample read(double time) override;
 
  private:

@@ -1,7 +1,7 @@
 #include "haptics/force_limits.h"
 
 #include "haptics/vector_checks.h"
-#include "modules/messages/messages.h"
+#include "modules/core/touch.h"
 
 namespace palpate::haptics {
 

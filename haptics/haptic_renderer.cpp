@@ -17,11 +17,11 @@ double freshness(double age, const scene::Haptics& limits) {
 }
 
 /// |f|²/(2k), k the stiffness along the normal, at least 1 N/m; at most 1 kJ.
-double returnable_energy(const ContactModel& model, const Vec3& p_W) {
+double returnable_energy(const LocalLaw& law, const Vec3& p_W) {
   constexpr double kSoftest = 1, kMost = 1e3;  // [N/m], [J]
-  const double stiffness = model.normal.dot(model.stiffness * model.normal);
+  const double stiffness = law.normal.dot(law.stiffness * law.normal);
   const double energy =
-      evaluate(model, p_W).wrench.force.squaredNorm() / (2 * std::max(kSoftest, stiffness));
+      evaluate(law, p_W).wrench.force.squaredNorm() / (2 * std::max(kSoftest, stiffness));
   return energy < kMost ? energy : kMost;
 }
 
@@ -42,16 +42,16 @@ HapticRenderer::HapticRenderer(const scene::Haptics& limits, double period)
 
 void HapticRenderer::reset() { *this = HapticRenderer(limits_, period_); }
 
-void HapticRenderer::update_model(const ContactModel& model, double time) {
-  if (!is_usable(model) || !std::isfinite(time)) {
-    ++refused_models_;
+void HapticRenderer::update_law(const LocalLaw& law, double time) {
+  if (!is_usable(law) || !std::isfinite(time)) {
+    ++refused_laws_;
     refused_since_tick_ = true;
     return;
   }
-  next_ = {model, time, true};
+  next_ = {law, time, true};
 }
 
-void HapticRenderer::tick(double time, const DeviceSample& device, HapticForce& out) {
+void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce& out) {
   std::uint32_t limits = refused_since_tick_ ? kForceNotFinite : kForceNotLimited;
   refused_since_tick_ = false;
   Wrench wanted;
@@ -83,24 +83,23 @@ double HapticRenderer::age(const Received& received, double time) const {
 }
 
 Wrench HapticRenderer::propose(const Vec3& p_W, double time, std::uint32_t& limits) {
-  if (next_.valid) begin_hand_over(p_W, time);
-  if (hand_over_left_ > 0) --hand_over_left_;
+  if (next_.valid) begin_cross_fade(p_W, time);
+  if (cross_fade_left_ > 0) --cross_fade_left_;
   return wrench_at(p_W, time, limits);
 }
 
-/// Model, what is left of the hand-over, fade.
+/// Model, what is left of the cross-fade, fade.
 Wrench HapticRenderer::wrench_at(const Vec3& p_W, double time, std::uint32_t& limits) const {
   if (!current_.valid) return {};
-  const ContactModel& model = current_.model;
-  const ModelForce modelled = evaluate(model, p_W);
+  const LocalLaw& law = current_.law;
+  const LawForce modelled = evaluate(law, p_W);
   if (modelled.beyond_validity) limits |= kForceOutOfValidity;
   Wrench wrench = modelled.wrench;
-  if (hand_over_left_ > 0) {
-    const double share = static_cast<double>(hand_over_left_) / hand_over_ticks_;
-    wrench.force += share * hand_over_.force;
-    wrench.torque += share * hand_over_.torque;
-    if (model.touching)
-      wrench.force -= std::min(0.0, wrench.force.dot(model.normal)) * model.normal;
+  if (cross_fade_left_ > 0) {
+    const double share = static_cast<double>(cross_fade_left_) / cross_fade_ticks_;
+    wrench.force += share * cross_fade_.force;
+    wrench.torque += share * cross_fade_.torque;
+    if (law.touching) wrench.force -= std::min(0.0, wrench.force.dot(law.normal)) * law.normal;
   }
   const double factor = freshness(age(current_, time), limits_);
   if (factor < 1) limits |= kForceStaleFade;
@@ -109,18 +108,18 @@ Wrench HapticRenderer::wrench_at(const Vec3& p_W, double time, std::uint32_t& li
 
 /// Both models are compared at the same place, so that only their difference is smoothed and
 /// never the probe's motion.
-void HapticRenderer::begin_hand_over(const Vec3& p_W, double time) {
+void HapticRenderer::begin_cross_fade(const Vec3& p_W, double time) {
   std::uint32_t ignored = 0;
   const Wrench before = wrench_at(p_W, time, ignored);
-  const double since_last = current_.valid ? std::abs(next_.time - current_.time) : kHandOverTime;
-  hand_over_ticks_ =
-      std::max(1, static_cast<int>(std::lround(std::min(since_last, kHandOverTime) / period_)));
+  const double since_last = current_.valid ? std::abs(next_.time - current_.time) : kCrossFadeTime;
+  cross_fade_ticks_ =
+      std::max(1, static_cast<int>(std::lround(std::min(since_last, kCrossFadeTime) / period_)));
   current_ = next_;
   next_.valid = false;
-  hand_over_left_ = 0;
+  cross_fade_left_ = 0;
   const Wrench after = wrench_at(p_W, time, ignored);
-  hand_over_ = {before.force - after.force, before.torque - after.torque};
-  hand_over_left_ = hand_over_.is_finite() ? hand_over_ticks_ : 0;
+  cross_fade_ = {before.force - after.force, before.torque - after.torque};
+  cross_fade_left_ = cross_fade_.is_finite() ? cross_fade_ticks_ : 0;
 }
 
 Vec3 HapticRenderer::passive_force(const Vec3& wanted, const DeviceSample& device,
@@ -131,7 +130,7 @@ Vec3 HapticRenderer::passive_force(const Vec3& wanted, const DeviceSample& devic
     return wanted;
   }
   const Vec3& p_W = device.pose.position;
-  passivity_.observe(p_W, returnable_energy(current_.model, p_W));
+  passivity_.observe(p_W, returnable_energy(current_.law, p_W));
   const Vec3 force = passivity_.controlled(wanted, device.twist.linear);
   if (force != wanted) limits |= kForcePassivity;
   return force;

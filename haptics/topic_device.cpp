@@ -32,11 +32,11 @@ TopicDevice::TopicDevice(const scene::TopicDevice& config) {
   target_ = current_.pose;
 }
 
-void TopicDevice::command(const ProbeState& commanded, double /*time*/) {
-  const std::optional<Pose> pose = usable_pose(commanded.pose);
+void TopicDevice::command(const Pose& commanded, std::uint32_t buttons) {
+  const std::optional<Pose> pose = usable_pose(commanded);
   if (!pose) return;
   target_ = *pose;
-  current_.buttons = commanded.buttons;
+  current_.buttons = buttons;
 }
 
 DeviceSample TopicDevice::read(double time) {

@@ -8,6 +8,7 @@
 #include <ostream>
 #include <set>
 
+#include "deformation/organ_messages.h"
 #include "deformation/world.h"
 #include "haptics/device.h"
 #include "modules/core/error.h"
@@ -48,7 +49,7 @@ std::string calibration_text(const scene::Organ& organ) {
 std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& shape,
                        const deformation::DeformationWorld& world, std::size_t index,
                        double period) {
-  const SurfaceTopology& topology = world.topology(index);
+  const SurfaceTopology& topology = deformation::surface_message(world, index);
   const double volume = geometry::enclosed_volume(shape.surface.nodes, shape.surface.triangles);
   std::array<std::size_t, 3> springs{};
   for (const auto& spring : topology.springs) ++springs[static_cast<std::size_t>(spring.family)];
@@ -95,7 +96,7 @@ double reach(const scene::ProbeShape& shape, const Vec3& n) {
 /// Presses the first probe into a triangle of the first organ that is free to move, `depth` [m]
 /// deep: an implicit step that has nothing to do is no measure of one that has.
 void press(deformation::DeformationWorld& world, const scene::Scene& scene, double depth) {
-  const SurfaceTopology& topology = world.topology(0);
+  const SurfaceTopology& topology = deformation::surface_message(world, 0);
   const std::set<std::uint32_t> fixed(topology.fixed_nodes.begin(), topology.fixed_nodes.end());
   const auto free = std::find_if(
       topology.triangles.begin(), topology.triangles.end(), [&](const geometry::Triangle& t) {
@@ -122,7 +123,7 @@ void press(deformation::DeformationWorld& world, const scene::Scene& scene, doub
   contacts.probe_pose = probe.pose;
   contacts.contacts.push_back(contact);
   world.set_contacts(contacts);
-  world.set_probe(probe);
+  world.set_probe(probe.probe, probe.pose);
 }
 
 /// Wall time of an advance by one period with a probe that presses the organ once a second, 1 mm

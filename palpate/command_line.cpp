@@ -6,15 +6,16 @@
 #include <functional>
 #include <iostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/recording/commands.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/program.h"
-#include "palpate/chart_command.h"
 #include "palpate/check_command.h"
 #include "palpate/mesh_command.h"
 #include "palpate/replay_command.h"
 #include "palpate/run_command.h"
+#include "palpate/study_command.h"
 
 namespace palpate::launcher {
 namespace {
@@ -44,6 +45,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::Range(0.0, 1e6));
   command.add_option("--record", options.record, "Recording to write (MCAP)");
   command.add_option("--summary", options.summary, "Text file for the summary of the end");
+  auto* lockstep = command.add_flag(
+      "--lockstep", options.lockstep,
+      "Data-driven, without a wall clock, as fast as the machine allows: same bits every time");
+  command.add_flag("--in-process", options.in_process, "The same bits in one process")
+      ->excludes(lockstep);
   command.add_option("--only", options.only, "Start only these modules, joining a running session")
       ->delimiter(',');
   command.add_flag_callback(
@@ -78,6 +84,17 @@ void add_inspect(CLI::App& app, recording::InspectOptions& options, Job& job) {
       [&] { job = [&] { return recording::run_inspect_command(options, std::cout, std::cerr); }; });
 }
 
+void add_diff(CLI::App& app, recording::DiffOptions& options, Job& job) {
+  auto* command = app.add_subcommand("diff", "Compare two recordings sample by sample");
+  command->add_option("A", options.a, "Recording (MCAP)")->required();
+  command->add_option("B", options.b, "Recording (MCAP)")->required();
+  command->add_option("--ignore", options.ignore, "Topics, and fields, that may differ")
+      ->delimiter(',');
+  command->add_option("--csv", options.csv, "File for a row per sample and field that differ");
+  command->final_callback(
+      [&] { job = [&] { return recording::run_diff_command(options, std::cout, std::cerr); }; });
+}
+
 void add_check(CLI::App& app, std::filesystem::path& scene, double& measure_for, Job& job) {
   auto* command = app.add_subcommand("check", "Print what a scene holds and what it costs here");
   command->add_option("SCENE", scene, "Scene file (YAML)")->required();
@@ -100,33 +117,14 @@ void add_mesh(CLI::App& app, geometry::MeshCommandOptions& options, Job& job) {
       [&] { job = [&] { return geometry::run_mesh_command(options, std::cout, std::cerr); }; });
 }
 
-/// What follows belongs to the program, --help too.
-CLI::App* add_program(CLI::App& app, const char* name, const char* meaning, const char* program,
-                      Job& job) {
-  auto* command = app.add_subcommand(name, meaning);
+/// What follows the word belongs to the program, --help too.
+void add_study(CLI::App& app, const Study& study, Job& job) {
+  auto* command = app.add_subcommand(study.word, study.meaning);
   command->prefix_command();
   command->set_help_flag();
-  command->final_callback([&job, command, program] {
+  command->final_callback([&job, command, program = std::string("palpate-") + study.word] {
     job = [words = command->remaining(), program]() -> int {
-      become(own_program_folder() / program, words);
-    };
-  });
-  return command;
-}
-
-void add_chart(CLI::App& app, Job& job) {
-  auto* command = app.add_subcommand(
-      "chart", "Measure and draw speed against accuracy: chart [WHAT] [OPTIONS]");
-  std::string names;
-  for (const auto& name : chart_names()) names += " " + name;
-  command->footer(
-      "WHAT:" + names +
-      ", the first where none is named\n`palpate chart WHAT --help` lists its options.");
-  command->prefix_command();
-  command->final_callback([&job, command] {
-    job = [words = command->remaining()]() mutable -> int {
-      const std::string program = chart_program(words);
-      become(own_program_folder() / program, words);
+      become(program_folder() / program, words);
     };
   });
 }
@@ -152,21 +150,17 @@ int palpate_command(int argc, char** argv) {
   RunOptions replay = run;
   std::filesystem::path recording, scene;
   recording::InspectOptions inspect;
+  recording::DiffOptions diff;
   geometry::MeshCommandOptions mesh;
   double measure_for = 1;
   Job job;
   add_run(app, run, job);
   add_replay(app, recording, replay, job);
   add_inspect(app, inspect, job);
+  add_diff(app, diff, job);
   add_check(app, scene, measure_for, job);
   add_mesh(app, mesh, job);
-  add_chart(app, job);
-  add_program(app, "plan", "Find the cheapest model, mesh and step that meet a scene's needs",
-              "palpate-plan", job);
-  add_program(app, "stability", "Map where each method fails, measured and predicted",
-              "palpate-stability", job);
-  add_program(app, "fuzz", "Run random scenes, looking for one that fails without a guard noticing",
-              "palpate-fuzz", job);
+  for (const Study& study : studies()) add_study(app, study, job);
   if (argc > 1 && refuse_unknown(argv[1], app)) return kExitBadInput;
   return runtime::run_program(app, argc, argv, [&] {
     if (no_display()) run.headless = replay.headless = true;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <ostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/recording/commands.h"
 #include "modules/recording/player.h"
@@ -52,9 +53,9 @@ class TemporaryFolder {
 std::string recorded_scene(const std::filesystem::path& recording) {
   recording::SampleReader reader(recording);
   while (const auto sample = reader.next()) {
-    recording::AnyMessage message;
+    messages::AnyMessage message;
     if (sample->topic->name != bus::kScene.name) continue;
-    if (sample->topic->decode(sample->payload, message) != nullptr) continue;
+    if (sample->topic->type->decode(sample->payload, message) != nullptr) continue;
     if (const auto* scene = std::get_if<SceneDescription>(&message)) return scene->resolved_text;
   }
   throw InputError(recording.string() + ": holds no scene: it began after the session or is torn");
@@ -68,7 +69,7 @@ int show(const std::filesystem::path& recording, const RunOptions& run, std::ost
   viewing.scene = folder.write("scene.yaml", recorded_scene(recording));
   viewing.only = {"visualizer"};
   viewing.record.clear();
-  ModuleGroup visualizer(module_commands(viewing, own_program_folder()), log);
+  ModuleGroup visualizer(module_commands(viewing, program_folder()), log);
   const bool shown = visualizer.any_running();
   if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
 

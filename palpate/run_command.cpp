@@ -5,6 +5,8 @@
 #include <fstream>
 #include <ostream>
 
+#include "modules/bus/dds_bus.h"
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
@@ -12,6 +14,7 @@
 #include "modules/runtime/session.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
+#include "palpate/lockstep_run.h"
 #include "palpate/module_group.h"
 #include "palpate/session_monitor.h"
 #include "palpate/session_text.h"
@@ -23,14 +26,6 @@ constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 /// A session that already runs has been heard by then: twice the longest discovery measured.
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
 constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
-
-SceneDescription describe(const scene::Scene& scene, const std::string& digest) {
-  SceneDescription description;
-  description.name = scene.name;
-  description.digest = digest;
-  description.resolved_text = scene::resolved_text(scene);
-  return description;
-}
 
 std::string joined(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
@@ -45,7 +40,7 @@ class Run {
         log_(log),
         scene_(scene::load_scene(options.scene)),
         digest_(scene::scene_digest(scene_)),
-        modules_(module_commands(options, own_program_folder()), log),
+        modules_(module_commands(options, program_folder()), log),
         bus_(options.bus),
         session_(bus_, digest_),
         conductor_(bus_),
@@ -56,7 +51,7 @@ class Run {
   }
 
   int perform() {
-    SceneDescription description = describe(scene_, digest_);
+    SceneDescription description = runtime::scene_description(scene_);
     scenes_.write(description);
     log_ << fmt::format("palpate: session {} of scene {}\n", options_.bus.session, scene_.name);
     if (wait_until_ready()) {
@@ -140,12 +135,7 @@ class Run {
     if (began_ns_ == 0) return;
     end.last_words = modules_.last_words();
     const std::string text = summary(monitor_.tally(), end);
-    out_ << text << std::flush;
-    if (options_.summary.empty()) return;
-    std::ofstream file(options_.summary);
-    if (!(file << text << std::flush)) {
-      throw std::runtime_error("cannot write " + options_.summary.string());
-    }
+    write_run_summary(options_, text, out_);
   }
 
   const RunOptions& options_;
@@ -155,7 +145,7 @@ class Run {
   scene::Scene scene_;
   std::string digest_;
   ModuleGroup modules_;  // before the bus: processes are born from a program of one thread
-  bus::Bus bus_;
+  bus::DdsBus bus_;
   runtime::Session session_;
   runtime::SessionConductor conductor_;
   bus::Writer<SceneDescription> scenes_;
@@ -170,7 +160,18 @@ class Run {
 
 }  // namespace
 
+void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out) {
+  out << text << std::flush;
+  if (options.summary.empty()) return;
+  std::ofstream file(options.summary);
+  if (!(file << text << std::flush)) {
+    throw std::runtime_error("cannot write " + options.summary.string());
+  }
+}
+
 int run_command(const RunOptions& options, std::ostream& out, std::ostream& log) {
+  if (options.in_process) return run_in_process(options, out, log);
+  if (options.lockstep) return run_lockstep(options, out, log);
   return Run(options, out, log).perform();
 }
 

@@ -37,6 +37,18 @@ bool wanted(const RunOptions& options, std::string_view module) {
          std::find(options.only.begin(), options.only.end(), module) != options.only.end();
 }
 
+/// Everybody learns who takes part.
+void add_lockstep(const RunOptions& options, ModuleCommand& command) {
+  if (!options.lockstep) return;
+  std::string participants;
+  if (!options.record.empty()) participants = "recorder";
+  for (const auto module : kModules) {
+    if (wanted(options, module))
+      participants += (participants.empty() ? "" : ",") + std::string(module);
+  }
+  command.arguments.insert(command.arguments.end(), {"--lockstep", participants});
+}
+
 ModuleCommand module_command(const RunOptions& options, std::string_view module,
                              const std::filesystem::path& folder) {
   ModuleCommand command;
@@ -45,6 +57,7 @@ ModuleCommand module_command(const RunOptions& options, std::string_view module,
   command.arguments = {std::filesystem::absolute(options.scene).string()};
   for (auto& argument : session_arguments(options.bus)) command.arguments.push_back(argument);
   if (!options.realtime) command.arguments.push_back("--no-realtime");
+  add_lockstep(options, command);
   if (module == "visualizer") {
     if (options.headless) command.arguments.push_back("--headless");
     if (!options.frames.empty()) {
@@ -66,6 +79,12 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
     ModuleCommand recorder{
         "recorder", program_folder / "palpate-recorder", {options.record.string()}, false};
     for (auto& argument : session_arguments(options.bus)) recorder.arguments.push_back(argument);
+    if (options.lockstep) {
+      recorder.reports_status = true;
+      recorder.arguments.insert(recorder.arguments.end(),
+                                {"--scene", std::filesystem::absolute(options.scene).string()});
+      add_lockstep(options, recorder);
+    }
     commands.push_back(std::move(recorder));
   }
   for (const auto module : kModules) {
@@ -90,10 +109,6 @@ std::string random_session_name() {
   std::string name = "s";
   for (int i = 0; i < 8; ++i) name += kDigits[random() % kDigits.size()];
   return name;
-}
-
-std::filesystem::path own_program_folder() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
 }
 
 }  // namespace palpate::launcher

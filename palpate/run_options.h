@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct RunOptions {
   bool headless = false;  ///< no window
   bool visualizer = true;
   bool realtime = true;
+  bool lockstep = false;          ///< without a wall clock, as fast as the machine allows
+  bool in_process = false;        ///< the same in one process
+  double ready_deadline = 60;     ///< lockstep: longest wait for a process [s]
   std::vector<std::string> only;  ///< modules to start; empty: all
   std::filesystem::path record;   ///< recording to write; empty: none
   std::filesystem::path frames;   ///< folder for pictures; empty: none
@@ -41,10 +45,11 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
 /// As one types it.
 std::string command_text(const ModuleCommand& command);
 
+/// Prints the summary, and writes it where options.summary says.
+/// @throws std::runtime_error if it cannot be written
+void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out);
+
 /// A name no other session has: "s" and 8 random hex digits.
 std::string random_session_name();
-
-/// The folder of the running program.
-std::filesystem::path own_program_folder();
 
 }  // namespace palpate::launcher

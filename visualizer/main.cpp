@@ -1,6 +1,6 @@
 #include <CLI/CLI.hpp>
 
-#include "visualizer/visualizer_process.h"
+#include "visualizer/stage.h"
 
 int main(int argc, char** argv) {
   palpate::visualizer::VisualizerOptions options;

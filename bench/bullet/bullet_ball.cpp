@@ -34,9 +34,9 @@ class TimedWorld : public btSoftRigidDynamicsWorld {
  public:
   using btSoftRigidDynamicsWorld::btSoftRigidDynamicsWorld;
   void performDiscreteCollisionDetection() override {
-    const double begin = processor_time();
+    const double begin = report::processor_time();
     btSoftRigidDynamicsWorld::performDiscreteCollisionDetection();
-    search_seconds += processor_time() - begin;
+    search_seconds += report::processor_time() - begin;
   }
   double search_seconds = 0;
 };
@@ -136,9 +136,9 @@ void BulletBall::step(double height) {
     world_->plates[static_cast<std::size_t>(i)]->setWorldTransform(
         at_height(box_center(i == 0 ? 1 : -1, height)));
   }
-  const double begin = processor_time();
+  const double begin = report::processor_time();
   world_->world.stepSimulation(btScalar(kStep), 0);
-  world_->step_seconds += processor_time() - begin;
+  world_->step_seconds += report::processor_time() - begin;
 }
 
 double BulletBall::solver_seconds() const {

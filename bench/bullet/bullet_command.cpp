@@ -33,8 +33,9 @@ constexpr std::size_t kLarge = 5000;  // nodes
 std::string name_of(const BulletSettings& settings) {
   std::string name = "iterations " + std::to_string(settings.position_iterations);
   if (settings.volume_stiffness > 0)
-    name += text_of(", kVC V0 = %.0e Pa", settings.volume_stiffness);
-  if (settings.gas_pressure > 0) name += text_of(", kPR/V0 = %.0f Pa", settings.gas_pressure);
+    name += report::text_of(", kVC V0 = %.0e Pa", settings.volume_stiffness);
+  if (settings.gas_pressure > 0)
+    name += report::text_of(", kPR/V0 = %.0f Pa", settings.gas_pressure);
   return name;
 }
 
@@ -118,12 +119,12 @@ Cost median_of(const std::vector<Cost>& turns) {
     solver.push_back(turn.solver);
     whole.push_back(turn.whole);
   }
-  return {median(solver), median(whole)};
+  return {report::median(solver), report::median(whole)};
 }
 
 /// Runs ours and the best of Bullet's again, in turn.
 void take_turns(const std::vector<Setting>& settings, const Squeeze& squeeze, int timings,
-                Progress& progress, const std::function<void()>& keep_going,
+                report::Progress& progress, const std::function<void()>& keep_going,
                 std::span<TableRow> rows) {
   const std::vector<TableRow> first(rows.begin(), rows.end());
   const auto bullets = candidates(first, rows[0].nodes, false, Work::kWhole);
@@ -140,7 +141,7 @@ void take_turns(const std::vector<Setting>& settings, const Squeeze& squeeze, in
   }
 }
 
-void compare_size(const BulletOptions& options, std::size_t nodes, Progress& progress,
+void compare_size(const BulletOptions& options, std::size_t nodes, report::Progress& progress,
                   const std::function<void()>& keep_going, std::vector<TableRow>& rows) {
   const bool large = nodes > kLarge;
   const Squeeze squeeze = large ? Squeeze{0.5, 250, 250} : Squeeze{};
@@ -161,7 +162,7 @@ void compare_size(const BulletOptions& options, std::size_t nodes, Progress& pro
 
 /// Empty where there is none.
 std::string cell_of(const char* format, double value) {
-  return std::isnan(value) ? "" : text_of(format, value);
+  return std::isnan(value) ? "" : report::text_of(format, value);
 }
 
 std::vector<std::string> cells(const TableRow& row) {
@@ -171,8 +172,8 @@ std::vector<std::string> cells(const TableRow& row) {
           row.setting,
           cell_of("%.1f", o.cost.solver),
           cell_of("%.1f", o.cost.whole),
-          text_of("%.2e", o.peak),
-          text_of("%.2e", o.held),
+          report::text_of("%.2e", o.peak),
+          report::text_of("%.2e", o.held),
           cell_of("%.0f", o.pressure),
           std::to_string(o.contacts),
           o.verdict()};
@@ -198,10 +199,10 @@ std::string times_fewer(const TableRow& bullet, const TableRow& ours, Work work)
   for (std::size_t k = 0; k < std::min(bullet.turns.size(), ours.turns.size()); ++k) {
     ratios.push_back(time_of(bullet.turns[k], work) / time_of(ours.turns[k], work));
   }
-  if (ratios.size() == 1) return text_of("%.2f", ratios[0]);
+  if (ratios.size() == 1) return report::text_of("%.2f", ratios[0]);
   const auto [worst, best] = std::minmax_element(ratios.begin(), ratios.end());
-  return text_of("%.2f", median(ratios)) + " (" + text_of("%.2f", *worst) + " to " +
-         text_of("%.2f", *best) + ")";
+  return report::text_of("%.2f", report::median(ratios)) + " (" + report::text_of("%.2f", *worst) +
+         " to " + report::text_of("%.2f", *best) + ")";
 }
 
 void print_ratios_of(const std::vector<TableRow>& rows, std::size_t nodes, Work work,
@@ -225,9 +226,9 @@ void print_ratios_of(const std::vector<TableRow>& rows, std::size_t nodes, Work 
     out << "  " << row->setting << ": " << times_fewer(*cheap, *row, work)
         << " x fewer us per step than the cheapest, " << times_fewer(*accurate, *row, work)
         << " x than the most accurate; held volume error "
-        << text_of("%.1e", accurate->outcome.held / row->outcome.held)
+        << report::text_of("%.1e", accurate->outcome.held / row->outcome.held)
         << " x smaller than the latter's; contents push with "
-        << text_of("%.0f Pa", row->outcome.pressure) << ", " << row->outcome.contacts
+        << report::text_of("%.0f Pa", row->outcome.pressure) << ", " << row->outcome.contacts
         << " contacts\n";
   }
 }
@@ -236,7 +237,7 @@ void print_ratios_of(const std::vector<TableRow>& rows, std::size_t nodes, Work 
 
 std::vector<TableRow> compare(const BulletOptions& options, std::ostream& log,
                               const std::function<void()>& keep_going) {
-  Progress progress(log, [] { return false; });
+  report::Progress progress(log, [] { return false; });
   std::vector<TableRow> rows;
   for (const std::size_t nodes : options.nodes) {
     compare_size(options, nodes, progress, keep_going, rows);
@@ -269,27 +270,27 @@ void print_ratios(const std::vector<TableRow>& rows, std::ostream& out) {
 }
 
 void write_table(const std::vector<TableRow>& rows, const std::filesystem::path& file) {
-  TableFile table(file, columns());
+  report::TableFile table(file, columns());
   for (const TableRow& row : rows) table.write_row(cells(row));
   table.finish();
 }
 
 int run_bullet(const BulletOptions& options, std::ostream& out, std::ostream& log) {
-  if (!options.out.empty()) make_out_folder(options.out);
+  if (!options.out.empty()) report::make_out_folder(options.out);
   const runtime::StopSignal stop;
   try {
     const auto rows = compare(options, log, [&] {
-      if (stop.requested()) throw Stopped{};
+      if (stop.requested()) throw report::Stopped{};
     });
-    out << "ball squeezed to 50 %, h = 2 ms, " << machine_name()
+    out << "ball squeezed to 50 %, h = 2 ms, " << report::machine_name()
         << ", one thread, processor time; on a shared machine only ratios of one run mean much\n";
     print_table(rows, out);
     print_ratios(rows, out);
     if (!options.out.empty()) write_table(rows, options.out / "bullet.csv");
     return kExitDone;
-  } catch (const Stopped&) {
+  } catch (const report::Stopped&) {
     log << "stopped" << std::endl;
-    return kExitStopped;
+    return report::kExitStopped;
   }
 }
 

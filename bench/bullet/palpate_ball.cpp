@@ -88,9 +88,9 @@ void PalpateBall::step(double height) {
   const double h = kStep / substeps_, speed = (height - height_) / kStep;
   for (int k = 0; k < substeps_; ++k) {
     find_contacts(height_ + k * h * speed, speed);
-    const double begin = processor_time();
+    const double begin = report::processor_time();
     dynamics_->step(h, rows_, state_);
-    solver_seconds_ += processor_time() - begin;
+    solver_seconds_ += report::processor_time() - begin;
     keep_impulses();
   }
   height_ = height;
@@ -101,8 +101,8 @@ double PalpateBall::volume() const {
 }
 
 PipelineBall::PipelineBall(const Ball& ball, const Squeeze& squeeze)
-    : pipeline_(plates_scene(ball, squeeze), {ball.surface},
-                std::vector<geometry::TriangleSurface>(2)) {}
+    : pipeline_(plates_scene(ball, squeeze),
+                {{ball.surface}, std::vector<geometry::TriangleSurface>(2)}) {}
 
 void PipelineBall::step(double) { pipeline_.tick(); }
 

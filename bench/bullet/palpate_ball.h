@@ -4,7 +4,7 @@
 #include "bench/bullet/squeezed_ball.h"
 #include "deformation/steppers/organ_dynamics.h"
 #include "haptics/device.h"
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 
 namespace palpate::bench {
 
@@ -59,7 +59,7 @@ class PipelineBall : public Squeezer {
   std::size_t contact_count() const override;
 
  private:
-  pipeline::Pipeline pipeline_;
+  session::InProcess pipeline_;
 };
 
 }  // namespace palpate::bench

@@ -53,9 +53,9 @@ Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void
   for (int k = 1; k <= steps && outcome.finite; ++k) {
     keep_going();
     const double closed = smooth(std::min(1.0, double(k) / squeeze.closing_steps));
-    const double begin = processor_time();
+    const double begin = report::processor_time();
     squeezer.step(kBallRadius * (1 - squeeze.compression * closed));
-    spent += processor_time() - begin;
+    spent += report::processor_time() - begin;
 
     const double ratio = squeezer.volume() / rest_volume;
     outcome.finite = std::isfinite(ratio);

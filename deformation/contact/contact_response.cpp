@@ -51,7 +51,7 @@ void ContactResponse::end(const Vec3& probe_origin, double stiffness_limit) {
   touched_before_ = true;
 }
 
-void ContactResponse::write(ContactModel& out) const {
+void ContactResponse::write(LocalLaw& out) const {
   out.touching = touching_;
   out.anchor = origin_;
   out.force = force_;

@@ -1,7 +1,7 @@
 // What the tissue answers to one probe: force, and how it changes as the probe moves.
 #pragma once
 
-#include "modules/messages/messages.h"
+#include "modules/core/touch.h"
 
 namespace palpate::deformation {
 
@@ -27,8 +27,8 @@ class ContactResponse {
   /// @param stiffness_limit  largest stiffness believed [N/m]
   void end(const Vec3& probe_origin, double stiffness_limit);
 
-  /// Everything but header, probe, friction and validity radius.
-  void write(ContactModel& out) const;
+  /// Everything but friction and validity radius.
+  void write(LocalLaw& out) const;
 
  private:
   double period_ = 0;

@@ -39,17 +39,17 @@ void ProbeContacts::set_pose(const Pose& pose) {
   placed_ = true;
 }
 
-void ProbeContacts::set_contacts(const Contacts& message) {
+void ProbeContacts::set_contacts(const ContactSet& newest) {
   std::swap(previous_contacts_, contacts_);
   contacts_.clear();
   auto previous = previous_contacts_.begin();
-  for (const Contact& contact : message.contacts) {
+  for (const Contact& contact : newest.contacts) {
     CarriedContact carried;
     carried.organ = contact.organ;
     carried.triangle = contact.triangle;
     carried.weights = contact.barycentric;
-    carried.point_P = message.probe_pose.to_body(contact.point_on_probe);
-    carried.normal_P = message.probe_pose.rotation.conjugate() * contact.normal;
+    carried.point_P = newest.probe_pose.to_body(contact.point_on_probe);
+    carried.normal_P = newest.probe_pose.rotation.conjugate() * contact.normal;
     // Both lists are sorted by (organ, triangle).
     while (previous != previous_contacts_.end() && std::pair(previous->organ, previous->triangle) <
                                                        std::pair(carried.organ, carried.triangle)) {

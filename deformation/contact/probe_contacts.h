@@ -7,7 +7,7 @@
 #include "deformation/contact/contact_response.h"
 #include "deformation/contact/contact_solve.h"
 #include "deformation/model/organ_state.h"
-#include "modules/messages/messages.h"
+#include "modules/core/touch.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
@@ -42,7 +42,7 @@ class ProbeContacts {
   void reset();
   void set_pose(const Pose& pose);
   /// Replaces the contacts; a contact on a triangle that had one starts from its impulses.
-  void set_contacts(const Contacts& contacts);
+  void set_contacts(const ContactSet& contacts);
 
   /// Begins an advance of `period` [s], in which the probe moves from where it was to the newest
   /// pose. @returns false if it jumped: its contacts are dropped

@@ -27,13 +27,13 @@
 
 #include <vector>
 
+#include "modules/core/organ_limits.h"
 #include "modules/geometry/triangle_surface.h"
-#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
 
-/// E t of the springs over that of the tissue; palpate-calibrate fits it.
+/// E t of the springs over that of the tissue; `palpate calibrate` fits it.
 inline constexpr double kMembraneFactor = 0.93;
 
 struct Spring {

@@ -1,10 +1,17 @@
-// Typed topics over Fast DDS, behind a header that knows no DDS.
+// Typed topics over any bus: DDS (dds_bus.h) or the memory of one process (memory_bus.h). Every
+// message passes its codec on both, so that rounding, bounds and checks are the same.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "modules/bus/input.h"
+#include "modules/bus/output.h"
+#include "modules/bus/raw_bus.h"
 #include "modules/bus/topics.h"
 
 namespace palpate::bus {
@@ -13,42 +20,35 @@ struct BusOptions {
   int domain = 0;                   ///< DDS domain id [0 … 200]
   std::string session = "default";  ///< DDS partition: sessions do not hear each other
   std::string participant_name = "palpate";
+  /// For lockstep: streams lose nothing either, and readers get every sample in order. All
+  /// processes of a session must agree.
+  bool every_sample = false;
 };
 
-struct ReaderStatistics {
-  std::uint64_t received = 0;
-  /// Gaps in the writers' sequence numbers: lost on the way, or replaced by a newer sample of the
-  /// same key before it was taken.
-  std::uint64_t dropped = 0;
-  std::uint64_t rejected = 0;  ///< refused by the codec: size, range, not finite
-  /// Its wire name (idl/), "payload" for a sample that could not be read; nullptr if none.
-  const char* last_rejected_field = nullptr;
-  std::int64_t newest_source_time_ns = 0;  ///< 0 before the first
-};
-
-/// Writes messages of one topic. Fills header.sequence; where header.source_time_ns is 0, the time
-/// of writing is sent (the message keeps its 0 and may be used again). Not thread-safe.
+/// Writes messages of one topic. Fills header.sequence; where header.source_time_ns is 0, the
+/// bus's time of writing is sent (the message keeps its 0 and may be used again). Not thread-safe.
 template <class Message>
 class Writer {
  public:
-  Writer(Writer&&) noexcept;
-  Writer& operator=(Writer&&) noexcept;
-  ~Writer();
-  /// False if the message is not valid (nothing not finite ever leaves a process) or DDS refused
-  /// it. No allocation once message sizes have been seen.
+  /// False if the message is not valid (nothing not finite ever leaves a process) or the bus
+  /// refused it. No allocation once message sizes have been seen.
   bool write(Message& message);
-  int matched_readers() const;
+  int matched_readers() const { return output_->matched_readers(); }
   /// Waits until every reader of a state topic has what was written, at most `longest` [s]: who
   /// writes and leaves at once may not be heard. False if time was up.
-  bool wait_until_received(double longest);
+  bool wait_until_received(double longest) { return output_->raw().wait_until_received(longest); }
   /// Wire name (idl/) of the field for which the last write was refused; nullptr if it was not.
-  const char* refused_field() const;
+  const char* refused_field() const { return refused_field_; }
 
  private:
   friend class Bus;
-  struct Impl;
-  explicit Writer(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Writer(const Bus& bus, std::unique_ptr<Output> output) : bus_(&bus), output_(std::move(output)) {}
+
+  const Bus* bus_;
+  std::unique_ptr<Output> output_;
+  std::vector<std::uint8_t> payload_;
+  std::uint64_t sequence_ = 0;
+  const char* refused_field_ = nullptr;
 };
 
 /// Reads messages of one topic; poll it from the module's own loop, until take gives false. Not
@@ -56,41 +56,57 @@ class Writer {
 template <class Message>
 class Reader {
  public:
-  Reader(Reader&&) noexcept;
-  Reader& operator=(Reader&&) noexcept;
-  ~Reader();
-  /// The next unread valid sample (the newest of its key); false if none. Invalid ones are counted
-  /// and skipped. No allocation once message sizes have been seen. Never throws.
+  /// The next unread valid sample (the newest of its key, unless the bus keeps every sample);
+  /// false if none. Invalid ones are counted and skipped. No allocation once message sizes have
+  /// been seen. Never throws.
   bool take(Message& message);
   /// Waits until a sample may be there. False on timeout. timeout in seconds.
-  bool wait(double timeout);
-  int matched_writers() const;
-  const ReaderStatistics& statistics() const;
+  bool wait(double timeout) { return input_->wait(timeout); }
+  int matched_writers() const { return input_->matched_writers(); }
+  const ReaderStatistics& statistics() const { return input_->statistics(); }
+  Input& input() { return *input_; }
 
  private:
   friend class Bus;
-  struct Impl;
-  explicit Reader(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit Reader(std::unique_ptr<Input> input) : input_(std::move(input)) {}
+  std::unique_ptr<Input> input_;
 };
 
-/// One DDS participant. Outlives its writers and readers. Its threads inherit the scheduling of the
-/// thread that constructs it: set real-time priority before.
+/// Hands out writers and readers, and outlives them.
 class Bus {
  public:
-  /// @throws InputError for a domain outside 0 to 200, or a session that is not 1 to 64 letters,
-  /// digits, '_', '-', '.', or an address in PALPATE_INTERFACES that this host does not have
-  /// @throws std::runtime_error if DDS cannot start (domain in use up, no loopback, …)
-  explicit Bus(const BusOptions& options);
-  ~Bus();
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
   template <class Message>
-  Writer<Message> writer(const TopicOf<Message>& topic);
+  Writer<Message> writer(const TopicOf<Message>& topic) {
+    return Writer<Message>(*this, std::make_unique<Output>(*this, info_of(topic)));
+  }
   template <class Message>
-  Reader<Message> reader(const TopicOf<Message>& topic);
+  Reader<Message> reader(const TopicOf<Message>& topic) {
+    return Reader<Message>(std::make_unique<Input>(*this, info_of(topic)));
+  }
+
+  /// @throws std::runtime_error if the bus cannot
+  virtual std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) = 0;
+  virtual std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) = 0;
+
+  /// All readers alive, in the order they were made.
+  std::span<Input* const> inputs() const { return inputs_; }
+  std::span<Output* const> outputs() const { return outputs_; }  ///< the same of writers
+
+  /// What stamps messages, in ns; CLOCK_MONOTONIC unless set.
+  void set_clock(std::function<std::int64_t()> now_ns) { clock_ = std::move(now_ns); }
+  std::int64_t now_ns() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  friend class Input;
+  friend class Output;
+  std::vector<Input*> inputs_;
+  std::vector<Output*> outputs_;
+  std::function<std::int64_t()> clock_;
 };
 
 }  // namespace palpate::bus

@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "modules/bus/interfaces.h"
+#include "modules/bus/payload_type.h"
 #include "modules/bus/qos.h"
 #include "modules/core/error.h"
 
@@ -46,7 +47,7 @@ Entity* demand_created(Entity* entity, const char* what) {
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options) {
+Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
   check(options);
   dds::DomainParticipantQos qos;
   apply_transport(interfaces_from(std::getenv("PALPATE_INTERFACES")), qos);
@@ -77,30 +78,28 @@ void Participant::close() {
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
-dds::Topic* Participant::topic(std::string_view name, dds::TopicDataType* type) {
-  dds::TypeSupport support(type);
-  const auto known = topics_.find(name);
+dds::Topic* Participant::topic(const TopicInfo& topic) {
+  const auto known = topics_.find(topic.name);
   if (known != topics_.end()) return known->second;
+  const dds::TypeSupport support(new PayloadType(*topic.type));
   participant_->register_type(support);
   dds::Topic* created = demand_created(
-      participant_->create_topic(std::string(name), support.get_type_name(), dds::TopicQos()),
+      participant_->create_topic(std::string(topic.name), support.get_type_name(), dds::TopicQos()),
       "topic");
-  topics_.emplace(name, created);
+  topics_.emplace(topic.name, created);
   return created;
 }
 
-dds::DataWriter* Participant::add_writer(std::string_view name, Delivery delivery,
-                                         dds::TopicDataType* type) {
+dds::DataWriter* Participant::add_writer(const TopicInfo& info) {
   dds::DataWriterQos qos;
-  apply_profile(delivery, qos);
-  return demand_created(publisher_->create_datawriter(topic(name, type), qos), "writer");
+  apply_profile({info.delivery, Keep::kNewest, every_sample_}, qos);
+  return demand_created(publisher_->create_datawriter(topic(info), qos), "writer");
 }
 
-dds::DataReader* Participant::add_reader(std::string_view name, Delivery delivery,
-                                         dds::TopicDataType* type) {
+dds::DataReader* Participant::add_reader(const TopicInfo& info, Keep keep) {
   dds::DataReaderQos qos;
-  apply_profile(delivery, qos);
-  return demand_created(subscriber_->create_datareader(topic(name, type), qos), "reader");
+  apply_profile({info.delivery, keep, every_sample_}, qos);
+  return demand_created(subscriber_->create_datareader(topic(info), qos), "reader");
 }
 
 void Participant::remove(dds::DataWriter* writer) { publisher_->delete_datawriter(writer); }

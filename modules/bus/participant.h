@@ -14,7 +14,6 @@ class DomainParticipant;
 class Publisher;
 class Subscriber;
 class Topic;
-class TopicDataType;
 }  // namespace eprosima::fastdds::dds
 
 namespace palpate::bus {
@@ -29,19 +28,17 @@ class Participant {
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  // `type` is taken over. Endpoints are given back with remove() before the participant ends.
-  eprosima::fastdds::dds::DataWriter* add_writer(std::string_view topic, Delivery delivery,
-                                                 eprosima::fastdds::dds::TopicDataType* type);
-  eprosima::fastdds::dds::DataReader* add_reader(std::string_view topic, Delivery delivery,
-                                                 eprosima::fastdds::dds::TopicDataType* type);
+  // Endpoints are given back with remove() before the participant ends.
+  eprosima::fastdds::dds::DataWriter* add_writer(const TopicInfo& topic);
+  eprosima::fastdds::dds::DataReader* add_reader(const TopicInfo& topic, Keep keep);
   void remove(eprosima::fastdds::dds::DataWriter* writer);
   void remove(eprosima::fastdds::dds::DataReader* reader);
 
  private:
-  eprosima::fastdds::dds::Topic* topic(std::string_view name,
-                                       eprosima::fastdds::dds::TopicDataType* type);
+  eprosima::fastdds::dds::Topic* topic(const TopicInfo& topic);
   void close();
 
+  bool every_sample_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

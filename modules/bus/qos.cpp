@@ -18,22 +18,38 @@ using eprosima::fastrtps::Duration_t;
 constexpr std::uint32_t kSocketBufferBytes = 4u << 20;  // a 19 000 node message is 234 KB
 constexpr std::uint32_t kMaxDatagramBytes = 65'500;     // larger samples travel in fragments
 constexpr std::uint32_t kNanosecondsPerMillisecond = 1'000'000;
+constexpr int kUnlimited = -1;
 
 Duration_t milliseconds(std::uint32_t ms) { return {0, ms * kNanosecondsPerMillisecond}; }
 
+// Samples that wait for each key.
+int depth(const Profile& profile) {
+  if (profile.every_sample) return kStateDepth;
+  return profile.keep == Keep::kBacklog ? kBacklogDepth : 1;
+}
+
 // The settings that writers and readers share.
 template <class Qos>
-void apply_common(Delivery delivery, Qos& qos) {
-  const bool state = delivery == Delivery::kState;
-  qos.reliability().kind = state ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+void apply_common(const Profile& profile, Qos& qos) {
+  const bool state = profile.delivery == Delivery::kState;
+  const bool reliable = state || profile.every_sample;
+  qos.reliability().kind =
+      reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind =
       state ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = 1;
   qos.resource_limits().max_instances = kMaxKeys;
-  qos.resource_limits().max_samples_per_instance = 1;
-  qos.resource_limits().max_samples = kMaxKeys;
   qos.resource_limits().allocated_samples = 4;
+  if (profile.every_sample && !state) {
+    qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
+    qos.resource_limits().max_samples_per_instance = kUnlimited;
+    qos.resource_limits().max_samples = kUnlimited;
+  } else {
+    qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+    qos.history().depth = depth(profile);
+    qos.resource_limits().max_samples_per_instance = depth(profile);
+    qos.resource_limits().max_samples = depth(profile) * kMaxKeys;
+  }
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
 }
 
@@ -60,18 +76,18 @@ void apply_transport(const std::vector<std::string>& interfaces, dds::DomainPart
   discovery.leaseDuration = {86'400, 0};
 }
 
-void apply_profile(Delivery delivery, dds::DataWriterQos& qos) {
-  apply_common(delivery, qos);
+void apply_profile(const Profile& profile, dds::DataWriterQos& qos) {
+  apply_common(profile, qos);
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(100);
-  qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(1);
+  // Repeated until acknowledged: in lockstep others wait for what was lost on the way.
+  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(profile.every_sample ? 5 : 100);
+  qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(profile.every_sample ? 0 : 1);
 }
 
-void apply_profile(Delivery delivery, dds::DataReaderQos& qos) {
-  apply_common(delivery, qos);
-  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(1);
+void apply_profile(const Profile& profile, dds::DataReaderQos& qos) {
+  apply_common(profile, qos);
+  qos.reliable_reader_qos().times.heartbeatResponseDelay =
+      milliseconds(profile.every_sample ? 0 : 1);
 }
 
 }  // namespace palpate::bus

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/bus/topics.h"
+#include "modules/bus/raw_bus.h"
 
 namespace eprosima::fastdds::dds {
 class DomainParticipantQos;
@@ -21,9 +21,21 @@ inline constexpr int kMaxKeys = 256;
 void apply_transport(const std::vector<std::string>& interfaces,
                      eprosima::fastdds::dds::DomainParticipantQos& qos);
 
-/// stream: best effort, volatile; state: reliable, transient local. Both: newest sample per key,
-/// written in the calling thread, no data sharing, memory grows to the largest message seen.
-void apply_profile(Delivery delivery, eprosima::fastdds::dds::DataWriterQos& qos);
-void apply_profile(Delivery delivery, eprosima::fastdds::dds::DataReaderQos& qos);
+/// stream: best effort, volatile; state: reliable, transient local. Both: newest sample per key (a
+/// reader may ask for more), written in the calling thread, no data sharing, memory grows to the
+/// largest message seen.
+///
+/// With every_sample, streams are reliable too, and keep what a reader has not got yet: without
+/// bound, so that a stopped reader never blocks a writer; what bounds them is the conductor of the
+/// lockstep, who lets nobody run ahead. Late readers of a state get its last kStateDepth samples
+/// per key.
+struct Profile {
+  Delivery delivery;
+  Keep keep;  ///< of a reader
+  bool every_sample;
+};
+inline constexpr int kStateDepth = 1024;
+void apply_profile(const Profile& profile, eprosima::fastdds::dds::DataWriterQos& qos);
+void apply_profile(const Profile& profile, eprosima::fastdds::dds::DataReaderQos& qos);
 
 }  // namespace palpate::bus

@@ -1,10 +1,10 @@
 // The topics: their names, message types, and kinds of delivery. docs/topics.md is the reference.
 #pragma once
 
-#include <array>
+#include <span>
 #include <string_view>
 
-#include "modules/messages/messages.h"
+#include "modules/messages/message_types.h"
 
 namespace palpate::bus {
 
@@ -29,5 +29,23 @@ inline constexpr TopicOf<ContactModel> kContactModel{"contact_model", Delivery::
 inline constexpr TopicOf<HapticForce> kHapticForce{"haptic_force", Delivery::kStream};
 inline constexpr TopicOf<ModuleStatus> kModuleStatus{"module_status", Delivery::kState};
 inline constexpr TopicOf<SessionControl> kSessionControl{"session_control", Delivery::kState};
+
+/// A topic without its C++ type.
+struct TopicInfo {
+  std::string_view name;
+  Delivery delivery;
+  const messages::MessageType* type;
+};
+
+template <class Message>
+TopicInfo info_of(const TopicOf<Message>& topic) {
+  return {topic.name, topic.delivery, &messages::type_of<Message>()};
+}
+
+/// Every topic, in the order of the list above.
+std::span<const TopicInfo> all_topics();
+
+/// nullptr if there is none of that name.
+const TopicInfo* find_topic(std::string_view name);
 
 }  // namespace palpate::bus

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "modules/core/error.h"
+#include "modules/core/organ_limits.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/node_order.h"
 #include "modules/geometry/remesh.h"
-#include "modules/messages/messages.h"
 
 namespace palpate::geometry {
 namespace {

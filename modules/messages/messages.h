@@ -1,8 +1,5 @@
 // What the modules tell each other, as plain structs. The wire types in idl/ mirror them; the
 // codecs in modules/bus translate and check. Field units and frames as in idl/README.md.
-//
-// Sign conventions: a contact normal points from tissue to probe; a gap is positive when apart;
-// force_on_probe acts on the probe, the tissue receives its negative.
 #pragma once
 
 #include <array>
@@ -10,20 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "modules/core/organ_limits.h"
+#include "modules/core/touch.h"
 #include "modules/core/types.h"
 
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
-inline constexpr std::size_t kMaxNodes = 200'000;
-inline constexpr std::size_t kMaxTriangles = 400'000;
-inline constexpr std::size_t kMaxSprings = 4'000'000;
 inline constexpr std::size_t kMaxInputs = 16;
-inline constexpr std::size_t kMaxTextBytes = 1u << 20;
 
 /// First field of every message.
 struct Header {
@@ -42,41 +37,16 @@ struct ProbeState {
   std::uint32_t buttons = 0;  ///< bit i = button i held
 };
 
-/// One place where a probe touches, or within this step may touch, an organ.
-struct Contact {
-  std::uint32_t organ = 0;             ///< index in the scene's list
-  std::uint32_t triangle = 0;          ///< index in the organ's surface
-  Vec3 barycentric = Vec3::Zero();     ///< weights of the triangle's nodes, ≥ 0, sum 1
-  Vec3 point_on_probe = Vec3::Zero();  ///< nearest point of the probe's surface, in W [m]
-  Vec3 normal = Vec3::UnitZ();         ///< unit, from tissue to probe, in W
-  double gap = 0;                      ///< along the normal; negative = penetration [m]
-  double time_of_impact = 1;  ///< fraction of the swept step at first touch, 1 = no touch within
-};
-
-/// Contacts of one probe, found with the probe at `probe_pose`.
-struct Contacts {
+/// Contacts of one probe (key).
+struct Contacts : ContactSet {
   Header header;
-  std::uint32_t probe = 0;                    ///< (key)
-  Pose probe_pose;                            ///< X_WP for which point_on_probe and normal hold
   std::uint64_t node_positions_sequence = 0;  ///< the surface they were found on
-  bool truncated = false;  ///< more than kMaxContactsPerProbe were found; the deepest are kept
-  std::vector<Contact> contacts;  ///< sorted by (organ, triangle)
 };
 
-/// How the tissue's force on a probe varies near `anchor`:
-/// f(x) = force + stiffness · (anchor − x), its normal part ≥ 0, its tangential part within the
-/// friction cone. Not valid further than `validity_radius` from the anchor.
-struct ContactModel {
+/// The tissue's local law for one probe.
+struct ContactModel : LocalLaw {
   Header header;
-  std::uint32_t probe = 0;        ///< (key)
-  bool touching = false;          ///< false: the tissue gives no force near the anchor
-  Vec3 anchor = Vec3::Zero();     ///< probe origin at which `force` was computed, in W [m]
-  Vec3 force = Vec3::Zero();      ///< on the probe, in W [N]
-  Vec3 torque = Vec3::Zero();     ///< on the probe about its origin, in W [N·m]
-  Mat3 stiffness = Mat3::Zero();  ///< −∂force/∂x, symmetric, positive semidefinite [N/m]
-  Vec3 normal = Vec3::UnitZ();    ///< unit, from tissue to probe, in W
-  double friction_coefficient = 0;
-  double validity_radius = 0;  ///< [m]
+  std::uint32_t probe = 0;  ///< (key)
 };
 
 /// Deformed nodes of one organ: surface nodes first, then virtual nodes.
@@ -91,8 +61,6 @@ struct NodePositions {
   double elastic_energy = 0;     ///< in all springs [J]
   std::vector<float> positions;  ///< x, y, z per node, in W [m]  (node_count × 3)
 };
-
-enum class SpringFamily : std::uint8_t { kStructural = 0, kBending = 1, kInner = 2 };
 
 /// What does not change while an organ deforms.
 struct SurfaceTopology {
@@ -111,26 +79,10 @@ struct SurfaceTopology {
   std::vector<Spring> springs;
 };
 
-/// Why the rendered force differs from the model's. Bits.
-enum ForceLimit : std::uint32_t {
-  kForceNotLimited = 0,
-  kForceSaturated = 1u << 0,     ///< magnitude clamped to the scene's max_force_n
-  kForceSlewLimited = 1u << 1,   ///< change per tick clamped
-  kForceStaleFade = 1u << 2,     ///< contact model too old: fading to zero
-  kForcePassivity = 1u << 3,     ///< passivity controller dissipates
-  kForceNotFinite = 1u << 4,     ///< model or device gave NaN/Inf: treated as zero
-  kForceOutOfValidity = 1u << 5  ///< probe outside the model's validity radius
-};
-
-/// Force commanded to the device.
-struct HapticForce {
+/// Force commanded to the device of one probe.
+struct HapticForce : RenderedForce {
   Header header;
-  std::uint32_t probe = 0;                  ///< (key)
-  Vec3 force = Vec3::Zero();                ///< on the probe, in W [N]
-  Vec3 torque = Vec3::Zero();               ///< on the probe about its origin, in W [N·m]
-  std::uint32_t limits = kForceNotLimited;  ///< ForceLimit bits
-  double passivity_energy = 0;   ///< energy observed at the probe port, negative = generated [J]
-  double contact_model_age = 0;  ///< at the tick; infinity before the first [s]
+  std::uint32_t probe = 0;  ///< (key)
 };
 
 enum class ModuleState : std::uint8_t {
@@ -177,7 +129,13 @@ struct SceneDescription {
   std::string resolved_text;  ///< YAML with every default written out
 };
 
-enum class SessionCommand : std::uint8_t { kStart = 0, kPause = 1, kReset = 2, kStop = 3 };
+enum class SessionCommand : std::uint8_t {
+  kStart = 0,
+  kPause = 1,
+  kReset = 2,
+  kStop = 3,
+  kStep = 4  ///< lockstep: go on until `until_ns`
+};
 
 struct SessionControl {
   Header header;
@@ -185,6 +143,8 @@ struct SessionControl {
   std::uint32_t reset_count = 0;  ///< counts kReset commands, so that none is applied twice
   /// Simulated time zero on the monotonic clock of the launcher's host, valid for kStart [ns].
   std::int64_t start_time_ns = 0;
+  /// Lockstep: cycles that begin before this simulated time may run [ns].
+  std::int64_t until_ns = 0;
 };
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 #include <ostream>
 #include <thread>
 
+#include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/recording/inspect.h"
@@ -30,9 +31,9 @@ int report_failure(std::ostream& err, const Job& job) {
 }
 
 // True once someone listens to the organs' motion.
-bool wait_for_reader(const RawWriter& session, double timeout,
+bool wait_for_reader(const SessionWriter& session, double timeout,
                      const std::function<bool()>& stop_requested) {
-  const RecordedTopic& topic = *find_recorded_topic(bus::kNodePositions.name);
+  const bus::TopicInfo& topic = *bus::find_topic(bus::kNodePositions.name);
   const std::int64_t end_ns = runtime::monotonic_now_ns() + ns_from_seconds(timeout);
   while (session.matched_readers(topic) == 0) {
     if (stop_requested() || runtime::monotonic_now_ns() >= end_ns) return false;
@@ -44,13 +45,14 @@ bool wait_for_reader(const RawWriter& session, double timeout,
 void replay(const ReplayOptions& options, const std::function<bool()>& stop_requested,
             std::ostream& out, std::ostream& err) {
   SampleReader recording(options.recording);
-  RawWriter session(options.session);
+  bus::DdsBus bus(options.session);
+  SessionWriter session(bus);
   if (!wait_for_reader(session, options.wait_for_reader, stop_requested) && !stop_requested()) {
     err << "warning: nobody listens in session '" << options.session.session << "', domain "
         << options.session.domain << "; playing all the same\n";
   }
   const PlayReport report = play(recording, session, stop_requested);
-  if (!report.stopped) session.wait_for_acknowledgments(kAcknowledgeTimeout);
+  if (!report.stopped) session.wait_until_received(kAcknowledgeTimeout);
   if (recording.torn()) err << "warning: " << recording.torn_warning() << '\n';
   if (report.refused > 0) err << "warning: " << report.refused << " samples could not be sent\n";
   out << (report.stopped ? "stopped after " : "replayed ") << report.samples << " samples, "
@@ -65,6 +67,16 @@ int run_inspect_command(const InspectOptions& options, std::ostream& out, std::o
     print_summary(summary, out);
     if (summary.torn) err << "warning: " << summary.torn_warning << '\n';
   });
+}
+
+int run_diff_command(const DiffOptions& options, std::ostream& out, std::ostream& err) {
+  bool equal = false;
+  const int code = report_failure(err, [&] {
+    const RecordingDifference difference = compare(options);
+    print_difference(difference, out);
+    equal = difference.equal();
+  });
+  return code == kExitDone && !equal ? kExitFailed : code;
 }
 
 int run_replay_command(const ReplayOptions& options, const std::function<bool()>& stop_requested,

@@ -6,6 +6,7 @@
 #include <iosfwd>
 
 #include "modules/bus/bus.h"
+#include "modules/recording/diff.h"
 
 namespace palpate::recording {
 
@@ -17,6 +18,10 @@ struct InspectOptions {
 /// Prints the recording's table to `out`; a torn file's warning and errors go to `err`.
 /// @return an exit code of core/error.h
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err);
+
+/// Prints where the two recordings of `options` differ.
+/// @return kExitDone if they are equal, kExitFailed if not, kExitBadInput if one cannot be read
+int run_diff_command(const DiffOptions& options, std::ostream& out, std::ostream& err);
 
 struct ReplayOptions {
   std::filesystem::path recording;  ///< RECORDING

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "modules/recording/csv_columns.h"
+#include "modules/messages/csv.h"
 
 namespace palpate::recording {
 namespace {
@@ -22,9 +22,9 @@ std::string file_part(const std::string& key) {
 
 std::string times_of(const Header& header, std::int64_t received_ns, std::int64_t start_ns) {
   std::ostringstream stream;
-  write_seconds(stream, received_ns - start_ns);
-  write_seconds(stream << ',', header.sim_time_ns);
-  write_seconds(stream << ',', received_ns - header.source_time_ns);
+  messages::write_seconds(stream, received_ns - start_ns);
+  messages::write_seconds(stream << ',', header.sim_time_ns);
+  messages::write_seconds(stream << ',', received_ns - header.source_time_ns);
   stream << ',' << header.sequence;
   return stream.str();
 }
@@ -44,15 +44,16 @@ std::ofstream& CsvExport::file(const std::string& name, const std::string& colum
   return place->second;
 }
 
-void CsvExport::add(const RecordedSample& sample, const AnyMessage& message,
+void CsvExport::add(const RecordedSample& sample, const messages::AnyMessage& message,
                     std::int64_t start_ns) {
-  const std::string key = key_of(message);
+  const std::string key = messages::key_text(message);
   std::string name(sample.topic->name);
   if (!key.empty()) name.append("_").append(file_part(key));
-  const std::string times = times_of(header_of(message), sample.received_time_ns, start_ns);
-  std::ofstream& stream = file(name, csv_columns(message));
+  const std::string times =
+      times_of(messages::header_of(message), sample.received_time_ns, start_ns);
+  std::ofstream& stream = file(name, messages::csv_columns(message));
   stream << times << ',';
-  write_csv_values(stream, message);
+  messages::write_csv_values(stream, message);
   stream << '\n';
   if (const auto* status = std::get_if<ModuleStatus>(&message)) add_inputs(*status, times);
 }
@@ -60,10 +61,10 @@ void CsvExport::add(const RecordedSample& sample, const AnyMessage& message,
 void CsvExport::add_inputs(const ModuleStatus& status, const std::string& times) {
   for (const ModuleStatus::Input& input : status.inputs) {
     std::ofstream& stream =
-        file("module_inputs_" + file_part(status.module), "topic,age_s,received,dropped,rejected");
-    stream << times << ',' << csv_text(input.topic) << ',';
-    write_number(stream, input.age);
-    stream << ',' << input.received << ',' << input.dropped << ',' << input.rejected << '\n';
+        file("module_inputs_" + file_part(status.module), messages::csv_columns(input));
+    stream << times << ',';
+    messages::write_csv_values(stream, input);
+    stream << '\n';
   }
 }
 

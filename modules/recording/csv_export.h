@@ -16,7 +16,8 @@ class CsvExport {
   explicit CsvExport(std::filesystem::path folder);
 
   /// @param start_ns  receive time at which time_s is 0
-  void add(const RecordedSample& sample, const AnyMessage& message, std::int64_t start_ns);
+  void add(const RecordedSample& sample, const messages::AnyMessage& message,
+           std::int64_t start_ns);
 
   /// @throws std::runtime_error naming a file that could not be written
   void close();

@@ -58,7 +58,7 @@ class Summarizer {
 
  private:
   void add_sequence(const RecordedSample& sample) {
-    const std::uint64_t sequence = header_of(sample.payload).sequence;
+    const std::uint64_t sequence = messages::header_of(sample.payload).sequence;
     WriterSequence& writer = writers_[{sample.topic->name, sample.channel}];
     if (writer.samples == 0) writer.first = writer.last = sequence;
     writer.first = std::min(writer.first, sequence);
@@ -94,7 +94,8 @@ std::string time_of_day(const std::string& unix_ns) {
 }
 
 void print_row(const TopicSummary& topic, std::int64_t start_ns, std::ostream& out) {
-  const std::string type(topic.topic->type_name.substr(topic.topic->type_name.rfind(':') + 1));
+  const std::string type(
+      topic.topic->type->wire_name.substr(topic.topic->type->wire_name.rfind(':') + 1));
   out << std::left << std::setw(17) << topic.topic->name << std::setw(18) << type << std::right
       << std::setw(8) << topic.samples << std::setw(9) << fixed(topic.rate_hz(), 1) << std::setw(12)
       << topic.bytes << std::setw(9) << fixed(seconds_from_ns(topic.first_ns - start_ns), 3)
@@ -116,10 +117,10 @@ RecordingSummary summarize(const std::filesystem::path& recording,
   Summarizer summarizer;
   std::optional<CsvExport> csv;
   std::optional<std::int64_t> start_ns;
-  AnyMessage message;
+  messages::AnyMessage message;
   while (const auto sample = reader.next()) {
     if (!start_ns) start_ns = sample->received_time_ns;
-    const bool valid = sample->topic->decode(sample->payload, message) == nullptr;
+    const bool valid = sample->topic->type->decode(sample->payload, message) == nullptr;
     summarizer.add(*sample, valid);
     if (csv_folder.empty() || !valid) continue;
     if (!csv) csv.emplace(csv_folder);

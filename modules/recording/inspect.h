@@ -11,7 +11,7 @@
 namespace palpate::recording {
 
 struct TopicSummary {
-  const RecordedTopic* topic = nullptr;
+  const bus::TopicInfo* topic = nullptr;
   std::size_t writers = 0;
   std::uint64_t samples = 0;
   std::uint64_t bytes = 0;              ///< of the payloads

@@ -10,7 +10,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
-#include "modules/recording/csv_columns.h"
+#include "modules/messages/csv.h"
 #include "modules/runtime/clock.h"
 
 namespace palpate::recording {
@@ -51,10 +51,10 @@ void append(const ProbeState& state, Motion& motion) {
 
 std::map<std::uint32_t, Motion> read_motions(SampleReader& recording, std::size_t& invalid) {
   std::map<std::uint32_t, Motion> motions;
-  AnyMessage message;
+  messages::AnyMessage message;
   while (const auto sample = recording.next()) {
     if (sample->topic->name != bus::kProbeState.name) continue;
-    if (sample->topic->decode(sample->payload, message) != nullptr) {
+    if (sample->topic->type->decode(sample->payload, message) != nullptr) {
       ++invalid;
       continue;
     }
@@ -69,10 +69,10 @@ void write_trajectory(const std::filesystem::path& file, const std::vector<Row>&
   stream << "t,x,y,z,qx,qy,qz,qw\n";
   for (const Row& row : rows) {
     const Quat& q = row.pose.rotation;
-    write_seconds(stream, row.time_ns);
+    messages::write_seconds(stream, row.time_ns);
     for (const double value : {row.pose.position.x(), row.pose.position.y(), row.pose.position.z(),
                                q.x(), q.y(), q.z(), q.w()}) {
-      write_number(stream << ',', value);
+      messages::write_number(stream << ',', value);
     }
     stream << '\n';
   }
@@ -82,7 +82,7 @@ void write_trajectory(const std::filesystem::path& file, const std::vector<Row>&
 
 }  // namespace
 
-PlayReport play(SampleReader& recording, RawWriter& session,
+PlayReport play(SampleReader& recording, SessionWriter& session,
                 const std::function<bool()>& stop_requested) {
   PlayReport report;
   std::optional<std::int64_t> shift_ns;  // from a sample's time to the present

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "modules/recording/raw_bus.h"
 #include "modules/recording/sample_reader.h"
+#include "modules/recording/session_samples.h"
 
 namespace palpate::recording {
 
@@ -22,7 +22,7 @@ struct PlayReport {
 /// late is written at once; none is left out.
 /// @param stop_requested  asked at least every 20 ms
 /// @throws InputError as SampleReader::next does
-PlayReport play(SampleReader& recording, RawWriter& session,
+PlayReport play(SampleReader& recording, SessionWriter& session,
                 const std::function<bool()>& stop_requested);
 
 /// A probe's recorded motion as a file for the device `trajectory`.

@@ -1,6 +1,9 @@
 #include "modules/recording/recorder.h"
 
+#include <algorithm>
 #include <chrono>
+
+#include "modules/recording/idl_text.h"
 
 namespace palpate::recording {
 namespace {
@@ -10,7 +13,7 @@ std::string now_ns_text() {
   return std::to_string(std::chrono::nanoseconds(Clock::now().time_since_epoch()).count());
 }
 
-std::string hex(const WriterId& id) {
+std::string hex(const bus::WriterId& id) {
   constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text;
   for (const std::uint8_t byte : id) {
@@ -34,27 +37,35 @@ SampleFile::SampleFile(const std::filesystem::path& file, const bus::BusOptions&
   writer_.flush();
 }
 
-void SampleFile::add(const RawSample& sample) {
-  const Header header = header_of(sample.payload);
+SampleFile::SampleFile(const std::filesystem::path& file) : writer_(file) {
+  writer_.add_metadata(
+      {kSessionMetadata,
+       {{"protocol_version", std::to_string(kProtocolVersion)}, {"clock", "simulated"}}});
+  writer_.flush();
+}
+
+void SampleFile::add(const TopicSample& sample) {
+  const Header header = messages::header_of(sample.payload);
   McapMessage message;
   message.channel_id = channel_of(sample);
   message.sequence = static_cast<std::uint32_t>(header.sequence);
   message.log_time_ns = static_cast<std::uint64_t>(sample.received_time_ns);
-  message.publish_time_ns = static_cast<std::uint64_t>(header.source_time_ns);
+  message.publish_time_ns =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(0, header.source_time_ns));
   writer_.add_message(message, sample.payload);
   if (sample.topic->name == bus::kScene.name) note_scene(sample);
 }
 
-std::uint16_t SampleFile::channel_of(const RawSample& sample) {
+std::uint16_t SampleFile::channel_of(const TopicSample& sample) {
   const auto known = channels_.find({sample.topic, sample.writer});
   if (known != channels_.end()) return known->second;
 
-  const RecordedTopic& topic = *sample.topic;
-  auto schema = schemas_.find(topic.type_name);
+  const bus::TopicInfo& topic = *sample.topic;
+  auto schema = schemas_.find(topic.type->wire_name);
   if (schema == schemas_.end()) {
     const std::uint16_t id = writer_.add_schema(
-        {0, std::string(topic.type_name), "omgidl", std::string(topic.idl_text)});
-    schema = schemas_.emplace(topic.type_name, id).first;
+        {0, std::string(topic.type->wire_name), "omgidl", std::string(idl_text_of(*topic.type))});
+    schema = schemas_.emplace(topic.type->wire_name, id).first;
   }
   const std::uint16_t channel = writer_.add_channel(
       {0, schema->second, std::string(topic.name), "cdr", {{"writer", hex(sample.writer)}}});
@@ -62,20 +73,21 @@ std::uint16_t SampleFile::channel_of(const RawSample& sample) {
   return channel;
 }
 
-void SampleFile::note_scene(const RawSample& sample) {
-  AnyMessage message;
-  if (sample.topic->decode(sample.payload, message) != nullptr) return;  // recorded all the same
+void SampleFile::note_scene(const TopicSample& sample) {
+  messages::AnyMessage message;
+  if (sample.topic->type->decode(sample.payload, message) != nullptr)
+    return;  // recorded all the same
   const auto& scene = std::get<SceneDescription>(message);
   if (scene.digest == scene_digest_) return;
   scene_digest_ = scene.digest;
   writer_.add_metadata({kSceneMetadata, {{"name", scene.name}, {"digest", scene.digest}}});
 }
 
-Recorder::Recorder(const bus::BusOptions& session, const std::filesystem::path& file)
-    : reader_(session), file_(file, session) {}
+Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file)
+    : reader_(bus), file_(file, session) {}
 
 void Recorder::poll() {
-  for (const RawSample& sample : reader_.take_all()) file_.add(sample);
+  for (const TopicSample& sample : reader_.take_all()) file_.add(sample);
   file_.flush();
 }
 

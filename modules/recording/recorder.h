@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "modules/recording/mcap_writer.h"
-#include "modules/recording/raw_bus.h"
+#include "modules/recording/session_samples.h"
 
 namespace palpate::recording {
 
@@ -20,28 +20,31 @@ class SampleFile {
  public:
   /// @throws std::runtime_error as McapWriter does
   SampleFile(const std::filesystem::path& file, const bus::BusOptions& session);
+  /// Of a lockstep session: times are simulated, nothing tells of the machine.
+  explicit SampleFile(const std::filesystem::path& file);
 
-  void add(const RawSample& sample);
+  void add(const TopicSample& sample);
   void flush() { writer_.flush(); }
   void close() { writer_.close(); }
   const McapStatistics& statistics() const { return writer_.statistics(); }
   std::uint64_t bytes_written() const { return writer_.bytes_written(); }
 
  private:
-  std::uint16_t channel_of(const RawSample& sample);
-  void note_scene(const RawSample& sample);
+  std::uint16_t channel_of(const TopicSample& sample);
+  void note_scene(const TopicSample& sample);
 
   McapWriter writer_;
   std::map<std::string_view, std::uint16_t> schemas_;  ///< by type name
-  std::map<std::pair<const RecordedTopic*, WriterId>, std::uint16_t> channels_;
+  std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, std::uint16_t> channels_;
   std::string scene_digest_;
 };
 
 /// Hears a session and writes it down.
 class Recorder {
  public:
-  /// @throws InputError for a bad session or domain; std::runtime_error if DDS or the file fails
-  Recorder(const bus::BusOptions& session, const std::filesystem::path& file);
+  /// @param session  told in the file: what `bus` was made of
+  /// @throws std::runtime_error if the bus or the file fails
+  Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file);
 
   /// Writes all that has arrived. Call at least every 50 ms, or fast topics lose samples.
   /// @throws std::runtime_error naming the file and the system's reason (disk full, …)
@@ -54,7 +57,7 @@ class Recorder {
   const SampleFile& file() const { return file_; }
 
  private:
-  RawReader reader_;  // before the file: a bad session leaves no file
+  SessionReader reader_;
   SampleFile file_;
 };
 

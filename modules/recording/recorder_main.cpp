@@ -2,20 +2,36 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
 #include "modules/recording/recorder.h"
+#include "modules/recording/recorder_stage.h"
+#include "modules/runtime/lockstep_module.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene_reader.h"
 
 namespace {
 
 constexpr double kPollRateHz = 100;  // a tenth of what the readers can hold at 4 kHz
 
-void record(const palpate::bus::BusOptions& session, const std::string& file) {
+void record_in_lockstep(const palpate::runtime::ModuleOptions& options, const std::string& file) {
+  using namespace palpate;
+  if (options.scene.empty()) throw InputError("--lockstep: --scene is missing");
+  const scene::Scene scene = scene::load_scene(options.scene);
+  runtime::run_in_lockstep(options, scene, "recorder", [&](bus::Bus& bus) {
+    return std::make_unique<recording::RecorderStage>(bus, file);
+  });
+}
+
+void record(const palpate::runtime::ModuleOptions& options, const std::string& file) {
+  if (!options.lockstep.empty()) return record_in_lockstep(options, file);
+  const palpate::bus::BusOptions& session = options.bus;
   const palpate::runtime::StopSignal stop;
-  palpate::recording::Recorder recorder(session, file);
+  palpate::bus::DdsBus bus(session);  // first: a bad session leaves no file
+  palpate::recording::Recorder recorder(bus, session, file);
   palpate::runtime::PeriodicLoop loop(kPollRateHz);
   while (!stop.requested()) {
     loop.wait_for_period();
@@ -30,12 +46,16 @@ void record(const palpate::bus::BusOptions& session, const std::string& file) {
 
 int main(int argc, char** argv) {
   CLI::App app("Records every sample of a session into one MCAP file", "palpate-recorder");
-  palpate::bus::BusOptions session{.participant_name = "recorder"};
+  palpate::runtime::ModuleOptions options;
+  options.bus.participant_name = "recorder";
   std::string file;
   app.add_option("FILE", file, "the recording to write; an existing one is replaced")->required();
-  palpate::runtime::add_bus_options(app, session);
+  palpate::runtime::add_bus_options(app, options.bus);
+  palpate::runtime::add_lockstep_option(app, options.lockstep);
+  app.add_option("--scene", options.scene,
+                 "Scene file; needed in lockstep, which follows its rates");
   return palpate::runtime::run_program(app, argc, argv, [&] {
-    record(session, file);
+    record(options, file);
     return palpate::kExitDone;
   });
 }

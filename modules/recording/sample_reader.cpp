@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "modules/core/error.h"
+#include "modules/recording/idl_text.h"
 
 namespace palpate::recording {
 
@@ -29,25 +30,26 @@ std::optional<RecordedSample> SampleReader::next() {
 }
 
 void SampleReader::check(const McapSchema& schema) const {
-  const auto topics = recorded_topics();
-  const auto known = std::find_if(topics.begin(), topics.end(), [&](const RecordedTopic& topic) {
-    return topic.type_name == schema.name;
+  const auto topics = bus::all_topics();
+  const auto known = std::find_if(topics.begin(), topics.end(), [&](const bus::TopicInfo& topic) {
+    return topic.type->wire_name == schema.name;
   });
   if (known == topics.end()) {
     refuse("type '" + schema.name + "' is not one of Palpate's (palpate::idl::…)");
   }
-  if (schema.encoding != "omgidl" || !same_idl(schema.data, known->idl_text)) {
+  if (schema.encoding != "omgidl" || !same_idl(schema.data, idl_text_of(*known->type))) {
     refuse("type '" + schema.name +
            "' differs from the present one: recorded by another version of Palpate");
   }
 }
 
 void SampleReader::add(const McapChannel& channel) {
-  const RecordedTopic* topic = find_recorded_topic(channel.topic);
+  const bus::TopicInfo* topic = bus::find_topic(channel.topic);
   if (topic == nullptr) refuse("topic '" + channel.topic + "' is not one of Palpate's");
   const auto schema = schema_names_.find(channel.schema_id);
-  if (schema == schema_names_.end() || schema->second != topic->type_name) {
-    refuse("topic '" + channel.topic + "' must be of type '" + std::string(topic->type_name) + "'");
+  if (schema == schema_names_.end() || schema->second != topic->type->wire_name) {
+    refuse("topic '" + channel.topic + "' must be of type '" + std::string(topic->type->wire_name) +
+           "'");
   }
   if (channel.message_encoding != "cdr") {
     refuse("topic '" + channel.topic + "' is encoded as '" + channel.message_encoding +

@@ -6,13 +6,13 @@
 #include <optional>
 #include <string>
 
+#include "modules/bus/topics.h"
 #include "modules/recording/mcap_reader.h"
-#include "modules/recording/recorded_topics.h"
 
 namespace palpate::recording {
 
 struct RecordedSample {
-  const RecordedTopic* topic = nullptr;
+  const bus::TopicInfo* topic = nullptr;
   std::uint16_t channel = 0;          ///< one for each writer of a topic
   std::int64_t received_time_ns = 0;  ///< monotonic clock of the recorder's host
   std::vector<std::uint8_t> payload;  ///< CDR with its encapsulation header
@@ -46,7 +46,7 @@ class SampleReader {
   std::filesystem::path file_;
   McapReader reader_;
   std::map<std::uint16_t, std::string> schema_names_;
-  std::map<std::uint16_t, const RecordedTopic*> topics_;  ///< by channel
+  std::map<std::uint16_t, const bus::TopicInfo*> topics_;  ///< by channel
   std::map<std::string, McapMap> metadata_;
 };
 

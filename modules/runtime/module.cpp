@@ -51,7 +51,6 @@ Module::~Module() {
   const std::int64_t now = monotonic_now_ns();
   const LoopStatistics& loop = loop_.statistics();
   const double worst = seconds_from_ns(loop.worst_lateness_ns);
-  status_.forget_inputs();  // readers are declared after the module and gone before it
   status_.set_state(ModuleState::kStopped, status_.status().last_error);
   status_.publish(now, session_.time(now), loop);
   status_.take_leave();

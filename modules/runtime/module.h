@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "modules/bus/dds_bus.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/realtime.h"
@@ -21,10 +22,7 @@ enum class Priority {
   kBackground  ///< gives way to the others
 };
 
-/// Age from which an input no longer counts as telling the present [s].
-inline constexpr double kInputStaleAfter = 0.05;
-
-/// One module's life: construct, make readers and writers, watch() the readers, ready(), then
+/// One module's life: construct, make the stage on its bus, ready(), then
 /// while (next_cycle()) { … }.
 class Module {
  public:
@@ -33,13 +31,6 @@ class Module {
   ~Module();  ///< says goodbye: state kStopped, and one line of loop statistics in the log
 
   bus::Bus& bus() { return bus_; }
-
-  /// An input whose age and losses the status reports. The reader lives until the last
-  /// next_cycle().
-  template <class Message>
-  void watch(const bus::TopicOf<Message>& topic, const bus::Reader<Message>& reader) {
-    status_.watch(topic.name, reader.statistics());
-  }
 
   /// Everything is loaded: the session may start.
   void ready();
@@ -72,7 +63,7 @@ class Module {
   Priority priority_;
   StopSignal stop_;
   Realtime realtime_;
-  bus::Bus bus_;
+  bus::DdsBus bus_;
   Session session_;
   PeriodicLoop loop_;
   StatusReporter status_;

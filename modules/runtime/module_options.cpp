@@ -7,6 +7,7 @@
 
 #include "modules/core/error.h"
 #include "modules/runtime/program.h"
+#include "modules/runtime/wiring.h"
 
 namespace palpate::runtime {
 namespace {
@@ -44,6 +45,14 @@ void add_bus_options(CLI::App& app, bus::BusOptions& bus) {
       ->capture_default_str();
 }
 
+void add_lockstep_option(CLI::App& app, std::vector<std::string>& participants) {
+  app.add_option("--lockstep", participants,
+                 "Modules of a lockstep session, this one included: cycles wait for their inputs, "
+                 "no clock is read (palpate run --lockstep)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(std::vector<std::string>(kModules.begin(), kModules.end())));
+}
+
 int run_module(int argc, char** argv, const ModuleProgram& program,
                const std::function<void(const ModuleOptions&)>& run) {
   start_log(program.name);
@@ -53,6 +62,7 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   app.add_option("SCENE", options.scene, "Scene file (YAML)")->required();
   add_bus_options(app, options.bus);
   app.add_flag("--no-realtime", no_realtime, "Do not ask for real-time priority");
+  add_lockstep_option(app, options.lockstep);
   if (program.add_options) program.add_options(app);
   add_version(app);
   try {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "modules/bus/bus.h"
 
@@ -17,6 +18,8 @@ struct ModuleOptions {
   std::filesystem::path scene;  ///< SCENE
   bus::BusOptions bus;          ///< --session, --domain (or PALPATE_DOMAIN)
   bool realtime = true;         ///< --no-realtime
+  /// --lockstep: the modules of a lockstep session, this one included; empty: real time.
+  std::vector<std::string> lockstep;
 };
 
 struct ModuleProgram {
@@ -25,6 +28,9 @@ struct ModuleProgram {
   /// Options beyond the common ones; may be empty.
   std::function<void(CLI::App&)> add_options;
 };
+
+/// Adds --lockstep with its check of names.
+void add_lockstep_option(CLI::App& app, std::vector<std::string>& participants);
 
 /// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
 void add_bus_options(CLI::App& app, bus::BusOptions& bus);

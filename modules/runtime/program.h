@@ -10,7 +10,7 @@ class App;
 
 namespace palpate::runtime {
 
-/// What --version prints: "palpate 0.1.0, protocol 1". Programs with the same protocol can share a
+/// What --version prints: "palpate 0.1.0, protocol 2". Programs with the same protocol can share a
 /// session.
 std::string version_text();
 

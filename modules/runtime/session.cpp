@@ -1,6 +1,7 @@
 #include "modules/runtime/session.h"
 
 #include "modules/runtime/clock.h"
+#include "modules/scene/scene_reader.h"
 
 namespace palpate::runtime {
 
@@ -12,6 +13,14 @@ Session::Session(bus::Bus& bus, std::string scene_digest)
 void Session::poll() {
   while (controls_.take(control_)) state_.apply(control_);
   while (scenes_.take(scene_)) fault_ = scene_mismatch(scene_, scene_digest_);
+}
+
+SceneDescription scene_description(const scene::Scene& scene) {
+  SceneDescription description;
+  description.name = scene.name;
+  description.digest = scene::scene_digest(scene);
+  description.resolved_text = scene::resolved_text(scene);
+  return description;
 }
 
 std::string scene_mismatch(const SceneDescription& scene, const std::string& own_digest) {
@@ -31,6 +40,13 @@ SessionConductor::SessionConductor(bus::Bus& bus) : writer_(bus.writer(bus::kSes
 
 void SessionConductor::command(const SessionState& state, SessionCommand wanted) {
   SessionControl message = next_command(state, wanted, monotonic_now_ns());
+  writer_.write(message);
+}
+
+void SessionConductor::grant(const SessionState& state, std::int64_t until_ns) {
+  SessionControl message = next_command(state, SessionCommand::kStep, monotonic_now_ns());
+  message.header.sim_time_ns = state.granted_until_ns();
+  message.until_ns = until_ns;
   writer_.write(message);
 }
 

@@ -5,6 +5,7 @@
 
 #include "modules/bus/bus.h"
 #include "modules/runtime/session_state.h"
+#include "modules/scene/scene.h"
 
 namespace palpate::runtime {
 
@@ -15,6 +16,8 @@ class Session {
 
   /// Takes what has arrived. No allocation once the scene has come.
   void poll();
+  /// Waits until a command may have arrived, at most `longest` [s].
+  void wait(double longest) { controls_.wait(longest); }
 
   SessionPhase phase() const { return state_.phase(); }
   bool running() const { return phase() == SessionPhase::kRunning && fault_.empty(); }
@@ -35,6 +38,9 @@ class Session {
   std::string fault_;
 };
 
+/// What the launcher tells of the scene: name, digest, resolved text.
+SceneDescription scene_description(const scene::Scene& scene);
+
 /// One line saying why a module with `own_digest` cannot play `scene`; empty if it can.
 std::string scene_mismatch(const SceneDescription& scene, const std::string& own_digest);
 
@@ -45,6 +51,8 @@ class SessionConductor {
 
   /// Gives the command that leads on from `state`, as of now. A reset is to be followed by kStart.
   void command(const SessionState& state, SessionCommand wanted);
+  /// Lockstep: cycles that begin before `until_ns` may run.
+  void grant(const SessionState& state, std::int64_t until_ns);
   /// Says the session's last command again, for whoever missed it.
   void repeat(const SessionState& state);
 

@@ -11,6 +11,7 @@ void SessionState::apply(const SessionControl& command) {
   last_ = command;
   switch (command.command) {
     case SessionCommand::kStart:
+    case SessionCommand::kStep:
       phase_ = SessionPhase::kRunning;
       break;
     case SessionCommand::kPause:

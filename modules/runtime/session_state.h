@@ -26,6 +26,8 @@ class SessionState {
   bool take_reset();
   /// Session time [s]: 0 while waiting, standing still while paused and after the end.
   double time(std::int64_t now_ns) const;
+  /// Of a lockstep session: cycles before this simulated time may begin; 0 before the first grant.
+  std::int64_t granted_until_ns() const { return last_.until_ns; }
   const SessionControl& last_command() const { return last_; }  ///< source time 0 before the first
 
  private:

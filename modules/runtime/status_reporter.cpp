@@ -15,18 +15,13 @@ constexpr std::int64_t kStatusPeriodNs = kNanosecondsPerSecond / 4;
 
 StatusReporter::StatusReporter(bus::Bus& bus, std::string module, double nominal_rate_hz,
                                bool realtime_priority)
-    : writer_(bus.writer(bus::kModuleStatus)) {
+    : writer_(bus.writer(bus::kModuleStatus)), bus_(bus) {
   status_.module = std::move(module);
   status_.process_id = getpid();
   status_.nominal_rate_hz = nominal_rate_hz;
   status_.realtime_priority = realtime_priority;
   status_.last_error.reserve(kMaxErrorBytes);
-}
-
-void StatusReporter::watch(std::string_view topic, const bus::ReaderStatistics& statistics) {
-  PALPATE_DEMAND(inputs_.size() < kMaxInputs);
-  inputs_.push_back(&statistics);
-  status_.inputs.push_back({std::string(topic), 0, 0, 0, 0});
+  status_.inputs.reserve(kMaxInputs);
 }
 
 void StatusReporter::set_state(ModuleState state, std::string_view error) {
@@ -68,17 +63,29 @@ void StatusReporter::count_cycles(std::int64_t now_ns, const LoopStatistics& loo
 }
 
 void StatusReporter::fill_inputs(std::int64_t now_ns) {
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const bus::ReaderStatistics& from = *inputs_[i];
-    ModuleStatus::Input& to = status_.inputs[i];
-    // A sample may have been written after this cycle began: its age is not negative.
+  for (const bus::Input* input : bus_.inputs()) {
+    const std::string_view topic = input->topic().name;
+    if (topic == bus::kSessionControl.name || topic == bus::kScene.name) continue;
+    const bus::ReaderStatistics& from = input->statistics();
+    ModuleStatus::Input* to = entry(topic);
+    if (to == nullptr) continue;
+    // a sample may have been written after this cycle began
     const std::int64_t age_ns = std::max<std::int64_t>(0, now_ns - from.newest_source_time_ns);
-    to.age = from.newest_source_time_ns == 0 ? std::numeric_limits<double>::infinity()
-                                             : seconds_from_ns(age_ns);
-    to.received = from.received;
-    to.dropped = from.dropped;
-    to.rejected = from.rejected;
+    to->age = from.newest_source_time_ns == 0 ? std::numeric_limits<double>::infinity()
+                                              : seconds_from_ns(age_ns);
+    to->received = from.received;
+    to->dropped = from.dropped;
+    to->rejected = from.rejected;
   }
+}
+
+ModuleStatus::Input* StatusReporter::entry(std::string_view topic) {
+  for (ModuleStatus::Input& known : status_.inputs) {
+    if (known.topic == topic) return &known;
+  }
+  if (status_.inputs.size() == kMaxInputs) return nullptr;
+  status_.inputs.push_back({std::string(topic), 0, 0, 0, 0});
+  return &status_.inputs.back();
 }
 
 }  // namespace palpate::runtime

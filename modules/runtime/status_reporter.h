@@ -15,12 +15,9 @@ namespace palpate::runtime {
 /// blocks for a reliable sample: four times a second, not every cycle.
 class StatusReporter {
  public:
+  /// Reports on every reader of the bus but those of the session's own topics; of readers that are
+  /// gone, the last numbers.
   StatusReporter(bus::Bus& bus, std::string module, double nominal_rate_hz, bool realtime_priority);
-
-  /// An input to report on, until forget_inputs(); at most kMaxInputs.
-  void watch(std::string_view topic, const bus::ReaderStatistics& statistics);
-  /// Keeps the inputs' last numbers: the readers are about to go, or gone.
-  void forget_inputs() { inputs_.clear(); }
 
   /// @param error  shown until another state or error is set; cut at kMaxErrorBytes
   void set_state(ModuleState state, std::string_view error = {});
@@ -43,10 +40,11 @@ class StatusReporter {
  private:
   void count_cycles(std::int64_t now_ns, const LoopStatistics& loop);
   void fill_inputs(std::int64_t now_ns);
+  ModuleStatus::Input* entry(std::string_view topic);
 
   bus::Writer<ModuleStatus> writer_;
   ModuleStatus status_;
-  std::vector<const bus::ReaderStatistics*> inputs_;
+  const bus::Bus& bus_;
   bool changed_ = true;
   std::int64_t published_ns_ = 0;
   std::uint64_t cycles_then_ = 0;

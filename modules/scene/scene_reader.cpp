@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "modules/core/error.h"
-#include "modules/messages/messages.h"
+#include "modules/core/organ_limits.h"
 #include "modules/scene/object_reader.h"
 
 namespace palpate::scene {

@@ -15,7 +15,7 @@
 #include <string>
 #include <type_traits>
 
-#include "modules/messages/messages.h"
+#include "modules/core/organ_limits.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::scene {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "modules/core/error.h"
+#include "studies/report/progress.h"
 
 namespace palpate::calibration {
 namespace {
@@ -84,7 +85,7 @@ Comparison compare(const Case& calibrated, int levels, const StopRequest& stop) 
   SqueezedBall ball(calibrated.ball, levels);
   Comparison comparison{node_count(levels), {}};
   for (const ReferenceRow& row : calibrated.rows) {
-    if (stop && stop()) throw Stopped{};
+    if (stop && stop()) throw report::Stopped{};
     comparison.equilibria.push_back(ball.squeeze_to(row.compression));
   }
   return comparison;

@@ -60,8 +60,6 @@ struct Ratios {
 /// @param rest_radius  R [m]
 Ratios ratios(const Equilibrium& model, const ReferenceRow& reference, double rest_radius);
 
-/// Thrown between two equilibria when `stop` says so.
-struct Stopped {};
 using StopRequest = std::function<bool()>;
 
 /// Squeezes the case's ball to all its compressions, in rising order.

@@ -1,12 +1,14 @@
-// palpate-calibrate: fits and checks spring stiffness against squeezed balls of finite elements.
+// palpate calibrate: fits and checks spring stiffness against squeezed balls of finite elements.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 #include "studies/calibration/report.h"
+#include "studies/report/progress.h"
 
 namespace {
 
@@ -14,7 +16,7 @@ using namespace palpate;
 using calibration::Case;
 
 struct Options {
-  std::filesystem::path reference = PALPATE_REFERENCE_DIR;
+  std::filesystem::path reference = data_folder() / "reference";
   std::filesystem::path csv;
   std::string only;
   std::vector<int> nodes{642, 2562};
@@ -106,15 +108,15 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Squeeze balls between plates, fit inner springs and the membrane factor to\n"
       "finite-element solutions, and print what error is left (docs/calibration.md).",
-      "palpate-calibrate");
+      "palpate calibrate");
   Options options;
   add_options(app, options);
   return runtime::run_program(app, argc, argv, [&] {
     try {
       return run(options);
-    } catch (const calibration::Stopped&) {
+    } catch (const report::Stopped&) {
       std::cerr << "stopped\n";
-      return kExitFailed;
+      return report::kExitStopped;
     }
   });
 }

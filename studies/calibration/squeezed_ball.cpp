@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/organ_messages.h"
 #include "modules/core/error.h"
 #include "modules/geometry/primitives.h"
+#include "studies/rigs/squeezed_ball.h"
 
 namespace palpate::calibration {
 namespace {
@@ -17,16 +19,11 @@ constexpr double kDrag = 60;
 constexpr int kCheckEvery = 25;  // advances, 0.1 s
 constexpr int kMaxChecks = 60;
 
-scene::Scene plate_scene(scene::Organ organ) {
+scene::Organ damped(scene::Organ organ) {
   organ.name = "ball";
   organ.tissue.drag = kDrag;
   organ.integrator = scene::Integrator::kSymplecticEuler;
-  scene::Scene scene;
-  scene.organs.push_back(organ);
-  for (const char* name : {"upper_plate", "lower_plate"}) {
-    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
-  }
-  return scene;
+  return organ;
 }
 
 }  // namespace
@@ -36,17 +33,10 @@ std::size_t node_count(int levels) { return (10u << (2 * levels)) + 2; }
 SqueezedBall::SqueezedBall(const BallSetup& setup, int levels)
     : outer_radius_(setup.outer_radius),
       surface_depth_(setup.surface_depth),
-      world_(plate_scene(setup.organ),
+      world_(rigs::plate_scene(damped(setup.organ)),
              {geometry::make_ball(setup.outer_radius - setup.surface_depth, levels)}),
       height_(setup.outer_radius - setup.surface_depth) {
-  const SurfaceTopology& topology = world_.topology(0);
-  corners_.resize(topology.surface_node_count);
-  for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      corners_[topology.triangles[t][static_cast<std::size_t>(k)]] = {t, k};
-    }
-  }
-  world_.write_node_positions(0, nodes_);
+  deformation::write_node_positions(world_, 0, nodes_);
   rest_equator_ = mean_equatorial_radius();
 }
 
@@ -75,58 +65,26 @@ void SqueezedBall::advance_plates_to(double height) {
   touch(0, 1, height);
   touch(1, -1, height);
   world_.advance(kPeriod);
-  world_.write_node_positions(0, nodes_);
+  deformation::write_node_positions(world_, 0, nodes_);
   height_ = height;
 }
 
 /// Gives the plate, now at height_, a contact with every node near it, and the height it goes to.
-void SqueezedBall::touch(std::uint32_t plate, double side, double height) {
-  Contacts contacts;
-  contacts.probe = plate;
-  contacts.probe_pose.position = Vec3(0, 0, side * height_);
-  for (std::uint32_t node = 0; node < corners_.size(); ++node) {
-    const Vec3 p = position(node);
-    Contact contact;
-    contact.gap = height_ - side * p.z();
-    if (contact.gap > kContactMargin) continue;
-    contact.triangle = corners_[node].triangle;
-    contact.barycentric = Vec3::Unit(corners_[node].index);
-    contact.point_on_probe = Vec3(p.x(), p.y(), side * height_);
-    contact.normal = Vec3(0, 0, side);
-    contacts.contacts.push_back(contact);
-  }
-  world_.set_contacts(contacts);
-  ProbeState state;
-  state.probe = plate;
-  state.pose.position = Vec3(0, 0, side * height);
-  world_.set_probe(state);
+void SqueezedBall::touch(std::uint32_t plate, int side, double height) {
+  world_.set_contacts(rigs::plate_contacts(world_, plate, side * height_, side, kContactMargin));
+  world_.set_probe(plate, Pose{Vec3(0, 0, side * height), Quat::Identity()});
 }
 
 double SqueezedBall::plate_force(std::uint32_t plate) const {
-  ContactModel model;
-  world_.write_contact_model(plate, model);
+  const LocalLaw model = world_.local_law(plate);
   return std::abs(model.force.z());
 }
 
-/// Over all points where mesh edges cross z = 0.
 double SqueezedBall::mean_equatorial_radius() const {
-  double sum = 0;
-  int crossings = 0;
-  for (const auto& triangle : world_.topology(0).triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 a = position(triangle[k]), b = position(triangle[(k + 1) % 3]);
-      if ((a.z() < 0) == (b.z() < 0)) continue;
-      const Vec3 crossing = a + a.z() / (a.z() - b.z()) * (b - a);
-      sum += std::hypot(crossing.x(), crossing.y());
-      ++crossings;
-    }
-  }
-  return sum / crossings;
-}
-
-Vec3 SqueezedBall::position(std::uint32_t node) const {
-  const float* p = &nodes_.positions[3 * static_cast<std::size_t>(node)];
-  return Vec3(p[0], p[1], p[2]);
+  return rigs::equatorial_radius(world_.model(0).triangles, [&](std::size_t node) {
+    const float* p = &nodes_.positions[3 * node];
+    return Vec3(p[0], p[1], p[2]);
+  });
 }
 
 }  // namespace palpate::calibration

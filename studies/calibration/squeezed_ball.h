@@ -1,10 +1,8 @@
 // A ball between two frictionless plates, brought to rest at one compression after the other.
 #pragma once
 
-#include <array>
-#include <vector>
-
 #include "deformation/world.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::calibration {
 
@@ -41,23 +39,16 @@ class SqueezedBall {
   Equilibrium squeeze_to(double compression);
 
  private:
-  struct Corner {
-    std::uint32_t triangle = 0;
-    int index = 0;
-  };
-
   void advance_plates_to(double height);
-  void touch(std::uint32_t plate, double side, double height);
+  void touch(std::uint32_t plate, int side, double height);
   double plate_force(std::uint32_t plate) const;
   double mean_equatorial_radius() const;
-  Vec3 position(std::uint32_t node) const;
 
   double outer_radius_, surface_depth_;
   deformation::DeformationWorld world_;
-  std::vector<Corner> corners_;  ///< one triangle corner of each node  (node_count)
-  NodePositions nodes_;          ///< after the last advance
-  double height_;                ///< of the upper plate over the node surface's centre [m]
-  double rest_equator_ = 0;      ///< [m]
+  NodePositions nodes_;      ///< after the last advance
+  double height_;            ///< of the upper plate over the node surface's centre [m]
+  double rest_equator_ = 0;  ///< [m]
 };
 
 }  // namespace palpate::calibration

@@ -8,7 +8,7 @@
 #include "modules/scene/schema.h"
 #include "studies/report/table_file.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 std::string number(double value, const char* format = "{:.8g}") {
@@ -33,7 +33,7 @@ std::vector<std::string> row_of(const Point& p, const std::vector<double>& numbe
 }
 
 void write_points(const std::vector<Point>& points, const std::filesystem::path& file) {
-  bench::TableFile table(
+  report::TableFile table(
       file, columns({"surface_nodes", "inner_nodes", "tetrahedra", "step_s", "cost_s_per_s",
                      "force_error", "shape_error_m", "field_error_m", "contact_radius_error",
                      "profile_error_m", "volume_error", "diverged"}));
@@ -48,7 +48,7 @@ void write_points(const std::vector<Point>& points, const std::filesystem::path&
 }
 
 void write_samples(const std::vector<Point>& points, const std::filesystem::path& file) {
-  bench::TableFile table(
+  report::TableFile table(
       file, columns({"load", "force", "reference_force", "shape_m", "reference_shape_m",
                      "field_error_m", "contact_radius_m", "reference_contact_radius_m"}));
   for (const Point& p : points) {
@@ -61,7 +61,7 @@ void write_samples(const std::vector<Point>& points, const std::filesystem::path
 }
 
 void write_profiles(const std::vector<Point>& points, const std::filesystem::path& file) {
-  bench::TableFile table(file, columns({"load", "distance_m", "displacement_m", "reference_m"}));
+  report::TableFile table(file, columns({"load", "distance_m", "displacement_m", "reference_m"}));
   for (const Point& p : points) {
     for (const Sample& s : p.measurement.samples) {
       for (std::size_t i = 0; i < kProfilePlaces.size(); ++i) {
@@ -74,15 +74,16 @@ void write_profiles(const std::vector<Point>& points, const std::filesystem::pat
   table.finish();
 }
 
-void write_truths(const std::vector<TruthPoint>& truths, const std::filesystem::path& file) {
-  bench::TableFile table(file, {"case", "level", "surface_nodes", "inner_nodes", "tetrahedra",
-                                "load", "force", "shape_m"});
-  for (const TruthPoint& truth : truths) {
-    for (std::size_t level = 0; level < truth.levels.size(); ++level) {
-      const Measurement& m = truth.levels[level];
+void write_references(const std::vector<ReferenceSolution>& references,
+                      const std::filesystem::path& file) {
+  report::TableFile table(file, {"case", "level", "surface_nodes", "inner_nodes", "tetrahedra",
+                                 "load", "force", "shape_m"});
+  for (const ReferenceSolution& reference : references) {
+    for (std::size_t level = 0; level < reference.levels.size(); ++level) {
+      const Measurement& m = reference.levels[level];
       for (const Sample& s : m.samples) {
         table.write_row(std::vector<std::string>{
-            truth.of.name, std::to_string(level), std::to_string(m.surface_nodes),
+            reference.of.name, std::to_string(level), std::to_string(m.surface_nodes),
             std::to_string(m.inner_nodes), std::to_string(m.tetrahedra), number(s.load),
             number(s.force), number(s.shape)});
       }
@@ -96,14 +97,14 @@ std::string short_number(double value) { return number(value, "{:.3g}"); }
 std::string per_cent(double value) { return number(100 * value, "{:.2f} %"); }
 
 /// The coarser mesh (or larger step) judged by the finer one.
-void print_truth(const TruthPoint& truth, std::ostream& out) {
-  Measurement coarse = truth.levels.front();
-  const Measurement& fine = truth.levels.back();
+void print_reference(const ReferenceSolution& reference, std::ostream& out) {
+  Measurement coarse = reference.levels.front();
+  const Measurement& fine = reference.levels.back();
   for (Sample& sample : coarse.samples) {
     sample.reference_force = sample.reference_shape = kUnknown;
   }
   refer(fine, coarse);
-  out << fmt::format("truth of {}: {} nodes; the coarser of {} differs by", truth.of.name,
+  out << fmt::format("reference of {}: {} nodes; the coarser of {} differs by", reference.of.name,
                      fine.surface_nodes + fine.inner_nodes,
                      coarse.surface_nodes + coarse.inner_nodes);
   const auto say = [&](const char* what, const std::string& value) {
@@ -121,7 +122,7 @@ void write_tables(const SweepResult& result, const std::filesystem::path& folder
   write_points(result.points, folder / "points.csv");
   write_samples(result.points, folder / "samples.csv");
   write_profiles(result.points, folder / "profiles.csv");
-  write_truths(result.truths, folder / "truths.csv");
+  write_references(result.references, folder / "reference_solutions.csv");
 }
 
 void print(const SweepResult& result, std::ostream& out) {
@@ -145,7 +146,7 @@ void print(const SweepResult& result, std::ostream& out) {
   out << "cost: processor seconds of one core per simulated second; force, contact (its radius): "
          "root mean square over the loads of the relative error; shape, field, profile: root mean "
          "square in mm.\n";
-  for (const TruthPoint& truth : result.truths) print_truth(truth, out);
+  for (const ReferenceSolution& reference : result.references) print_reference(reference, out);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -6,13 +6,13 @@
 
 #include "studies/chart/sweep.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
-/// points.csv, samples.csv, profiles.csv, truths.csv in `folder`.
+/// points.csv, samples.csv, profiles.csv, reference_solutions.csv in `folder`.
 /// @throws std::runtime_error if one cannot be written
 void write_tables(const SweepResult& result, const std::filesystem::path& folder);
 
-/// Every point's cost and errors, and what the truths may be off by.
+/// Every point's cost and errors, and what the reference solutions may be off by.
 void print(const SweepResult& result, std::ostream& out);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -3,14 +3,15 @@
 #include <cmath>
 
 #include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/data_folder.h"
 #include "modules/geometry/primitives.h"
-#include "modules/geometry/tools/gmsh_tool.h"
 #include "studies/chart/case_parts.h"
+#include "studies/rigs/squeezed_ball.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
-constexpr double kRadius = kBallRadius;
+constexpr double kRadius = rigs::kBallRadius;
 constexpr double kPlateSpeed = 0.02;  // [m/s]
 /// About critical for the ball's slowest mode, the one the plates excite [1/s].
 constexpr double kDrag = 60;
@@ -19,13 +20,9 @@ constexpr double kDrag = 60;
 
 geometry::OrganShape ball_shape(const Setting& setting) {
   const bool quadratic = scene::is_quadratic(setting.model);
-  const auto surface = geometry::make_ball(kRadius, setting.level + (quadratic ? 1 : 2));
-  if (!scene::is_solid(setting.model)) return geometry::OrganShape(surface);
-  const auto edges = geometry::edges_of(surface.triangles);
-  double size = 0;
-  for (const auto& [a, b] : edges) size += (surface.nodes[a] - surface.nodes[b]).norm();
-  auto shape = shape_for(setting, geometry::shape_of(geometry::fill_surface(
-                                      surface, size / static_cast<double>(edges.size()))));
+  const int levels = setting.level + (quadratic ? 1 : 2);
+  if (!scene::is_solid(setting.model)) return geometry::make_ball(kRadius, levels);
+  auto shape = shape_for(setting, rigs::filled_ball(levels));
   for (Vec3& node : shape.surface.nodes) node *= kRadius / node.norm();
   return shape;
 }
@@ -38,29 +35,11 @@ scene::Scene ball_scene(const Setting& setting, double drag) {
   return scene;
 }
 
-std::vector<Pose> add_plates(scene::Scene& scene) {
-  for (const char* name : {"upper_plate", "lower_plate"}) {
-    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
-  }
-  return {plate(kRadius, false), plate(-kRadius, true)};
-}
-
 namespace {
 
-/// Mean distance from the z axis where surface edges cross z = 0 [m].
 double equatorial_radius(const Stage& stage) {
-  double sum = 0;
-  int crossings = 0;
-  for (const auto& triangle : stage.topology().triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 a = stage.position(triangle[k]), b = stage.position(triangle[(k + 1) % 3]);
-      if ((a.z() < 0) == (b.z() < 0)) continue;
-      const Vec3 crossing = a + a.z() / (a.z() - b.z()) * (b - a);
-      sum += std::hypot(crossing.x(), crossing.y());
-      ++crossings;
-    }
-  }
-  return sum / crossings;
+  return rigs::equatorial_radius(stage.model().triangles,
+                                 [&](std::size_t node) { return stage.position(node); });
 }
 
 /// Amplitude of the ellipsoidal mode: Σ m (2 z u_z − x u_x − y u_y) / Σ m (4z² + x² + y²).
@@ -90,29 +69,28 @@ double frequency_of(const std::vector<double>& swing, double h) {
 
 }  // namespace
 
-Measurement measure_ball(const Setting& setting, const Source& source,
-                         const KeepGoing& keep_going) {
-  const ReferenceTable truth(source.references / "A_ball_plates.csv");
+Measurement measure_ball(const Setting& setting, const KeepGoing& keep_going) {
+  const ReferenceTable reference(data_file("reference/A_ball_plates.csv"));
   const auto shape = ball_shape(setting);
   scene::Scene scene = ball_scene(setting, kDrag);
-  std::vector<Pose> poses = add_plates(scene);
+  std::vector<Pose> poses = rigs::add_plates(scene);
   Stage stage(scene, shape, poses);
   const double rest_radius = equatorial_radius(stage);
   std::vector<Sample> samples;
   for (const double compression : {0.1, 0.2, 0.3, 0.4}) {
     const double height = kRadius * (1 - compression);
     move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
-    const std::size_t row = truth.row_of("compression_d_over_2R", compression);
+    const std::size_t row = reference.row_of("compression_d_over_2R", compression);
     Sample sample;
     sample.load = compression;
     sample.force = (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
-    sample.reference_force = truth.at("F_N_nu0.499", row);
+    sample.reference_force = reference.at("F_N_nu0.499", row);
     // The mesh's own radius is a little less than the ball's: growth is compared.
     sample.shape = equatorial_radius(stage) / rest_radius * kRadius - kRadius;
-    sample.reference_shape = 1e-3 * truth.at("equatorial_radius_mm_nu0.499", row) - kRadius;
+    sample.reference_shape = 1e-3 * reference.at("equatorial_radius_mm_nu0.499", row) - kRadius;
     sample.contact_radius =
         contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
-    sample.reference_contact_radius = 1e-3 * truth.at("contact_radius_mm_nu0.499", row);
+    sample.reference_contact_radius = 1e-3 * reference.at("contact_radius_mm_nu0.499", row);
     samples.push_back(sample);
     if (stage.diverged()) break;
   }
@@ -121,10 +99,9 @@ Measurement measure_ball(const Setting& setting, const Source& source,
   return result;
 }
 
-Measurement measure_vibration(const Setting& setting, const Source& source,
-                              const KeepGoing& keep_going) {
+Measurement measure_vibration(const Setting& setting, const KeepGoing& keep_going) {
   constexpr double kDuration = 1, kAmplitude = 0.01;  // [s], of the radius
-  const ReferenceTable truth(source.references / "E_ball_frequencies.csv");
+  const ReferenceTable reference(data_file("reference/E_ball_frequencies.csv"));
   const auto shape = ball_shape(setting);
   scene::Scene scene = ball_scene(setting, 0);
   scene.organs[0].tissue.damping_ratio = 0;
@@ -153,11 +130,11 @@ Measurement measure_vibration(const Setting& setting, const Source& source,
   result.cost = busy / (static_cast<double>(swing.size() - 1) * h);
   result.volume_error = kUnknown;
   Sample sample;
-  sample.load = sample.reference_force = truth.at("f_Hz_Lamb_exact", 1);  // spheroidal, n = 2
+  sample.load = sample.reference_force = reference.at("f_Hz_Lamb_exact", 1);  // spheroidal, n = 2
   sample.force = frequency_of(swing, h);
   result.diverged = !std::isfinite(swing.back()) || std::abs(swing.back()) > 10 * kAmplitude;
   result.samples.push_back(sample);
   return result;
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -3,15 +3,17 @@
 #include <Eigen/SVD>
 #include <cmath>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "studies/chart/case_parts.h"
 #include "studies/chart/displacement_field.h"
 #include "studies/chart/equilibria.h"
+#include "studies/chart/reference_solutions.h"
 #include "studies/chart/truth_cube.h"
-#include "studies/chart/truths.h"
+#include "studies/rigs/squeezed_ball.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 constexpr double kHalf = 0.04, kHeight = 0.08;  // [m]
@@ -69,7 +71,7 @@ Measurement compress(const Setting& setting, const std::vector<double>& compress
                      const KeepGoing& keep_going) {
   scene::Scene scene = block_scene(setting);
   scene.probes.push_back({"plate", scene::PlaneShape{}, kBondFriction, scene::ScriptedDevice{}});
-  std::vector<Pose> poses{plate(kHeight, false)};
+  std::vector<Pose> poses{rigs::plate_pose(kHeight, false)};
   Stage stage(scene, shape, poses);
   std::vector<Sample> samples;
   for (const double compression : compressions) {
@@ -113,30 +115,29 @@ double grid_error(const Stage& stage, const std::vector<GridPoint>& grid, double
 
 }  // namespace
 
-Measurement measure_block(const Setting& setting, const Source& source,
-                          const KeepGoing& keep_going) {
-  const ReferenceTable truth(source.references / "C_block_force_bulge.csv");
+Measurement measure_block(const Setting& setting, const KeepGoing& keep_going) {
+  const ReferenceTable reference(data_file("reference/C_block_force_bulge.csv"));
   const auto shape = block_shape(setting);
-  const auto grid = reference_grid(source.references / "C_block_grid_5x5x5.csv", shape);
+  const auto grid = reference_grid(data_file("reference/C_block_grid_5x5x5.csv"), shape);
   const auto middle = weights_at(shape, {kHalf, 0, kHeight / 2});
   const auto answer = [&](const Stage& stage, double compression) {
-    const std::size_t row = truth.row_of("compression", compression);
+    const std::size_t row = reference.row_of("compression", compression);
     Sample sample;
     sample.load = compression;
     sample.force = std::abs(stage.force(0).z());
-    sample.reference_force = truth.at("F_N", row);
+    sample.reference_force = reference.at("F_N", row);
     sample.shape = displacement(stage, middle).x();
-    sample.reference_shape = 1e-3 * truth.at("lateral_bulge_face_centre_mm", row);
+    sample.reference_shape = 1e-3 * reference.at("lateral_bulge_face_centre_mm", row);
     sample.field_error = grid_error(stage, grid, compression);
     return sample;
   };
   return compress(setting, {0.05, 0.125, 0.1825}, shape, answer, keep_going);
 }
 
-Measurement measure_truth_cube(const Setting& setting, const Source& source,
-                               const KeepGoing& keep_going) {
-  if (!source.data) throw InputError("truthcube: PALPATE_DATA is not there");
-  const TruthCube cube = read_truth_cube(*source.data / "truthcube");
+Measurement measure_truth_cube(const Setting& setting, const KeepGoing& keep_going) {
+  const auto folder = truth_cube_folder();
+  if (!folder) throw InputError("truthcube: PALPATE_DATA is not there");
+  const TruthCube cube = read_truth_cube(*folder);
   const auto shape = block_shape(setting);
   std::vector<NodeWeights> beads;
   for (const Vec3& bead : cube.rest) beads.push_back(weights_at(shape, bead));
@@ -155,7 +156,7 @@ Measurement measure_truth_cube(const Setting& setting, const Source& source,
   return compress(setting, compressions, shape, answer, keep_going);
 }
 
-Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing& keep_going) {
+Measurement measure_beam(const Setting& setting, const KeepGoing& keep_going) {
   constexpr double kLongest = 5;  // [s]
   constexpr std::array kSizes{0.01, 0.0067, 0.004};
   const auto shape = block_shape(setting, kBeamLow, kBeamHigh,
@@ -179,7 +180,7 @@ Measurement measure_beam(const Setting& setting, const Source&, const KeepGoing&
   return result;
 }
 
-Measurement bend_beam(int level, const Source&, const KeepGoing& keep_going) {
+Measurement bend_beam(int level, const KeepGoing& keep_going) {
   constexpr std::array kSizes{"0.007", "0.005"};
   const elements::MixedSolid solid(
       elements::make_quadratic(
@@ -194,10 +195,9 @@ Measurement bend_beam(int level, const Source&, const KeepGoing& keep_going) {
   return result;
 }
 
-Measurement measure_indent(const Setting& setting, const Source& source,
-                           const KeepGoing& keep_going) {
+Measurement measure_indent(const Setting& setting, const KeepGoing& keep_going) {
   constexpr std::array kSizes{2e-3, 0.93e-3, 0.6e-3};  // under the tip
-  const ReferenceTable truth(source.references / "D_indent_force_depth.csv");
+  const ReferenceTable reference(data_file("reference/D_indent_force_depth.csv"));
   const double size = kSizes[static_cast<std::size_t>(setting.level)];
   // Flat to a radius from the tip, then growing twentyfold.
   std::ostringstream growth;
@@ -216,14 +216,14 @@ Measurement measure_indent(const Setting& setting, const Source& source,
   std::vector<Sample> samples;
   for (const double depth : kTipDepths) {
     move_and_settle(stage, poses, {{0, 0, kHeight + kTip - depth}}, kTipSpeed, keep_going);
-    const std::size_t row = truth.row_of("depth_mm", std::round(1e3 * depth));
+    const std::size_t row = reference.row_of("depth_mm", std::round(1e3 * depth));
     Sample sample;
     sample.load = depth;
     sample.force = stage.force(0).z();
-    sample.reference_force = truth.at("F_block_N", row);
+    sample.reference_force = reference.at("F_block_N", row);
     sample.contact_radius = contact_radius(
         stage, Vec3::UnitZ(), [&](const Vec3& x) { return (x - poses[0].position).norm() - kTip; });
-    sample.reference_contact_radius = 1e-3 * truth.at("contact_radius_mm", row);
+    sample.reference_contact_radius = 1e-3 * reference.at("contact_radius_mm", row);
     for (std::size_t i = 0; i < places.size(); ++i) {
       sample.profile[i] = displacement(stage, places[i]).z();
     }
@@ -235,8 +235,8 @@ Measurement measure_indent(const Setting& setting, const Source& source,
   return result;
 }
 
-/// A quarter of the block, as in case D of bench/elements.
-Measurement press_block(int level, const Source&, const KeepGoing& keep_going) {
+/// A quarter of the block, as in case D of studies/elements.
+Measurement press_block(int level, const KeepGoing& keep_going) {
   constexpr std::array kSizes{0.4, 0.28};  // of the tip's radius
   std::ostringstream size;
   size << kSizes[static_cast<std::size_t>(level)] * kTip
@@ -267,4 +267,4 @@ Measurement press_block(int level, const Source&, const KeepGoing& keep_going) {
   return result;
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

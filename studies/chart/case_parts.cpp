@@ -2,13 +2,7 @@
 
 #include <cmath>
 
-namespace palpate::accuracy {
-Pose plate(double height, bool facing_up) {
-  Pose pose;
-  pose.position = Vec3(0, 0, height);
-  if (!facing_up) pose.rotation = Quat(0, 1, 0, 0);
-  return pose;
-}
+namespace palpate::chart {
 
 void move_and_settle(Stage& stage, std::vector<Pose>& poses, const std::vector<Vec3>& to,
                      double speed, const KeepGoing& keep_going) {
@@ -56,7 +50,7 @@ Measurement summary(const elements::MixedSolid& solid) {
 double contact_radius(const Stage& stage, const Vec3& normal,
                       const std::function<double(const Vec3&)>& outside) {
   double area = 0;
-  for (const auto& triangle : stage.topology().triangles) {
+  for (const auto& triangle : stage.model().triangles) {
     const Vec3 a = stage.position(triangle[0]), b = stage.position(triangle[1]),
                c = stage.position(triangle[2]);
     int touching = 0;
@@ -66,4 +60,4 @@ double contact_radius(const Stage& stage, const Vec3& normal,
   return std::sqrt(area / M_PI);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

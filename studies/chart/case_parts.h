@@ -6,7 +6,7 @@
 #include "studies/chart/stage.h"
 #include "studies/report/reference_table.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 inline constexpr double kYoungsModulus = 5e3;    // of the references [Pa]
 inline constexpr double kDensity = 1060;         // [kg/m³]
@@ -14,19 +14,13 @@ inline constexpr double kPoissonRatio = 0.499;   // Solid's default
 inline constexpr std::size_t kVirtualNodes = 6;  // of what has a dominant axis
 inline constexpr double kLongestSettling = 3;    // [s]
 
-using bench::ReferenceTable;
+using report::ReferenceTable;
 
-/// A plane, solid on the side `up` (±z) does not point to, at `height`.
-Pose plate(double height, bool facing_up);
-
-inline constexpr double kBallRadius = 0.05;  // [m]
 /// Surface nodes 162, 642, 2,562 for every model: a quadratic one has the corners of the level
 /// before, and its surface lies on the sphere.
 geometry::OrganShape ball_shape(const Setting& setting);
 /// @param drag  [1/s]
 scene::Scene ball_scene(const Setting& setting, double drag);
-/// Adds the plates, touching from above and below. @returns where they are
-std::vector<Pose> add_plates(scene::Scene& scene);
 
 /// Moves all probes in a straight line at `speed` [m/s] from `from` to `to`, then lets them settle.
 void move_and_settle(Stage& stage, std::vector<Pose>& poses, const std::vector<Vec3>& to,
@@ -34,7 +28,7 @@ void move_and_settle(Stage& stage, std::vector<Pose>& poses, const std::vector<V
 
 /// Sizes, step, cost and volume error of the stage so far.
 Measurement summary(const Stage& stage, const geometry::OrganShape& shape);
-/// Sizes of a truth.
+/// Sizes of a reference.
 Measurement summary(const elements::MixedSolid& solid);
 
 /// √(A/π), A the share of the surface, across `normal`, of nodes less than kTouchDistance outside
@@ -44,21 +38,14 @@ inline constexpr double kTouchDistance = 5e-5;
 double contact_radius(const Stage& stage, const Vec3& normal,
                       const std::function<double(const Vec3&)>& outside);
 
-Measurement measure_ball(const Setting& setting, const Source& source, const KeepGoing& keep_going);
-Measurement measure_block(const Setting& setting, const Source& source,
-                          const KeepGoing& keep_going);
-Measurement measure_indent(const Setting& setting, const Source& source,
-                           const KeepGoing& keep_going);
-Measurement measure_vibration(const Setting& setting, const Source& source,
-                              const KeepGoing& keep_going);
-Measurement measure_squeeze(const Setting& setting, const Source& source,
-                            const KeepGoing& keep_going);
-Measurement measure_truth_cube(const Setting& setting, const Source& source,
-                               const KeepGoing& keep_going);
-Measurement measure_beam(const Setting& setting, const Source& source, const KeepGoing& keep_going);
-Measurement measure_liver(const Setting& setting, const Source& source,
-                          const KeepGoing& keep_going);
-Measurement measure_stomach(const Setting& setting, const Source& source,
-                            const KeepGoing& keep_going);
+Measurement measure_ball(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_block(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_indent(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_vibration(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_squeeze(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_truth_cube(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_beam(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_liver(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_stomach(const Setting& setting, const KeepGoing& keep_going);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -7,35 +7,37 @@
 
 #include "modules/core/error.h"
 #include "studies/chart/case_parts.h"
-#include "studies/chart/truths.h"
+#include "studies/chart/reference_solutions.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
-using Measure = Measurement (*)(const Setting&, const Source&, const KeepGoing&);
-using MeasureTruth = Measurement (*)(int level, const Source&, const KeepGoing&);
+using Measure = Measurement (*)(const Setting&, const KeepGoing&);
+using SolveReference = Measurement (*)(int level, const KeepGoing&);
 
 struct Entry {
   Case description;
   Measure measure;
-  MeasureTruth truth = nullptr;
+  SolveReference reference = nullptr;
 };
 
 const std::array<Entry, 9>& entries() {
   static constexpr std::array<Entry, 9> kEntries{{
-      {{"ball", "compression", "growth of the equator", 3, false, Truth::kReference}, measure_ball},
-      {{"block", "compression", "bulge of a face", 3, false, Truth::kReference}, measure_block},
-      {{"truthcube", "compression", "", 3, false, Truth::kReference}, measure_truth_cube},
-      {{"indent", "depth [m]", "", 3, false, Truth::kPartly}, measure_indent, press_block},
-      {{"vibration", "exact frequency [Hz]", "", 3, true, Truth::kReference}, measure_vibration},
-      {{"squeeze", "time [s]", "", 3, true, Truth::kOwn}, measure_squeeze, squeeze_in_small_steps},
-      {{"beam", "gravity [m/s2]", "sag of the tip", 3, false, Truth::kOwn},
+      {{"ball", "compression", "growth of the equator", 3, false, Reference::kTable}, measure_ball},
+      {{"block", "compression", "bulge of a face", 3, false, Reference::kTable}, measure_block},
+      {{"truthcube", "compression", "", 3, false, Reference::kTable}, measure_truth_cube},
+      {{"indent", "depth [m]", "", 3, false, Reference::kPartly}, measure_indent, press_block},
+      {{"vibration", "exact frequency [Hz]", "", 3, true, Reference::kTable}, measure_vibration},
+      {{"squeeze", "time [s]", "", 3, true, Reference::kOwn},
+       measure_squeeze,
+       squeeze_in_small_steps},
+      {{"beam", "gravity [m/s2]", "sag of the tip", 3, false, Reference::kOwn},
        measure_beam,
        bend_beam},
-      {{"liver", "depth [m]", "displacement 20 mm beside", 3, false, Truth::kOwn},
+      {{"liver", "depth [m]", "displacement 20 mm beside", 3, false, Reference::kOwn},
        measure_liver,
        press_liver},
-      {{"stomach", "depth [m]", "displacement 20 mm beside", 3, false, Truth::kOwn},
+      {{"stomach", "depth [m]", "displacement 20 mm beside", 3, false, Reference::kOwn},
        measure_stomach,
        press_stomach},
   }};
@@ -76,32 +78,30 @@ const Case& find_case(const std::string& name) {
   throw InputError(fmt::format("case '{}': must be one of {}", name, fmt::join(names, ", ")));
 }
 
-Measurement measure(const Case& of, const Setting& setting, const Source& source,
-                    const KeepGoing& keep_going) {
+Measurement measure(const Case& of, const Setting& setting, const KeepGoing& keep_going) {
   for (const Entry& entry : entries()) {
     if (std::string(entry.description.name) == of.name) {
-      return entry.measure(setting, source, keep_going);
+      return entry.measure(setting, keep_going);
     }
   }
   throw InputError(fmt::format("case '{}' is not there", of.name));
 }
 
-Measurement measure_truth(const Case& of, int level, const Source& source,
-                          const KeepGoing& keep_going) {
+Measurement solve_reference(const Case& of, int level, const KeepGoing& keep_going) {
   for (const Entry& entry : entries()) {
-    if (std::string(entry.description.name) == of.name && entry.truth != nullptr) {
-      return entry.truth(level, source, keep_going);
+    if (std::string(entry.description.name) == of.name && entry.reference != nullptr) {
+      return entry.reference(level, keep_going);
     }
   }
-  throw InputError(fmt::format("case '{}' has no truth of its own", of.name));
+  throw InputError(fmt::format("case '{}' has no reference of its own", of.name));
 }
 
-void refer(const Measurement& truth, Measurement& measurement) {
-  const auto fill = [](double answer, double& reference) {
-    if (std::isnan(reference)) reference = answer;
+void refer(const Measurement& reference, Measurement& measurement) {
+  const auto fill = [](double answer, double& unknown) {
+    if (std::isnan(unknown)) unknown = answer;
   };
   for (Sample& sample : measurement.samples) {
-    for (const Sample& answer : truth.samples) {
+    for (const Sample& answer : reference.samples) {
       if (std::abs(answer.load - sample.load) > 1e-9) continue;
       fill(answer.force, sample.reference_force);
       fill(answer.shape, sample.reference_shape);
@@ -150,4 +150,4 @@ double field_error(const Measurement& measurement) {
   return root_mean_square(measurement, [](const Sample& s) { return s.field_error; });
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -1,11 +1,11 @@
-// What the models are judged by: loads applied to an organ, and what the truth answers to them.
+// What the models are judged by: loads applied to an organ, and the answers known to them.
 //   ball      solid ball between frictionless plates      reference solutions (case A)
 //   block     block with bonded ends, compressed          reference (case C), measured Truth Cube
 //   indent    block under a frictionless 5 mm sphere      reference (case D)
 //   vibration free ball, its ellipsoidal mode             Lamb's exact root (case E)
-//   squeeze   the ball, squeezed within 50 ms             the accurate rung in small steps
-//   beam      a cantilever bends under its weight         equilibrium of the accurate rung
-//   (truths.h) liver, stomach   pressed by a sphere                  the same
+//   squeeze   the ball, squeezed within 50 ms             the most accurate model in small steps
+//   beam      a cantilever bends under its weight         equilibrium of the most accurate model
+//   liver, stomach   pressed by a sphere                  the same (reference_solutions.h)
 // All but vibration and squeeze move slowly and come to rest at each load.
 #pragma once
 
@@ -15,9 +15,9 @@
 #include <limits>
 #include <optional>
 
-#include "studies/chart/rungs.h"
+#include "studies/chart/fidelity.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -60,10 +60,10 @@ struct Measurement {
 using KeepGoing = std::function<void()>;
 
 /// Who knows the answers.
-enum class Truth {
-  kReference,  ///< a reference, all of them
-  kPartly,     ///< a reference all but the profile, which truths.h has
-  kOwn         ///< truths.h alone
+enum class Reference {
+  kTable,   ///< a table knows all of them
+  kPartly,  ///< a table knows all but the profile, which reference_solutions.h has
+  kOwn      ///< reference_solutions.h alone
 };
 
 struct Case {
@@ -72,29 +72,21 @@ struct Case {
   const char* shape_name;  ///< what Sample::shape is; empty: nothing
   int level_count;         ///< meshes there are
   bool dynamic;            ///< needs velocities: kinematic models are left out
-  Truth truth;
+  Reference reference;
 };
 
 const std::vector<Case>& cases();
 /// @throws InputError listing what there is
 const Case& find_case(const std::string& name);
 
-struct Source {
-  std::filesystem::path references;           ///< folder of reference tables
-  std::filesystem::path scenes;               ///< folder of scenes and their meshes
-  std::optional<std::filesystem::path> data;  ///< third-party data, if there
-};
-
 /// @throws InputError if gmsh, a mesh or a reference is missing; what `keep_going` throws
-Measurement measure(const Case& of, const Setting& setting, const Source& source,
-                    const KeepGoing& keep_going);
+Measurement measure(const Case& of, const Setting& setting, const KeepGoing& keep_going);
 
-/// What no reference knows, on a finer mesh the higher the level, below kTruthLevels (truths.h).
-/// @param of  not Truth::kReference alone @throws as measure()
-Measurement measure_truth(const Case& of, int level, const Source& source,
-                          const KeepGoing& keep_going);
-/// Answers of the truth become references where there is none.
-void refer(const Measurement& truth, Measurement& measurement);
+/// What no table knows, on a finer mesh the higher the level, below kReferenceLevels.
+/// @param of  not Reference::kTable alone @throws as measure()
+Measurement solve_reference(const Case& of, int level, const KeepGoing& keep_going);
+/// Its answers become references where there is none.
+void refer(const Measurement& reference, Measurement& measurement);
 
 /// √ mean of the squared relative errors of force, of a course over time over the course's own √
 /// mean square; kUnknown if none is known.
@@ -108,4 +100,4 @@ double contact_radius_error(const Measurement& measurement);
 /// √ mean of the squared differences of the profile; kUnknown if none is known [m].
 double profile_error(const Measurement& measurement);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

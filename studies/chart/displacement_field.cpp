@@ -6,7 +6,7 @@
 
 #include "modules/geometry/closest_points.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 struct SurfacePoint {
@@ -120,4 +120,4 @@ NodeWeights weights_at(const geometry::OrganShape& shape, const Vec3& point, dou
                           : weights_in_surface(shape.surface, point);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -6,7 +6,7 @@
 
 #include "modules/geometry/organ_shape.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 /// What a point's displacement is made of: Σ weight · displacement of node, Σ weight = 1.
 using NodeWeights = std::vector<std::pair<std::uint32_t, double>>;
@@ -20,4 +20,4 @@ using NodeWeights = std::vector<std::pair<std::uint32_t, double>>;
 NodeWeights weights_at(const geometry::OrganShape& shape, const Vec3& point,
                        double tolerance = 1e-6);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -7,7 +7,7 @@
 #include "modules/geometry/closest_points.h"
 #include "studies/elements/load_path.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 using elements::MixedSolid;
@@ -16,7 +16,7 @@ using elements::SolidState;
 constexpr double kStride = 0.1;        // radii, of the sphere between equilibria
 constexpr int kMostHalvings = 2;       // a fold is not followed: it takes hours
 constexpr double kReach = 4;           // radii: faces within may touch
-constexpr double kPenaltyRatio = 300;  // as in case D of bench/elements
+constexpr double kPenaltyRatio = 300;  // as in case D of studies/elements
 
 elements_bench::Setting quiet(const std::function<void()>& keep_going) {
   elements_bench::Setting setting;
@@ -115,10 +115,10 @@ std::vector<Vec3> sag_at_rest(const MixedSolid& solid, std::vector<char> held, c
     std::vector<Vec3> predicted = solid.mesh().nodes;
     for (Vec3& x : predicted) x += double(k) / kStrides / kFactor * gravity;
     if (!solver.solve(state, elements::Inertia{kFactor, predicted}).converged) {
-      throw std::runtime_error("the truth found no equilibrium under its weight");
+      throw std::runtime_error("the reference found no equilibrium under its weight");
     }
   }
   return displacements(solid, state, marks);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -6,7 +6,7 @@
 
 #include "deformation/elements/mixed_solid.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 /// A frictionless sphere that has moved `depth` along `direction` since it touched at `place`.
 struct Press {
@@ -34,4 +34,4 @@ std::vector<Vec3> sag_at_rest(const elements::MixedSolid& solid, std::vector<cha
                               const Vec3& gravity, const std::vector<Vec3>& marks,
                               const std::function<void()>& keep_going);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

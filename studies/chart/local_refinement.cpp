@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 using geometry::Triangle;
@@ -91,4 +91,4 @@ TriangleSurface refine_around(TriangleSurface surface, const Vec3& centre, doubl
   return surface;
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -3,7 +3,7 @@
 
 #include "modules/geometry/triangle_surface.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 /// Halves longest edges until each edge is shorter than finest + growth · (distance of its middle
 /// from `centre`). The shape stays: new nodes are middles of edges, behind the old ones.
@@ -13,4 +13,4 @@ namespace palpate::accuracy {
 geometry::TriangleSurface refine_around(geometry::TriangleSurface surface, const Vec3& centre,
                                         double finest, double growth);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "deformation/model/organ_model.h"
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/tools/gmsh_tool.h"
@@ -13,9 +14,9 @@
 #include "studies/chart/displacement_field.h"
 #include "studies/chart/equilibria.h"
 #include "studies/chart/local_refinement.h"
-#include "studies/chart/truths.h"
+#include "studies/chart/reference_solutions.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 constexpr double kTip = 8e-3, kSpeed = 5e-3, kBeside = 0.02;  // [m], [m/s], [m]
@@ -64,9 +65,8 @@ geometry::OrganShape organ_shape(const Setting& setting, const scene::Organ& org
                                 surface, geometry::mean_edge_length(surface))));
 }
 
-Measurement press_organ(const Place& press, const Setting& setting, const Source& source,
-                        const KeepGoing& keep_going) {
-  const scene::Organ shown = scene::load_scene(source.scenes / press.scene).organs.at(0);
+Measurement press_organ(const Place& press, const Setting& setting, const KeepGoing& keep_going) {
+  const scene::Organ shown = scene::load_scene(data_file("scenes") / press.scene).organs.at(0);
   const auto shape = organ_shape(setting, shown);
   const double volume = geometry::enclosed_volume(shape.surface.nodes, shape.surface.triangles);
   scene::Scene scene;
@@ -102,11 +102,10 @@ Measurement press_organ(const Place& press, const Setting& setting, const Source
 
 /// The surface of level 1, finer around the sphere: what differs from models of that level is how
 /// they compute, not what.
-Measurement press_at_rest(const Place& place, int level, const Source& source,
-                          const KeepGoing& keep_going) {
+Measurement press_at_rest(const Place& place, int level, const KeepGoing& keep_going) {
   constexpr std::array kFinest{2.4e-3, 1.6e-3}, kGrowth{0.6, 0.4};
   const auto at = static_cast<std::size_t>(level);
-  const scene::Organ organ = scene::load_scene(source.scenes / place.scene).organs.at(0);
+  const scene::Organ organ = scene::load_scene(data_file("scenes") / place.scene).organs.at(0);
   const auto coarse = surface_of(organ, kNodes[1]);
   const Vec3 touched(place.x, front_of(coarse, place.x, place.z), place.z);
   const auto surface = refine_around(coarse, touched, kFinest[at], kGrowth[at]);
@@ -124,7 +123,7 @@ Measurement press_at_rest(const Place& place, int level, const Source& source,
                     {kDepths.begin(), kDepths.end()},
                     {{place.x, front_of(coarse, place.x, z), z}}};
   Measurement result = summary(solid);
-  const auto answers = accuracy::press_at_rest(solid, held, press, keep_going);
+  const auto answers = chart::press_at_rest(solid, held, press, keep_going);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     Sample& sample = result.samples.emplace_back();
     sample.load = kDepths[i];
@@ -136,22 +135,20 @@ Measurement press_at_rest(const Place& place, int level, const Source& source,
 
 }  // namespace
 
-Measurement press_liver(int level, const Source& source, const KeepGoing& keep_going) {
-  return press_at_rest(kOnLiver, level, source, keep_going);
+Measurement press_liver(int level, const KeepGoing& keep_going) {
+  return press_at_rest(kOnLiver, level, keep_going);
 }
 
-Measurement press_stomach(int level, const Source& source, const KeepGoing& keep_going) {
-  return press_at_rest(kOnStomach, level, source, keep_going);
+Measurement press_stomach(int level, const KeepGoing& keep_going) {
+  return press_at_rest(kOnStomach, level, keep_going);
 }
 
-Measurement measure_liver(const Setting& setting, const Source& source,
-                          const KeepGoing& keep_going) {
-  return press_organ(kOnLiver, setting, source, keep_going);
+Measurement measure_liver(const Setting& setting, const KeepGoing& keep_going) {
+  return press_organ(kOnLiver, setting, keep_going);
 }
 
-Measurement measure_stomach(const Setting& setting, const Source& source,
-                            const KeepGoing& keep_going) {
-  return press_organ(kOnStomach, setting, source, keep_going);
+Measurement measure_stomach(const Setting& setting, const KeepGoing& keep_going) {
+  return press_organ(kOnStomach, setting, keep_going);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

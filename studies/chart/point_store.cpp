@@ -6,7 +6,7 @@
 #include "studies/report/reference_table.h"
 #include "studies/report/table_file.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 /// Of what is stored; raised when a case, a model or its constants change.
@@ -62,10 +62,10 @@ void visit_numbers(const Visit& visit) {
 
 }  // namespace
 
-std::string truth_key(int level) { return fmt::format("truth-{}", level); }
+std::string reference_key(int level) { return fmt::format("reference-{}", level); }
 
 PointStore::PointStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  bench::make_out_folder(folder_);
+  report::make_out_folder(folder_);
 }
 
 std::filesystem::path PointStore::file_of(const Case& of, const std::string& key) const {
@@ -75,7 +75,7 @@ std::filesystem::path PointStore::file_of(const Case& of, const std::string& key
 bool PointStore::read(const Case& of, const std::string& key, Measurement& out) const {
   const auto file = file_of(of, key);
   if (!std::filesystem::exists(file)) return false;
-  const bench::ReferenceTable table(file);
+  const report::ReferenceTable table(file);
   out = {};
   for (std::size_t row = 0; row < table.size(); ++row) {
     Sample& sample = out.samples.emplace_back();
@@ -91,7 +91,7 @@ void PointStore::write(const Case& of, const std::string& key,
                        const Measurement& measurement) const {
   std::vector<std::string> names;
   visit_numbers([&](const std::string& name, const auto&) { names.push_back(name); });
-  bench::TableFile table(file_of(of, key), names);
+  report::TableFile table(file_of(of, key), names);
   Measurement whole = measurement;
   for (Sample& sample : whole.samples) {
     std::vector<double> row;
@@ -103,4 +103,4 @@ void PointStore::write(const Case& of, const std::string& key,
   table.finish();
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

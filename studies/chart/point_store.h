@@ -6,14 +6,14 @@
 
 #include "studies/chart/cases.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 class PointStore {
  public:
   /// @param folder  made if need be
   explicit PointStore(std::filesystem::path folder);
 
-  /// @param key  Setting::key() or truth_key()
+  /// @param key  Setting::key() or reference_key()
   /// @returns false if it has not been measured, or by another version of this program
   bool read(const Case& of, const std::string& key, Measurement& out) const;
   void write(const Case& of, const std::string& key, const Measurement& measurement) const;
@@ -24,7 +24,7 @@ class PointStore {
   std::filesystem::path folder_;
 };
 
-/// "truth-1"
-std::string truth_key(int level);
+/// "reference-1"
+std::string reference_key(int level);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

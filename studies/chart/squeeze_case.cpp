@@ -2,9 +2,10 @@
 #include <cmath>
 
 #include "studies/chart/case_parts.h"
-#include "studies/chart/truths.h"
+#include "studies/chart/reference_solutions.h"
+#include "studies/rigs/squeezed_ball.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 constexpr double kCompression = 0.2, kClosing = 0.06, kDuration = 0.3;  // [1], [s], [s]
@@ -15,16 +16,16 @@ constexpr double kDrag = 10;  // [1/s]; no other damping: its laws differ betwee
 
 /// Height of the upper plate at `time` [s], above the middle [m].
 double height_at(double time) {
-  return kBallRadius * (1 - kCompression * std::min(1.0, time / kClosing));
+  return rigs::kBallRadius * (1 - kCompression * std::min(1.0, time / kClosing));
 }
 
 }  // namespace
 
-Measurement measure_squeeze(const Setting& setting, const Source&, const KeepGoing& keep_going) {
+Measurement measure_squeeze(const Setting& setting, const KeepGoing& keep_going) {
   const auto shape = ball_shape(setting);
   scene::Scene scene = ball_scene(setting, kDrag);
   scene.organs[0].tissue.damping_ratio = 0;
-  auto poses = add_plates(scene);
+  auto poses = rigs::add_plates(scene);
   Stage stage(scene, shape, poses);
   const int steps = static_cast<int>(std::lround(kWindow / stage.period()));
   std::vector<Sample> samples;
@@ -48,11 +49,10 @@ Measurement measure_squeeze(const Setting& setting, const Source&, const KeepGoi
   return result;
 }
 
-Measurement squeeze_in_small_steps(int level, const Source& source, const KeepGoing& keep_going) {
+Measurement squeeze_in_small_steps(int level, const KeepGoing& keep_going) {
   constexpr std::array kRates{1000.0, 2000.0};  // [Hz]
   return measure_squeeze(
-      {scene::Model::kQuadraticElements, 1, kRates[static_cast<std::size_t>(level)]}, source,
-      keep_going);
+      {scene::Model::kQuadraticElements, 1, kRates[static_cast<std::size_t>(level)]}, keep_going);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -6,9 +6,10 @@
 #include <cmath>
 
 #include "collision/contact_margin.h"
+#include "deformation/organ_messages.h"
 #include "modules/scene/assets.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 constexpr double kCheckEvery = 0.1;    // [s]
@@ -38,12 +39,9 @@ Stage::Stage(const scene::Scene& scene, const geometry::OrganShape& shape, std::
       world_(scene, {shape}),
       poses_(std::move(poses)) {
   rates_.collision = rates_.deformation;
-  world_.write_node_positions(0, nodes_);
+  deformation::write_node_positions(world_, 0, nodes_);
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
-    ProbeState state;
-    state.probe = i;
-    state.pose = poses_[i];
-    world_.set_probe(state);
+    world_.set_probe(i, poses_[i]);
   }
 }
 
@@ -52,7 +50,7 @@ void Stage::search(std::uint32_t probe, double speed) {
   for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = position(i);
   finder_.update_organ(0, positions_);
   finder_.find(probe, {poses_[probe], poses_[probe]}, collision::contact_margin(rates_, speed),
-               contacts_);
+               kMaxContactsPerProbe, contacts_);
   contacts_.probe = probe;
   contacts_.probe_pose = poses_[probe];
   world_.set_contacts(contacts_);
@@ -62,10 +60,7 @@ void Stage::advance(const std::vector<Pose>& poses) {
   const double begin = processor_time();
   for (std::uint32_t i = 0; i < poses.size(); ++i) {
     search(i, (poses[i].position - poses_[i].position).norm() / period_);
-    ProbeState state;
-    state.probe = i;
-    state.pose = poses[i];
-    world_.set_probe(state);
+    world_.set_probe(i, poses[i]);
   }
   const double before = processor_time();
   searching_ += before - begin;
@@ -73,7 +68,7 @@ void Stage::advance(const std::vector<Pose>& poses) {
   busy_ += processor_time() - before;
   diverged_ |= report.diverged;
   poses_ = poses;
-  world_.write_node_positions(0, nodes_);
+  deformation::write_node_positions(world_, 0, nodes_);
   volume_error_ = std::max(volume_error_, std::abs(nodes_.volume / nodes_.target_volume - 1));
 }
 
@@ -94,9 +89,8 @@ void Stage::settle(double longest) {
 }
 
 Vec3 Stage::force(std::uint32_t probe) const {
-  ContactModel model;
-  world_.write_contact_model(probe, model);
-  return model.touching ? model.force : Vec3::Zero();
+  const LocalLaw law = world_.local_law(probe);
+  return law.touching ? law.force : Vec3::Zero();
 }
 
 Vec3 Stage::position(std::size_t node) const {
@@ -104,8 +98,7 @@ Vec3 Stage::position(std::size_t node) const {
 }
 
 Vec3 Stage::rest_position(std::size_t node) const {
-  return Eigen::Map<const Eigen::Vector3f>(&world_.topology(0).rest_positions[3 * node])
-      .cast<double>();
+  return world_.model(0).rest_positions[node].cast<float>().cast<double>();
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

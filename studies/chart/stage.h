@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "collision/contact_finder.h"
+#include "deformation/organ_messages.h"
 #include "deformation/world.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 /// Of this thread [s]: other jobs on the machine do not count.
 double processor_time();
@@ -33,7 +34,7 @@ class Stage {
   Vec3 position(std::size_t node) const;       ///< now [m]
   Vec3 rest_position(std::size_t node) const;  ///< [m]
   std::size_t node_count() const { return nodes_.positions.size() / 3; }
-  const SurfaceTopology& topology() const { return world_.topology(0); }
+  const deformation::OrganModel& model() const { return world_.model(0); }
   double step() const { return period_ / world_.substeps(0, period_); }  ///< h [s]
 
   double volume_error() const { return volume_error_; }  ///< largest |V − V*|/V* so far
@@ -57,4 +58,4 @@ class Stage {
   bool diverged_ = false;
 };
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "modules/scene/schema.h"
-#include "studies/chart/truths.h"
+#include "studies/chart/reference_solutions.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 bool is_slow(scene::Model model) { return model == scene::Model::kQuadraticElements; }
@@ -110,8 +110,9 @@ double weight_of(const Setting& setting) {
 
 std::vector<Setting> settings_of(const Case& of, Extent extent) {
   std::vector<Setting> settings;
-  if (of.truth == Truth::kOwn && extent == Extent::kQuick) return settings;  // truths take minutes
-  for (const scene::Model model : ladder()) {
+  if (of.reference == Reference::kOwn && extent == Extent::kQuick)
+    return settings;  // references take minutes
+  for (const scene::Model model : model_hierarchy()) {
     for (int level = 0; level < of.level_count; ++level) {
       for (const double rate : rates_of(extent)) {
         Setting setting{model, level, rate};
@@ -129,43 +130,42 @@ std::vector<Setting> settings_of(const Case& of, Extent extent) {
 }
 
 SweepResult sweep(const std::vector<Case>& of, Extent extent,
-                  const std::vector<scene::Model>& models, const Source& source,
-                  const PointStore& store, const std::function<void(const Outlook&)>& begin,
-                  const KeepGoing& keep_going) {
+                  const std::vector<scene::Model>& models, const PointStore& store,
+                  const std::function<void(const Outlook&)>& begin, const KeepGoing& keep_going) {
   SweepResult result;
   for (const Case& each : of) {
     for (const Setting& setting : settings_of(each, extent)) {
       if (is_wanted(models, setting.model)) result.points.push_back({each, setting, {}});
     }
-    if (each.truth != Truth::kReference && extent != Extent::kQuick) {
-      result.truths.push_back({each, std::vector<Measurement>(kTruthLevels)});
+    if (each.reference != Reference::kTable && extent != Extent::kQuick) {
+      result.references.push_back({each, std::vector<Measurement>(kReferenceLevels)});
     }
   }
-  constexpr double kTruthWeight = 100;
+  constexpr double kReferenceWeight = 100;
   std::vector<Job> jobs;
-  for (TruthPoint& truth : result.truths) {
-    for (int level = 0; level < kTruthLevels; ++level) {
-      jobs.push_back({fmt::format("{}: truth, level {}", truth.of.name, level), truth.of,
-                      truth_key(level), kTruthWeight,
-                      [&, level] { return measure_truth(truth.of, level, source, keep_going); },
-                      &truth.levels[static_cast<std::size_t>(level)]});
+  for (ReferenceSolution& reference : result.references) {
+    for (int level = 0; level < kReferenceLevels; ++level) {
+      jobs.push_back({fmt::format("{}: reference, level {}", reference.of.name, level),
+                      reference.of, reference_key(level), kReferenceWeight,
+                      [&, level] { return solve_reference(reference.of, level, keep_going); },
+                      &reference.levels[static_cast<std::size_t>(level)]});
     }
   }
   for (Point& point : result.points) {
     jobs.push_back({fmt::format("{}: {}", point.of.name, point.setting.name()), point.of,
                     point.setting.key(), weight_of(point.setting),
-                    [&] { return measure(point.of, point.setting, source, keep_going); },
+                    [&] { return measure(point.of, point.setting, keep_going); },
                     &point.measurement});
   }
   run(jobs, store, begin);
   for (Point& point : result.points) {
-    for (const TruthPoint& truth : result.truths) {
-      if (std::string(truth.of.name) == point.of.name) {
-        refer(truth.levels.back(), point.measurement);
+    for (const ReferenceSolution& reference : result.references) {
+      if (std::string(reference.of.name) == point.of.name) {
+        refer(reference.levels.back(), point.measurement);
       }
     }
   }
   return result;
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

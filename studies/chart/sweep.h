@@ -6,7 +6,7 @@
 
 #include "studies/chart/point_store.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 enum class Extent { kQuick, kUsual, kFull };
 
@@ -22,15 +22,15 @@ struct Point {
   Measurement measurement;
 };
 
-/// A truth of our own on its meshes, coarse to fine.
-struct TruthPoint {
+/// A reference of our own on its meshes, coarse to fine.
+struct ReferenceSolution {
   Case of;
   std::vector<Measurement> levels;
 };
 
 struct SweepResult {
   std::vector<Point> points;
-  std::vector<TruthPoint> truths;
+  std::vector<ReferenceSolution> references;
 };
 
 /// What is about to be measured.
@@ -40,12 +40,11 @@ struct Outlook {
   double seconds_left = kUnknown;  ///< as this run has gone so far
 };
 
-/// Measures what is not in the store yet, truths first.
+/// Measures what is not in the store yet, reference solutions first.
 /// @param begin  told of each job before it is done
 /// @throws what a measurement throws; finished points stay in the store
 SweepResult sweep(const std::vector<Case>& of, Extent extent,
-                  const std::vector<scene::Model>& models, const Source& source,
-                  const PointStore& store, const std::function<void(const Outlook&)>& begin,
-                  const KeepGoing& keep_going);
+                  const std::vector<scene::Model>& models, const PointStore& store,
+                  const std::function<void(const Outlook&)>& begin, const KeepGoing& keep_going);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

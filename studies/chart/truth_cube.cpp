@@ -3,13 +3,14 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <numeric>
 #include <sstream>
 
 #include "modules/core/error.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 constexpr int kHeaderLines = 7, kColumns = 15;
@@ -55,6 +56,13 @@ Eigen::MatrixXd monomials(const std::vector<Vec3>& points) {
 }
 
 }  // namespace
+
+std::optional<std::filesystem::path> truth_cube_folder() {
+  const char* data = std::getenv("PALPATE_DATA");
+  if (data == nullptr) return {};
+  const auto folder = std::filesystem::path(data) / "truthcube";
+  return std::filesystem::exists(folder) ? std::optional(folder) : std::nullopt;
+}
 
 TruthCube read_truth_cube(const std::filesystem::path& folder) {
   const auto file = folder / "truthcube_uniaxial_positions.csv";
@@ -113,4 +121,4 @@ double tracking_noise(const TruthCube& cube, double compression) {
   return std::sqrt((displacement - fitted).squaredNorm() / freedom);
 }
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

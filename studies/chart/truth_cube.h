@@ -5,17 +5,22 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "modules/core/types.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 
 /// In the frame of the block case: the cube stands on z = 0, the plate comes down from z = 0.08.
 struct TruthCube {
   std::vector<Vec3> rest;                      ///< [m]
   std::map<double, std::vector<Vec3>> states;  ///< by compression [m]
 };
+
+/// $PALPATE_DATA/truthcube, where the measurements are kept (docs/accuracy.md); empty if they are
+/// not there. They may not be shipped.
+std::optional<std::filesystem::path> truth_cube_folder();
 
 /// The scanner's z points against the block's, and its origin is not the cube's: the centre of all
 /// beads is the cube's.
@@ -30,4 +35,4 @@ double distance_after_fit(const std::vector<Vec3>& moved, const std::vector<Vec3
 /// the measured displacements, RMS of the distance [m].
 double tracking_noise(const TruthCube& cube, double compression);
 
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "modules/core/error.h"
+#include "studies/report/progress.h"
 
 namespace palpate::elements_bench {
 namespace {
@@ -107,7 +108,7 @@ int run_elements(const ElementsOptions& options, const std::function<bool()>& st
                             }};
       try {
         runs.push_back(run_case(name, size, setting));
-      } catch (const Stopped&) {
+      } catch (const report::Stopped&) {
         stopped = true;
         break;
       }

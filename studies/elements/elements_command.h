@@ -1,4 +1,4 @@
-// What `palpate-elements` does.
+// What `palpate elements` does.
 #pragma once
 
 #include <iosfwd>

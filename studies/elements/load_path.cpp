@@ -1,4 +1,5 @@
 #include "studies/elements/load_path.h"
+#include "studies/report/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,7 @@ bool LoadPath::attempt(double load, const Apply& apply) {
 bool LoadPath::advance_to(double load, const Apply& apply) {
   double stride = longest_stride_;
   while (load_ < load) {
-    if (setting_.stop()) throw Stopped{};
+    if (setting_.stop()) throw report::Stopped{};
     const double left = load - load_;
     const double next = left > stride ? load_ + left / std::ceil(left / stride - 1e-9) : load;
     if (attempt(next, apply)) continue;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 #include "studies/elements/elements_command.h"
@@ -9,9 +10,9 @@
 int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app("Finite elements against reference solutions: errors and orders of convergence.",
-               "palpate-elements");
+               "palpate elements");
   elements_bench::ElementsOptions options;
-  options.reference_folder = PALPATE_REFERENCE_DIR;
+  options.reference_folder = data_folder() / "reference";
   app.add_option("--case", options.cases, "Only these: A, C, D, E; or all")
       ->delimiter(',')
       ->check(CLI::IsMember({"A", "C", "D", "E", "all"}));

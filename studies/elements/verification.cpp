@@ -8,6 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "studies/elements/load_path.h"
+#include "studies/report/progress.h"
 #include "studies/report/reference_table.h"
 
 namespace palpate::elements_bench {
@@ -86,9 +87,9 @@ Run squeezed_ball(double size, const Setting& setting) {
   LoadPath path(solid, solver, &contact, setting);
   const std::size_t equator = node_at(solid, {kBallRadius, 0, 0});
   Run run = described(solid, size);
-  const bench::ReferenceTable truth(setting.reference_folder / "A_ball_plates.csv");
-  for (std::size_t row = 0; row < truth.size(); ++row) {
-    const double compression = truth.at("compression_d_over_2R", row);
+  const report::ReferenceTable reference(setting.reference_folder / "A_ball_plates.csv");
+  for (std::size_t row = 0; row < reference.size(); ++row) {
+    const double compression = reference.at("compression_d_over_2R", row);
     if (compression < 0.049 || (setting.quick && compression > 0.21)) continue;
     run.complete = path.advance_to(compression, [&](double at, SolidState&) {
       contact.set_obstacles({Plane{Vec3(0, 0, kBallRadius * (1 - at)), -Vec3::UnitZ()}});
@@ -96,8 +97,9 @@ Run squeezed_ball(double size, const Setting& setting) {
     if (!run.complete) break;
     const auto& state = path.state();
     run.rows.push_back({compression, 4 * contact.outcomes(state)[0].force.z(),
-                        truth.at("F_N_nu0.499", row), state.positions[equator].x() - kBallRadius,
-                        1e-3 * truth.at("equatorial_radius_mm_nu0.499", row) - kBallRadius,
+                        reference.at("F_N_nu0.499", row),
+                        state.positions[equator].x() - kBallRadius,
+                        1e-3 * reference.at("equatorial_radius_mm_nu0.499", row) - kBallRadius,
                         path.take_iterations()});
   }
   return run;
@@ -123,9 +125,9 @@ Run bonded_block(double size, const Setting& setting) {
   path.set_longest_stride(0.025);
   const std::size_t face_centre = node_at(solid, {a, 0, 0});
   Run run = described(solid, size);
-  const bench::ReferenceTable truth(setting.reference_folder / "C_block_force_bulge.csv");
-  for (std::size_t row = 0; row < truth.size(); ++row) {
-    const double compression = truth.at("compression", row);
+  const report::ReferenceTable reference(setting.reference_folder / "C_block_force_bulge.csv");
+  for (std::size_t row = 0; row < reference.size(); ++row) {
+    const double compression = reference.at("compression", row);
     if (setting.quick && compression > 0.1) continue;
     if (size < kFoldingSize && compression > kFolding) continue;
     run.complete = path.advance_to(compression, [&](double at, SolidState& state) {
@@ -140,8 +142,8 @@ Run bonded_block(double size, const Setting& setting) {
         force -= 4 * residual[static_cast<Eigen::Index>(3 * i + 2)];
     }
     run.rows.push_back(
-        {compression, force, truth.at("F_N", row), path.state().positions[face_centre].x() - a,
-         1e-3 * truth.at("lateral_bulge_face_centre_mm", row), path.take_iterations()});
+        {compression, force, reference.at("F_N", row), path.state().positions[face_centre].x() - a,
+         1e-3 * reference.at("lateral_bulge_face_centre_mm", row), path.take_iterations()});
   }
   return run;
 }
@@ -170,16 +172,16 @@ Run indented_block(double size, const Setting& setting) {
   LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(0.0005);
   Run run = described(solid, size);
-  const bench::ReferenceTable truth(setting.reference_folder / "D_indent_force_depth.csv");
-  for (std::size_t row = 0; row < truth.size(); ++row) {
-    const double depth = 1e-3 * truth.at("depth_mm", row);
+  const report::ReferenceTable reference(setting.reference_folder / "D_indent_force_depth.csv");
+  for (std::size_t row = 0; row < reference.size(); ++row) {
+    const double depth = 1e-3 * reference.at("depth_mm", row);
     if (depth < 0.99e-3 || depth > (setting.quick ? 3.01e-3 : 8.01e-3)) continue;
     run.complete = path.advance_to(depth, [&](double at, SolidState&) {
       contact.set_obstacles({Sphere{Vec3(0, 0, top + kIndenterRadius - at), kIndenterRadius}});
     });
     if (!run.complete) break;
     run.rows.push_back({depth, 4 * contact.outcomes(path.state())[0].force.z(),
-                        truth.at("F_block_N", row), 0, 0, path.take_iterations()});
+                        reference.at("F_block_N", row), 0, 0, path.take_iterations()});
   }
   return run;
 }
@@ -189,19 +191,20 @@ Run indented_block(double size, const Setting& setting) {
 Run vibrating_ball(double size, const Setting& setting) {
   const MixedSolid solid = ball(geometry::BallPart::kWhole, text("%g", size * kBallRadius));
   Run run = described(solid, size);
-  const bench::ReferenceTable truth(setting.reference_folder / "E_ball_frequencies.csv");
+  const report::ReferenceTable reference(setting.reference_folder / "E_ball_frequencies.csv");
   std::vector<std::size_t> wanted;  // rows
   std::size_t count = 6;            // rigid motions
-  for (std::size_t row = 0; row < truth.size(); ++row) {
-    if (truth.at("nu", row) != kPoissonsRatio || wanted.size() == 7) continue;
+  for (std::size_t row = 0; row < reference.size(); ++row) {
+    if (reference.at("nu", row) != kPoissonsRatio || wanted.size() == 7) continue;
     wanted.push_back(row);
-    count += static_cast<std::size_t>(truth.at("multiplicity", row));
+    count += static_cast<std::size_t>(reference.at("multiplicity", row));
   }
-  if (setting.stop()) throw Stopped{};
+  if (setting.stop()) throw report::Stopped{};
   const auto vibration = vibrate(solid, std::vector<char>(solid.displacement_count(), 0), count);
   std::size_t next = 6;
   for (const std::size_t row : wanted) {
-    const double members = truth.at("multiplicity", row), lamb = truth.at("f_Hz_Lamb_exact", row);
+    const double members = reference.at("multiplicity", row),
+                 lamb = reference.at("f_Hz_Lamb_exact", row);
     double sum = 0;
     for (int k = 0; k < members; ++k) sum += vibration.angular_frequencies[next++];
     run.rows.push_back({lamb, sum / (2 * std::numbers::pi * members), lamb, 0, 0, 0});

@@ -1,4 +1,4 @@
-// The accurate rung against reference solutions of another finite-element package.
+// The most accurate model against reference solutions of another finite-element package.
 //   A  solid ball between frictionless plates           (an octant)
 //   C  block with bonded ends, compressed               (an octant)
 //   D  block indented by a frictionless sphere of 5 mm  (a quarter)
@@ -12,9 +12,6 @@
 #include <vector>
 
 namespace palpate::elements_bench {
-
-/// Thrown between two load steps when `stop` says so.
-struct Stopped {};
 
 struct Setting {
   std::filesystem::path reference_folder;

@@ -43,7 +43,7 @@ bool parse(const std::string& line, Outcome& out) {
 
 BlockStore::BlockStore(std::filesystem::path folder, std::uint64_t seed)
     : folder_(std::move(folder)), seed_(seed) {
-  bench::make_out_folder(folder_);
+  report::make_out_folder(folder_);
 }
 
 std::filesystem::path BlockStore::file_of(std::uint64_t first, std::size_t count) const {
@@ -65,7 +65,7 @@ void BlockStore::write(std::uint64_t first, const std::vector<Outcome>& outcomes
   std::vector<std::string> columns{"ending", "unguarded", "time_s"};
   columns.insert(columns.end(), kGuardNames.begin(), kGuardNames.end());
   columns.push_back("what");
-  bench::TableFile table(file_of(first, outcomes.size()), columns);
+  report::TableFile table(file_of(first, outcomes.size()), columns);
   for (const Outcome& outcome : outcomes) {
     std::vector<std::string> cells{std::to_string(int(outcome.ending)),
                                    std::to_string(int(outcome.unguarded)),

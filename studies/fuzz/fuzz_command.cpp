@@ -6,6 +6,7 @@
 #include <map>
 #include <ostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
 #include "studies/fuzz/block_store.h"
@@ -51,7 +52,7 @@ int run_one(const FuzzOptions& options, const ShapeStore& shapes, std::ostream& 
 }
 
 /// Blocks in order; finished ones are read.
-void run_all(const FuzzOptions& options, const ShapeStore& shapes, bench::Progress& progress,
+void run_all(const FuzzOptions& options, const ShapeStore& shapes, report::Progress& progress,
              Tally& tally, std::ostream& log) {
   const auto folder = options.out / "blocks";
   if (options.again) std::filesystem::remove_all(folder);
@@ -78,18 +79,18 @@ void run_all(const FuzzOptions& options, const ShapeStore& shapes, bench::Progre
 }  // namespace
 
 int run_fuzz(const FuzzOptions& options, std::ostream& out, std::ostream& log) {
-  const ShapeStore shapes(options.root / "scenes");
+  const ShapeStore shapes(data_file("scenes"));
   if (options.only) return run_one(options, shapes, out, log);
   const runtime::StopSignal stop;
-  bench::Progress progress(log, [&] { return stop.requested(); });
+  report::Progress progress(log, [&] { return stop.requested(); });
   progress.begin(fmt::format("fuzz, seed {}", options.seed));
   Tally tally;
   try {
     run_all(options, shapes, progress, tally, log);
-  } catch (const bench::Stopped&) {
+  } catch (const report::Stopped&) {
     tally.print(out);
     log << "stopped; finished blocks are not run again" << std::endl;
-    return bench::kExitStopped;
+    return report::kExitStopped;
   }
   tally.print(out);
   return tally.failed() == 0 ? kExitDone : kExitFailed;

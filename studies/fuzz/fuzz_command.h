@@ -10,7 +10,6 @@ namespace palpate::fuzz {
 
 struct FuzzOptions {
   std::filesystem::path out = "out/fuzz";
-  std::filesystem::path root;  ///< of the sources: the shipped meshes
   std::uint64_t scenes = 1000, seed = 1;
   std::optional<std::uint64_t> only;  ///< this scene alone, in detail
   bool again = false;                 ///< runs anew what has been run

@@ -6,12 +6,13 @@
 
 #include "collision/contact_finder.h"
 #include "collision/contact_margin.h"
+#include "deformation/organ_messages.h"
 #include "deformation/world.h"
 #include "haptics/device.h"
 #include "haptics/haptic_renderer.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
-#include "studies/fuzz/insults.h"
+#include "studies/fuzz/faults.h"
 #include "studies/fuzz/organ_watch.h"
 #include "studies/fuzz/scene_shapes.h"
 
@@ -55,7 +56,7 @@ class Lockstep {
            const ShapeStore& store, deformation::Guarding guarding, Outcome& outcome)
       : scene_(scene),
         outcome_(outcome),
-        insults_(scene.insults),
+        faults_(scene.faults),
         finder_(triangles_of(shapes), probe_geometry(scene, store)),
         world_(scene.scene, std::move(shapes), nullptr, guarding),
         guarding_(guarding) {
@@ -84,7 +85,7 @@ class Lockstep {
          now = haptics.next_ns) {
       time_ = outcome_.time = seconds_from_ns(now);
       haptics.take(now);
-      take_insults();
+      take_faults();
       for (std::uint32_t i = 0; i < probes_.size(); ++i) tick(i);
       if (collision.take(now)) search();
       if (deformation.take(now)) advance();
@@ -101,17 +102,17 @@ class Lockstep {
   }
 
   /// Those due by now go to the messages of this tick; of slower modules, to the next ones.
-  void take_insults() {
-    for (const TimedInsult& insult : insults_) {
-      if (insult.time <= time_) pending_.push_back(insult);
+  void take_faults() {
+    for (const TimedFault& fault : faults_) {
+      if (fault.time <= time_) pending_.push_back(fault);
     }
-    std::erase_if(insults_, [&](const TimedInsult& insult) { return insult.time <= time_; });
+    std::erase_if(faults_, [&](const TimedFault& fault) { return fault.time <= time_; });
   }
 
   template <class Message>
   bool passes(std::uint32_t probe, Message& message) {
-    for (const TimedInsult& timed : pending_) {
-      if (timed.probe == probe) spoil(timed.insult, message);
+    for (const TimedFault& timed : pending_) {
+      if (timed.probe == probe) corrupt(timed.fault, message);
     }
     const bool refused = refusal(message) != nullptr;
     count(Guard::kMessageRefused, refused);
@@ -121,8 +122,8 @@ class Lockstep {
   void tick(std::uint32_t i) {
     ProbeRun& probe = probes_[i];
     haptics::DeviceSample sample = probe.device->read(time_);
-    for (const TimedInsult& timed : pending_) {
-      if (timed.probe != i || timed.insult != Insult::kDeviceNotANumber) continue;
+    for (const TimedFault& timed : pending_) {
+      if (timed.probe != i || timed.fault != Fault::kDeviceNotANumber) continue;
       sample.pose.position.x() = sample.twist.linear.y() = std::nan("");
     }
     probe.renderer.tick(time_, sample, probe.force);
@@ -150,7 +151,8 @@ class Lockstep {
       const Pose& pose = probe.known.pose;
       const collision::ProbeMotion motion{probe.was_searched ? probe.searched : pose, pose};
       const double speed = probe.known.twist.linear.norm();
-      finder_.find(i, motion, collision::contact_margin(scene_.scene.rates, speed), probe.contacts);
+      finder_.find(i, motion, collision::contact_margin(scene_.scene.rates, speed),
+                   kMaxContactsPerProbe, probe.contacts);
       probe.contacts.probe = i;
       probe.contacts.probe_pose = pose;
       probe.searched = pose;
@@ -163,7 +165,7 @@ class Lockstep {
 
   void advance() {
     for (std::uint32_t i = 0; i < probes_.size(); ++i) {
-      if (is_known(i)) world_.set_probe(probes_[i].known);
+      if (is_known(i)) world_.set_probe(probes_[i].known.probe, probes_[i].known.pose);
     }
     for (std::size_t i = 0; i < organs_.size(); ++i) {
       cost_ += double(world_.substeps(i, period())) * double(organs_[i].seen().size()) *
@@ -178,13 +180,13 @@ class Lockstep {
 
   void publish_model(std::uint32_t i) {
     ProbeRun& probe = probes_[i];
-    world_.write_contact_model(i, probe.model);
+    probe.model = deformation::contact_model_message(world_, i);
     if (const char* field = refusal(probe.model)) {
       throw Failure{fmt::format("contact model not sound ({}): of probe {}", field, i)};
     }
     ContactModel message = probe.model;
-    if (passes(i, message)) probe.renderer.update_model(message, time_);
-    count(Guard::kModelRefused, probe.renderer.refused_models() > 0);
+    if (passes(i, message)) probe.renderer.update_law(message, time_);
+    count(Guard::kModelRefused, probe.renderer.refused_laws() > 0);
   }
 
   void count_guards(const deformation::AdvanceReport& r) {
@@ -202,7 +204,7 @@ class Lockstep {
 
   const RandomScene& scene_;
   Outcome& outcome_;
-  std::vector<TimedInsult> insults_, pending_;
+  std::vector<TimedFault> faults_, pending_;
   collision::ContactFinder finder_;
   deformation::DeformationWorld world_;
   deformation::Guarding guarding_;

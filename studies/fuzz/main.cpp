@@ -9,7 +9,6 @@ int main(int argc, char** argv) {
   CLI::App app("Random scenes, looking for one that fails without a guard noticing.",
                "palpate fuzz");
   fuzz::FuzzOptions options;
-  options.root = PALPATE_SOURCE_DIR;
   app.add_option("-o,--out", options.out, "Folder for outcomes and failing scenes")
       ->capture_default_str();
   app.add_option("--scenes", options.scenes, "How many")

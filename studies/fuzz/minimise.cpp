@@ -13,8 +13,8 @@ void erase(std::vector<T>& list, std::size_t i) {
 void drop_probe(RandomScene& s, std::size_t i) {
   erase(s.scene.probes, i);
   erase(s.probe_shapes, i);
-  std::erase_if(s.insults, [i](const TimedInsult& insult) { return insult.probe == i; });
-  for (TimedInsult& insult : s.insults) insult.probe -= insult.probe > i;
+  std::erase_if(s.faults, [i](const TimedFault& fault) { return fault.probe == i; });
+  for (TimedFault& fault : s.faults) fault.probe -= fault.probe > i;
 }
 
 void add_organ_changes(std::size_t i, bool several, std::vector<Change>& changes) {
@@ -70,11 +70,11 @@ void add_probe_changes(std::size_t i, bool several, std::vector<Change>& changes
 std::vector<Change> changes_of(const RandomScene& scene) {
   std::vector<Change> changes;
   const std::size_t probes = scene.scene.probes.size(), organs = scene.scene.organs.size();
-  changes.push_back([](RandomScene& s) { s.insults.clear(); });
+  changes.push_back([](RandomScene& s) { s.faults.clear(); });
   for (std::size_t i = 0; i < probes; ++i) add_probe_changes(i, probes > 1, changes);
   for (std::size_t i = 0; i < organs; ++i) add_organ_changes(i, organs > 1, changes);
-  for (std::size_t i = 0; i < scene.insults.size(); ++i) {
-    changes.push_back([i](RandomScene& s) { erase(s.insults, i); });
+  for (std::size_t i = 0; i < scene.faults.size(); ++i) {
+    changes.push_back([i](RandomScene& s) { erase(s.faults, i); });
   }
   changes.push_back([](RandomScene& s) { s.scene.gravity.setZero(); });
   changes.push_back([](RandomScene& s) { s.scene.rates = {}; });

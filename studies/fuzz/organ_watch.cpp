@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "deformation/contact/probe_contacts.h"
-#include "studies/fuzz/insults.h"
+#include "deformation/organ_messages.h"
+#include "studies/fuzz/faults.h"
 #include "studies/fuzz/outcome.h"
 
 namespace palpate::fuzz {
@@ -34,13 +35,13 @@ double largest_distance(const std::vector<Vec3>& nodes) {
 OrganWatch::OrganWatch(const deformation::DeformationWorld& world, std::size_t organ, double size,
                        double period)
     : world_(world), organ_(organ), size_(size), period_(period) {
-  take_positions(world.topology(organ).rest_positions, rest_);
+  take_positions(deformation::surface_message(world, organ).rest_positions, rest_);
   look(false);
 }
 
 void OrganWatch::look(bool replaced) {
   before_ = seen_;
-  world_.write_node_positions(organ_, nodes_);
+  deformation::write_node_positions(world_, organ_, nodes_);
   if (const char* field = refusal(nodes_)) {
     throw Failure{fmt::format("node positions not sound ({}): of organ {}, energies {} J and {} J",
                               field, organ_, nodes_.kinetic_energy, nodes_.elastic_energy)};
@@ -79,7 +80,7 @@ void OrganWatch::look_last() const {
   if (largest_distance(seen_) > deformation::kMaxGrowth * largest_distance(rest_)) {
     throw Failure{"grown: organ"};
   }
-  const auto& triangles = world_.topology(organ_).triangles;
+  const auto& triangles = world_.model(organ_).triangles;
   if (nodes_.volume < -deformation::kTurnedVolume * geometry::enclosed_volume(rest_, triangles)) {
     throw Failure{"turned inside out: organ"};
   }

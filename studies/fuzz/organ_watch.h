@@ -2,6 +2,7 @@
 #pragma once
 
 #include "deformation/world.h"
+#include "modules/messages/messages.h"
 
 namespace palpate::fuzz {
 

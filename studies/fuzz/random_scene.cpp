@@ -15,7 +15,7 @@ namespace {
 
 using scene::Model;
 
-constexpr std::array<const char*, kInsultCount> kInsultNames{
+constexpr std::array<const char*, kFaultCount> kFaultNames{
     "pose_not_a_number",  "pose_infinite", "pose_denormal",      "pose_huge",      "rotation_zero",
     "gap_not_a_number",   "normal_nan",    "normal_denormal",    "point_infinite", "point_huge",
     "gap_huge",           "unknown_organ", "unknown_triangle",   "unknown_probe",  "many_contacts",
@@ -125,7 +125,7 @@ void set_limits(RandomStream& random, scene::Scene& scene) {
 
 }  // namespace
 
-const char* name_of(Insult insult) { return kInsultNames[static_cast<std::size_t>(insult)]; }
+const char* name_of(Fault fault) { return kFaultNames[static_cast<std::size_t>(fault)]; }
 
 RandomScene random_scene(std::uint64_t seed, std::uint64_t number) {
   RandomStream random(seed, number);
@@ -139,9 +139,9 @@ RandomScene random_scene(std::uint64_t seed, std::uint64_t number) {
   add_probes(random, made);
   if (!random.chance(0.4)) return made;
   for (std::size_t i = 1 + random.below(4); i > 0; --i) {
-    made.insults.push_back({static_cast<Insult>(random.below(kInsultCount)),
-                            static_cast<std::uint32_t>(random.below(made.scene.probes.size())),
-                            random.uniform(0, made.scene.duration)});
+    made.faults.push_back({static_cast<Fault>(random.below(kFaultCount)),
+                           static_cast<std::uint32_t>(random.below(made.scene.probes.size())),
+                           random.uniform(0, made.scene.duration)});
   }
   return made;
 }
@@ -155,8 +155,8 @@ std::string text_of(const RandomScene& scene) {
   for (const PlacedShape& placed : scene.probe_shapes) {
     text += fmt::format("# probe mesh: {} of {}\n", name_of(placed.shape), size_text(placed.size));
   }
-  for (const TimedInsult& timed : scene.insults) {
-    text += fmt::format("# at {} s probe {}: {}\n", timed.time, timed.probe, name_of(timed.insult));
+  for (const TimedFault& timed : scene.faults) {
+    text += fmt::format("# at {} s probe {}: {}\n", timed.time, timed.probe, name_of(timed.fault));
   }
   return text;
 }

@@ -10,8 +10,8 @@
 
 namespace palpate::fuzz {
 
-/// What a message is spoilt with, once.
-enum class Insult : std::uint8_t {
+/// What a message is corrupted by, once.
+enum class Fault : std::uint8_t {
   kPoseNotANumber,
   kPoseInfinite,
   kPoseDenormal,
@@ -31,11 +31,11 @@ enum class Insult : std::uint8_t {
   kModelHuge,
   kDeviceNotANumber
 };
-inline constexpr std::size_t kInsultCount = 18;
-const char* name_of(Insult insult);
+inline constexpr std::size_t kFaultCount = 18;
+const char* name_of(Fault fault);
 
-struct TimedInsult {
-  Insult insult = Insult::kPoseNotANumber;
+struct TimedFault {
+  Fault fault = Fault::kPoseNotANumber;
   std::uint32_t probe = 0;
   double time = 0;  ///< simulated [s]
 };
@@ -44,13 +44,13 @@ struct RandomScene {
   scene::Scene scene;
   std::vector<PlacedShape> organ_shapes;  ///< one per organ
   std::vector<PlacedShape> probe_shapes;  ///< one per probe; used by MeshShape alone
-  std::vector<TimedInsult> insults;
+  std::vector<TimedFault> faults;
 };
 
 /// @param number  k: scenes of one seed differ by it alone
 RandomScene random_scene(std::uint64_t seed, std::uint64_t number);
 
-/// YAML, the shapes and insults as comments: all there is.
+/// YAML, the shapes and faults as comments: all there is.
 std::string text_of(const RandomScene& scene);
 
 }  // namespace palpate::fuzz

@@ -27,7 +27,7 @@ double RandomStream::uniform(double low, double high) {
 
 double RandomStream::log_uniform(double low, double high) {
   const double value = low * std::exp(uniform(0, 1) * std::log(high / low));
-  return std::strtod(bench::text_of("%.4g", value).c_str(), nullptr);
+  return std::strtod(report::text_of("%.4g", value).c_str(), nullptr);
 }
 
 std::size_t RandomStream::below(std::size_t count) { return engine_() % count; }

@@ -21,7 +21,7 @@ void write_mesh(scene::Mesh& mesh, const PlacedShape& placed, const ShapeStore& 
 
 std::filesystem::path write_scene(RandomScene scene, const ShapeStore& shapes,
                                   const std::filesystem::path& folder) {
-  bench::make_out_folder(folder);
+  report::make_out_folder(folder);
   for (std::size_t i = 0; i < scene.organ_shapes.size(); ++i) {
     write_mesh(scene.scene.organs[i].mesh, scene.organ_shapes[i], shapes, folder);
   }

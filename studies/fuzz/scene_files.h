@@ -7,7 +7,7 @@
 
 namespace palpate::fuzz {
 
-/// Writes scene.yaml and its meshes into `folder`, made if need be. Insults are comments there.
+/// Writes scene.yaml and its meshes into `folder`, made if need be. Faults are comments there.
 /// @returns the scene file
 std::filesystem::path write_scene(RandomScene scene, const ShapeStore& shapes,
                                   const std::filesystem::path& folder);

@@ -6,7 +6,7 @@
 
 #include "studies/report/table_file.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 
 void print(const Findings& findings, std::ostream& out) {
   std::size_t width = 0;
@@ -20,11 +20,11 @@ void print(const Findings& findings, std::ostream& out) {
 }
 
 void write(const Findings& findings, const std::filesystem::path& file) {
-  TableFile table(file, {"figure", "quantity", "paper", "measured"});
+  report::TableFile table(file, {"figure", "quantity", "paper", "measured"});
   for (const auto& finding : findings) {
     table.write_row({finding.figure, finding.quantity, finding.paper, finding.measured});
   }
   table.finish();
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::paper {
 
 struct Finding {
   std::string figure;    ///< "Figure 2"
@@ -21,4 +21,4 @@ void print(const Findings& findings, std::ostream& out);
 /// One row each: figure, quantity, paper, measured.
 void write(const Findings& findings, const std::filesystem::path& file);
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -4,10 +4,11 @@
 #include <chrono>
 #include <ctime>
 
+#include "deformation/organ_messages.h"
 #include "modules/core/units.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 #include "studies/paper/figures.h"
 #include "studies/report/measures.h"
 #include "studies/report/table_file.h"
@@ -15,7 +16,7 @@
 #include "visualizer/probe_shape.h"
 #include "visualizer/renderer.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -73,9 +74,9 @@ class Picture {
         interaction_(std::vector<double>(scene.probes.size(), 0)),
         renderer_({how.width, how.height, /*window=*/true}, probe_surfaces(scene)) {}
 
-  void draw(const pipeline::Pipeline& pipeline, bool first) {
+  void draw(const session::InProcess& pipeline, bool first) {
     const auto now = std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
-    if (first) view_.receive(pipeline.world().topology(0));
+    if (first) view_.receive(deformation::surface_message(pipeline.world(), 0));
     view_.receive(pipeline.node_positions(0), now);
     view_.receive(pipeline.probe(0));
     view_.receive(pipeline.contacts(0));
@@ -121,8 +122,9 @@ struct Frames {
   }
 };
 
-Frames run_frames(const scene::Scene& scene, int count, Picture& picture, Progress& progress) {
-  auto pipeline = pipeline::load_pipeline(scene);
+Frames run_frames(const scene::Scene& scene, int count, Picture& picture,
+                  report::Progress& progress) {
+  auto pipeline = session::load_session(scene);
   Frames frames;
   picture.draw(pipeline, /*first=*/true);
   const auto start = Clock::now();
@@ -142,7 +144,7 @@ Frames run_frames(const scene::Scene& scene, int count, Picture& picture, Progre
 }
 
 void write_frames(const Frames& frames, const std::filesystem::path& file) {
-  TableFile table(file, {"frame", "simulate_s", "draw_s"});
+  report::TableFile table(file, {"frame", "simulate_s", "draw_s"});
   for (std::size_t i = 0; i < frames.draw.size(); ++i) {
     table.write_row({double(i), frames.simulate[i], frames.draw[i]});
   }
@@ -156,26 +158,27 @@ void add_findings(const Frames& frames, const View& how, double haptic_rate, Fin
     findings.push_back({"Speed", quantity, paper, measured});
   };
   add(std::string("frames/s: ") + how.text, ">= 40 at 550 nodes; 30 at least",
-      text_of("%.1f", rate));
-  add("  simulate and collide 1/30 s, median [ms]", "",
-      text_of("%.2f", 1e3 * median(frames.simulate)));
-  add("  draw in software, median [ms]", "", text_of("%.2f", 1e3 * median(frames.draw)));
-  add("  of the core this program had [%]", "", text_of("%.0f", 100 * frames.core_share));
+      report::text_of("%.1f", rate));
+  add("  simulate and collide 1/30 s, report::median [ms]", "",
+      report::text_of("%.2f", 1e3 * report::median(frames.simulate)));
+  add("  draw in software, report::median [ms]", "",
+      report::text_of("%.2f", 1e3 * report::median(frames.draw)));
+  add("  of the core this program had [%]", "", report::text_of("%.0f", 100 * frames.core_share));
   add("  haptic updates per wall second beside it", "500 at least",
-      text_of("%.0f", rate / kFramesPerSecond * haptic_rate));
+      report::text_of("%.0f", rate / kFramesPerSecond * haptic_rate));
 }
 
 }  // namespace
 
-Findings measure_frame_rate(const FigureOptions& options, Progress& progress) {
+Findings measure_frame_rate(const FigureOptions& options, report::Progress& progress) {
   const auto scene = scene::load_scene(options.scenes / "stomach_probe.yaml");
   const int count =
       options.quick ? kQuickFrames : static_cast<int>(scene.duration * kFramesPerSecond);
   const OneCore one_core;
   visualizer::draw_with_one_thread();
   const visualizer::OffscreenDisplay display;
-  Findings findings{
-      {"Speed", "machine", "Pentium 4, 3 GHz", machine_name() + "; one used, no graphics card"}};
+  Findings findings{{"Speed", "machine", "Pentium 4, 3 GHz",
+                     report::machine_name() + "; one used, no graphics card"}};
   for (const View& how : kViews) {
     progress.begin(std::string("Speed: one core simulates, collides and draws ") + how.text);
     Picture picture(scene, how);
@@ -186,4 +189,4 @@ Findings measure_frame_rate(const FigureOptions& options, Progress& progress) {
   return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

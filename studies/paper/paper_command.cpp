@@ -4,18 +4,19 @@
 #include <array>
 #include <ostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
 #include "studies/paper/figures.h"
 #include "studies/report/measures.h"
 #include "studies/report/plot_script.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 struct Part {
   const char* name;
-  Findings (*make)(const FigureOptions&, Progress&);
+  Findings (*make)(const FigureOptions&, report::Progress&);
 };
 constexpr std::array<Part, 5> kParts{{{"1", make_spring_figure},
                                       {"2", make_squeeze_figure},
@@ -29,10 +30,9 @@ bool wanted(const PaperOptions& options, const std::string& part) {
 }
 
 /// @return false if a part failed
-bool make_parts(const PaperOptions& options, Progress& progress, Findings& findings,
+bool make_parts(const PaperOptions& options, report::Progress& progress, Findings& findings,
                 std::ostream& log) {
-  const FigureOptions figures{options.source / "scenes", options.out, options.quick,
-                              options.budget};
+  const FigureOptions figures{data_file("scenes"), options.out, options.quick, options.budget};
   bool complete = true;
   for (const Part& part : kParts) {
     if (!wanted(options, part.name)) continue;
@@ -58,9 +58,9 @@ std::vector<std::string> paper_parts() {
 }
 
 int run_paper(const PaperOptions& options, std::ostream& out, std::ostream& log) {
-  make_out_folder(options.out);
+  report::make_out_folder(options.out);
   const runtime::StopSignal stop;
-  Progress progress(log, [&] { return stop.requested(); });
+  report::Progress progress(log, [&] { return stop.requested(); });
   Findings findings;
   try {
     bool complete = make_parts(options, progress, findings, log);
@@ -68,18 +68,18 @@ int run_paper(const PaperOptions& options, std::ostream& out, std::ostream& log)
     print(findings, out);
     progress.begin("drawing");
     try {
-      draw_figures(options.source / "scripts/plot_paper.py", options.out);
+      report::draw_figures(data_file("plots/plot_paper.py"), options.out);
     } catch (const std::runtime_error& error) {
       if (!stop.requested()) log << error.what() << std::endl;
       complete = false;
     }
-    if (stop.requested()) throw Stopped{};
+    if (stop.requested()) throw report::Stopped{};
     out << "in " << options.out.string() << ": the pictures, their CSV files, summary.csv\n";
     return complete ? kExitDone : kExitFailed;
-  } catch (const Stopped&) {
+  } catch (const report::Stopped&) {
     log << "stopped; finished files stay in " << options.out.string() << std::endl;
-    return kExitStopped;
+    return report::kExitStopped;
   }
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -1,4 +1,4 @@
-// `palpate chart paper`: the figures and numbers of the paper, made anew.
+// `palpate paper`: the figures and numbers of the paper, made anew.
 #pragma once
 
 #include <filesystem>
@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::paper {
 
 struct PaperOptions {
   std::filesystem::path out = "out/paper";
   std::vector<std::string> only;  ///< of paper_parts(); empty: all
   bool quick = false;
-  double budget = 240;           ///< wall time Figure 4 may take [s]
-  std::filesystem::path source;  ///< the project's folder, with scenes/ and scripts/
+  double budget = 240;  ///< wall time Figure 4 may take [s]
 };
 
 /// What --only takes: "1" … "4" for the figures, "speed".
@@ -24,4 +23,4 @@ std::vector<std::string> paper_parts();
 /// @return an exit code of core/error.h, or kExitStopped: what was finished stays
 int run_paper(const PaperOptions& options, std::ostream& out, std::ostream& log);
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

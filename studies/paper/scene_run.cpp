@@ -4,10 +4,11 @@
 #include <cmath>
 #include <set>
 
+#include "deformation/organ_messages.h"
 #include "modules/core/error.h"
 #include "studies/report/table_file.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 Vec3 node(const std::vector<float>& positions, std::uint32_t i) {
@@ -15,7 +16,7 @@ Vec3 node(const std::vector<float>& positions, std::uint32_t i) {
   return {p[0], p[1], p[2]};
 }
 
-Sample sample_of(const pipeline::Pipeline& pipeline, const FarField& far_field, double time) {
+Sample sample_of(const session::InProcess& pipeline, const FarField& far_field, double time) {
   const NodePositions& nodes = pipeline.node_positions(0);
   return {time,
           nodes.volume,
@@ -53,10 +54,10 @@ double FarField::displacement(const NodePositions& nodes, const Vec3& p_W) const
   return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, Progress& progress,
+std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, report::Progress& progress,
                               const Observer& observe) {
-  auto pipeline = pipeline::load_pipeline(scene);
-  const FarField far_field(pipeline.world().topology(0));
+  auto pipeline = session::load_session(scene);
+  const FarField far_field(deformation::surface_message(pipeline.world(), 0));
   const double period = 1 / scene.rates.deformation;
   const auto periods = static_cast<int>(std::lround(seconds / period));
   std::vector<Sample> samples;
@@ -71,8 +72,8 @@ std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, Progres
 }
 
 void write_samples(const std::vector<Sample>& samples, const std::filesystem::path& file) {
-  TableFile table(file, {"time_s", "volume_ratio", "volume_error", "pressure_pa", "force_n",
-                         "far_displacement_m"});
+  report::TableFile table(file, {"time_s", "volume_ratio", "volume_error", "pressure_pa", "force_n",
+                                 "far_displacement_m"});
   for (const Sample& s : samples) {
     table.write_row({s.time, s.volume / s.target_volume, s.volume_error(), s.pressure, s.force,
                      s.far_displacement});
@@ -97,4 +98,4 @@ double greatest_force(const std::vector<Sample>& samples) {
   return greatest;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 #include "studies/report/progress.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 
 /// The first organ and its probes after one deformation period.
 struct Sample {
@@ -37,11 +37,11 @@ class FarField {
 };
 
 /// Called after every period with the pipeline as it then is; false: enough.
-using Observer = std::function<bool(const pipeline::Pipeline&, const Sample&)>;
+using Observer = std::function<bool(const session::InProcess&, const Sample&)>;
 
 /// Runs the scene for `seconds` of simulated time, one sample per deformation period.
-/// @throws InputError as load_pipeline(), Stopped
-std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, Progress& progress,
+/// @throws InputError as load_session(), Stopped
+std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, report::Progress& progress,
                               const Observer& observe = {});
 
 /// One row per sample: time_s, volume_ratio, volume_error, pressure_pa, force_n,
@@ -55,4 +55,4 @@ std::string model_key(scene::Model model);
 double worst_volume_error(const std::vector<Sample>& samples);
 double greatest_force(const std::vector<Sample>& samples);  ///< [N]
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

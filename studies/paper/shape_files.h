@@ -6,7 +6,7 @@
 
 #include "modules/messages/messages.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 
 /// folder/NAME_triangles.csv (a, b, c: rows of the nodes file) and folder/NAME_springs.csv (family
 /// 0 structural, 1 bending, 2 inner; a, b).
@@ -18,4 +18,4 @@ void write_topology(const SurfaceTopology& topology, const std::filesystem::path
 void write_nodes(const SurfaceTopology& topology, const std::vector<float>& positions,
                  const std::filesystem::path& folder, const std::string& name);
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -2,6 +2,7 @@
 #include <optional>
 #include <variant>
 
+#include "deformation/organ_messages.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/paper/figures.h"
 #include "studies/paper/scene_run.h"
@@ -9,7 +10,7 @@
 #include "studies/report/measures.h"
 #include "studies/report/table_file.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 constexpr double kQuickDuration = 6;  // [s]: first contact, the first rest and some sliding
@@ -34,7 +35,7 @@ class Moments {
         table_(options.out / "figure4_moments.csv",
                {"moment", "time_s", "probe_x_m", "probe_y_m", "probe_z_m", "probe_radius_m"}) {}
 
-  void watch(const pipeline::Pipeline& pipeline, const Sample& sample, double probe_radius) {
+  void watch(const session::InProcess& pipeline, const Sample& sample, double probe_radius) {
     if (first_contact_ == 0 && sample.force > 0) {
       first_contact_ = sample.time;
       keep("first_contact", pipeline, sample, probe_radius);
@@ -48,19 +49,19 @@ class Moments {
   double first_contact() const { return first_contact_; }  ///< 0: there was none [s]
 
  private:
-  void keep(const std::string& moment, const pipeline::Pipeline& pipeline, const Sample& sample,
+  void keep(const std::string& moment, const session::InProcess& pipeline, const Sample& sample,
             double probe_radius) {
-    write_nodes(pipeline.world().topology(0), pipeline.node_positions(0).positions, options_.out,
-                "figure4_" + moment);
+    write_nodes(deformation::surface_message(pipeline.world(), 0),
+                pipeline.node_positions(0).positions, options_.out, "figure4_" + moment);
     const Vec3& p = pipeline.probe(0).pose.position;
-    table_.write_row({moment, text_of("%.3f", sample.time), text_of("%.6f", p.x()),
-                      text_of("%.6f", p.y()), text_of("%.6f", p.z()),
-                      text_of("%.6f", probe_radius)});
+    table_.write_row({moment, report::text_of("%.3f", sample.time), report::text_of("%.6f", p.x()),
+                      report::text_of("%.6f", p.y()), report::text_of("%.6f", p.z()),
+                      report::text_of("%.6f", probe_radius)});
   }
 
   const FigureOptions& options_;
   std::vector<double> rests_;
-  TableFile table_;
+  report::TableFile table_;
   std::size_t next_ = 0;
   double first_contact_ = 0;
 };
@@ -79,12 +80,13 @@ Findings findings_of(const std::vector<Sample>& samples, const Moments& moments,
   };
   const bool cut = came < wanted - 1e-6;
   add("simulated [s]",
-      text_of("%.2f", came) + (cut ? text_of(" of %.0f: cut short by --budget-s", wanted) : ""));
-  add("first contact [s]", text_of("%.2f", moments.first_contact()));
-  add("greatest force [N]", text_of("%.3f", greatest_force(samples)));
-  add("|V-V0|/V0 largest", text_of("%.2e", worst_volume_error(samples)));
+      report::text_of("%.2f", came) +
+          (cut ? report::text_of(" of %.0f: cut short by --budget-s", wanted) : ""));
+  add("first contact [s]", report::text_of("%.2f", moments.first_contact()));
+  add("greatest force [N]", report::text_of("%.3f", greatest_force(samples)));
+  add("|V-V0|/V0 largest", report::text_of("%.2e", worst_volume_error(samples)));
   add("mean far-field displacement, largest [mm]",
-      text_of("%.3f", 1e3 * greatest_far_displacement(samples)));
+      report::text_of("%.3f", 1e3 * greatest_far_displacement(samples)));
   return findings;
 }
 
@@ -98,7 +100,7 @@ scene::Scene slide_scene(const FigureOptions& options) {
 
 }  // namespace
 
-Findings make_slide_figure(const FigureOptions& options, Progress& progress) {
+Findings make_slide_figure(const FigureOptions& options, report::Progress& progress) {
   const auto scene = slide_scene(options);
   const double wanted = options.quick ? kQuickDuration : scene.duration;
   const double radius = std::get<scene::SphereShape>(scene.probes[0].shape).radius;
@@ -108,7 +110,7 @@ Findings make_slide_figure(const FigureOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   double wall = 0;
   const auto samples = run_scene(scene, wanted, progress, [&](const auto& pipeline, const auto& s) {
-    if (!topology) topology = pipeline.world().topology(0);
+    if (!topology) topology = deformation::surface_message(pipeline.world(), 0);
     moments.watch(pipeline, s, radius);
     wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return wall < options.budget;
@@ -124,8 +126,8 @@ Findings make_slide_figure(const FigureOptions& options, Progress& progress) {
                   {"Figure 4", "mesh", "over 19K nodes, 39K triangles",
                    nodes + (options.quick ? " (--quick: not the refined stomach)" : "")});
   findings.push_back({"Figure 4", "real-time factor, loading included", "",
-                      text_of("%.3f", samples.back().time / wall)});
+                      report::text_of("%.3f", samples.back().time / wall)});
   return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -1,12 +1,13 @@
 #include <array>
 
+#include "deformation/organ_messages.h"
 #include "deformation/world.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/paper/figures.h"
 #include "studies/paper/shape_files.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 /// As the paper counts: 550 nodes; a closed surface of genus 0 has 2 V − 4 triangles.
@@ -35,13 +36,13 @@ std::string springs_by_family(const SurfaceTopology& topology) {
 
 }  // namespace
 
-Findings make_spring_figure(const FigureOptions& options, Progress& progress) {
+Findings make_spring_figure(const FigureOptions& options, report::Progress& progress) {
   progress.begin("Figure 1: springs of stomach and liver");
   Findings findings;
   for (const Organ& organ : kOrgans) {
     const auto scene = scene::load_scene(options.scenes / organ.scene);
     const deformation::DeformationWorld world(scene, {scene::load_organ(scene.organs[0])});
-    const SurfaceTopology& topology = world.topology(0);
+    const SurfaceTopology& topology = deformation::surface_message(world, 0);
     const std::string name = std::string("figure1_") + organ.name;
     write_topology(topology, options.out, name, /*springs=*/true);
     write_nodes(topology, topology.rest_positions, options.out, name);
@@ -54,4 +55,4 @@ Findings make_spring_figure(const FigureOptions& options, Progress& progress) {
   return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

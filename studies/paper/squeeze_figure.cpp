@@ -2,15 +2,16 @@
 #include <cmath>
 #include <limits>
 
+#include "deformation/organ_messages.h"
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 #include "studies/paper/figures.h"
 #include "studies/paper/shape_files.h"
 #include "studies/report/measures.h"
 #include "studies/report/table_file.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 constexpr int kIterations = 800;
@@ -60,13 +61,13 @@ struct Outcome {
   int substeps = 0;
 };
 
-Outcome run(const FigureOptions& options, const Case& method, Progress& progress) {
-  auto pipeline = pipeline::load_pipeline(squeeze_scene(options, method));
-  const SurfaceTopology& topology = pipeline.world().topology(0);
+Outcome run(const FigureOptions& options, const Case& method, report::Progress& progress) {
+  auto pipeline = session::load_session(squeeze_scene(options, method));
+  const SurfaceTopology& topology = deformation::surface_message(pipeline.world(), 0);
   const std::string name = std::string("figure2_") + method.name;
-  TableFile table(options.out / (name + ".csv"),
-                  {"iteration", "volume_ratio", "volume_error", "pressure_pa", "lower_force_n",
-                   "upper_force_n", "bulge_m"});
+  report::TableFile table(options.out / (name + ".csv"),
+                          {"iteration", "volume_ratio", "volume_error", "pressure_pa",
+                           "lower_force_n", "upper_force_n", "bulge_m"});
   Outcome outcome;
   outcome.substeps = pipeline.world().substeps(0, 1 / kRate);
   for (int k = 1; k <= kIterations; ++k) {
@@ -90,7 +91,7 @@ Outcome run(const FigureOptions& options, const Case& method, Progress& progress
 
 }  // namespace
 
-Findings make_squeeze_figure(const FigureOptions& options, Progress& progress) {
+Findings make_squeeze_figure(const FigureOptions& options, report::Progress& progress) {
   Findings findings;
   const auto add = [&](const std::string& quantity, const std::string& measured) {
     findings.push_back({"Figure 2", quantity, "", measured});
@@ -99,12 +100,13 @@ Findings make_squeeze_figure(const FigureOptions& options, Progress& progress) {
     progress.begin(std::string("Figure 2: ball squeezed by two planes, ") + method.name);
     const Outcome outcome = run(options, method, progress);
     const std::string name = method.name;
-    add(name + ": |V-V0|/V0 peak", text_of("%.2e", outcome.peak));
-    add(name + ": |V-V0|/V0 held", text_of("%.2e", outcome.held));
-    add(name + ": radius of the bulge [mm], 50 at rest", text_of("%.1f", 1e3 * outcome.bulge));
-    add(name + ": force of a plate [N]", text_of("%.2f", outcome.force));
+    add(name + ": |V-V0|/V0 peak", report::text_of("%.2e", outcome.peak));
+    add(name + ": |V-V0|/V0 held", report::text_of("%.2e", outcome.held));
+    add(name + ": radius of the bulge [mm], 50 at rest",
+        report::text_of("%.1f", 1e3 * outcome.bulge));
+    add(name + ": force of a plate [N]", report::text_of("%.2f", outcome.force));
     if (method.model != scene::Model::kMassSpring) {
-      add(name + ": pressure [Pa]", text_of("%.0f", outcome.pressure));
+      add(name + ": pressure [Pa]", report::text_of("%.0f", outcome.pressure));
     }
     if (outcome.substeps != 1) {
       add(name + ": sub-steps per iteration", std::to_string(outcome.substeps));
@@ -113,4 +115,4 @@ Findings make_squeeze_figure(const FigureOptions& options, Progress& progress) {
   return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

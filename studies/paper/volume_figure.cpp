@@ -5,14 +5,14 @@
 #include "studies/paper/scene_run.h"
 #include "studies/report/measures.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 constexpr double kQuickDuration = 4;  // [s]: both probes have touched by then
 
 }  // namespace
 
-Findings make_volume_figure(const FigureOptions& options, Progress& progress) {
+Findings make_volume_figure(const FigureOptions& options, report::Progress& progress) {
   Findings findings;
   for (const std::string organ : {"stomach", "liver"}) {
     auto scene = scene::load_scene(options.scenes / (organ + "_probe.yaml"));
@@ -24,12 +24,12 @@ Findings make_volume_figure(const FigureOptions& options, Progress& progress) {
       const auto samples = run_scene(scene, seconds, progress);
       write_samples(samples, options.out / ("figure3_" + organ + "_" + model_key(model) + ".csv"));
       findings.push_back({"Figure 3", run + ": |V-V0|/V0 largest", "",
-                          text_of("%.2e", worst_volume_error(samples))});
-      findings.push_back(
-          {"Figure 3", run + ": greatest force [N]", "", text_of("%.3f", greatest_force(samples))});
+                          report::text_of("%.2e", worst_volume_error(samples))});
+      findings.push_back({"Figure 3", run + ": greatest force [N]", "",
+                          report::text_of("%.3f", greatest_force(samples))});
     }
   }
   return findings;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -10,7 +10,7 @@
 #include "modules/scene/assets.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/displacement_field.h"
-#include "studies/chart/rungs.h"
+#include "studies/chart/fidelity.h"
 #include "studies/chart/stage.h"
 
 namespace palpate::plan {
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMarks = 60;
 constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
-constexpr double kTruthRateOfFluid = 500, kTruthRateOfSolid = 200;  // [Hz]
+constexpr double kReferenceRateOfFluid = 500, kReferenceRateOfSolid = 200;  // [Hz]
 
 std::vector<scene::Model> models_for(scene::Needs::Contents contents) {
   using scene::Model;
@@ -37,18 +37,17 @@ std::size_t nodes_of(const scene::Scene& scene) {
 }
 
 /// Where the marks are on this mesh.
-std::vector<accuracy::NodeWeights> find_marks(const geometry::OrganShape& shape,
-                                              const std::vector<Vec3>& marks) {
-  std::vector<accuracy::NodeWeights> found;
+std::vector<chart::NodeWeights> find_marks(const geometry::OrganShape& shape,
+                                           const std::vector<Vec3>& marks) {
+  std::vector<chart::NodeWeights> found;
   found.reserve(marks.size());
   constexpr double kAnyDistance = 1;  // [m]: the nearest point of this surface stands for it
-  for (const Vec3& mark : marks) found.push_back(accuracy::weights_at(shape, mark, kAnyDistance));
+  for (const Vec3& mark : marks) found.push_back(chart::weights_at(shape, mark, kAnyDistance));
   return found;
 }
 
 /// The marks' displacements: surfaces of other meshes lie a little aside.
-std::vector<Vec3> marked(const accuracy::Stage& stage,
-                         const std::vector<accuracy::NodeWeights>& marks) {
+std::vector<Vec3> marked(const chart::Stage& stage, const std::vector<chart::NodeWeights>& marks) {
   std::vector<Vec3> displacements;
   for (const auto& weights : marks) {
     Vec3& sum = displacements.emplace_back(Vec3::Zero());
@@ -93,12 +92,12 @@ std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface) {
   return marks;
 }
 
-Candidate truth_of(const scene::Scene& scene) {
+Candidate reference_of(const scene::Scene& scene) {
   const std::size_t nodes = nodes_of(scene);
   if (scene.needs.contents == scene::Needs::Contents::kSolid) {
-    return {scene::Model::kNodalPressure, nodes, kTruthRateOfSolid};
+    return {scene::Model::kNodalPressure, nodes, kReferenceRateOfSolid};
   }
-  return {scene::Model::kImplicitVolume, std::min(4 * nodes, kMostNodes), kTruthRateOfFluid,
+  return {scene::Model::kImplicitVolume, std::min(4 * nodes, kMostNodes), kReferenceRateOfFluid,
           scene::Integrator::kSymplecticEuler};
 }
 
@@ -126,7 +125,7 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   organ.integrator = candidate.integrator;
   organ.iterations = 0;
   organ.solid.poisson_ratio =
-      accuracy::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
+      chart::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
   organ.mesh.nodes = candidate.nodes;
   if (candidate.rate > 0) changed.rates.deformation = candidate.rate;
   changed.rates.collision = std::max(changed.rates.collision, changed.rates.deformation);
@@ -144,7 +143,7 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
     devices.push_back(haptics::make_device(probe.device, warnings));
     poses.push_back(devices.back()->read(0).pose);
   }
-  accuracy::Stage stage(scene, shape, poses);
+  chart::Stage stage(scene, shape, poses);
   const auto places = find_marks(shape, marks);
   Course course;
   course.node_count = shape.node_count();
@@ -167,30 +166,30 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
   return course;
 }
 
-Errors compare(const Course& course, const Course& truth) {
+Errors compare(const Course& course, const Course& reference) {
   Errors errors;
   errors.volume = course.volume_error;
-  if (course.diverged || course.forces.size() < truth.forces.size()) {
+  if (course.diverged || course.forces.size() < reference.forces.size()) {
     errors.force = errors.surface = std::numeric_limits<double>::infinity();
     return errors;
   }
   const double scale = root_mean_square(
-      truth.forces, [&](std::size_t i, std::size_t k) { return truth.forces[i][k]; });
-  const double off = root_mean_square(truth.forces, [&](std::size_t i, std::size_t k) -> Vec3 {
-    return course.forces[i][k] - truth.forces[i][k];
+      reference.forces, [&](std::size_t i, std::size_t k) { return reference.forces[i][k]; });
+  const double off = root_mean_square(reference.forces, [&](std::size_t i, std::size_t k) -> Vec3 {
+    return course.forces[i][k] - reference.forces[i][k];
   });
   errors.force = scale > 0 ? off / scale : 0;
-  errors.surface = root_mean_square(truth.surfaces, [&](std::size_t i, std::size_t k) -> Vec3 {
-    return course.surfaces[i][k] - truth.surfaces[i][k];
+  errors.surface = root_mean_square(reference.surfaces, [&](std::size_t i, std::size_t k) -> Vec3 {
+    return course.surfaces[i][k] - reference.surfaces[i][k];
   });
   return errors;
 }
 
 Verdict judge(const scene::Needs& needs, const Candidate& candidate, const Course& course,
-              const Course& truth) {
+              const Course& reference) {
   Verdict verdict;
   verdict.candidate = candidate;
-  verdict.errors = compare(course, truth);
+  verdict.errors = compare(course, reference);
   verdict.node_count = course.node_count;
   verdict.deformation_load = course.deformation_cost;
   verdict.total_load =

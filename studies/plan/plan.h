@@ -34,9 +34,9 @@ struct Course {
 };
 inline constexpr double kSampleRate = 20;  // [Hz]
 
-/// How far a course is from the truth.
+/// How far a course is from the reference solution.
 struct Errors {
-  double force = 0;    ///< RMS over the truth's RMS; 0 where nothing was touched
+  double force = 0;    ///< RMS over the reference's RMS; 0 where nothing was touched
   double surface = 0;  ///< RMS [m]
   double volume = 0;
 };
@@ -58,10 +58,10 @@ inline constexpr double kHapticTick = 20e-6;
 /// Points of the rest surface, in W, at which courses are compared; the same for all meshes [m].
 std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface);
 
-/// Where the truth comes from: for a solid, tetrahedra with averaged pressures on a mesh refined
-/// where the probes go (solid_truth.h); for a wall filled with fluid, springs and the implicit
-/// volume on four times the nodes; both in small steps.
-Candidate truth_of(const scene::Scene& scene);
+/// Where the reference comes from: for a solid, tetrahedra with averaged pressures on a mesh
+/// refined where the probes go (solid_reference.h); for a wall filled with fluid, springs and the
+/// implicit volume on four times the nodes; both in small steps.
+Candidate reference_of(const scene::Scene& scene);
 
 /// All that are tried, on a quarter, half, once and twice the scene's nodes, at the least rate and
 /// twice that.
@@ -76,10 +76,10 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
                   const std::vector<Vec3>& marks, double duration,
                   const std::function<void()>& keep_going);
 
-Errors compare(const Course& course, const Course& truth);
+Errors compare(const Course& course, const Course& reference);
 
 Verdict judge(const scene::Needs& needs, const Candidate& candidate, const Course& course,
-              const Course& truth);
+              const Course& reference);
 
 /// The one of least total load among those that meet all needs.
 const Verdict* best(const std::vector<Verdict>& verdicts);

@@ -12,7 +12,7 @@
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 #include "studies/plan/plan.h"
-#include "studies/plan/solid_truth.h"
+#include "studies/plan/solid_reference.h"
 #include "studies/report/measures.h"
 #include "studies/report/progress.h"
 
@@ -41,9 +41,9 @@ void check_plannable(const scene::Scene& scene) {
 }
 
 /// A force error is of a force.
-void check_touched(const scene::Scene& scene, const Course& truth, double seconds) {
+void check_touched(const scene::Scene& scene, const Course& reference, double seconds) {
   if (!scene.needs.force_error) return;
-  for (const auto& forces : truth.forces) {
+  for (const auto& forces : reference.forces) {
     for (const Vec3& force : forces) {
       if (force.norm() > 0) return;
     }
@@ -91,37 +91,38 @@ void write_scene(const scene::Scene& scene, const std::filesystem::path& file) {
 
 /// @param coarser  of a wall half the nodes; of a solid, whose edges are refined by halving, edges
 ///                 twice as long where the probes go
-Course run_truth(const scene::Scene& scene, bool coarser, const std::vector<Vec3>& marks,
-                 double duration, const std::function<void()>& keep_going) {
-  auto candidate = truth_of(scene);
+Course run_reference(const scene::Scene& scene, bool coarser, const std::vector<Vec3>& marks,
+                     double duration, const std::function<void()>& keep_going) {
+  auto candidate = reference_of(scene);
   const bool solid = scene.needs.contents == scene::Needs::Contents::kSolid;
   if (coarser && !solid) candidate.nodes /= 2;
-  const auto truth_scene = scene_with(scene, candidate);
-  const auto shape = solid
-                         ? solid_truth_shape(truth_scene, duration, (coarser ? 2 : 1) * kTruthEdge)
-                         : scene::load_organ(truth_scene.organs[0]);
-  return run_course(truth_scene, shape, marks, duration, keep_going);
+  const auto reference_scene = scene_with(scene, candidate);
+  const auto shape =
+      solid ? solid_reference_shape(reference_scene, duration, (coarser ? 2 : 1) * kReferenceEdge)
+            : scene::load_organ(reference_scene.organs[0]);
+  return run_course(reference_scene, shape, marks, duration, keep_going);
 }
 
-/// How far the truth may be off: candidates that differ less from it are not told apart.
-void print_truth(const Course& truth, const Course& coarser, std::ostream& log) {
-  const Errors errors = compare(coarser, truth);
+/// How far the reference may be off: candidates that differ less from it are not told apart.
+void print_reference(const Course& reference, const Course& coarser, std::ostream& log) {
+  const Errors errors = compare(coarser, reference);
   log << fmt::format(
-             "truth: {} nodes; a coarser one of {} differs by {:.1f}% of the force, {:.2g} mm of "
+             "reference: {} nodes; a coarser one of {} differs by {:.1f}% of the force, {:.2g} mm "
+             "of "
              "surface",
-             truth.node_count, coarser.node_count, 100 * errors.force, 1e3 * errors.surface)
+             reference.node_count, coarser.node_count, 100 * errors.force, 1e3 * errors.surface)
       << std::endl;
 }
 
 std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& options,
                                  std::ostream& log, const std::function<void()>& keep_going) {
-  log << "truth: " << truth_of(scene).name() << ", and a coarser one" << std::endl;
+  log << "reference: " << reference_of(scene).name() << ", and a coarser one" << std::endl;
   const auto marks = marks_on(scene::load_organ(scene.organs[0]).surface);
-  const Course truth = run_truth(scene, false, marks, options.seconds, keep_going);
-  if (truth.diverged) throw std::runtime_error("the truth diverged on this scene: no plan");
-  check_touched(scene, truth, options.seconds);
-  const Course coarser = run_truth(scene, true, marks, options.seconds, keep_going);
-  print_truth(truth, coarser, log);
+  const Course reference = run_reference(scene, false, marks, options.seconds, keep_going);
+  if (reference.diverged) throw std::runtime_error("the reference diverged on this scene: no plan");
+  check_touched(scene, reference, options.seconds);
+  const Course coarser = run_reference(scene, true, marks, options.seconds, keep_going);
+  print_reference(reference, coarser, log);
   std::vector<Verdict> verdicts;
   const auto candidates = candidates_of(scene);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -129,7 +130,7 @@ std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& o
     const auto candidate_scene = scene_with(scene, candidates[i]);
     const auto shape = scene::load_organ(candidate_scene.organs[0]);
     const Course course = run_course(candidate_scene, shape, marks, options.seconds, keep_going);
-    verdicts.push_back(judge(scene.needs, candidates[i], course, truth));
+    verdicts.push_back(judge(scene.needs, candidates[i], course, reference));
   }
   std::stable_sort(verdicts.begin(), verdicts.end(),
                    [](const Verdict& a, const Verdict& b) { return a.total_load < b.total_load; });
@@ -144,12 +145,12 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
   const runtime::StopSignal stop;
   try {
     const auto verdicts = measure_all(scene, options, log, [&] {
-      if (stop.requested()) throw bench::Stopped{};
+      if (stop.requested()) throw report::Stopped{};
     });
     const Verdict* chosen = best(verdicts);
     print(verdicts, chosen, out);
-    out << "load: of one core; force: RMS difference from the truth over its RMS; on "
-        << bench::machine_name() << '\n';
+    out << "load: of one core; force: RMS difference from the reference over its RMS; on "
+        << report::machine_name() << '\n';
     if (chosen == nullptr) {
       out << "\nnothing meets the needs. What would:\n";
       for (const auto& way : ways_out(scene.needs, verdicts)) out << "  " << way << '\n';
@@ -162,9 +163,9 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     write_scene(scene_with(scene, chosen->candidate), file);
     out << "written: " << file.string() << '\n';
     return kExitDone;
-  } catch (const bench::Stopped&) {
+  } catch (const report::Stopped&) {
     log << "stopped; nothing was written" << std::endl;
-    return bench::kExitStopped;
+    return report::kExitStopped;
   }
 }
 

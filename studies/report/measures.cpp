@@ -10,7 +10,7 @@
 
 #include "modules/core/error.h"
 
-namespace palpate::bench {
+namespace palpate::report {
 
 std::string text_of(const char* format, double value) {
   std::array<char, 64> text{};
@@ -51,4 +51,4 @@ void make_out_folder(const std::filesystem::path& folder) {
   }
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

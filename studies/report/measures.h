@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::report {
 
 /// printf-style text of one number.
 std::string text_of(const char* format, double value);
@@ -22,4 +22,4 @@ std::string machine_name();
 /// Makes the folder of --out. @throws InputError if it cannot be made
 void make_out_folder(const std::filesystem::path& folder);
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::report {
 
 int run_program(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
@@ -53,4 +53,4 @@ void draw_figures(const std::filesystem::path& script, const std::filesystem::pa
   }
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

@@ -1,11 +1,11 @@
-// Draws the figures: runs scripts/plot_paper.py.
+// Draws the figures: runs a script of scripts/plots.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::report {
 
 /// Exit code of a program that speaks for itself; -1 if it could not be started or was killed.
 int run_program(const std::vector<std::string>& words);
@@ -14,4 +14,4 @@ int run_program(const std::vector<std::string>& words);
 /// @throws std::runtime_error saying what is missing, or that the script failed
 void draw_figures(const std::filesystem::path& script, const std::filesystem::path& folder);
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

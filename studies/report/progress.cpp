@@ -3,7 +3,7 @@
 #include <iomanip>
 #include <ostream>
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
 constexpr std::chrono::seconds kLineEvery{2};
@@ -28,4 +28,4 @@ void Progress::at(double done, double total, const char* unit) {
        << total << ' ' << unit << std::endl;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

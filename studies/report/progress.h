@@ -6,7 +6,7 @@
 #include <iosfwd>
 #include <string>
 
-namespace palpate::bench {
+namespace palpate::report {
 
 /// Thrown out of a job that was asked to stop.
 struct Stopped {};
@@ -29,4 +29,4 @@ class Progress {
   std::chrono::steady_clock::time_point next_line_;
 };
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

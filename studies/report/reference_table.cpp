@@ -8,7 +8,7 @@
 
 #include "modules/core/error.h"
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -54,4 +54,4 @@ std::size_t ReferenceTable::row_of(const std::string& column, double value) cons
   throw InputError(text.str());
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

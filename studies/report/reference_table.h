@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::report {
 
 class ReferenceTable {
  public:
@@ -24,4 +24,4 @@ class ReferenceTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

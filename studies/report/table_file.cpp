@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
 std::string quoted(const std::string& cell) {
@@ -55,4 +55,4 @@ void TableFile::finish() {
   std::filesystem::rename(part_, file_);
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

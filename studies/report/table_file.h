@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench {
+namespace palpate::report {
 
 /// Written beside its place under another name; finish() puts it there. Without finish() nothing is
 /// left behind.
@@ -35,4 +35,4 @@ class TableFile {
   std::ofstream stream_;
 };
 
-}  // namespace palpate::bench
+}  // namespace palpate::report

@@ -77,7 +77,7 @@ Column measure_column(const Map& map, const std::string& series, double x,
 }
 
 ColumnStore::ColumnStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  bench::make_out_folder(folder_);
+  report::make_out_folder(folder_);
 }
 
 std::filesystem::path ColumnStore::file_of(const Map& map, const std::string& series,
@@ -104,7 +104,7 @@ bool ColumnStore::read(const Map& map, const std::string& series, double x, Colu
 }
 
 void ColumnStore::write(const Map& map, const Column& column) const {
-  bench::TableFile table(file_of(map, column.series, column.x), store_columns());
+  report::TableFile table(file_of(map, column.series, column.x), store_columns());
   for (const Cell& cell : column.cells) {
     table.write_row(std::span<const double>(numbers_of(cell, column.prediction)));
   }

@@ -28,8 +28,8 @@ struct Hand {
 };
 
 /// What deformation sends for a probe at `z` on a wall z ≤ 0.
-ContactModel wall_at(double z, double stiffness, bool local_model) {
-  ContactModel model;
+LocalLaw wall_at(double z, double stiffness, bool local_model) {
+  LocalLaw model;
   model.touching = z < 0;
   model.anchor.z() = z;
   model.force.z() = std::max(0.0, -stiffness * z);
@@ -43,13 +43,13 @@ class ForceLaw {
   explicit ForceLaw(const Loop& loop)
       : passivity_(loop.passivity), renderer_(limits(), 1 / loop.rate) {}
 
-  double force(const ContactModel& model, const Hand& hand, double time) {
+  double force(const LocalLaw& model, const Hand& hand, double time) {
     if (!passivity_) return haptics::evaluate(model, Vec3(0, 0, hand.z)).wrench.force.z();
-    renderer_.update_model(model, time);
+    renderer_.update_law(model, time);
     haptics::DeviceSample sample;
     sample.pose.position.z() = hand.z;
     sample.twist.linear.z() = hand.velocity;
-    HapticForce out;
+    RenderedForce out;
     renderer_.tick(time, sample, out);
     return out.force.z();
   }

@@ -23,12 +23,12 @@ constexpr double kDensity = 1060;     // [kg/m³]
 constexpr double kPlateSpeed = 0.02;  // [m/s]
 constexpr double kDrag = 60;          // about critical for the slowest mode [1/s]
 constexpr double kRate = 100;         // steps asked for per second [Hz]
-constexpr double kPenalty = 3e4 * kLockingModulus / kRadius;  // as in bench/elements [Pa/m]
-constexpr double kStride = 0.025;                             // of compression
+constexpr double kPenalty = 3e4 * kLockingModulus / kBallRadius;  // as in studies/elements [Pa/m]
+constexpr double kStride = 0.025;                                 // of compression
 constexpr double kEdge = 0.16;  // of the reference\'s mesh at the surface, of the radius
 
 geometry::OrganShape solid_ball() {
-  const auto surface = geometry::make_ball(kRadius, 2);
+  const auto surface = geometry::make_ball(kBallRadius, 2);
   const auto edges = geometry::edges_of(surface.triangles);
   double sum = 0;
   for (const auto& [a, b] : edges) sum += (surface.nodes[a] - surface.nodes[b]).norm();
@@ -38,8 +38,8 @@ geometry::OrganShape solid_ball() {
 
 scene::Scene plates_scene(Model model, double poisson_ratio) {
   scene::Scene scene;
-  const accuracy::Setting setting{model, 0, kRate};
-  scene.organs.push_back(accuracy::solid_organ(setting, kRadius, 1, kLockingModulus, kDensity));
+  const chart::Setting setting{model, 0, kRate};
+  scene.organs.push_back(chart::solid_organ(setting, kBallRadius, 1, kLockingModulus, kDensity));
   scene.organs[0].solid.poisson_ratio = poisson_ratio;
   scene.organs[0].tissue.drag = kDrag;
   scene.rates.deformation = kRate;
@@ -52,9 +52,9 @@ scene::Scene plates_scene(Model model, double poisson_ratio) {
 /// An octant, three times coarser in the middle, where nothing happens.
 elements::MixedSolid octant(double poisson_ratio) {
   auto mesh = elements::make_quadratic(geometry::mesh_ball(
-      kRadius, geometry::BallPart::kOctant,
-      fmt::format("{:g} - {:g}*(x*x+y*y+z*z)", 3 * kEdge * kRadius, 2 * kEdge / kRadius)));
-  elements::curve_onto_sphere(mesh, Vec3::Zero(), kRadius);
+      kBallRadius, geometry::BallPart::kOctant,
+      fmt::format("{:g} - {:g}*(x*x+y*y+z*z)", 3 * kEdge * kBallRadius, 2 * kEdge / kBallRadius)));
+  elements::curve_onto_sphere(mesh, Vec3::Zero(), kBallRadius);
   return {std::move(mesh), elements::NeoHookean::from_engineering(kLockingModulus, poisson_ratio),
           kDensity};
 }
@@ -73,7 +73,7 @@ std::vector<std::uint32_t> outer_faces(const elements::MixedSolid& solid) {
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     bool outside = true;
     for (int k = 0; k < 3; ++k) {
-      outside &= mesh.nodes[mesh.face_node(mesh.faces[f], k)].norm() > (1 - 1e-6) * kRadius;
+      outside &= mesh.nodes[mesh.face_node(mesh.faces[f], k)].norm() > (1 - 1e-6) * kBallRadius;
     }
     if (outside) faces.push_back(f);
   }
@@ -92,7 +92,7 @@ LockingPoint kept(const std::filesystem::path& file, const std::function<Locking
     return point;
   }
   point = measure();
-  bench::TableFile table(file, {"force_n", "diverged"});
+  report::TableFile table(file, {"force_n", "diverged"});
   table.write_row({point.force, double(point.diverged)});
   table.finish();
   return point;
@@ -114,7 +114,7 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
   elements_bench::LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(kStride);
   const bool done = path.advance_to(kLockingCompression, [&](double at, elements::SolidState&) {
-    contact.set_obstacles({elements::Plane{Vec3(0, 0, kRadius * (1 - at)), -Vec3::UnitZ()}});
+    contact.set_obstacles({elements::Plane{Vec3(0, 0, kBallRadius * (1 - at)), -Vec3::UnitZ()}});
   });
   if (!done) {
     throw std::runtime_error(
@@ -125,11 +125,11 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
 
 LockingPoint locking_point(Model model, double poisson_ratio, const KeepGoing& keep_going) {
   static const geometry::OrganShape kBall = solid_ball();
-  std::vector<Pose> poses{accuracy::plate(kRadius, false), accuracy::plate(-kRadius, true)};
-  accuracy::Stage stage(plates_scene(model, poisson_ratio), kBall, poses);
-  const double height = kRadius * (1 - kLockingCompression);
-  accuracy::move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed,
-                            keep_going);
+  std::vector<Pose> poses{rigs::plate_pose(kBallRadius, false),
+                          rigs::plate_pose(-kBallRadius, true)};
+  chart::Stage stage(plates_scene(model, poisson_ratio), kBall, poses);
+  const double height = kBallRadius * (1 - kLockingCompression);
+  chart::move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
   LockingPoint point{model, poisson_ratio, 0, 0, stage.diverged()};
   point.force = (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
   return point;
@@ -150,9 +150,9 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
         return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kVersion);
       };
       const double reference = kept(file("reference"), [&] {
-                                 LockingPoint truth;
-                                 truth.force = locking_reference(ratio, keep_going);
-                                 return truth;
+                                 LockingPoint known;
+                                 known.force = locking_reference(ratio, keep_going);
+                                 return known;
                                }).force;
       LockingPoint point = kept(file(scene::word_of(model)),
                                 [&] { return locking_point(model, ratio, keep_going); });
@@ -166,7 +166,7 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
 }
 
 void write_locking(const std::vector<LockingPoint>& points, const std::filesystem::path& file) {
-  bench::TableFile table(
+  report::TableFile table(
       file, {"model", "poisson_ratio", "force_n", "reference_force_n", "force_error", "diverged"});
   for (const LockingPoint& p : points) {
     table.write_row(std::vector<std::string>{

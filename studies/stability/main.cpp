@@ -9,7 +9,6 @@ int main(int argc, char** argv) {
   CLI::App app("Stability atlas: where each method fails, measured and predicted.",
                "palpate stability");
   stability::StabilityOptions options;
-  options.root = PALPATE_SOURCE_DIR;
   app.add_option("-o,--out", options.out, "Folder for tables and charts")->capture_default_str();
   app.add_option("--only", options.only_maps, "Only these maps")
       ->delimiter(',')

@@ -11,10 +11,10 @@ constexpr double kFineStep = 1e-3;  // of the squeeze whose end is looked at [s]
 
 std::vector<std::string> names_of(bool quick, bool surfaces_alone) {
   std::vector<std::string> names;
-  for (const Subject& subject : subjects()) {
-    if (quick && !subject.quick) continue;
-    if (surfaces_alone && scene::is_solid(subject.model)) continue;
-    names.emplace_back(subject.name);
+  for (const Scheme& scheme : schemes()) {
+    if (quick && !scheme.quick) continue;
+    if (surfaces_alone && scene::is_solid(scheme.model)) continue;
+    names.emplace_back(scheme.name);
   }
   return names;
 }
@@ -29,13 +29,13 @@ Map step_stiffness(bool quick) {
   map.ys = geometric(1e-5, 0.1, quick ? 9 : 17);
   map.precision = precision(quick);
   map.attempt = [shapes](const std::string& name, double x, double y, const KeepGoing& keep_going) {
-    const Subject& subject = subject_named(name);
-    return swing(subject, shapes->shape_for(subject), x, y, keep_going);
+    const Scheme& scheme = scheme_named(name);
+    return swing(scheme, shapes->shape_for(scheme), x, y, keep_going);
   };
   map.predict = [shapes](const std::string& name, double x) {
-    const Subject& subject = subject_named(name);
-    Specimen specimen(organ_of(subject, x), shapes->shape_for(subject));
-    return predict(subject, specimen);
+    const Scheme& scheme = scheme_named(name);
+    TestBody body(organ_of(scheme, x), shapes->shape_for(scheme));
+    return predict(scheme, body);
   };
   return map;
 }
@@ -47,17 +47,17 @@ Map squeezes(bool quick) {
   map.ys = quick ? geometric(1e-3, 0.03, 4) : geometric(2.5e-4, 0.032, 8);
   map.precision = precision(quick);
   map.attempt = [shapes](const std::string& name, double x, double y, const KeepGoing& keep_going) {
-    const Subject& subject = subject_named(name);
-    return squeeze(subject, shapes->shape_for(subject), x, y, keep_going);
+    const Scheme& scheme = scheme_named(name);
+    return squeeze(scheme, shapes->shape_for(scheme), x, y, keep_going);
   };
   // From the springs as they are at the end of a fine squeeze; pressure is not counted, nor that
   // plates hold nodes.
   map.predict = [shapes](const std::string& name, double x) {
-    const Subject& subject = subject_named(name);
-    std::unique_ptr<Specimen> end;
+    const Scheme& scheme = scheme_named(name);
+    std::unique_ptr<TestBody> end;
     squeeze(
-        subject, shapes->shape_for(subject), x, kFineStep, [] {}, &end);
-    Prediction prediction = predict(subject, *end);
+        scheme, shapes->shape_for(scheme), x, kFineStep, [] {}, &end);
+    Prediction prediction = predict(scheme, *end);
     prediction.exact = false;
     return prediction;
   };
@@ -79,13 +79,13 @@ Map probe_speeds(bool quick) {
   map.ys = quick ? geometric(1e-3, 0.03, 4) : geometric(5e-4, 0.032, 7);
   map.precision = precision(quick);
   map.attempt = [shapes](const std::string& name, double x, double y, const KeepGoing& keep_going) {
-    const Subject& subject = subject_named(name);
-    return poke(subject, shapes->shape_for(subject), x, y, keep_going);
+    const Scheme& scheme = scheme_named(name);
+    return poke(scheme, shapes->shape_for(scheme), x, y, keep_going);
   };
   map.predict = [shapes](const std::string& name, double) {  // before anything touches
-    const Subject& subject = subject_named(name);
-    Specimen specimen(poked_organ(subject), shapes->shape_for(subject));
-    Prediction prediction = predict(subject, specimen);
+    const Scheme& scheme = scheme_named(name);
+    TestBody body(poked_organ(scheme), shapes->shape_for(scheme));
+    Prediction prediction = predict(scheme, body);
     prediction.exact = false;
     return prediction;
   };
@@ -106,12 +106,12 @@ Map mesh_quality(bool quick) {
   map.ys = geometric(1e-5, 0.03, quick ? 8 : 15);
   map.precision = precision(quick);
   map.attempt = [](const std::string& name, double x, double y, const KeepGoing& keep_going) {
-    return swing(subject_named(name), ball_with_sliver(x), kYoungsModulus, y, keep_going);
+    return swing(scheme_named(name), ball_with_sliver(x), kYoungsModulus, y, keep_going);
   };
   map.predict = [](const std::string& name, double x) {
-    const Subject& subject = subject_named(name);
-    Specimen specimen(organ_of(subject, kYoungsModulus), ball_with_sliver(x));
-    return predict(subject, specimen);
+    const Scheme& scheme = scheme_named(name);
+    TestBody body(organ_of(scheme, kYoungsModulus), ball_with_sliver(x));
+    return predict(scheme, body);
   };
   return map;
 }

@@ -3,34 +3,14 @@
 
 #include <functional>
 
-#include "studies/stability/subject.h"
+#include "studies/stability/scheme.h"
 
 namespace palpate::stability {
 
 /// Asked now and then; may throw to end a run.
 using KeepGoing = std::function<void()>;
 
-/// A thing that touches nodes, without friction.
-struct Obstacle {
-  Vec3 position = Vec3::Zero();  ///< centre of a sphere, a point of a plane, in W [m]
-  Vec3 velocity = Vec3::Zero();  ///< [m/s]
-  double radius = 0;             ///< of a sphere, > 0 [m]; 0: a plane
-  Vec3 facing = Vec3::UnitZ();   ///< of a plane: unit, towards its free side
-};
-
-/// One contact row per near node and obstacle, started from the impulses of the step before.
-class Touch {
- public:
-  /// @param obstacles  where they are as the step begins
-  void step(std::span<const Obstacle> obstacles, double h, Specimen& specimen);
-
- private:
-  std::vector<deformation::ContactRow> rows_;
-  std::vector<std::size_t> slots_;  ///< of each row, into impulses_
-  std::vector<double> impulses_;    ///< [obstacle · nodes + node] [N·s]
-};
-
-/// What of a specimen must not grow.
+/// What of a body must not grow.
 enum class Energy {
   kKinetic,
   kTotal,   ///< and elastic
@@ -39,19 +19,19 @@ enum class Energy {
   kElastic,  ///< of a kinematic model, whose velocities are moves per step
 };
 
-/// Writes down what a specimen does, step by step.
+/// Writes down what a body does, step by step.
 class Watch {
  public:
-  /// @param energy  but for kKinetic, against the yardstick's or what it is after the first step if
+  /// @param energy  but for kKinetic, against the tolerance's or what it is after the first step if
   ///                that is more
-  Watch(const Specimen& specimen, const Yardstick& yardstick, Energy energy);
+  Watch(const TestBody& body, const Tolerance& tolerance, Energy energy);
 
   /// After a step. @returns false when the rest need not be looked at
-  bool see(Specimen& specimen);
-  Verdict judge(const Specimen& specimen);
+  bool see(TestBody& body);
+  Verdict judge(const TestBody& body);
 
  private:
-  Yardstick yardstick_;
+  Tolerance tolerance_;
   Energy energy_;
   Signals signals_;
   std::vector<Vec3> rest_, before_;  ///< positions at the start, velocities before [m], [m/s]
@@ -66,21 +46,21 @@ inline constexpr int kSwingSteps = 400;
 /// Set swinging as an ellipsoid by about 1e-3 of its radius, all other motions stirred by 1e-3 of
 /// that, for kSwingSteps steps. ChainMail, which knows no velocities, is let go from there.
 /// @param youngs_modulus  by which the swing's speed is chosen [Pa]
-Verdict swing(const Subject& subject, const geometry::OrganShape& shape, double youngs_modulus,
+Verdict swing(const Scheme& scheme, const geometry::OrganShape& shape, double youngs_modulus,
               double h, const KeepGoing& keep_going);
 
 /// Closed by two plates to `squeeze` of the diameter in 0.3 s and held for 0.2 s, damped.
-/// @param end  if not null, gets the specimen at the end
-Verdict squeeze(const Subject& subject, const geometry::OrganShape& shape, double squeeze, double h,
-                const KeepGoing& keep_going, std::unique_ptr<Specimen>* end = nullptr);
+/// @param end  if not null, gets the body at the end
+Verdict squeeze(const Scheme& scheme, const geometry::OrganShape& shape, double squeeze, double h,
+                const KeepGoing& keep_going, std::unique_ptr<TestBody>* end = nullptr);
 
 /// Held below, a sphere of 20 mm goes 20 mm deep at `speed` [m/s] and comes out; 0.2 s more,
 /// damped.
-Verdict poke(const Subject& subject, const geometry::OrganShape& shape, double speed, double h,
+Verdict poke(const Scheme& scheme, const geometry::OrganShape& shape, double speed, double h,
              const KeepGoing& keep_going);
 
 /// The organs of the last two.
-scene::Organ squeezed_organ(const Subject& subject);
-scene::Organ poked_organ(const Subject& subject);
+scene::Organ squeezed_organ(const Scheme& scheme);
+scene::Organ poked_organ(const Scheme& scheme);
 
 }  // namespace palpate::stability

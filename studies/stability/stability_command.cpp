@@ -6,6 +6,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/schema.h"
@@ -99,8 +100,8 @@ double ratio_of(const Column& column) {
 }
 
 void write_tries(const std::vector<Column>& columns, const std::filesystem::path& file) {
-  bench::TableFile table(file, {"map", "series", "x", "y", "state", "energy", "volume_error",
-                                "inverted", "displacement"});
+  report::TableFile table(file, {"map", "series", "x", "y", "state", "energy", "volume_error",
+                                 "inverted", "displacement"});
   for (const Column& column : columns) {
     for (const Cell& cell : column.cells) {
       const Verdict& v = cell.verdict;
@@ -113,8 +114,8 @@ void write_tries(const std::vector<Column>& columns, const std::filesystem::path
 }
 
 void write_frontiers(const std::vector<Column>& columns, const std::filesystem::path& file) {
-  bench::TableFile table(file, {"map", "series", "x", "frontier", "edge", "fails_up_to",
-                                "predicted", "exact", "given", "measured_over_predicted"});
+  report::TableFile table(file, {"map", "series", "x", "frontier", "edge", "fails_up_to",
+                                 "predicted", "exact", "given", "measured_over_predicted"});
   for (const Column& column : columns) {
     const Frontier frontier = frontier_of(column.cells);
     const Prediction& p = column.prediction;
@@ -212,13 +213,13 @@ std::vector<std::string> map_names() {
 
 int run_stability(const StabilityOptions& options, std::ostream& out, std::ostream& log) {
   const auto wanted = wanted_maps(options);
-  bench::make_out_folder(options.out);
+  report::make_out_folder(options.out);
   const auto points = options.out / "points";
   if (options.again) std::filesystem::remove_all(points);
   const ColumnStore store(points);
   const runtime::StopSignal stop;
   const KeepGoing keep_going = [&] {
-    if (stop.requested()) throw bench::Stopped{};
+    if (stop.requested()) throw report::Stopped{};
   };
   try {
     const auto columns = measure(wanted, store, log, keep_going);
@@ -232,15 +233,15 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
       write_locking(locking, options.out / "locking.csv");
       print_locking(locking, out);
     }
-    bench::draw_figures(options.root / "scripts/plot_stability.py", options.out);
+    report::draw_figures(data_file("plots/plot_stability.py"), options.out);
     out << "in " << options.out.string() << ": the charts, atlas.csv, frontiers.csv"
         << (wants(options, kLocking) ? ", locking.csv" : "")
         << "; points/ is what a next run starts from\n";
     return kExitDone;
-  } catch (const bench::Stopped&) {
+  } catch (const report::Stopped&) {
     log << "stopped; finished points stay in " << points.string() << " and are not measured again"
         << std::endl;
-    return bench::kExitStopped;
+    return report::kExitStopped;
   }
 }
 

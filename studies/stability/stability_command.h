@@ -10,7 +10,6 @@ namespace palpate::stability {
 
 struct StabilityOptions {
   std::filesystem::path out = "out/stability";
-  std::filesystem::path root;            ///< of the sources: the plot script
   std::vector<std::string> only_maps;    ///< empty: all of map_names()
   std::vector<std::string> only_series;  ///< models or loops; empty: all of each map
   bool quick = false;

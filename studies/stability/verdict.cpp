@@ -34,10 +34,10 @@ double largest(const Series& series) {
   return result;
 }
 
-bool drifts(const Signals& signals, const Yardstick& yardstick) {
-  if (!(late(signals.volume_error) <= yardstick.volume_drift)) return true;
-  if (yardstick.energy_drift >= kAnything) return false;
-  return !(std::abs(late(signals.energy) / early(signals.energy) - 1) <= yardstick.energy_drift);
+bool drifts(const Signals& signals, const Tolerance& tolerance) {
+  if (!(late(signals.volume_error) <= tolerance.volume_drift)) return true;
+  if (tolerance.energy_drift >= kAnything) return false;
+  return !(std::abs(late(signals.energy) / early(signals.energy) - 1) <= tolerance.energy_drift);
 }
 
 }  // namespace
@@ -56,26 +56,26 @@ const char* name_of(State state) {
   return "diverged";
 }
 
-bool is_lost(const Signals& signals, const Yardstick& yardstick) {
-  return !(signals.energy.back() <= kDivergedGain * yardstick.energy) ||
+bool is_lost(const Signals& signals, const Tolerance& tolerance) {
+  return !(signals.energy.back() <= kDivergedGain * tolerance.energy) ||
          !(signals.displacement.back() <= kDivergedDisplacement) ||
          !std::isfinite(signals.volume_error.back());
 }
 
-Verdict judge(const Signals& signals, const Yardstick& yardstick) {
+Verdict judge(const Signals& signals, const Tolerance& tolerance) {
   PALPATE_DEMAND(!signals.energy.empty());
   Verdict verdict;
-  verdict.energy = largest(signals.energy) / yardstick.energy;
+  verdict.energy = largest(signals.energy) / tolerance.energy;
   verdict.volume_error = late(signals.volume_error);
   verdict.inverted = signals.inverted;
   verdict.displacement = largest(signals.displacement);
-  if (is_lost(signals, yardstick) || !(verdict.energy <= kDivergedGain) ||
+  if (is_lost(signals, tolerance) || !(verdict.energy <= kDivergedGain) ||
       verdict.inverted > kDivergedInversion) {
     verdict.state = State::kDiverged;
-  } else if (!yardstick.may_turn && late(signals.kinetic) > kStill * yardstick.energy &&
+  } else if (!tolerance.may_turn && late(signals.kinetic) > kStill * tolerance.energy &&
              late(signals.turning) > 0) {
     verdict.state = State::kOscillating;
-  } else if (drifts(signals, yardstick)) {
+  } else if (drifts(signals, tolerance)) {
     verdict.state = State::kDrifting;
   }
   return verdict;

@@ -29,7 +29,7 @@ struct Signals {
 };
 
 /// What the signals are held against; kAnything where a thing does not matter.
-struct Yardstick {
+struct Tolerance {
   double energy = 0;        ///< the most an honest run has [J]
   double energy_drift = 0;  ///< of the last tenth's mean against the first's, allowed
   double volume_drift = 0;  ///< mean of the last tenth, allowed
@@ -38,24 +38,24 @@ struct Yardstick {
 };
 inline constexpr double kAnything = 1e300;
 
-inline constexpr double kDivergedGain = 10;          ///< times Yardstick::energy
+inline constexpr double kDivergedGain = 10;          ///< times Tolerance::energy
 inline constexpr double kDivergedDisplacement = 10;  ///< radii
 inline constexpr double kDivergedInversion = 0.5;    ///< share
-inline constexpr double kStill = 1e-4;  ///< kinetic energy below this part of the yardstick's rests
+inline constexpr double kStill = 1e-4;  ///< kinetic energy below this part of the tolerance's rests
 
 struct Verdict {
   State state = State::kStable;
-  double energy = 0;        ///< largest, over the yardstick's
+  double energy = 0;        ///< largest, over the tolerance's
   double volume_error = 0;  ///< mean of the last tenth
   double inverted = 0;      ///< share at the end
   double displacement = 0;  ///< largest [radii]
 };
 
 /// Whether the last step of `signals` already is beyond hope.
-bool is_lost(const Signals& signals, const Yardstick& yardstick);
+bool is_lost(const Signals& signals, const Tolerance& tolerance);
 
 /// In this order: diverged, oscillating (over the last tenth), drifting, stable.
 /// @param signals  of at least one step
-Verdict judge(const Signals& signals, const Yardstick& yardstick);
+Verdict judge(const Signals& signals, const Tolerance& tolerance);
 
 }  // namespace palpate::stability

@@ -1,26 +1,28 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "modules/core/data_folder.h"
 #include "modules/runtime/program.h"
 #include "studies/volume_methods/measurements.h"
-#include "studies/volume_methods/neighbours_command.h"
+#include "studies/volume_methods/volume_methods_command.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
   CLI::App app(
       "Volume methods of the related work side by side: error, cost, largest step, energy.",
-      "palpate chart neighbours");
-  bench::NeighboursOptions options;
-  options.scene = PALPATE_SOURCE_DIR "/scenes/stomach_probe.yaml";
+      "palpate volume-methods");
+  volume_methods::VolumeMethodsOptions options;
+  options.scene = data_file("scenes/stomach_probe.yaml");
   std::vector<std::string> names;
-  for (const auto& method : bench::compared_methods()) names.push_back(method.name);
-  app.add_option("-o,--out", options.out, "Folder for neighbours.csv (none: no file)");
+  for (const auto& method : volume_methods::compared_methods()) names.push_back(method.name);
+  app.add_option("-o,--out", options.out, "Folder for volume_methods.csv (none: no file)");
   app.add_option("--only", options.only, "Only these methods")
       ->delimiter(',')
       ->check(CLI::IsMember(names));
   app.add_flag("--quick", options.quick, "Smaller ball, organ pressed for 4 s: under 20 s");
   app.add_option("--scene", options.scene, "Scene whose first organ is pressed")
       ->capture_default_str();
-  return runtime::run_program(app, argc, argv,
-                              [&] { return bench::run_neighbours(options, std::cout, std::cerr); });
+  return runtime::run_program(app, argc, argv, [&] {
+    return volume_methods::run_volume_methods(options, std::cout, std::cerr);
+  });
 }

@@ -9,19 +9,20 @@
 #include "deformation/volume/rules/bourguignon_cani.h"
 #include "deformation/volume/rules/penalty.h"
 #include "deformation/volume/rules/zordan.h"
-#include "palpate/session/pipeline.h"
-#include "tests/deformation/analytic/plates.h"  // the tests' ball and plates: one squeezed ball for both
-#include "tests/deformation/organs.h"
+#include "modules/geometry/primitives.h"
+#include "palpate/session/in_process.h"
+#include "studies/report/measures.h"
+#include "studies/rigs/squeezed_ball.h"
+#include "studies/rigs/test_body.h"
 
-namespace palpate::bench {
+namespace palpate::volume_methods {
 namespace {
 
 using deformation::OrganDynamics;
-using deformation::OrganModel;
 using deformation::OrganState;
-using deformation::testing::ball_model;
-using deformation::testing::kBallRadius;
-using deformation::testing::Plates;
+using rigs::kBallRadius;
+using rigs::Plates;
+using rigs::TestBody;
 
 constexpr double kCompression = 0.3;
 constexpr double kStep = 1e-3;  // of the squeezed ball [s]
@@ -36,35 +37,28 @@ void use(const Method& method, scene::Organ& organ) {
 }
 
 scene::Organ ball_with(const Method& method) {
-  auto organ = deformation::testing::ball_organ();
+  auto organ = rigs::ball_organ();
   use(method, organ);
   organ.tissue.drag = 10;  // settles while it is held
   return organ;
 }
 
-/// A ball with the method, at rest.
-struct Ball {
-  OrganModel model;
-  std::unique_ptr<OrganDynamics> dynamics;
-  OrganState state;
+TestBody ball_at_rest(const scene::Organ& organ, bool quick) {
+  return {organ, geometry::make_ball(kBallRadius, quick ? 2 : 3), kStep};
+}
 
-  Ball(const scene::Organ& organ, bool quick)
-      : model(ball_model(quick ? 2 : 3, organ)),
-        dynamics(deformation::make_dynamics(organ, model, kStep)),
-        state(rest_state(model)) {}
+double volume_error(const TestBody& ball) {
+  const double volume = geometry::enclosed_volume(ball.state().positions, ball.model().triangles);
+  return std::abs(volume / ball.state().target_volume - 1);
+}
 
-  double volume_error() const {
-    return std::abs(
-        geometry::enclosed_volume(state.positions, model.triangles) / state.target_volume - 1);
+double largest_speed(const TestBody& ball) {
+  double largest = 0;
+  for (const Vec3& v : ball.state().velocities) {
+    if (!(v.norm() <= largest)) largest = v.norm();  // NaN stays
   }
-  double largest_speed() const {
-    double largest = 0;
-    for (const Vec3& v : state.velocities) {
-      if (!(v.norm() <= largest)) largest = v.norm();  // NaN stays
-    }
-    return largest;
-  }
-};
+  return largest;
+}
 
 /// Of the contents, in the methods that have such an energy [J].
 double stored_energy(const OrganDynamics& dynamics, const OrganState& state) {
@@ -77,58 +71,47 @@ double stored_energy(const OrganDynamics& dynamics, const OrganState& state) {
 
 /// One step; the energy [J] at its start. The velocities of symplectic Euler belong to the middle
 /// of a step, so those at its start are the mean of before and after.
-double step_with_energy(Ball& ball, double h) {
-  const auto before = ball.state.velocities;
-  const double potential =
-      elastic_energy(ball.model, ball.state.positions) + stored_energy(*ball.dynamics, ball.state);
-  ball.dynamics->step(h, {}, ball.state);
+double step_with_energy(TestBody& ball, double h) {
+  const auto before = ball.state().velocities;
+  const double potential = elastic_energy(ball.model(), ball.state().positions) +
+                           stored_energy(ball.dynamics(), ball.state());
+  ball.dynamics().step(h, {}, ball.state());
   auto mean = before;
   for (std::size_t i = 0; i < mean.size(); ++i)
-    mean[i] = (before[i] + ball.state.velocities[i]) / 2;
-  return potential + kinetic_energy(ball.model, mean);
-}
-
-/// Minimum-jerk share of a motion at `time` of `duration` [s].
-double moved_share(double time, double duration) {
-  const double t = std::clamp(time / duration, 0.0, 1.0);
-  return t * t * t * (10 + t * (6 * t - 15));
+    mean[i] = (before[i] + ball.state().velocities[i]) / 2;
+  return potential + kinetic_energy(ball.model(), mean);
 }
 
 bool holds_at(const Method& method, bool quick, double h) {
   constexpr double kClosing = 0.3, kHolding = 0.2;
-  Ball ball(ball_with(method), quick);
-  Plates plates(ball.model, kBallRadius);
+  TestBody ball = ball_at_rest(ball_with(method), quick);
+  Plates plates(ball.model(), kBallRadius);
   const int steps = static_cast<int>((kClosing + kHolding) / h);
   for (int s = 1; s <= steps; ++s) {
-    const double height = kBallRadius * (1 - kCompression * moved_share(s * h, kClosing));
-    plates.step(*ball.dynamics, h, height, ball.state);
-    if (!(ball.largest_speed() < kMaxSoundSpeed)) return false;
+    const double height = kBallRadius * (1 - kCompression * rigs::minimum_jerk(s * h / kClosing));
+    plates.step(ball.dynamics(), h, height, ball.state());
+    if (!(largest_speed(ball) < kMaxSoundSpeed)) return false;
   }
   return true;
 }
 
-void set_swinging(Ball& ball, double speed_over_radius) {
-  for (std::size_t i = 0; i < ball.model.node_count(); ++i) {
-    const Vec3& p = ball.state.positions[i];
-    ball.state.velocities[i] = speed_over_radius * Vec3(p.x(), p.y(), -2 * p.z());
+void set_swinging(TestBody& ball, double speed_over_radius) {
+  for (std::size_t i = 0; i < ball.model().node_count(); ++i) {
+    const Vec3& p = ball.state().positions[i];
+    ball.state().velocities[i] = speed_over_radius * Vec3(p.x(), p.y(), -2 * p.z());
   }
 }
 
 /// Wall seconds of one step of a swinging ball.
-double seconds_per_step(Ball& ball) {
-  ball.state = rest_state(ball.model);
+double seconds_per_step(TestBody& ball) {
+  ball.state() = rest_state(ball.model());
   set_swinging(ball, 1);
-  const double h = std::min(5e-4, ball.dynamics->largest_step());
-  ball.dynamics->step(h, {}, ball.state);
+  const double h = std::min(5e-4, ball.dynamics().largest_step());
+  ball.dynamics().step(h, {}, ball.state());
   const auto start = std::chrono::steady_clock::now();
-  for (int s = 0; s < kCostSteps; ++s) ball.dynamics->step(h, {}, ball.state);
+  for (int s = 0; s < kCostSteps; ++s) ball.dynamics().step(h, {}, ball.state());
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   return elapsed.count() / kCostSteps;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace
@@ -150,20 +133,22 @@ std::vector<Method> compared_methods() {
 
 VolumeErrors squeeze_ball(const Method& method, bool quick) {
   constexpr double kClosing = 1, kHeld = 2.5, kEnd = 3.5, kOpening = 0.5;
-  Ball ball(ball_with(method), quick);
-  Plates plates(ball.model, kBallRadius);
+  TestBody ball = ball_at_rest(ball_with(method), quick);
+  Plates plates(ball.model(), kBallRadius);
   VolumeErrors errors;
-  errors.step = std::min(kStep, ball.dynamics->largest_step());
+  errors.step = std::min(kStep, ball.dynamics().largest_step());
   for (int s = 1; s * errors.step <= kEnd; ++s) {
     const double time = s * errors.step;
-    const double share = moved_share(time, kClosing) - moved_share(time - kHeld, kOpening);
-    plates.step(*ball.dynamics, errors.step, kBallRadius * (1 - kCompression * share), ball.state);
-    const double error = ball.volume_error();
-    errors.diverged |= !(ball.largest_speed() < 100);
+    const double share =
+        rigs::minimum_jerk(time / kClosing) - rigs::minimum_jerk((time - kHeld) / kOpening);
+    plates.step(ball.dynamics(), errors.step, kBallRadius * (1 - kCompression * share),
+                ball.state());
+    const double error = volume_error(ball);
+    errors.diverged |= !(largest_speed(ball) < 100);
     errors.peak = std::max(errors.peak, error);
     if (time <= kHeld) {
       errors.force = plates.force();
-      errors.pressure = ball.state.pressure;
+      errors.pressure = ball.state().pressure;
       if (time > kHeld - 0.5) errors.held = std::max(errors.held, error);
     }
   }
@@ -172,7 +157,7 @@ VolumeErrors squeeze_ball(const Method& method, bool quick) {
 
 StepLimits step_limits(const Method& method, bool quick) {
   StepLimits limits;
-  limits.given = Ball(ball_with(method), quick).dynamics->largest_step();
+  limits.given = ball_at_rest(ball_with(method), quick).dynamics().largest_step();
   double stable = 1e-4, unstable = kLongestTriedStep;
   if (holds_at(method, quick, unstable)) {
     limits.measured = unstable;
@@ -191,7 +176,7 @@ double energy_drift(const Method& method, bool quick) {
   auto organ = ball_with(method);
   organ.tissue.drag = organ.tissue.damping_ratio = 0;
   if (method.model == scene::Model::kChainMail) return std::numeric_limits<double>::quiet_NaN();
-  Ball ball(organ, quick);
+  TestBody ball = ball_at_rest(organ, quick);
   // The ellipsoid mode swings at some 2π·5/s: this speed takes the poles a tenth of the radius.
   set_swinging(ball, 2);
   const int steps = static_cast<int>(kVibrationTime / kVibrationStep), tenth = steps / 10;
@@ -205,20 +190,21 @@ double energy_drift(const Method& method, bool quick) {
 }
 
 Cost step_cost(const Method& method, bool quick) {
-  Ball plain(ball_with(compared_methods().front()), quick), ball(ball_with(method), quick);
+  TestBody plain = ball_at_rest(ball_with(compared_methods().front()), quick);
+  TestBody ball = ball_at_rest(ball_with(method), quick);
   std::vector<double> times, ratios;
   for (int pair = 0; pair < kCostPairs; ++pair) {
     const double alone = seconds_per_step(plain);
     times.push_back(seconds_per_step(ball));
     ratios.push_back(times.back() / alone);
   }
-  return {median(times), median(ratios)};
+  return {report::median(times), report::median(ratios)};
 }
 
 VolumeErrors press_organ(const Method& method, const scene::Scene& scene, double seconds) {
   scene::Scene with = scene;
   use(method, with.organs[0]);
-  auto pipeline = pipeline::load_pipeline(with);
+  auto pipeline = session::load_session(with);
   const double period = 1 / scene.rates.deformation;
   VolumeErrors errors;
   errors.step = period / pipeline.world().substeps(0, period);
@@ -233,4 +219,4 @@ VolumeErrors press_organ(const Method& method, const scene::Scene& scene, double
   return errors;
 }
 
-}  // namespace palpate::bench
+}  // namespace palpate::volume_methods

@@ -1,5 +1,5 @@
-// What the methods of deformation/neighbours are compared by: the same ball, springs and plates for
-// all, and the same stomach under the same probe.
+// What the methods of deformation/volume/rules are compared by: the same ball, springs and plates
+// for all, and the same stomach under the same probe.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "modules/scene/scene.h"
 
-namespace palpate::bench {
+namespace palpate::volume_methods {
 
 /// One row of the table.
 struct Method {
@@ -64,4 +64,4 @@ Cost step_cost(const Method& method, bool quick);
 /// @throws InputError
 VolumeErrors press_organ(const Method& method, const scene::Scene& scene, double seconds);
 
-}  // namespace palpate::bench
+}  // namespace palpate::volume_methods

@@ -47,7 +47,7 @@ TEST_CASE("contact finder: a sphere on deformed balls finds what all triangles w
     FinderScene scene(ball, scene::SphereShape{radius});
     const Vec3 center = out * (0.055 + random.number(0.0, radius));
     const auto wanted = brute_force(ball, center, radius, margin);
-    const Contacts found = scene.find(resting(center), margin);
+    const ContactSet found = scene.find(resting(center), margin);
     CHECK(found.contacts.size() == wanted.size());
     contacts += found.contacts.size();
     for (const Contact& c : found.contacts) {
@@ -66,7 +66,7 @@ TEST_CASE("contact finder: the gap of a sphere over a floor") {
   // Oracle: analytic.
   for (const double height : {0.0001, 0.001, 0.0019, -0.001, -0.004}) {
     FinderScene scene(slab(), scene::SphereShape{0.006});
-    const Contacts found = scene.find(resting({0.0013, 0.0021, 0.006 + height}), 0.002);
+    const ContactSet found = scene.find(resting({0.0013, 0.0021, 0.006 + height}), 0.002);
     CHECK(deepest_gap(found) == Approx(height).margin(1e-14));
     for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0);
   }
@@ -81,7 +81,7 @@ TEST_CASE("contact finder: the gap of a tilted capsule over a floor is that of i
     const Quat tilt(Eigen::AngleAxisd(angle, Vec3(1, 2, 0).normalized()));
     const double lower_end = 0.02 * std::cos(angle);
     scene.finder.reset();
-    const Contacts found =
+    const ContactSet found =
         scene.find(resting({0.003, 0.001, lower_end + 0.005 + 0.0007}, tilt), 0.002);
     CHECK(deepest_gap(found) == Approx(0.0007).margin(1e-12));
   }
@@ -91,7 +91,7 @@ TEST_CASE("contact finder: a lying capsule touches along its length") {
   // Oracle: analytic; the segment is parallel to the floor.
   FinderScene scene(slab(), scene::CapsuleShape{0.005, 0.04});
   const Quat lying(Eigen::AngleAxisd(0.5 * M_PI, Vec3::UnitX()));
-  const Contacts found = scene.find(resting({0.001, 0.002, 0.0055}, lying), 0.001);
+  const ContactSet found = scene.find(resting({0.001, 0.002, 0.0055}, lying), 0.001);
   double lowest = 1, highest = -1;
   for (const Contact& c : found.contacts) {
     if (c.gap > 0.0005 + 1e-12) continue;
@@ -110,7 +110,7 @@ TEST_CASE("contact finder: the gap of a box standing on a face, an edge and a co
     const Quat rotation(Eigen::AngleAxisd(axis_angle.second, axis_angle.first.normalized()));
     const double reach = (rotation.toRotationMatrix().row(2).cwiseAbs() * 0.5 * size)(0);
     FinderScene scene(slab(), scene::BoxShape{size});
-    const Contacts found = scene.find(resting({0.0007, 0.0003, reach + 0.0004}, rotation), 0.002);
+    const ContactSet found = scene.find(resting({0.0007, 0.0003, reach + 0.0004}, rotation), 0.002);
     CHECK(deepest_gap(found) == Approx(0.0004).margin(1e-12));
     for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0.5);
   }
@@ -121,7 +121,7 @@ TEST_CASE("contact finder: a plane on a ball holds each near node once, with its
   const auto ball = geometry::make_ball(0.05, 3);
   FinderScene scene(ball, scene::PlaneShape{});
   const Quat down(Eigen::AngleAxisd(M_PI, Vec3::UnitX()));  // solid above, facing down
-  const Contacts found = scene.find(resting({0, 0, 0.045}, down), 0.002);
+  const ContactSet found = scene.find(resting({0, 0, 0.045}, down), 0.002);
   std::size_t near = 0;
   for (const Vec3& x : ball.nodes) near += 0.045 - x[2] <= 0.002;
   CHECK(near > 20);
@@ -143,8 +143,8 @@ TEST_CASE("contact finder: a mesh probe agrees with the box it is made like") {
     const Vec3 position = random.direction() * random.number(0.058, 0.066);
     FinderScene as_box(ball, scene::BoxShape{size});
     FinderScene as_mesh({ball}, {{scene::MeshShape{}, geometry::make_box(size)}});
-    const Contacts one = as_box.find(resting(position, rotation), 0.002);
-    const Contacts other = as_mesh.find(resting(position, rotation), 0.002);
+    const ContactSet one = as_box.find(resting(position, rotation), 0.002);
+    const ContactSet other = as_mesh.find(resting(position, rotation), 0.002);
     REQUIRE(one.contacts.size() == other.contacts.size());
     for (std::size_t i = 0; i < one.contacts.size(); ++i) {
       CHECK(one.contacts[i].triangle == other.contacts[i].triangle);
@@ -196,7 +196,7 @@ TEST_CASE("contact finder: a deep dent gives its whole wall, not the wall behind
     }
   }
   FinderScene scene(ball, scene::SphereShape{0.0118});
-  const Contacts found = scene.find(resting({0, 0, -0.033}), 0.004);
+  const ContactSet found = scene.find(resting({0, 0, -0.033}), 0.004);
   REQUIRE(found.contacts.size() > 5);
   for (const Contact& c : found.contacts) {
     const auto& t = ball.triangles[c.triangle];
@@ -218,13 +218,13 @@ TEST_CASE("contact finder: a box edge between the nodes of a ridge is found") {
   FinderScene scene(ridge, scene::BoxShape{{0.02, 0.08, 0.02}});
   const Quat on_edge(Eigen::AngleAxisd(M_PI / 4, Vec3::UnitY()));
   const double reach = 0.01 * std::sqrt(2.0);
-  const Contacts above = scene.find(resting({0.013, 0, reach + 0.001}, on_edge), 0.002);
+  const ContactSet above = scene.find(resting({0.013, 0, reach + 0.001}, on_edge), 0.002);
   REQUIRE(above.contacts.size() == 1);
   CHECK(above.contacts[0].gap == Approx(0.001).margin(1e-12));
   CHECK((above.contacts[0].normal - Vec3::UnitZ()).norm() < 1e-9);
   // Pressed in by 2 mm within one step, and again at rest: it keeps its side.
   const Pose pressed = at({0.013, 0, reach - 0.002}, on_edge);
-  const Contacts below = scene.find({at({0.013, 0, reach + 0.001}, on_edge), pressed}, 0.002);
+  const ContactSet below = scene.find({at({0.013, 0, reach + 0.001}, on_edge), pressed}, 0.002);
   CHECK(deepest_gap(below) == Approx(-0.002).margin(1e-9));
   CHECK(deepest_gap(scene.find({pressed, pressed}, 0.002)) == Approx(-0.002).margin(1e-9));
 }
@@ -235,7 +235,7 @@ TEST_CASE("contact finder: two finders give the same bits, whatever else they we
   const auto ball = random.deformed_ball(0.05, 3);
   const auto run = [&](int extra) {
     FinderScene scene({ball, ball}, {probe_of(scene::SphereShape{}), probe_of(scene::BoxShape{})});
-    std::vector<Contacts> all;
+    std::vector<ContactSet> all;
     Pose pose = at({0, 0.001, 0.07});
     for (int step = 0; step < 20; ++step) {
       for (auto& organ : scene.organs) {
@@ -286,15 +286,15 @@ TEST_CASE("contact finder: a list that is too long keeps the deepest and says so
   const auto ball = geometry::make_ball(0.05, 5);  // 10242 nodes
   FinderScene scene(ball, scene::PlaneShape{});
   const Quat down(Eigen::AngleAxisd(M_PI, Vec3::UnitX()));
-  const Contacts found = scene.find({at({0, 0, 0.06}, down), at({0, 0, 0.03}, down)}, 0.002);
+  const ContactSet found = scene.find({at({0, 0, 0.06}, down), at({0, 0, 0.03}, down)}, 0.002);
   CHECK(found.truncated);
-  REQUIRE(found.contacts.size() == kMaxContactsPerProbe);
+  REQUIRE(found.contacts.size() == kMostContacts);
   std::vector<double> gaps;
   for (const Vec3& x : ball.nodes) gaps.push_back(0.03 - x[2]);
   std::sort(gaps.begin(), gaps.end());
   double shallowest = -1;
   for (const Contact& c : found.contacts) shallowest = std::max(shallowest, c.gap);
-  CHECK(shallowest == Approx(gaps[kMaxContactsPerProbe - 1]).margin(1e-12));
+  CHECK(shallowest == Approx(gaps[kMostContacts - 1]).margin(1e-12));
 }
 
 TEST_CASE("contact finder: poses and positions that are not finite give no contacts") {
@@ -331,11 +331,11 @@ TEST_CASE("contact finder: degenerate triangles and an organ without positions a
   CHECK(one.find(resting(touching), 0.002).contacts.size() ==
         other.find(resting(touching), 0.002).contacts.size());
   ContactFinder empty({slab().triangles, {}}, {probe_of(scene::SphereShape{})});
-  Contacts result;
-  empty.find(0, resting(touching), 0.002, result);
+  ContactSet result;
+  empty.find(0, resting(touching), 0.002, kMostContacts, result);
   CHECK(result.contacts.empty());
   empty.update_organ(1, {});
-  empty.find(0, resting(touching), 0.002, result);
+  empty.find(0, resting(touching), 0.002, kMostContacts, result);
   CHECK(result.contacts.empty());
 }
 
@@ -343,7 +343,7 @@ TEST_CASE("contact finder: the result names its probe and the pose it holds for"
   // Oracle: analytic.
   FinderScene scene({slab()}, {probe_of(scene::SphereShape{}), probe_of(scene::BoxShape{})});
   const ProbeMotion motion{at({0, 0, 0.1}), at({0, 0, 0.09})};
-  const Contacts result = scene.find(motion, 0.001, 1);
+  const ContactSet result = scene.find(motion, 0.001, 1);
   CHECK(result.probe == 1);
   CHECK(result.probe_pose.position == motion.pose_t1.position);
   CHECK_FALSE(result.truncated);

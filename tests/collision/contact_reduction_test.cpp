@@ -8,6 +8,8 @@
 namespace palpate::collision {
 namespace {
 
+constexpr std::size_t kMostContacts = 1024;
+
 FoundContact contact(std::uint32_t organ, std::uint32_t triangle, const Vec3& weights, double gap) {
   FoundContact result;
   result.organ = organ;
@@ -33,8 +35,8 @@ TEST_CASE("contact reduction: a place named by two triangles is one contact, of 
   append_contact(contact(1, 2, {0.75, 0, 0.25}, 0.1), {5, 9, 4}, found);  // another organ
   CHECK(found[0].feature == std::array{4u, 5u, kNoNode});
   CHECK(found[0].feature == found[1].feature);
-  Contacts result;
-  reduce_contacts(found, at_origin(), result);
+  ContactSet result;
+  reduce_contacts(found, at_origin(), kMostContacts, result);
   REQUIRE(result.contacts.size() == 2);
   CHECK(result.contacts[0].triangle == 3);
   CHECK(result.contacts[1].organ == 1);
@@ -49,8 +51,8 @@ TEST_CASE("contact reduction: the same place with another normal or probe point 
   moved.point[0] = 0.01;
   append_contact(turned, {4, 5, 6}, found);
   append_contact(moved, {4, 5, 6}, found);
-  Contacts result;
-  reduce_contacts(found, at_origin(), result);
+  ContactSet result;
+  reduce_contacts(found, at_origin(), kMostContacts, result);
   CHECK(result.contacts.size() == 3);
 }
 
@@ -58,7 +60,7 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   // Oracle: brute force sort.
   RandomShapes random(81);
   std::vector<FoundContact> found;
-  for (std::uint32_t t = 0; t < 2 * kMaxContactsPerProbe; ++t) {
+  for (std::uint32_t t = 0; t < 2 * kMostContacts; ++t) {
     append_contact(contact(t % 2, t, {0.2, 0.3, 0.5}, random.number(-1, 1)),
                    {3 * t, 3 * t + 1, 3 * t + 2}, found);
   }
@@ -67,14 +69,14 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   std::sort(gaps.begin(), gaps.end());
   auto reversed = found;
   std::reverse(reversed.begin(), reversed.end());
-  Contacts one, other;
-  reduce_contacts(found, at_origin(), one);
-  reduce_contacts(reversed, at_origin(), other);
+  ContactSet one, other;
+  reduce_contacts(found, at_origin(), kMostContacts, one);
+  reduce_contacts(reversed, at_origin(), kMostContacts, other);
   CHECK(one.truncated);
-  REQUIRE(one.contacts.size() == kMaxContactsPerProbe);
-  REQUIRE(other.contacts.size() == kMaxContactsPerProbe);
-  for (std::size_t i = 0; i < kMaxContactsPerProbe; ++i) {
-    CHECK(one.contacts[i].gap <= gaps[kMaxContactsPerProbe - 1]);
+  REQUIRE(one.contacts.size() == kMostContacts);
+  REQUIRE(other.contacts.size() == kMostContacts);
+  for (std::size_t i = 0; i < kMostContacts; ++i) {
+    CHECK(one.contacts[i].gap <= gaps[kMostContacts - 1]);
     CHECK(one.contacts[i].gap == other.contacts[i].gap);
     CHECK(one.contacts[i].triangle == other.contacts[i].triangle);
     if (i == 0) continue;
@@ -93,8 +95,8 @@ TEST_CASE("contact reduction: writes points and normals in the world") {
   c.point = random.point(1);
   c.normal = random.direction();
   append_contact(c, {0, 1, 2}, found);
-  Contacts result;
-  reduce_contacts(found, RelativeMotion({pose, pose}, 1, false), result);
+  ContactSet result;
+  reduce_contacts(found, RelativeMotion({pose, pose}, 1, false), kMostContacts, result);
   REQUIRE(result.contacts.size() == 1);
   CHECK_FALSE(result.truncated);
   CHECK((result.contacts[0].point_on_probe - pose.to_world(c.point)).norm() < 1e-14);

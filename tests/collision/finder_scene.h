@@ -8,6 +8,9 @@
 
 namespace palpate::collision {
 
+/// More than these are reduced to the deepest.
+inline constexpr std::size_t kMostContacts = 1024;
+
 inline Pose at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
   return {position, rotation};
 }
@@ -30,9 +33,9 @@ struct FinderScene {
   void update() {
     for (std::size_t i = 0; i < organs.size(); ++i) finder.update_organ(i, organs[i].nodes);
   }
-  Contacts find(const ProbeMotion& motion, double margin, std::size_t probe = 0) {
-    Contacts result;
-    finder.find(probe, motion, margin, result);
+  ContactSet find(const ProbeMotion& motion, double margin, std::size_t probe = 0) {
+    ContactSet result;
+    finder.find(probe, motion, margin, kMostContacts, result);
     check(result, margin);
     return result;
   }
@@ -45,8 +48,8 @@ struct FinderScene {
   }
 
   /// Invariants of every list.
-  void check(const Contacts& result, double margin) const {
-    CHECK(result.contacts.size() <= kMaxContactsPerProbe);
+  void check(const ContactSet& result, double margin) const {
+    CHECK(result.contacts.size() <= kMostContacts);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
       const Contact& c = result.contacts[i];
       const double gap = c.normal.dot(c.point_on_probe - tissue_point(c));
@@ -72,7 +75,7 @@ struct FinderScene {
   }
 };
 
-inline double deepest_gap(const Contacts& contacts) {
+inline double deepest_gap(const ContactSet& contacts) {
   double gap = 1e300;
   for (const Contact& c : contacts.contacts) gap = std::min(gap, c.gap);
   return gap;

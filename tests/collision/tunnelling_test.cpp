@@ -37,7 +37,7 @@ void pass_through(FinderScene& scene, const Vec3& direction, const Vec3& aim, co
     Pose next = pose;
     next.position += step * direction;
     next.rotation = turn * next.rotation;
-    const Contacts found = scene.find({pose, next}, 0.0005);
+    const ContactSet found = scene.find({pose, next}, 0.0005);
     for (const Contact& c : found.contacts) {
       touched = touched || (c.gap < 0 && c.normal.dot(direction) < 0);
     }
@@ -96,7 +96,7 @@ TEST_CASE("tunnelling: a plane that sweeps over a whole ball keeps hold of its n
   const auto ball = geometry::make_ball(0.03, 2);
   FinderScene scene(ball, scene::PlaneShape{});
   const Quat down(Eigen::AngleAxisd(M_PI, Vec3::UnitX()));
-  const Contacts found = scene.find({at({0, 0, 0.05}, down), at({0, 0, -0.05}, down)}, 0.001);
+  const ContactSet found = scene.find({at({0, 0, 0.05}, down), at({0, 0, -0.05}, down)}, 0.001);
   std::size_t facing = 0;
   for (const Vec3& x : ball.nodes) facing += x[2] > 1e-9;
   CHECK(found.contacts.size() == facing);
@@ -109,7 +109,7 @@ TEST_CASE("tunnelling: grazing in passing is found with the depth of the graze")
   // Oracle: analytic; a sphere passes a slab's edge with 2 mm overlap within one step.
   FinderScene scene(geometry::make_box({0.1, 0.1, 0.01}, 4), scene::SphereShape{0.006});
   const Vec3 from(0.054, 0.003, 0.1), to(0.054, 0.003, -0.1);
-  const Contacts found = scene.find({at(from), at(to)}, 0.001);
+  const ContactSet found = scene.find({at(from), at(to)}, 0.001);
   REQUIRE_FALSE(found.contacts.empty());
   CHECK(deepest_gap(found) == Approx(-0.002).margin(1e-6));
   for (const Contact& c : found.contacts) {
@@ -126,7 +126,7 @@ TEST_CASE("tunnelling: a wall once passed keeps its side until the probe is back
   for (const double z : {0.045, 0.043, 0.040, 0.043, 0.049, 0.0555, 0.0565}) {
     Pose next = pose;
     next.position[2] = z;
-    const Contacts found = scene.find({pose, next}, 0.002);
+    const ContactSet found = scene.find({pose, next}, 0.002);
     REQUIRE_FALSE(found.contacts.empty());
     CHECK(deepest_gap(found) == Approx(z - 0.006 - 0.05).margin(1e-9));
     for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0);
@@ -142,7 +142,7 @@ TEST_CASE("tunnelling: below the skin, a sliding probe keeps pushing out through
   Pose pose = at({-0.03, 0.001, 0.03});
   for (int step = 0; step < 30; ++step) {
     const Pose next = at({-0.03 + 0.002 * step, 0.001, 0.008});
-    const Contacts found = scene.find({pose, next}, 0.001);
+    const ContactSet found = scene.find({pose, next}, 0.001);
     REQUIRE_FALSE(found.contacts.empty());
     CHECK(deepest_gap(found) == Approx(-0.006).margin(1e-3));
     for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0.5);
@@ -157,7 +157,7 @@ TEST_CASE("tunnelling: an organ that springs over a resting probe has not swallo
   CHECK(scene.find(motion, 0.001).contacts.empty());
   for (Vec3& x : scene.organs[0].nodes) x[2] += 0.02;  // its top from 0.01 to 0.03
   scene.update();
-  const Contacts found = scene.find(motion, 0.001);
+  const ContactSet found = scene.find(motion, 0.001);
   REQUIRE_FALSE(found.contacts.empty());
   CHECK(deepest_gap(found) == Approx(0.02 - 0.004 - 0.03).margin(1e-9));
 }

@@ -1,4 +1,5 @@
 #include "deformation/world.h"
+#include "deformation/organ_messages.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -13,7 +14,6 @@ using testing::ball_organ;
 using testing::ball_scene;
 using testing::kBallRadius;
 using testing::plate_contacts;
-using testing::probe_at;
 
 constexpr double kPeriod = 4e-3;
 
@@ -34,9 +34,9 @@ TEST_CASE("deformation world: the contact model predicts the force of a slow pre
     while (height > target) {
       height -= 10e-3 * kPeriod;  // 10 mm/s
       world.set_contacts(plate_contacts(world, 0, height, 1, 2e-3));
-      world.set_probe(probe_at(0, Vec3(0, 0, height)));
+      world.set_probe(0, Pose{Vec3(0, 0, height), Quat::Identity()});
       world.advance(kPeriod);
-      world.write_contact_model(0, model);
+      model = deformation::contact_model_message(world, 0);
     }
   };
   press_to(kBallRadius - 0.015);
@@ -61,9 +61,9 @@ TEST_CASE("deformation world: a probe that leaves gives no force") {
     for (int cycle = 0; cycle < 200; ++cycle) {
       height += direction * 0.04 * kPeriod;
       world.set_contacts(plate_contacts(world, 0, height, 1, 2e-3));
-      world.set_probe(probe_at(0, Vec3(0, 0, height)));
+      world.set_probe(0, Pose{Vec3(0, 0, height), Quat::Identity()});
       world.advance(kPeriod);
-      world.write_contact_model(0, model);
+      model = deformation::contact_model_message(world, 0);
       CHECK(model.force.z() >= 0);
     }
     CHECK(model.touching == (direction < 0));
@@ -75,16 +75,15 @@ TEST_CASE("deformation world: a probe that leaves gives no force") {
 TEST_CASE("deformation world: a probe that jumps drops its contacts and says so") {
   // Oracle: kMaxProbeSpeed.
   auto world = ball_world(2, 1);
-  world.set_probe(probe_at(0, Vec3(0, 0, 0.049)));
+  world.set_probe(0, Pose{Vec3(0, 0, 0.049), Quat::Identity()});
   world.set_contacts(plate_contacts(world, 0, 0.049, 1, 2e-3));
   CHECK_FALSE(world.advance(kPeriod).probe_jumped);
-  world.set_probe(probe_at(0, Vec3(0, 0, -0.2)));
+  world.set_probe(0, Pose{Vec3(0, 0, -0.2), Quat::Identity()});
   CHECK(world.advance(kPeriod).probe_jumped);
-  ContactModel model;
-  world.write_contact_model(0, model);
+  const LocalLaw model = world.local_law(0);
   CHECK_FALSE(model.touching);
   NodePositions nodes;
-  world.write_node_positions(0, nodes);
+  deformation::write_node_positions(world, 0, nodes);
   CHECK(nodes.kinetic_energy < 1e-2);
 }
 
@@ -94,15 +93,14 @@ TEST_CASE(
   // is could exert.
   for (const bool far_probe : {false, true}) {
     auto world = ball_world(2, 1);
-    world.set_probe(probe_at(0, Vec3(0, 0, 0.049)));
-    Contacts contacts = plate_contacts(world, 0, 0.049, 1, 2e-3);
+    world.set_probe(0, Pose{Vec3(0, 0, 0.049), Quat::Identity()});
+    ContactSet contacts = plate_contacts(world, 0, 0.049, 1, 2e-3);
     REQUIRE(contacts.contacts.size() > 1);
-    contacts.contacts[0].point_on_probe = Vec3(1e300, 0, 0.049);
+    contacts.contacts.back().point_on_probe = Vec3(1e300, 0, 0.049);
     if (far_probe) contacts.probe_pose.position = Vec3(0, 1e308, 0);
     world.set_contacts(contacts);
     CHECK(world.advance(kPeriod).contact_refused);
-    ContactModel model;
-    world.write_contact_model(0, model);
+    const LocalLaw model = world.local_law(0);
     CHECK(model.touching != far_probe);
     CHECK(model.torque.norm() <= 0.05 * model.force.norm());
     CHECK_FALSE(world.advance(kPeriod).contact_refused);
@@ -123,24 +121,24 @@ TEST_CASE("deformation world: contacts that name nothing here are ignored") {
   world.set_contacts(contacts);
   contacts.probe = 99;
   world.set_contacts(contacts);
-  world.set_probe(probe_at(99, Vec3::Zero()));
+  world.set_probe(99, Pose{Vec3::Zero(), Quat::Identity()});
   world.advance(kPeriod);
   NodePositions nodes;
-  world.write_node_positions(0, nodes);
+  deformation::write_node_positions(world, 0, nodes);
   CHECK(nodes.volume == Approx(nodes.target_volume).epsilon(1e-12));
 }
 
 TEST_CASE("deformation world: a not finite contact restores the last good state and says so") {
   // Oracle: definition of AdvanceReport::diverged.
   auto world = ball_world(1, 1);
-  world.set_probe(probe_at(0, Vec3(0, 0, kBallRadius)));
+  world.set_probe(0, Pose{Vec3(0, 0, kBallRadius), Quat::Identity()});
   auto contacts = plate_contacts(world, 0, kBallRadius, 1, 2e-3);
   REQUIRE(!contacts.contacts.empty());
   contacts.contacts[0].normal = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   world.set_contacts(contacts);
   CHECK(world.advance(kPeriod).diverged);
   NodePositions nodes;
-  world.write_node_positions(0, nodes);
+  deformation::write_node_positions(world, 0, nodes);
   for (const float x : nodes.positions) REQUIRE(std::isfinite(x));
   CHECK(std::isfinite(nodes.pressure));
   world.set_contacts(Contacts{});
@@ -151,14 +149,14 @@ TEST_CASE("deformation world: reset goes back to rest under a new generation") {
   // Oracle: definition.
   auto world = ball_world(2, 1);
   NodePositions rest, moved, again;
-  world.write_node_positions(0, rest);
-  world.set_probe(probe_at(0, Vec3(0, 0, 0.045)));
+  deformation::write_node_positions(world, 0, rest);
+  world.set_probe(0, Pose{Vec3(0, 0, 0.045), Quat::Identity()});
   world.set_contacts(plate_contacts(world, 0, 0.045, 1, 2e-3));
   for (int i = 0; i < 10; ++i) world.advance(kPeriod);
-  world.write_node_positions(0, moved);
+  deformation::write_node_positions(world, 0, moved);
   CHECK(moved.positions != rest.positions);
   world.reset();
-  world.write_node_positions(0, again);
+  deformation::write_node_positions(world, 0, again);
   CHECK(again.positions == rest.positions);
   CHECK(again.generation == rest.generation + 1);
   CHECK(world.time() == 0);
@@ -179,7 +177,7 @@ TEST_CASE("deformation world: the topology names nodes, triangles, springs and f
   auto organ = ball_organ();
   organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, -0.05), 0.02});
   const auto world = ball_world(2, 1, organ);
-  const auto& topology = world.topology(0);
+  const auto& topology = deformation::surface_message(world, 0);
   CHECK(topology.name == "ball");
   CHECK(topology.surface_node_count == 162);
   CHECK(topology.triangles.size() == 320);

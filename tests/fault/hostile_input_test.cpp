@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "modules/recording/raw_bus.h"
+#include "modules/bus/dds_bus.h"
 #include "tests/system/running_session.h"
 
 using namespace palpate;
@@ -54,16 +54,15 @@ TEST_CASE("hostile input: a pose that is not a number is refused, counted and go
   RunningSession session(scene);
   REQUIRE(session.start());
   REQUIRE(session.press(0.05));
-  const auto* topic = recording::find_recorded_topic(bus::kProbeInput.name);
-  REQUIRE(topic != nullptr);
-  recording::RawWriter attacker(session.options());
+  bus::DdsBus attackers(session.options());
+  const auto attacker = attackers.raw_writer(bus::info_of(bus::kProbeInput));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   bool finite = true;
   CHECK(session.wait([&](const Heard& heard) {
-    attacker.write(*topic, probe_state_payload(0, {nan, 0, 0.05, 0, 0, 0, 1}));
-    attacker.write(*topic, probe_state_payload(0, {0, 0, infinity, 0, 0, 0, 1}));
-    attacker.write(*topic, probe_state_payload(0, {0, 0, 0.05, 0, 0, 0, 0}));
+    attacker->write(probe_state_payload(0, {nan, 0, 0.05, 0, 0, 0, 1}));
+    attacker->write(probe_state_payload(0, {0, 0, infinity, 0, 0, 0, 1}));
+    attacker->write(probe_state_payload(0, {0, 0, 0.05, 0, 0, 0, 0}));
     finite = finite && all_finite(heard);
     return refused_inputs(heard) > 10;
   }));
@@ -77,10 +76,10 @@ TEST_CASE("hostile input: the same bytes with finite numbers do move the probe")
   const BallScene scene;
   RunningSession session(scene);
   REQUIRE(session.start());
-  recording::RawWriter driver(session.options());
-  const auto* topic = recording::find_recorded_topic(bus::kProbeInput.name);
+  bus::DdsBus drivers(session.options());
+  const auto driver = drivers.raw_writer(bus::info_of(bus::kProbeInput));
   CHECK(session.wait([&](const Heard& heard) {
-    driver.write(*topic, probe_state_payload(0, {0.1, 0.02, 0.08, 0, 0, 0, 1}));
+    driver->write(probe_state_payload(0, {0.1, 0.02, 0.08, 0, 0, 0, 1}));
     return (heard.probe.pose.position - Vec3(0.1, 0.02, 0.08)).norm() < 1e-3;
   }));
 }
@@ -90,8 +89,8 @@ TEST_CASE("hostile input: probes that the scene does not have are nobody's") {
   const BallScene scene;
   RunningSession session(scene);
   REQUIRE(session.start());
-  recording::RawWriter driver(session.options());
-  const auto* topic = recording::find_recorded_topic(bus::kProbeInput.name);
+  bus::DdsBus drivers(session.options());
+  const auto driver = drivers.raw_writer(bus::info_of(bus::kProbeInput));
   const auto taken = [](const Heard& heard) {
     for (const auto& input : heard.modules.at("haptics").inputs) {
       if (input.topic == bus::kProbeInput.name) return input.received;
@@ -99,7 +98,7 @@ TEST_CASE("hostile input: probes that the scene does not have are nobody's") {
     return std::uint64_t{0};
   };
   REQUIRE(session.wait([&](const Heard& heard) {
-    driver.write(*topic, probe_state_payload(7, {0, 0, 0.05, 0, 0, 0, 1}));
+    driver->write(probe_state_payload(7, {0, 0, 0.05, 0, 0, 0, 1}));
     return taken(heard) > 10;
   }));
   CHECK(session.heard().probe.pose.position.z() == Approx(kFingerStart));
@@ -110,7 +109,7 @@ TEST_CASE("hostile input: a module with another scene refuses to play along") {
   // Oracle: state and message of its status.
   const BallScene scene, other("topic: {start_m: [0, 0, 0.2]}");
   RunningSession session(scene);
-  bus::Bus bus(session.options());
+  bus::DdsBus bus(session.options());
   auto scenes = bus.writer(bus::kScene);
   SceneDescription description;
   description.name = "press";

@@ -61,21 +61,21 @@ namespace {
 long allocations_of_ticks(Device& device) {
   HapticRenderer renderer({}, 1e-3);
   auto* topic = dynamic_cast<TopicDevice*>(&device);
-  ContactModel model;
+  LocalLaw model;
   model.touching = true;
   model.force = Vec3(0, 0, 1);
   model.stiffness = 200 * Mat3::Identity();
   model.validity_radius = 0.01;
-  ProbeState commanded;
-  HapticForce out;
+  Pose commanded;
+  RenderedForce out;
   const long before = allocations;
   for (int i = 0; i < 10'000; ++i) {
     const double time = 1e-3 * i;
     model.anchor = Vec3(0, 0, 1e-4 * (i % 100));
     model.force.x() = i % 500 == 0 ? std::nan("") : 0;
-    if (i % 4 == 0 && i % 2000 < 1000) renderer.update_model(model, time);  // stale in between
-    commanded.pose.position.z() = 1e-4 * (i % 100);
-    if (topic && i % 16 == 0) topic->command(commanded, time);
+    if (i % 4 == 0 && i % 2000 < 1000) renderer.update_law(model, time);  // stale in between
+    commanded.position.z() = 1e-4 * (i % 100);
+    if (topic && i % 16 == 0) topic->command(commanded, 0);
     renderer.tick(time, device.read(time), out);
   }
   return allocations - before;

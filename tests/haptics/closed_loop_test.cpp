@@ -40,8 +40,8 @@ struct Mass {
 
 /// What deformation would send for a probe at `z` on a wall of `stiffness`; with
 /// `rate_of_change` = stiffness a local model, with 0 a bare force.
-ContactModel wall_at(double z, double stiffness, double rate_of_change) {
-  ContactModel model;
+LocalLaw wall_at(double z, double stiffness, double rate_of_change) {
+  LocalLaw model;
   model.touching = z < 0;
   model.anchor.z() = z;
   model.force.z() = std::max(0.0, -stiffness * z);
@@ -57,7 +57,7 @@ struct Link {
   bool local_model;  ///< else bare forces
 };
 
-using ForceLaw = std::function<double(const ContactModel*, const Mass&, double)>;
+using ForceLaw = std::function<double(const LocalLaw*, const Mass&, double)>;
 
 struct Motion {
   std::vector<double> path;  ///< z − rest per tick after the kick [m]
@@ -84,7 +84,7 @@ Motion motion(const Link& link, const Wall& wall, double damping, const ForceLaw
     z.push_back(mass.z);
     if (i >= kKick) result.path.push_back(mass.z - rest);
     const int seen = std::max(0, i - link.delay_ticks);
-    const ContactModel model =
+    const LocalLaw model =
         wall_at(z[static_cast<std::size_t>(seen)], stiffness, link.local_model ? stiffness : 0);
     const bool update = i % link.update_ticks == 0;
     const double push = stiffness * pressed_to;
@@ -96,7 +96,7 @@ Motion motion(const Link& link, const Wall& wall, double damping, const ForceLaw
 
 /// The force law alone, no limits, no passivity control.
 auto bare_law() {
-  return [newest = ContactModel{}](const ContactModel* model, const Mass& mass, double) mutable {
+  return [newest = LocalLaw{}](const LocalLaw* model, const Mass& mass, double) mutable {
     if (model) newest = *model;
     return evaluate(newest, Vec3(0, 0, mass.z)).wrench.force.z();
   };
@@ -114,9 +114,9 @@ scene::Haptics strong(double damping) {
 /// The whole chain.
 auto rendered(const scene::Haptics& limits, double* worst_energy = nullptr) {
   return [renderer = HapticRenderer(limits, kTick), worst_energy](
-             const ContactModel* model, const Mass& mass, double time) mutable {
-    if (model) renderer.update_model(*model, time);
-    HapticForce out;
+             const LocalLaw* model, const Mass& mass, double time) mutable {
+    if (model) renderer.update_law(*model, time);
+    RenderedForce out;
     renderer.tick(time, mass.sample(), out);
     if (worst_energy) *worst_energy = std::min(*worst_energy, out.passivity_energy);
     return out.force.z();
@@ -214,7 +214,7 @@ double generated(const Link& link, double stiffness, double speed, double depth,
   };
   double energy = 0;
   for (int i = -100; i < 3 * half; ++i) {
-    const ContactModel model =
+    const LocalLaw model =
         wall_at(z_at(i - link.delay_ticks), stiffness, link.local_model ? stiffness : 0);
     const bool update = (i + 100) % link.update_ticks == 0;
     const Mass mass{1, z_at(i), (z_at(i + 1) - z_at(i)) / kTick};

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/messages/messages.h"
+#include "modules/core/touch.h"
 #include "tests/haptics/hostile_numbers.h"
 
 using namespace palpate;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kT = 1e-3;
 
-ContactModel wall_model(const Vec3& anchor, double stiffness = 200) {
-  ContactModel model;
+LocalLaw wall_model(const Vec3& anchor, double stiffness = 200) {
+  LocalLaw model;
   model.touching = anchor.z() < 0;
   model.anchor = anchor;
   model.force = Vec3(0, 0, std::max(0.0, -stiffness * anchor.z()));
@@ -33,16 +33,16 @@ DeviceSample resting_at(const Vec3& position) {
 struct Bench {
   explicit Bench(const scene::Haptics& limits = {}) : renderer(limits, kT) {}
 
-  HapticForce tick(const DeviceSample& device) {
-    HapticForce out;
+  RenderedForce tick(const DeviceSample& device) {
+    RenderedForce out;
     renderer.tick(time(), device, out);
     ++ticks;
     return out;
   }
-  HapticForce hold(const ContactModel& model, const DeviceSample& device, int count) {
-    HapticForce out;
+  RenderedForce hold(const LocalLaw& model, const DeviceSample& device, int count) {
+    RenderedForce out;
     for (int i = 0; i < count; ++i) {
-      if (i % 4 == 0) renderer.update_model(model, time());
+      if (i % 4 == 0) renderer.update_law(model, time());
       out = tick(device);
     }
     return out;
@@ -60,7 +60,7 @@ const Vec3 kPressed(0, 0, -0.01);  ///< 2 N
 TEST_CASE("haptic renderer: without a model there is no force and the age is infinite") {
   // Oracle: the stated behaviour.
   Bench bench;
-  const HapticForce out = bench.tick(resting_at(kPressed));
+  const RenderedForce out = bench.tick(resting_at(kPressed));
   CHECK(out.force.norm() == 0);
   CHECK(std::isinf(out.contact_model_age));
   CHECK(out.limits == kForceNotLimited);
@@ -69,8 +69,8 @@ TEST_CASE("haptic renderer: without a model there is no force and the age is inf
 TEST_CASE("haptic renderer: at rest at the anchor it gives exactly the model's force and torque") {
   // Oracle: the model, bit for bit, once hand-over and slew are over.
   Bench bench;
-  const ContactModel model = wall_model(kPressed);
-  const HapticForce out = bench.hold(model, resting_at(kPressed), 40);
+  const LocalLaw model = wall_model(kPressed);
+  const RenderedForce out = bench.hold(model, resting_at(kPressed), 40);
   CHECK(out.force == model.force);
   CHECK((out.torque - model.torque).norm() < 1e-15);
   CHECK(out.limits == kForceNotLimited);
@@ -95,7 +95,7 @@ TEST_CASE("haptic renderer: a stale model fades linearly to zero in the stated t
   const double last_model = 36 * kT;
   while (bench.time() < last_model + 0.12) {
     const double age = bench.time() - last_model;
-    const HapticForce out = bench.tick(resting_at(kPressed));
+    const RenderedForce out = bench.tick(resting_at(kPressed));
     const double factor = std::min(1.0, std::max(0.0, 1 - (age - 0.05) / 0.05));
     CHECK(out.force.z() == Approx(2 * factor).margin(1e-12));
     CHECK(out.torque.norm() == Approx(0.02 * factor).margin(1e-12));
@@ -106,7 +106,7 @@ TEST_CASE("haptic renderer: a stale model fades linearly to zero in the stated t
   // Fresh again: back up, no faster than the slew limit.
   double before = 0;
   for (int i = 0; i < 40; ++i) {
-    const HapticForce out = bench.hold(wall_model(kPressed), resting_at(kPressed), 1);
+    const RenderedForce out = bench.hold(wall_model(kPressed), resting_at(kPressed), 1);
     CHECK(out.force.z() - before <= 0.2 + 1e-12);
     CHECK(out.force.z() >= before);
     before = out.force.z();
@@ -130,8 +130,8 @@ TEST_CASE("haptic renderer: where the slew limit is slower than the fade, it dec
 TEST_CASE("haptic renderer: a model from the future is as stale as one from the past") {
   // Oracle: the stated rule; a session clock that is set back must not keep an old model alive.
   Bench bench;
-  bench.renderer.update_model(wall_model(kPressed), 100);
-  HapticForce out;
+  bench.renderer.update_law(wall_model(kPressed), 100);
+  RenderedForce out;
   for (int i = 0; i < 20; ++i) out = bench.tick(resting_at(kPressed));
   CHECK(out.force.norm() == 0);
   CHECK(out.contact_model_age == Approx(100).epsilon(1e-3));
@@ -142,9 +142,9 @@ TEST_CASE("haptic renderer: a new model is taken over without a step") {
   // model holds exactly from the fourth tick on.
   Bench bench;
   bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
-  ContactModel next = wall_model(kPressed);
+  LocalLaw next = wall_model(kPressed);
   next.force.z() += 0.1;
-  bench.renderer.update_model(next, bench.time());
+  bench.renderer.update_law(next, bench.time());
   for (int i = 1; i <= 4; ++i) {
     CHECK(bench.tick(resting_at(kPressed)).force.z() == Approx(2 + 0.025 * i));
   }
@@ -158,7 +158,7 @@ TEST_CASE("haptic renderer: a hand-over never pulls") {
   limits.max_force_rate = 1e5;
   Bench bench(limits);
   bench.hold(wall_model(Vec3(0, 0, 0.001)), resting_at(kPressed), 8);
-  bench.renderer.update_model(wall_model(kPressed), bench.time());
+  bench.renderer.update_law(wall_model(kPressed), bench.time());
   CHECK(bench.tick(resting_at(kPressed)).force.z() == Approx(0.5));
   CHECK(bench.tick(resting_at(kPressed + Vec3(0, 0, 0.0075))).force.z() == 0);
 }
@@ -167,12 +167,12 @@ TEST_CASE("haptic renderer: models as fast as the loop are not delayed") {
   // Oracle: the stated rule, spread over the time since the model before.
   Bench bench;
   bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
-  ContactModel model = wall_model(kPressed);
-  bench.renderer.update_model(model, bench.time());
+  LocalLaw model = wall_model(kPressed);
+  bench.renderer.update_law(model, bench.time());
   bench.tick(resting_at(kPressed));
   for (int i = 1; i <= 10; ++i) {
     model.force.z() = 2 + 0.02 * i;
-    bench.renderer.update_model(model, bench.time());
+    bench.renderer.update_law(model, bench.time());
     CHECK(bench.tick(resting_at(kPressed)).force.z() == Approx(model.force.z()).epsilon(1e-14));
   }
 }
@@ -181,11 +181,11 @@ TEST_CASE("haptic renderer: a lost contact is let go within the hand-over and th
   // Oracle: analytic. 2 N at 0.2 N per tick: ten ticks; never less than nothing.
   Bench bench;
   bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
-  bench.renderer.update_model(wall_model(Vec3(0, 0, 0.01)), bench.time());
+  bench.renderer.update_law(wall_model(Vec3(0, 0, 0.01)), bench.time());
   for (int i = 1; i <= 10; ++i) {
     CHECK(bench.tick(resting_at(kPressed)).force.z() >= 2 - 0.2 * i - 1e-12);
   }
-  const HapticForce out = bench.tick(resting_at(kPressed));
+  const RenderedForce out = bench.tick(resting_at(kPressed));
   CHECK(out.force.norm() < 1e-12);
   CHECK(bench.tick(resting_at(kPressed)).passivity_energy == 0);
 }
@@ -197,7 +197,7 @@ TEST_CASE("haptic renderer: steps stay under 0.05 N while pressing a curved cont
   Bench bench;
   const double c = 4.0 / 3 * 13.3e3 * std::sqrt(0.005);
   const auto hertz = [&](double depth) {
-    ContactModel model = wall_model(Vec3(0, 0, -depth));
+    LocalLaw model = wall_model(Vec3(0, 0, -depth));
     const double d = std::max(0.0, depth);
     model.force.z() = c * std::pow(d, 1.5);
     model.stiffness(2, 2) = 1.5 * c * std::sqrt(d);
@@ -210,7 +210,7 @@ TEST_CASE("haptic renderer: steps stay under 0.05 N while pressing a curved cont
   double worst_step = 0, worst_error = 0, last = 0;
   for (int i = 0; i < 1500; ++i) {
     if (i % update_ticks == 0) {
-      bench.renderer.update_model(hertz(depth_at(bench.time() - kT * update_ticks)), bench.time());
+      bench.renderer.update_law(hertz(depth_at(bench.time() - kT * update_ticks)), bench.time());
     }
     const double depth = depth_at(bench.time());
     DeviceSample sample = resting_at(Vec3(0, 0, -depth));
@@ -234,8 +234,8 @@ TEST_CASE("haptic renderer: steps stay under 0.05 N while pressing a curved cont
 TEST_CASE("haptic renderer: force and torque are cut together") {
   // Oracle: analytic. 6.6 N wanted, 3.3 N given: half the torque.
   Bench bench;
-  ContactModel model = wall_model(Vec3(0, 0, -0.033));
-  const HapticForce out = bench.hold(model, resting_at(model.anchor), 60);
+  LocalLaw model = wall_model(Vec3(0, 0, -0.033));
+  const RenderedForce out = bench.hold(model, resting_at(model.anchor), 60);
   CHECK(out.force.z() == Approx(3.3).epsilon(1e-12));
   CHECK((out.limits & kForceSaturated) != 0);
   CHECK((out.torque - 0.5 * model.torque).norm() < 1e-14);
@@ -247,9 +247,9 @@ TEST_CASE("haptic renderer: force and torque are cut together") {
 TEST_CASE("haptic renderer: outside the validity radius is said, and the force goes no further") {
   // Oracle: analytic. 12 mm deeper counts as 4 mm: 2 N + 0.8 N.
   Bench bench;
-  ContactModel model = wall_model(kPressed);
+  LocalLaw model = wall_model(kPressed);
   model.validity_radius = 0.004;
-  const HapticForce out = bench.hold(model, resting_at(kPressed - Vec3(0, 0, 0.012)), 60);
+  const RenderedForce out = bench.hold(model, resting_at(kPressed - Vec3(0, 0, 0.012)), 60);
   CHECK((out.limits & kForceOutOfValidity) != 0);
   CHECK(out.force.z() == Approx(2.8));
 }
@@ -258,12 +258,12 @@ TEST_CASE("haptic renderer: a refused model is counted and said once, the one be
   // Oracle: the stated behaviour.
   Bench bench;
   bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
-  ContactModel bad = wall_model(kPressed);
+  LocalLaw bad = wall_model(kPressed);
   bad.force.x() = std::numeric_limits<double>::quiet_NaN();
-  bench.renderer.update_model(bad, bench.time());
-  bench.renderer.update_model(wall_model(kPressed), std::nan(""));
-  CHECK(bench.renderer.refused_models() == 2);
-  HapticForce out = bench.tick(resting_at(kPressed));
+  bench.renderer.update_law(bad, bench.time());
+  bench.renderer.update_law(wall_model(kPressed), std::nan(""));
+  CHECK(bench.renderer.refused_laws() == 2);
+  RenderedForce out = bench.tick(resting_at(kPressed));
   CHECK((out.limits & kForceNotFinite) != 0);
   CHECK(out.force.z() == 2);
   out = bench.tick(resting_at(kPressed));
@@ -276,7 +276,7 @@ TEST_CASE("haptic renderer: a device that gives NaN gets a force going to zero, 
   Bench bench;
   bench.hold(wall_model(kPressed), resting_at(kPressed), 40);
   for (int i = 1; i <= 10; ++i) {
-    const HapticForce out = bench.tick(resting_at(Vec3(0, std::nan(""), 0)));
+    const RenderedForce out = bench.tick(resting_at(Vec3(0, std::nan(""), 0)));
     CHECK((out.limits & kForceNotFinite) != 0);
     CHECK(out.force.z() == Approx(2 - 0.2 * i).margin(1e-12));
   }
@@ -287,15 +287,15 @@ TEST_CASE("haptic renderer: reset forgets everything") {
   // Oracle: a new renderer, bit for bit.
   Bench used, fresh;
   used.hold(wall_model(kPressed), resting_at(kPressed), 30);
-  used.renderer.update_model(wall_model(kPressed), std::nan(""));
+  used.renderer.update_law(wall_model(kPressed), std::nan(""));
   used.renderer.reset();
   used.ticks = 0;
-  CHECK(used.renderer.refused_models() == 0);
+  CHECK(used.renderer.refused_laws() == 0);
   CHECK(used.tick(resting_at(kPressed)).force.norm() == 0);
   fresh.tick(resting_at(kPressed));
   for (int i = 0; i < 20; ++i) {
-    const HapticForce a = used.hold(wall_model(kPressed), resting_at(kPressed), 1);
-    const HapticForce b = fresh.hold(wall_model(kPressed), resting_at(kPressed), 1);
+    const RenderedForce a = used.hold(wall_model(kPressed), resting_at(kPressed), 1);
+    const RenderedForce b = fresh.hold(wall_model(kPressed), resting_at(kPressed), 1);
     CHECK(a.force == b.force);
     CHECK(a.limits == b.limits);
   }

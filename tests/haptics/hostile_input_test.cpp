@@ -11,8 +11,8 @@ using namespace palpate::haptics;
 namespace {
 
 /// Usable now and then, else with anything anywhere.
-ContactModel any_model(HostileNumbers& numbers) {
-  ContactModel model;
+LocalLaw any_model(HostileNumbers& numbers) {
+  LocalLaw model;
   model.touching = numbers.below(8) != 0;
   model.anchor = 0.01 * numbers.vector();
   model.force = numbers.vector();
@@ -36,13 +36,13 @@ TEST_CASE("hostile input: force, torque and their steps stay within the limits, 
   const double period = 1e-3;
   HapticRenderer renderer(limits, period);
   HostileNumbers numbers(3);
-  HapticForce before, after;
+  RenderedForce before, after;
   double time = 0;
   int pushed = 0;
   for (int i = 0; i < 20'000; ++i) {
     time = numbers.below(1000) == 0 ? 0 : time + period;
     if (numbers.below(4) == 0) {
-      renderer.update_model(any_model(numbers), numbers.below(50) == 0 ? numbers.number() : time);
+      renderer.update_law(any_model(numbers), numbers.below(50) == 0 ? numbers.number() : time);
     }
     DeviceSample device;
     device.pose.position = 0.01 * numbers.vector();
@@ -61,5 +61,5 @@ TEST_CASE("hostile input: force, torque and their steps stay within the limits, 
     before = after;
   }
   CHECK(pushed > 5000);  // the test does test forces
-  CHECK(renderer.refused_models() > 500);
+  CHECK(renderer.refused_laws() > 500);
 }

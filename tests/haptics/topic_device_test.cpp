@@ -13,10 +13,8 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-ProbeState at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
-  ProbeState state;
-  state.pose = {position, rotation};
-  return state;
+Pose at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
+  return {position, rotation};
 }
 
 }  // namespace
@@ -68,7 +66,7 @@ TEST_CASE("topic device: a steady motion is followed with the stated delay") {
   double delay = 0;
   int count = 0;
   for (int i = 0; i <= 2000; ++i) {
-    if (i % 16 == 0) device.command(at(Vec3(speed * kTick * i, 0, 0)), kTick * i);
+    if (i % 16 == 0) device.command(at(Vec3(speed * kTick * i, 0, 0)), 0);
     const double x = device.read(kTick * i).pose.position.x();
     if (i > 400) delay += kTick * i - x / speed, ++count;
   }
@@ -118,19 +116,16 @@ TEST_CASE("topic device: commands that are no pose are ignored, buttons and all"
   config.start = Vec3(0.1, 0.2, 0.3);
   TopicDevice device(config);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (ProbeState bad :
+  for (const Pose& bad :
        {at(Vec3(nan, 0, 0)), at(Vec3(0, HUGE_VAL, 0)), at(Vec3(1e308, 0, 0)),
         at(Vec3::Zero(), Quat(0, 0, 0, 0)), at(Vec3::Zero(), Quat(nan, 0, 0, 0))}) {
-    bad.buttons = 7;
-    device.command(bad, 0);
+    device.command(bad, 7);
   }
   const DeviceSample sample = device.read(1);
   CHECK(sample.pose.position == config.start);
   CHECK(sample.twist.linear.norm() == 0);
   CHECK(sample.buttons == 0);
-  ProbeState good = at(config.start);
-  good.buttons = 5;
-  device.command(good, 1);
+  device.command(at(config.start), 5);
   CHECK(device.read(1.001).buttons == 5);
 }
 

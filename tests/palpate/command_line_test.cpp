@@ -40,7 +40,7 @@ TEST_CASE("command line: --help lists every command and is no error") {
   // Oracle: the commands of the design.
   const auto help = type("palpate", {"--help"});
   CHECK(help.code == kExitDone);
-  for (const char* command : {"run", "replay", "inspect", "check", "mesh", "chart"}) {
+  for (const char* command : {"run", "replay", "inspect", "diff", "check", "mesh", "chart"}) {
     CHECK_THAT(help.said, Contains(command));
     CHECK(type("palpate", {command, "--help"}).code == kExitDone);
   }

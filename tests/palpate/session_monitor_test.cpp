@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/bus/dds_bus.h"
 #include "tests/modules/runtime/waiting.h"
 
 using namespace palpate;
@@ -10,7 +11,7 @@ using namespace palpate::launcher;
 TEST_CASE("session monitor: knows who is ready and hears forces and nodes") {
   // Oracle: what was written.
   const auto options = palpate::testing::own_bus_options();
-  bus::Bus bus(options), module_bus(options);
+  bus::DdsBus bus(options), module_bus(options);
   scene::Scene scene;
   scene.organs.resize(1);
   scene.probes.resize(1);

@@ -2,7 +2,8 @@
 // gets no more than the scene's largest force, and some time after the insult the organ is back.
 #include <catch2/catch.hpp>
 
-#include "palpate/session/pipeline.h"
+#include "deformation/organ_messages.h"
+#include "palpate/session/in_process.h"
 #include "tests/robustness/models_under_test.h"
 #include "tests/robustness/witness.h"
 
@@ -14,7 +15,6 @@ using testing::ball_scene;
 using testing::kBallRadius;
 using testing::kPeriod;
 using testing::plate_contacts;
-using testing::probe_at;
 using testing::squeeze_and_release;
 using testing::Witness;
 
@@ -62,7 +62,7 @@ TEST_CASE("contact insults: plates that shut on an organ are let go, not obeyed"
 
 /// Every node held by a contact of its own on a sphere of radius (1 − shrunk) R.
 Contacts shell_contacts(const DeformationWorld& world, double shrunk) {
-  const SurfaceTopology& topology = world.topology(0);
+  const SurfaceTopology& topology = deformation::surface_message(world, 0);
   Contacts contacts;
   std::vector<bool> done(topology.surface_node_count, false);
   for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
@@ -94,7 +94,7 @@ TEST_CASE("contact insults: an organ held at every node, squeezed from all sides
   Witness held;
   for (double time = 0; time < 1; time += kPeriod) {
     world.set_contacts(shell_contacts(world, 0.2 * time));
-    world.set_probe(probe_at(0, Vec3::Zero()));
+    world.set_probe(0, Pose{Vec3::Zero(), Quat::Identity()});
     held.advance(world);
   }
   CHECK(held.finite);
@@ -116,7 +116,7 @@ TEST_CASE("contact insults: a probe that teleports into, out of and through an o
   for (int k = 0; k < 500; ++k) {
     const double height = heights[k % 9];
     world.set_contacts(plate_contacts(world, 0, height, 1, 2e-3));
-    world.set_probe(probe_at(0, Vec3(0, 0, height)));
+    world.set_probe(0, Pose{Vec3(0, 0, height), Quat::Identity()});
     witness.advance(world);
   }
   CHECK(witness.finite);
@@ -135,7 +135,7 @@ TEST_CASE("contact insults: a probe that is found inside an organ pushes it out 
   for (double time = 0; time < 4; time += kPeriod) {
     const double height = kBallRadius - depth;
     world.set_contacts(plate_contacts(world, 0, height, 1, 2e-3));
-    world.set_probe(probe_at(0, Vec3(0, 0, height)));
+    world.set_probe(0, Pose{Vec3(0, 0, height), Quat::Identity()});
     witness.advance(world);
   }
   CHECK(witness.finite);
@@ -156,7 +156,7 @@ TEST_CASE("contact insults: a dropped organ lands on a plate and rests there") {
   for (double time = 0; time < 8; time += kPeriod) {
     const double floor = -kDrop - kBallRadius;
     world.set_contacts(plate_contacts(world, 0, floor, -1, 20e-3));
-    world.set_probe(probe_at(0, Vec3(0, 0, floor)));
+    world.set_probe(0, Pose{Vec3(0, 0, floor), Quat::Identity()});
     witness.advance(world);
   }
   CHECK(witness.finite);
@@ -194,7 +194,7 @@ struct Pricked {
   double farthest = 0;  ///< of a coordinate from rest, at the end [m]
 };
 
-Pricked prick(pipeline::Pipeline& pipeline, double speed) {
+Pricked prick(session::InProcess& pipeline, double speed) {
   Pricked result;
   while (pipeline.time() < 2 * kNeedleWay / speed + 8) {
     pipeline.tick();
@@ -204,7 +204,7 @@ Pricked prick(pipeline::Pipeline& pipeline, double speed) {
     for (const float x : pipeline.node_positions(0).positions) result.finite &= std::isfinite(x);
   }
   const auto& positions = pipeline.node_positions(0).positions;
-  const auto& rest = pipeline.world().topology(0).rest_positions;
+  const auto& rest = deformation::surface_message(pipeline.world(), 0).rest_positions;
   for (std::size_t i = 0; i < rest.size(); ++i) {
     result.farthest = std::max(result.farthest, double(std::abs(positions[i] - rest[i])));
   }
@@ -217,8 +217,8 @@ TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor
   const double radius = GENERATE(1e-3, 2e-4);
   const double speed = GENERATE(0.02, 0.5);
   const auto scene = needle_scene(radius, speed);
-  pipeline::Pipeline pipeline(scene, {geometry::make_ball(kBallRadius, 2)},
-                              {geometry::TriangleSurface{}});
+  session::InProcess pipeline(
+      scene, {{geometry::make_ball(kBallRadius, 2)}, {geometry::TriangleSurface{}}});
   INFO("radius " << radius << ", speed " << speed);
   const auto [finite, largest, farthest] = prick(pipeline, speed);
   CHECK(finite);
@@ -234,8 +234,8 @@ TEST_CASE("contact insults: a needle through a solid neither blows it up nor sha
                               scene::Model::kXpbdTetrahedra, scene::Model::kQuadraticElements);
   const double speed = GENERATE(0.1, 0.5);
   const auto scene = needle_scene(1e-3, speed, testing::organ_of({model}));
-  pipeline::Pipeline pipeline(scene, {testing::compact_shape(model)},
-                              {geometry::TriangleSurface{}});
+  session::InProcess pipeline(scene,
+                              {{testing::compact_shape(model)}, {geometry::TriangleSurface{}}});
   const auto [finite, largest, farthest] = prick(pipeline, speed);
   INFO(scene::word_of(model) << ", speed " << speed << ": at most " << largest << " N, " << farthest
                              << " m from rest");

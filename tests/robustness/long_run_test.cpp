@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "modules/scene/scene_reader.h"
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 #include "tests/robustness/organs_under_test.h"
 
 namespace palpate::deformation {
@@ -45,7 +45,7 @@ double volume_error(const NodePositions& nodes) {
   return std::abs(nodes.volume / nodes.target_volume - 1);
 }
 
-Round press_once(pipeline::Pipeline& pipeline, int index) {
+Round press_once(session::InProcess& pipeline, int index) {
   Round round;
   pipeline.run_until(kRound * index + 2 * kPress - 1e-3);
   const NodePositions& nodes = pipeline.node_positions(0);
@@ -98,11 +98,11 @@ TEST_CASE("long run: a stomach pressed again and again does not drift") {
   const double steps = asked != nullptr ? std::atof(asked) : 1e4;
   const auto one_round = pressed_stomach(1);
   const int per_advance =
-      pipeline::load_pipeline(one_round).world().substeps(0, 1 / one_round.rates.deformation);
+      session::load_session(one_round).world().substeps(0, 1 / one_round.rates.deformation);
   const double steps_of_round = kRound * one_round.rates.deformation * per_advance;
   constexpr int kSettling = 4;
   const int rounds = std::max(kSettling + 2, static_cast<int>(std::ceil(steps / steps_of_round)));
-  auto pipeline = pipeline::load_pipeline(pressed_stomach(rounds));
+  auto pipeline = session::load_session(pressed_stomach(rounds));
   Round first;
   for (int k = 0; k < kSettling; ++k) first = press_once(pipeline, k);
   Drift drift;

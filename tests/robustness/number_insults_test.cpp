@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "deformation/organ_messages.h"
 #include "haptics/haptic_renderer.h"
 #include "tests/haptics/hostile_numbers.h"
 #include "tests/robustness/models_under_test.h"
@@ -17,7 +18,6 @@ using testing::ball_scene;
 using testing::kBallRadius;
 using testing::kPeriod;
 using testing::plate_contacts;
-using testing::probe_at;
 
 using Limits = std::numeric_limits<double>;
 
@@ -47,14 +47,14 @@ struct Exit {
   void check(DeformationWorld& world, double time) {
     const AdvanceReport report = world.advance(kPeriod);
     replaced += report.diverged;
-    world.write_node_positions(0, nodes);
-    world.write_contact_model(0, model);
+    deformation::write_node_positions(world, 0, nodes);
+    model = deformation::contact_model_message(world, 0);
     bool finite = std::isfinite(nodes.pressure) && std::isfinite(nodes.volume) &&
                   model.force.allFinite() && model.torque.allFinite() &&
                   model.stiffness.allFinite() && std::abs(model.normal.norm() - 1) < 1e-9;
     for (const float x : nodes.positions) finite &= std::isfinite(x);
     REQUIRE(finite);
-    renderer.update_model(model, time);
+    renderer.update_law(model, time);
     haptics::DeviceSample device;
     device.pose.position = Vec3(0, 0, kBallRadius);
     double most = 0;
@@ -70,50 +70,52 @@ struct Exit {
 
 /// Presses lightly for some advances, `spoil` changing what is sent in the tenth; then leaves.
 void press(DeformationWorld& world, Exit& exit,
-           const std::function<void(ProbeState&, Contacts&)>& spoil) {
+           const std::function<void(ProbeState&, ContactSet&)>& spoil) {
   const double height = kBallRadius - 2e-3;
   for (int k = 0; k < 20; ++k) {
-    ProbeState probe = probe_at(0, Vec3(0, 0, height));
-    Contacts contacts = plate_contacts(world, 0, height, 1, 10e-3);
+    ProbeState probe;
+    probe.pose.position = Vec3(0, 0, height);
+    ContactSet contacts = plate_contacts(world, 0, height, 1, 10e-3);
     if (k == 10) {
       REQUIRE(!contacts.contacts.empty());
       spoil(probe, contacts);
     }
     world.set_contacts(contacts);
-    world.set_probe(probe);
+    world.set_probe(probe.probe, probe.pose);
     exit.check(world, k * kPeriod);
   }
 }
 
 void check_recovers(DeformationWorld& world, Exit& exit, double volume_error) {
   world.set_contacts({});
-  world.set_probe(probe_at(0, Vec3(0, 0, 1)));
+  world.set_probe(0, Pose{Vec3(0, 0, 1), Quat::Identity()});
   for (int k = 0; k < 750; ++k) exit.check(world, 1 + k * kPeriod);
   CHECK(std::abs(exit.nodes.volume / exit.nodes.target_volume - 1) < volume_error);
-  const auto& rest = world.topology(0).rest_positions;
+  const auto& rest = deformation::surface_message(world, 0).rest_positions;
   // Of the surface. A virtual node is held by a ring of nodes in a plane across the axis, and is as
   // well at rest mirrored in it: in two of these cases one is 10.3 mm from where it began.
   float farthest = 0;
-  for (std::size_t i = 0; i < std::size_t{3} * world.topology(0).surface_node_count; ++i) {
+  for (std::size_t i = 0;
+       i < std::size_t{3} * deformation::surface_message(world, 0).surface_node_count; ++i) {
     farthest = std::max(farthest, std::abs(exit.nodes.positions[i] - rest[i]));
   }
   CHECK(farthest < 1e-3f);
   CHECK(exit.nodes.kinetic_energy < 1e-6);
 }
 
-using Place = std::function<double&(ProbeState&, Contacts&)>;
+using Place = std::function<double&(ProbeState&, ContactSet&)>;
 
 std::vector<Place> places() {
-  return {[](ProbeState& p, Contacts&) -> double& { return p.pose.position.x(); },
-          [](ProbeState& p, Contacts&) -> double& { return p.pose.rotation.x(); },
-          [](ProbeState& p, Contacts&) -> double& { return p.twist.linear.z(); },
-          [](ProbeState&, Contacts& c) -> double& { return c.probe_pose.position.z(); },
-          [](ProbeState&, Contacts& c) -> double& { return c.probe_pose.rotation.w(); },
-          [](ProbeState&, Contacts& c) -> double& { return c.contacts[0].barycentric.x(); },
-          [](ProbeState&, Contacts& c) -> double& { return c.contacts[0].point_on_probe.z(); },
-          [](ProbeState&, Contacts& c) -> double& { return c.contacts[0].normal.z(); },
-          [](ProbeState&, Contacts& c) -> double& { return c.contacts[0].gap; },
-          [](ProbeState&, Contacts& c) -> double& { return c.contacts[0].time_of_impact; }};
+  return {[](ProbeState& p, ContactSet&) -> double& { return p.pose.position.x(); },
+          [](ProbeState& p, ContactSet&) -> double& { return p.pose.rotation.x(); },
+          [](ProbeState& p, ContactSet&) -> double& { return p.twist.linear.z(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.probe_pose.position.z(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.probe_pose.rotation.w(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].barycentric.x(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].point_on_probe.z(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].normal.z(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].gap; },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].time_of_impact; }};
 }
 
 TEST_CASE("number insults: a bad number in any field of contacts or pose stays inside") {
@@ -126,8 +128,9 @@ TEST_CASE("number insults: a bad number in any field of contacts or pose stays i
       INFO("place " << place << ", number " << bad);
       auto world = ball_world(integrator);
       Exit exit;
-      press(world, exit,
-            [&](ProbeState& probe, Contacts& contacts) { places()[place](probe, contacts) = bad; });
+      press(world, exit, [&](ProbeState& probe, ContactSet& contacts) {
+        places()[place](probe, contacts) = bad;
+      });
       check_recovers(world, exit, 1e-9);
     }
   }
@@ -144,8 +147,9 @@ TEST_CASE("number insults: a bad number stays inside of solids, too") {
       INFO(scene::word_of(model) << ", place " << place << ", number " << bad);
       auto world = solid_world(model);
       Exit exit;
-      press(world, exit,
-            [&](ProbeState& probe, Contacts& contacts) { places()[place](probe, contacts) = bad; });
+      press(world, exit, [&](ProbeState& probe, ContactSet& contacts) {
+        places()[place](probe, contacts) = bad;
+      });
       check_recovers(world, exit, 1e-3);
       replaced += exit.replaced;
     }
@@ -175,10 +179,12 @@ TEST_CASE("number insults: messages of random nonsense, thousands of them") {
   Exit exit;
   haptics::HostileNumbers hostile(5);
   for (int k = 0; k < 4000; ++k) {
-    ProbeState probe = probe_at(0, 0.01 * hostile.vector());
+    ProbeState probe;
+    probe.pose.position = 0.01 * hostile.vector();
     probe.pose.rotation.coeffs() << hostile.vector(), hostile.number();
     if (hostile.below(4) > 0) probe.pose.rotation = Quat::Identity();
-    Contacts contacts = plate_contacts(world, 0, 0.03 + 1e-3 * double(hostile.below(30)), 1, 2e-3);
+    ContactSet contacts =
+        plate_contacts(world, 0, 0.03 + 1e-3 * double(hostile.below(30)), 1, 2e-3);
     for (Contact& contact : contacts.contacts) {
       if (hostile.below(20) > 0) continue;
       contact.normal = hostile.vector();
@@ -187,12 +193,12 @@ TEST_CASE("number insults: messages of random nonsense, thousands of them") {
       contact.triangle = static_cast<std::uint32_t>(hostile.below(200));
     }
     world.set_contacts(contacts);
-    world.set_probe(probe);
+    world.set_probe(probe.probe, probe.pose);
     exit.check(world, k * kPeriod);
   }
   CHECK(exit.replaced > 0);
   world.set_contacts({});
-  world.set_probe(probe_at(0, Vec3(0, 0, 1)));
+  world.set_probe(0, Pose{Vec3(0, 0, 1), Quat::Identity()});
   for (int k = 0; k < 1500; ++k) exit.check(world, 100 + k * kPeriod);
   CHECK(std::abs(exit.nodes.volume / exit.nodes.target_volume - 1) < 1e-6);
 }

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "modules/scene/scene_reader.h"
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 
 namespace palpate {
 namespace {
@@ -16,7 +16,7 @@ TEST_CASE("shipped scenes: no organ is put back and no step shortened") {
     INFO(name);
     const auto scene =
         scene::load_scene(std::string(PALPATE_SOURCE_DIR "/scenes/") + name + ".yaml");
-    auto pipeline = pipeline::load_pipeline(scene);
+    auto pipeline = session::load_session(scene);
     const double period = 1 / scene.rates.deformation;
     const bool large = pipeline.node_positions(0).positions.size() > 15000;
     std::vector<int> usual;

@@ -1,6 +1,7 @@
 // What is seen of a world while something is done to it.
 #pragma once
 
+#include "deformation/organ_messages.h"
 #include "tests/robustness/organs_under_test.h"
 
 namespace palpate::deformation::testing {
@@ -19,13 +20,13 @@ struct Witness {
     note(report, {}, story);
     contacts_ignored |= report.contacts_ignored;
     probe_jumped |= report.probe_jumped;
-    world.write_node_positions(0, nodes);
+    deformation::write_node_positions(world, 0, nodes);
     for (const float x : nodes.positions) finite &= std::isfinite(x);
     finite &= std::isfinite(nodes.pressure) && std::isfinite(nodes.volume) &&
               std::isfinite(nodes.kinetic_energy) && std::isfinite(nodes.elastic_energy) &&
               nodes.target_volume >= 0;
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
-      world.write_contact_model(probe, model);
+      model = deformation::contact_model_message(world, probe);
       finite &= model.force.allFinite() && model.torque.allFinite() &&
                 model.stiffness.allFinite() && model.anchor.allFinite() &&
                 model.normal.allFinite() && std::isfinite(model.validity_radius);
@@ -54,7 +55,7 @@ inline Witness squeeze_and_release(DeformationWorld& world, double squeeze) {
       const int side = probe == 0 ? 1 : -1;
       const double height = side * kBallRadius * (1 - closed);
       world.set_contacts(plate_contacts(world, probe, height, side, 2e-3));
-      world.set_probe(probe_at(probe, Vec3(0, 0, height)));
+      world.set_probe(probe, Pose{Vec3(0, 0, height), Quat::Identity()});
     }
     witness.advance(world);
   }

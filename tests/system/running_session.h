@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "modules/bus/bus.h"
+#include "modules/bus/dds_bus.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/session.h"
 #include "modules/scene/scene_reader.h"
@@ -117,7 +117,7 @@ class RunningSession {
   std::filesystem::path scene_file_;
   scene::Scene scene_;
   bus::BusOptions options_ = own_bus_options();
-  bus::Bus bus_{options_};
+  bus::DdsBus bus_{options_};
   runtime::Session session_;
   runtime::SessionConductor conductor_;
   bus::Writer<ProbeState> inputs_ = bus_.writer(bus::kProbeInput);

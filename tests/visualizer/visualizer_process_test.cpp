@@ -11,7 +11,7 @@
 #include <functional>
 #include <thread>
 
-#include "modules/bus/bus.h"
+#include "modules/bus/dds_bus.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
 #include "modules/runtime/clock.h"
@@ -139,7 +139,7 @@ class Session {
     _exit(127);
   }
 
-  bus::Bus bus_;
+  bus::DdsBus bus_;
 
  public:
   bus::Writer<SurfaceTopology> surfaces;

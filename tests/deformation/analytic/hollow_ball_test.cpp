@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "deformation/model/spring_network.h"
+#include "modules/core/data_folder.h"
 #include "studies/calibration/calibration.h"
 
 namespace palpate::calibration {
 namespace {
 
-const std::filesystem::path kReference =
-    std::filesystem::path(PALPATE_SOURCE_DIR) / "tests" / "data" / "reference";
+const auto kReference = data_folder() / "reference";
 
 TEST_CASE("hollow ball: with the shipped springs it follows finite elements when squeezed") {
   // Oracle: independent tool, a finite-element solution good to 0.2 %. 10 % from 30 % compression

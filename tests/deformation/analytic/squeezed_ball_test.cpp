@@ -1,4 +1,5 @@
 // A ball between two plates: volume, and action = reaction.
+#include "deformation/organ_messages.h"
 #include "deformation/world.h"
 #include "tests/deformation/organs.h"
 
@@ -11,7 +12,6 @@ using testing::ball_organ;
 using testing::ball_scene;
 using testing::kBallRadius;
 using testing::plate_contacts;
-using testing::probe_at;
 
 constexpr double kPeriod = 4e-3;
 
@@ -37,16 +37,16 @@ Squeeze squeeze(DeformationWorld& world, double compression, double seconds, dou
     for (std::uint32_t probe = 0; probe < 2; ++probe) {
       const int side = probe == 0 ? 1 : -1;
       world.set_contacts(plate_contacts(world, probe, side * height, side, 2e-3));
-      world.set_probe(probe_at(probe, Vec3(0, 0, side * height)));
+      world.set_probe(probe, Pose{Vec3(0, 0, side * height), Quat::Identity()});
     }
     world.advance(kPeriod);
-    world.write_node_positions(0, nodes);
+    deformation::write_node_positions(world, 0, nodes);
     result.held_volume_error = std::abs(nodes.volume / nodes.target_volume - 1);
     result.worst_volume_error = std::max(result.worst_volume_error, result.held_volume_error);
   }
   ContactModel upper, lower;
-  world.write_contact_model(0, upper);
-  world.write_contact_model(1, lower);
+  upper = deformation::contact_model_message(world, 0);
+  lower = deformation::contact_model_message(world, 1);
   result.pressure = nodes.pressure;
   result.upper_force = upper.force.z();
   result.lower_force = lower.force.z();

@@ -1,4 +1,5 @@
 // The volume under contact and along a breathing curve: how exactly it is kept.
+#include "deformation/organ_messages.h"
 #include "deformation/steppers/symplectic_euler.h"
 #include "tests/deformation/analytic/plates.h"
 #include "tests/deformation/organs.h"
@@ -62,12 +63,12 @@ TEST_CASE("volume: the float32 positions of the wire still enclose it to 1e-8") 
   DeformationWorld world(testing::ball_scene(0), {geometry::make_ball(testing::kBallRadius, 3)});
   world.advance(4e-3);
   NodePositions nodes;
-  world.write_node_positions(0, nodes);
+  deformation::write_node_positions(world, 0, nodes);
   std::vector<Vec3> received;
   for (std::size_t i = 0; i < nodes.positions.size(); i += 3) {
     received.emplace_back(nodes.positions[i], nodes.positions[i + 1], nodes.positions[i + 2]);
   }
-  const double volume = geometry::enclosed_volume(received, world.topology(0).triangles);
+  const double volume = geometry::enclosed_volume(received, world.model(0).triangles);
   CHECK(volume != nodes.volume);
   CHECK(std::abs(volume / nodes.volume - 1) < 1e-8);
 }
@@ -84,7 +85,7 @@ TEST_CASE("volume: a breathing organ follows its curve") {
   double worst = 0, largest = 0;
   for (int period = 1; period <= 1000; ++period) {
     world.advance(4e-3);
-    world.write_node_positions(0, nodes);
+    deformation::write_node_positions(world, 0, nodes);
     const double asked = 1 + 0.1 * std::sin(2 * std::numbers::pi * 0.3 * world.time());
     REQUIRE(nodes.target_volume == Approx(rest_volume * asked).epsilon(1e-12));
     worst = std::max(worst, std::abs(nodes.volume / nodes.target_volume - 1));
@@ -104,7 +105,7 @@ TEST_CASE("volume: a curve that jumps is followed as a ramp") {
   NodePositions nodes;
   for (int period = 1; period <= 300; ++period) {
     REQUIRE_FALSE(world.advance(4e-3).diverged);
-    world.write_node_positions(0, nodes);
+    deformation::write_node_positions(world, 0, nodes);
     const double ramp = std::min(1.5, 1 + 0.5 * world.time());
     CHECK(nodes.target_volume == Approx(ramp * rest_volume).epsilon(1e-9));
     CHECK(std::abs(nodes.volume / nodes.target_volume - 1) < 1e-5);

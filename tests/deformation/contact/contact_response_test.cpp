@@ -8,7 +8,7 @@ namespace {
 constexpr double kPeriod = 4e-3;
 
 /// Presses a linear spring wall k at z = 0 along a path of depths; the normal is +z.
-ContactModel press(double k, const std::vector<double>& depths, double limit = 1e9) {
+LocalLaw press(double k, const std::vector<double>& depths, double limit = 1e9) {
   ContactResponse response;
   for (const double depth : depths) {
     response.begin(kPeriod);
@@ -17,7 +17,7 @@ ContactModel press(double k, const std::vector<double>& depths, double limit = 1
     }
     response.end(Vec3(0, 0, -depth), limit);
   }
-  ContactModel model;
+  LocalLaw model;
   response.write(model);
   return model;
 }

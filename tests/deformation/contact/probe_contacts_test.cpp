@@ -14,9 +14,9 @@ Pose pose_at(const Vec3& position, double turn_about_z = 0) {
 }
 
 /// One contact per named triangle, all at p with normal n, found at `pose`.
-Contacts contacts_on(std::vector<std::uint32_t> triangles, const Pose& pose, const Vec3& p,
-                     const Vec3& n) {
-  Contacts contacts;
+ContactSet contacts_on(std::vector<std::uint32_t> triangles, const Pose& pose, const Vec3& p,
+                       const Vec3& n) {
+  ContactSet contacts;
   contacts.probe_pose = pose;
   for (const auto triangle : triangles) {
     Contact contact;
@@ -115,7 +115,7 @@ TEST_CASE("probe contacts: force and torque are impulses over the period") {
   rows[0].tangential_impulse = Vec3(0, 1e-3, 0);
   probe.take_rows(0, 1.0, rows.data());
   probe.end(1e9);
-  ContactModel model;
+  LocalLaw model;
   probe.response().write(model);
   CHECK(model.touching);
   CHECK((model.force - Vec3(0, -0.25, 0.5)).norm() < 1e-12);

@@ -63,7 +63,7 @@ TEST_CASE("solid assets: what does not go with a solid is refused") {
   organ.filling.breathing_amplitude = 0.1;
   CHECK_THROWS_WITH(deformation::build_organ_model(organ, Vec3::Zero(), shape),
                     Catch::Contains("'filling' does not go with model corotational"));
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   std::ofstream(folder.path / "a.msh") << "nothing";
   organ.mesh.file = folder.path / "a.msh";
   CHECK_THROWS_WITH(scene::load_organ(organ), Catch::Contains("'nodes' resamples surfaces only"));

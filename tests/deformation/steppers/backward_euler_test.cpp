@@ -1,4 +1,5 @@
 #include "deformation/steppers/backward_euler.h"
+#include "deformation/organ_messages.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,7 +14,6 @@ using testing::ball_organ;
 using testing::ball_scene;
 using testing::kBallRadius;
 using testing::plate_contacts;
-using testing::probe_at;
 
 constexpr double kStep = 0.01;
 
@@ -35,18 +35,19 @@ Press press(scene::Organ organ, scene::Integrator integrator, double compression
     for (std::uint32_t probe = 0; probe < 2; ++probe) {
       const int side = probe == 0 ? 1 : -1;
       world.set_contacts(plate_contacts(world, probe, side * height, side, 2e-3));
-      world.set_probe(probe_at(probe, Vec3(0, 0, side * height)));
+      world.set_probe(probe, Pose{Vec3(0, 0, side * height), Quat::Identity()});
     }
     const AdvanceReport report = world.advance(period);
     CHECK_FALSE(report.diverged);
-    world.write_node_positions(0, nodes);
-    world.write_contact_model(0, upper);
-    world.write_contact_model(1, lower);
+    deformation::write_node_positions(world, 0, nodes);
+    upper = deformation::contact_model_message(world, 0);
+    lower = deformation::contact_model_message(world, 1);
     result.held_volume_error = std::abs(nodes.volume / nodes.target_volume - 1);
     result.worst_volume_error = std::max(result.worst_volume_error, result.held_volume_error);
     result.least_force = std::min({result.least_force, upper.force.z(), -lower.force.z()});
   }
-  for (std::size_t i = 2; i < 3 * world.topology(0).surface_node_count; i += 3) {
+  for (std::size_t i = 2; i < 3 * deformation::surface_message(world, 0).surface_node_count;
+       i += 3) {
     result.penetration = std::max(result.penetration,
                                   std::abs(nodes.positions[i]) - kBallRadius * (1 - compression));
   }

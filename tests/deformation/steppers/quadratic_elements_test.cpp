@@ -1,4 +1,5 @@
 #include "deformation/steppers/quadratic_elements.h"
+#include "deformation/organ_messages.h"
 
 #include <utility>
 
@@ -144,14 +145,13 @@ TEST_CASE("quadratic elements: a squeezed ball in the world is as hard as the re
     for (const int side : {1, -1}) {
       const auto plate = side > 0 ? 0U : 1U;
       world.set_contacts(testing::plate_contacts(world, plate, side * before, side, 3e-3));
-      world.set_probe(testing::probe_at(plate, Vec3(0, 0, side * height)));
+      world.set_probe(plate, Pose{Vec3(0, 0, side * height), Quat::Identity()});
     }
     const auto report = world.advance(0.01);
     CHECK_FALSE(report.diverged);
     CHECK_FALSE(report.volume_skipped);
     if (k < 100) continue;
-    ContactModel model;
-    world.write_contact_model(0, model);
+    const LocalLaw model = world.local_law(0);
     force += std::abs(model.force[2]) / 10;
   }
   CHECK(force == Approx(2.50682).epsilon(0.05));

@@ -3,8 +3,9 @@
 #include <cstdlib>
 #include <new>
 
+#include "modules/bus/memory_bus.h"
 #include "tests/modules/bus/loopback.h"
-#include "tests/modules/bus/random_messages.h"
+#include "tests/modules/messages/random_messages.h"
 
 namespace {
 
@@ -35,9 +36,9 @@ void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); 
 namespace palpate::bus {
 namespace {
 
+using messages::testing::Random;
+using messages::testing::random_message;
 using testing::Pair;
-using testing::Random;
-using testing::random_message;
 using testing::take_soon;
 
 struct Allocations {
@@ -46,20 +47,19 @@ struct Allocations {
 
 // Sends the same message again and again; counts after the first half.
 template <class Message>
-Allocations count_allocations(const TopicOf<Message>& topic) {
-  Pair<Message> pair(topic);
-  REQUIRE(pair.matched);
+Allocations count_allocations(Writer<Message>& writer, Reader<Message>& reader) {
   Random random(31);
-  Message sent = random_message<Message>(random), received;
+  auto sent = random_message<Message>(random);
+  Message received;
   Allocations counted;
   constexpr int kRounds = 100;
   for (int round = 0; round < kRounds; ++round) {
     std::size_t before = allocations;
-    const bool written = pair.writer.write(sent);
+    const bool written = writer.write(sent);
     const std::size_t in_write = allocations - before;
-    const bool arrived = pair.reader.wait(testing::kDeadline);
+    const bool arrived = reader.wait(testing::kDeadline);
     before = allocations;
-    const bool taken = pair.reader.take(received);
+    const bool taken = reader.take(received);
     const std::size_t in_take = allocations - before;
     REQUIRE((written && arrived && taken));
     if (round < kRounds / 2) continue;
@@ -72,9 +72,19 @@ Allocations count_allocations(const TopicOf<Message>& topic) {
 template <class Message>
 void check_no_allocation(const TopicOf<Message>& topic) {
   CAPTURE(topic.name);
-  const Allocations counted = count_allocations(topic);
-  CHECK(counted.in_write == 0);
-  CHECK(counted.in_take == 0);
+  Pair<Message> pair(topic);
+  REQUIRE(pair.matched);
+  const Allocations between_processes = count_allocations(pair.writer, pair.reader);
+  CHECK(between_processes.in_write == 0);
+  CHECK(between_processes.in_take == 0);
+
+  MemoryBus memory(true);
+  auto writer = memory.writer(topic);
+  auto reader = memory.reader(topic);
+  reader.input().set_horizon(Input::kNoHorizon);  // the way of a lockstep
+  const Allocations in_memory = count_allocations(writer, reader);
+  CHECK(in_memory.in_write == 0);
+  CHECK(in_memory.in_take == 0);
 }
 
 }  // namespace

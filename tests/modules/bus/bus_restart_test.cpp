@@ -7,14 +7,14 @@
 #include <catch2/catch.hpp>
 
 #include "tests/modules/bus/loopback.h"
-#include "tests/modules/bus/random_messages.h"
+#include "tests/modules/messages/random_messages.h"
 
 namespace palpate::bus {
 namespace {
 
+using messages::testing::Random;
 using testing::own_options;
 using testing::Pair;
-using testing::Random;
 using testing::take_soon;
 using testing::wait_until;
 
@@ -49,7 +49,7 @@ class ProbeWriterProcess {
 TEST_CASE("bus: a killed writer leaves its reader well, and the next writer is heard", "[bus]") {
   // Oracle: the mark (buttons) that each writer process puts into its samples.
   const BusOptions options = own_options();
-  Bus bus(options);
+  DdsBus bus(options);
   auto reader = bus.reader(kProbeState);
   ProbeState received;
   ProbeWriterProcess first(options, 1);
@@ -70,11 +70,11 @@ TEST_CASE("bus: a killed writer leaves its reader well, and the next writer is h
 TEST_CASE("bus: a writer that ends and starts again counts from 1 without drops", "[bus]") {
   // Oracle: the counts of what was written.
   const BusOptions options = own_options();
-  Bus reader_bus(options);
+  DdsBus reader_bus(options);
   auto reader = reader_bus.reader(kHapticForce);
   HapticForce message, received;
   for (int run = 0; run < 3; ++run) {
-    Bus writer_bus(options);
+    DdsBus writer_bus(options);
     auto writer = writer_bus.writer(kHapticForce);
     REQUIRE(
         wait_until([&] { return writer.matched_readers() == 1 && reader.matched_writers() == 1; }));
@@ -102,7 +102,7 @@ TEST_CASE("bus: node positions of 19 500 nodes pass a best-effort stream", "[bus
     REQUIRE(pair.writer.write(sent));
     if (!take_soon(pair.reader, received, 0.5)) continue;
     ++arrived;
-    CHECK(testing::equal(sent, [&] {
+    CHECK(messages::testing::equal(sent, [&] {
       NodePositions r = received;
       r.header.source_time_ns = 0;  // filled by the writer
       return r;
@@ -116,20 +116,20 @@ TEST_CASE("bus: a topology of 39 000 triangles and 300 000 springs reaches a lat
   // Oracle: identity with the message sent (3.4 MB, reliable).
   const BusOptions options = own_options();
   Random random(5);
-  SurfaceTopology sent = testing::random_topology(random, 19'500, 39'000, 300'000);
-  Bus writer_bus(options);
+  SurfaceTopology sent = messages::testing::random_topology(random, 19'500, 39'000, 300'000);
+  DdsBus writer_bus(options);
   auto writer = writer_bus.writer(kSurface);
   REQUIRE(writer.write(sent));
-  Bus reader_bus(options);
+  DdsBus reader_bus(options);
   auto reader = reader_bus.reader(kSurface);
   SurfaceTopology received;
   REQUIRE(take_soon(reader, received));
-  CHECK(testing::equal(sent, received));
+  CHECK(messages::testing::equal(sent, received));
 
   sent.generation += 1;  // and again while both are there
   REQUIRE(writer.write(sent));
   REQUIRE(take_soon(reader, received));
-  CHECK(testing::equal(sent, received));
+  CHECK(messages::testing::equal(sent, received));
   CHECK(reader.statistics().dropped == 0);
 }
 

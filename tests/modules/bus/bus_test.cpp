@@ -1,4 +1,4 @@
-#include "modules/bus/bus.h"
+#include "modules/bus/dds_bus.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -6,15 +6,15 @@
 
 #include "modules/core/error.h"
 #include "tests/modules/bus/loopback.h"
-#include "tests/modules/bus/random_messages.h"
+#include "tests/modules/messages/random_messages.h"
 
 namespace palpate::bus {
 namespace {
 
+using messages::testing::Random;
+using messages::testing::random_message;
 using testing::own_options;
 using testing::Pair;
-using testing::Random;
-using testing::random_message;
 using testing::take_soon;
 using testing::wait_until;
 
@@ -31,7 +31,7 @@ void check_delivery(const TopicOf<Message>& topic) {
     CHECK(sent.header.sequence == i);
     Message received;
     REQUIRE(take_soon(pair.reader, received));
-    CHECK(testing::equal(sent, received));
+    CHECK(messages::testing::equal(sent, received));
   }
   CHECK(pair.reader.statistics().received == 5);
   CHECK(pair.reader.statistics().dropped == 0);
@@ -57,7 +57,7 @@ TEST_CASE("bus: every topic delivers what was sent, over the loopback network", 
 TEST_CASE("bus: a late reader gets the newest sample of each key of a state topic", "[bus]") {
   // Oracle: identity with the last message sent per key.
   const BusOptions options = own_options();
-  Bus writer_bus(options);
+  DdsBus writer_bus(options);
   auto writer = writer_bus.writer(kModuleStatus);
   Random random(2);
   const std::string a("a"), b("b");
@@ -71,21 +71,21 @@ TEST_CASE("bus: a late reader gets the newest sample of each key of a state topi
     REQUIRE(writer.write(last_of_b));
   }
 
-  Bus reader_bus(options);
+  DdsBus reader_bus(options);
   auto reader = reader_bus.reader(kModuleStatus);
   ModuleStatus first, second, third;
   REQUIRE(take_soon(reader, first));
   REQUIRE(take_soon(reader, second));
   if (first.module == b) std::swap(first, second);
-  CHECK(testing::equal(first, last_of_a));
-  CHECK(testing::equal(second, last_of_b));
+  CHECK(messages::testing::equal(first, last_of_a));
+  CHECK(messages::testing::equal(second, last_of_b));
   CHECK_FALSE(reader.take(third));
 }
 
 TEST_CASE("bus: a late reader gets nothing old from a stream", "[bus]") {
   // Oracle: the definition of a volatile topic: only what is written after the match arrives.
   const BusOptions options = own_options();
-  Bus writer_bus(options), reader_bus(options);
+  DdsBus writer_bus(options), reader_bus(options);
   auto writer = writer_bus.writer(kHapticForce);
   HapticForce before, after, received;
   before.force.x() = 1;
@@ -153,7 +153,7 @@ TEST_CASE("bus: two participants of one session hear a writer both", "[bus]") {
   // Oracle: identity with the message sent.
   const BusOptions options = own_options();
   Pair<ProbeState> pair(kProbeState, options);
-  Bus third(options);
+  DdsBus third(options);
   auto reader = third.reader(kProbeState);
   REQUIRE(wait_until(
       [&] { return pair.writer.matched_readers() == 2 && reader.matched_writers() == 1; }));
@@ -162,8 +162,8 @@ TEST_CASE("bus: two participants of one session hear a writer both", "[bus]") {
   REQUIRE(pair.writer.write(sent));
   REQUIRE(take_soon(pair.reader, a));
   REQUIRE(take_soon(reader, b));
-  CHECK(testing::equal(sent, a));
-  CHECK(testing::equal(sent, b));
+  CHECK(messages::testing::equal(sent, a));
+  CHECK(messages::testing::equal(sent, b));
 }
 
 TEST_CASE("bus: wait returns at once when a sample is there and gives up at its timeout", "[bus]") {
@@ -225,7 +225,7 @@ TEST_CASE("bus: domains and session names that are not acceptable are refused by
   // Oracle: the texts that the contract promises.
   const auto message_of = [](const BusOptions& options) -> std::string {
     try {
-      Bus bus(options);
+      DdsBus bus(options);
     } catch (const InputError& error) {
       return error.what();
     }

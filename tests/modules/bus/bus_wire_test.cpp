@@ -53,7 +53,7 @@ class ForeignWriter {
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back(options.session.c_str());
     dds::DataWriterQos writer_qos;
-    apply_profile(Delivery::kStream, writer_qos);
+    apply_profile({Delivery::kStream, Keep::kNewest, false}, writer_qos);
     writer_ =
         participant_->create_publisher(publisher_qos)->create_datawriter(dds_topic, writer_qos);
   }
@@ -102,7 +102,7 @@ TEST_CASE("wire: samples that break a rule are counted and skipped, and the fiel
           "[bus]") {
   // Oracle: the wire specification; the good sample after the bad one arrives.
   const BusOptions options = own_options();
-  Bus bus(options);
+  DdsBus bus(options);
   auto reader = bus.reader(kProbeInput);
   ForeignProbe foreign(options, kProbeInput.name);
   REQUIRE(matched(foreign, reader));
@@ -125,7 +125,7 @@ TEST_CASE("wire: samples that break a rule are counted and skipped, and the fiel
 TEST_CASE("wire: a reader counts the sequence numbers that never came", "[bus]") {
   // Oracle: the gap made by hand, 2 to 6.
   const BusOptions options = own_options();
-  Bus bus(options);
+  DdsBus bus(options);
   auto reader = bus.reader(kProbeInput);
   ForeignProbe foreign(options, kProbeInput.name);
   REQUIRE(matched(foreign, reader));
@@ -142,7 +142,7 @@ TEST_CASE("wire: payloads that cannot be read are counted and do not stop a read
   // Oracle: the good sample after each spoiled one arrives.
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
   const BusOptions options = own_options();
-  Bus bus(options);
+  DdsBus bus(options);
   auto reader = bus.reader(kContacts);
   ForeignContacts foreign(options, kContacts.name);
   REQUIRE(matched(foreign, reader));
@@ -150,7 +150,7 @@ TEST_CASE("wire: payloads that cannot be read are counted and do not stop a read
   idl::Contacts wire;
   wire.probe_rotation_xyzw({0, 0, 0, 1});
   std::uint64_t sequence = 0;
-  const auto check_survives = [&](std::function<void(Payload&)> change) {
+  const auto check_survives = [&](const char* field, std::function<void(Payload&)> change) {
     const std::uint64_t rejected = reader.statistics().rejected;
     Contacts received;
     wire.sequence_number(++sequence);
@@ -159,17 +159,17 @@ TEST_CASE("wire: payloads that cannot be read are counted and do not stop a read
     foreign.spoil(nullptr);
     REQUIRE(wait_until(
         [&] { return !reader.take(received) && reader.statistics().rejected == rejected + 1; }));
-    CHECK(std::string(reader.statistics().last_rejected_field) == "payload");
+    CHECK(std::string(reader.statistics().last_rejected_field) == field);
     wire.sequence_number(++sequence);
     foreign.write(wire);
     REQUIRE(take_soon(reader, received));
     CHECK(received.header.sequence == sequence);
   };
   // From the end: 4 bytes of list length, 3 of padding, the boolean `truncated`.
-  check_survives([](Payload& p) { p.data[p.length - 8] = 2; });
-  check_survives([](Payload& p) { std::memset(p.data + p.length - 4, 0xff, 4); });
-  check_survives([](Payload& p) { p.length = 20; });
-  check_survives([](Payload& p) { p.data[1] = 0x77; });
+  check_survives("truncated", [](Payload& p) { p.data[p.length - 8] = 2; });
+  check_survives("payload", [](Payload& p) { std::memset(p.data + p.length - 4, 0xff, 4); });
+  check_survives("payload", [](Payload& p) { p.length = 20; });
+  check_survives("payload", [](Payload& p) { p.data[1] = 0x77; });
 }
 
 }  // namespace palpate::bus

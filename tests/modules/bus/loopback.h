@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "modules/bus/bus.h"
+#include "modules/bus/dds_bus.h"
 
 namespace palpate::bus::testing {
 
@@ -51,7 +51,7 @@ struct Pair {
         wait_until([&] { return writer.matched_readers() == 1 && reader.matched_writers() == 1; });
   }
 
-  Bus writer_bus, reader_bus;
+  DdsBus writer_bus, reader_bus;
   Writer<Message> writer;
   Reader<Message> reader;
   bool matched = false;

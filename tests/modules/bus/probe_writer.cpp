@@ -3,14 +3,14 @@
 #include <cstdlib>
 #include <thread>
 
-#include "modules/bus/bus.h"
+#include "modules/bus/dds_bus.h"
 
 int main(int argc, char** argv) {
   if (argc != 4) return 2;
   palpate::bus::BusOptions options;
   options.domain = std::atoi(argv[1]);
   options.session = argv[2];
-  palpate::bus::Bus bus(options);
+  palpate::bus::DdsBus bus(options);
   auto writer = bus.writer(palpate::bus::kProbeState);
   palpate::ProbeState state;
   state.buttons = static_cast<std::uint32_t>(std::atoi(argv[3]));

@@ -10,7 +10,6 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
-#include "idl/ProbeStatePubSubTypes.h"
 #include "modules/bus/participant.h"
 #include "tests/modules/bus/loopback.h"
 
@@ -49,17 +48,32 @@ void check_state(const Qos& qos) {
 TEST_CASE("qos: streams are best effort and state is kept for late joiners", "[bus]") {
   // Oracle: the table of docs/topics.md.
   Participant participant(testing::own_options());
-  const auto type = [] { return new idl::ProbeStatePubSubType; };
-  auto* stream_writer = participant.add_writer("stream", Delivery::kStream, type());
-  auto* stream_reader = participant.add_reader("stream", Delivery::kStream, type());
-  auto* state_writer = participant.add_writer("state", Delivery::kState, type());
-  auto* state_reader = participant.add_reader("state", Delivery::kState, type());
+  auto* stream_writer = participant.add_writer(info_of(kContacts));
+  auto* stream_reader = participant.add_reader(info_of(kContacts), Keep::kNewest);
+  auto* state_writer = participant.add_writer(info_of(kSurface));
+  auto* state_reader = participant.add_reader(info_of(kSurface), Keep::kNewest);
   check_stream(stream_writer->get_qos());
   check_stream(stream_reader->get_qos());
   check_state(state_writer->get_qos());
   check_state(state_reader->get_qos());
   CHECK(stream_writer->get_qos().publish_mode().kind == dds::SYNCHRONOUS_PUBLISH_MODE);
   CHECK(state_writer->get_qos().publish_mode().kind == dds::SYNCHRONOUS_PUBLISH_MODE);
+}
+
+TEST_CASE("qos: with every sample nothing is best effort and no stream forgets", "[bus]") {
+  // Oracle: the table of docs/topics.md.
+  BusOptions options = testing::own_options();
+  options.every_sample = true;
+  Participant participant(options);
+  const auto* stream_writer = participant.add_writer(info_of(kContacts));
+  const auto* stream_reader = participant.add_reader(info_of(kContacts), Keep::kNewest);
+  const auto* state_reader = participant.add_reader(info_of(kSurface), Keep::kNewest);
+  CHECK(stream_writer->get_qos().reliability().kind == dds::RELIABLE_RELIABILITY_QOS);
+  CHECK(stream_reader->get_qos().reliability().kind == dds::RELIABLE_RELIABILITY_QOS);
+  CHECK(stream_writer->get_qos().durability().kind == dds::VOLATILE_DURABILITY_QOS);
+  CHECK(stream_writer->get_qos().history().kind == dds::KEEP_ALL_HISTORY_QOS);
+  CHECK(stream_reader->get_qos().history().kind == dds::KEEP_ALL_HISTORY_QOS);
+  CHECK(state_reader->get_qos().history().depth == kStateDepth);
 }
 
 TEST_CASE("qos: a participant uses UDP on loopback only, and finds others quickly", "[bus]") {
@@ -88,10 +102,8 @@ TEST_CASE("qos: the session is the partition of both publisher and subscriber", 
   // Oracle: the partition names read back from the entities.
   const BusOptions options = testing::own_options();
   Participant participant(options);
-  const auto* writer =
-      participant.add_writer("stream", Delivery::kStream, new idl::ProbeStatePubSubType);
-  const auto* reader =
-      participant.add_reader("stream", Delivery::kStream, new idl::ProbeStatePubSubType);
+  const auto* writer = participant.add_writer(info_of(kContacts));
+  const auto* reader = participant.add_reader(info_of(kContacts), Keep::kNewest);
   const std::vector<std::string> expected{options.session};
   CHECK(writer->get_publisher()->get_qos().partition().names() == expected);
   CHECK(reader->get_subscriber()->get_qos().partition().names() == expected);

@@ -65,7 +65,7 @@ TEST_CASE("commands: replay waits for a reader, plays, and says what it played")
     writer.flush();
   }
   const auto options = bus::testing::own_options();
-  bus::Bus bus(options);
+  bus::DdsBus bus(options);
   auto statuses = bus.reader(bus::kModuleStatus);
   const auto nodes = bus.reader(bus::kNodePositions);  // what replay waits for
   std::ostringstream out, err;

@@ -4,29 +4,26 @@
 #include <filesystem>
 #include <vector>
 
-#include "modules/messages/messages.h"
+#include "modules/messages/cdr.h"
 #include "modules/recording/recorder.h"
 
 namespace palpate::recording {
 
-// CDR of a valid message, by the generated wire types; padded with zeros to a multiple of four
-// bytes, as RTPS sends it.
-std::vector<std::uint8_t> cdr_of(const ProbeState& message);
-std::vector<std::uint8_t> cdr_of(const Contacts& message);
-std::vector<std::uint8_t> cdr_of(const ContactModel& message);
-std::vector<std::uint8_t> cdr_of(const NodePositions& message);
-std::vector<std::uint8_t> cdr_of(const SurfaceTopology& message);
-std::vector<std::uint8_t> cdr_of(const HapticForce& message);
-std::vector<std::uint8_t> cdr_of(const ModuleStatus& message);
-std::vector<std::uint8_t> cdr_of(const SceneDescription& message);
-std::vector<std::uint8_t> cdr_of(const SessionControl& message);
+/// A message padded with zeros to a multiple of four bytes, as RTPS sends it.
+template <class Message>
+std::vector<std::uint8_t> cdr_of(const Message& message) {
+  std::vector<std::uint8_t> payload;
+  messages::write_payload(message, payload);
+  payload.resize((payload.size() + 3) / 4 * 4);
+  return payload;
+}
 
 /// A sample as if received on `topic` from writer number `writer`.
 template <class Message>
-RawSample raw_sample(const bus::TopicOf<Message>& topic, const Message& message,
-                     std::int64_t received_time_ns, std::uint8_t writer = 1) {
-  RawSample sample;
-  sample.topic = find_recorded_topic(topic.name);
+TopicSample raw_sample(const bus::TopicOf<Message>& topic, const Message& message,
+                       std::int64_t received_time_ns, std::uint8_t writer = 1) {
+  TopicSample sample;
+  sample.topic = bus::find_topic(topic.name);
   sample.writer[0] = writer;
   sample.received_time_ns = received_time_ns;
   sample.payload = cdr_of(message);

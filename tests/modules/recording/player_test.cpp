@@ -4,9 +4,10 @@
 #include <chrono>
 #include <sstream>
 
+#include "modules/bus/memory_bus.h"
 #include "modules/core/error.h"
 #include "tests/modules/bus/loopback.h"
-#include "tests/modules/bus/random_messages.h"
+#include "tests/modules/messages/random_messages.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 
@@ -33,26 +34,27 @@ TEST_CASE("player: a replay sends the recorded bytes with the recorded spacing")
   // Oracle: the recording itself; 20 samples 5 ms apart cannot take less than 95 ms.
   constexpr int kSamples = 20;
   TempFolder folder;
-  bus::testing::Random random(11);
-  std::vector<RawSample> recorded;
+  messages::testing::Random random(11);
+  std::vector<TopicSample> recorded;
   for (int i = 0; i < kSamples; ++i) {
     recorded.push_back(raw_sample(bus::kHapticForce,
-                                  bus::testing::random_message<HapticForce>(random),
+                                  messages::testing::random_message<HapticForce>(random),
                                   1000 + 5 * i * kMillisecond));
     recorded.push_back(raw_sample(bus::kModuleStatus,
-                                  bus::testing::random_message<ModuleStatus>(random),
+                                  messages::testing::random_message<ModuleStatus>(random),
                                   1000 + 5 * i * kMillisecond));
   }
   SampleFile file(folder / "a.mcap", {});
-  for (const RawSample& sample : recorded) file.add(sample);
+  for (const TopicSample& sample : recorded) file.add(sample);
   file.close();
 
   const auto options = own_options();
-  RawReader reader(options);
-  RawWriter writer(options);
+  bus::DdsBus reader_bus(options), writer_bus(options);
+  SessionReader reader(reader_bus);
+  SessionWriter writer(writer_bus);
   REQUIRE(wait_until([&] {
-    return writer.matched_readers(*find_recorded_topic("haptic_force")) == 1 &&
-           writer.matched_readers(*find_recorded_topic("module_status")) == 1 &&
+    return writer.matched_readers(*bus::find_topic("haptic_force")) == 1 &&
+           writer.matched_readers(*bus::find_topic("module_status")) == 1 &&
            reader.matched_writers() == 10;
   }));
   SampleReader recording(folder / "a.mcap");
@@ -66,10 +68,10 @@ TEST_CASE("player: a replay sends the recorded bytes with the recorded spacing")
   CHECK_FALSE(report.stopped);
 
   std::map<std::string_view, std::vector<std::vector<std::uint8_t>>> sent, heard;
-  for (const RawSample& sample : recorded) sent[sample.topic->name].push_back(sample.payload);
+  for (const TopicSample& sample : recorded) sent[sample.topic->name].push_back(sample.payload);
   std::size_t count = 0;
   REQUIRE(wait_until([&] {
-    for (const RawSample& sample : reader.take_all()) {
+    for (const TopicSample& sample : reader.take_all()) {
       heard[sample.topic->name].push_back(sample.payload);
       ++count;
     }
@@ -86,7 +88,8 @@ TEST_CASE("player: stops when asked to") {
   file.add(raw_sample(bus::kProbeState, state, 0));
   file.add(raw_sample(bus::kProbeState, state, 3600 * 1000 * kMillisecond));
   file.close();
-  RawWriter writer(own_options());
+  bus::MemoryBus bus;
+  SessionWriter writer(bus);
   SampleReader recording(folder / "a.mcap");
   int asked = 0;
   const PlayReport report = play(recording, writer, [&] { return ++asked > 3; });

@@ -1,4 +1,4 @@
-// scripts/plot_recording.py on the files that inspection writes.
+// scripts/plots/plot_recording.py on the files that inspection writes.
 #include <sys/wait.h>
 
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ std::string python() {
 
 int run_script(const std::string& program, const std::string& arguments,
                const std::filesystem::path& output) {
-  const std::string command = program + " " PALPATE_SOURCE_DIR "/scripts/plot_recording.py " +
+  const std::string command = program + " " PALPATE_SOURCE_DIR "/scripts/plots/plot_recording.py " +
                               arguments + " > " + output.string() + " 2>&1";
   return WEXITSTATUS(std::system(command.c_str()));
 }

@@ -84,7 +84,7 @@ TEST_CASE("recorder program: on SIGTERM and Ctrl-C it ends the file and says don
   const int signal = GENERATE(SIGTERM, SIGINT);
   TempFolder folder;
   const auto options = own_options();
-  bus::Bus bus(options);
+  bus::DdsBus bus(options);
   auto writer = bus.writer(bus::kNodePositions);
   RecorderProcess recorder(folder / "a.mcap", options);
   REQUIRE(wait_until([&] { return writer.matched_readers() == 1; }));
@@ -102,7 +102,7 @@ TEST_CASE("recorder program: killed hard, what it had written can be read") {
   // Oracle: the reader; the file had grown by 20 KB of 92-byte payloads before the kill.
   TempFolder folder;
   const auto options = own_options();
-  bus::Bus bus(options);
+  bus::DdsBus bus(options);
   auto writer = bus.writer(bus::kNodePositions);
   RecorderProcess recorder(folder / "a.mcap", options);
   REQUIRE(wait_until([&] { return writer.matched_readers() == 1; }));

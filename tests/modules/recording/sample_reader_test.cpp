@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/core/error.h"
+#include "modules/recording/idl_text.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 
@@ -32,8 +33,8 @@ std::string message_of(const std::filesystem::path& file, const McapSchema& sche
 }
 
 McapSchema probe_schema() {
-  const RecordedTopic& topic = *find_recorded_topic("probe_state");
-  return {0, std::string(topic.type_name), "omgidl", std::string(topic.idl_text)};
+  const bus::TopicInfo& topic = *bus::find_topic("probe_state");
+  return {0, std::string(topic.type->wire_name), "omgidl", std::string(idl_text_of(*topic.type))};
 }
 
 }  // namespace

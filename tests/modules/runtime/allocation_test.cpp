@@ -44,9 +44,8 @@ TEST_CASE("allocation: a running module allocates nothing but what DDS takes for
   options.realtime = false;
   Module module(options, scene::Scene{}, "haptics", 500, Priority::kPreferred);
   auto models = module.bus().reader(bus::kContactModel);
-  module.watch(bus::kContactModel, models);
   module.ready();
-  bus::Bus listener(options.bus);
+  bus::DdsBus listener(options.bus);
   auto statuses = listener.reader(bus::kModuleStatus);
   Session session(listener, "");
   SessionConductor conductor(listener);

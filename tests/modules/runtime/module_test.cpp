@@ -23,7 +23,7 @@ struct Played {
   }();
   scene::Scene scene;
   Module module{options, scene, "haptics", 200, Priority::kPreferred};
-  bus::Bus bus{options.bus};
+  bus::DdsBus bus{options.bus};
   Session session{bus, scene::scene_digest(scene)};
   SessionConductor conductor{bus};
   bus::Reader<ModuleStatus> statuses = bus.reader(bus::kModuleStatus);
@@ -85,7 +85,7 @@ TEST_CASE("module: a stop of the session or a signal ends the loop") {
 TEST_CASE("module: says goodbye") {
   // Oracle: its last status.
   const auto options = own_bus_options();
-  bus::Bus bus(options);
+  bus::DdsBus bus(options);
   auto statuses = bus.reader(bus::kModuleStatus);
   ModuleStatus newest;
   {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/bus/dds_bus.h"
 #include "modules/runtime/clock.h"
 #include "tests/modules/runtime/waiting.h"
 
@@ -25,7 +26,7 @@ SceneDescription description(const std::string& digest, std::uint32_t version = 
 TEST_CASE("session: a module that joins a running session plays along at once") {
   // Oracle: the giver's own clock.
   const auto options = own_bus_options();
-  bus::Bus launcher_bus(options), module_bus(options);
+  bus::DdsBus launcher_bus(options), module_bus(options);
   Session launcher(launcher_bus, "d");
   SessionConductor conductor(launcher_bus);
   conductor.command(launcher.state(), SessionCommand::kStart);
@@ -49,12 +50,12 @@ TEST_CASE("session: a module that joins a running session plays along at once") 
 TEST_CASE("session: repeating says the newest command of anybody again") {
   // Oracle: a reader that joins after the person who paused has gone.
   const auto options = own_bus_options();
-  bus::Bus launcher_bus(options);
+  bus::DdsBus launcher_bus(options);
   Session launcher(launcher_bus, "d");
   SessionConductor conductor(launcher_bus);
   conductor.command(launcher.state(), SessionCommand::kStart);
   {
-    bus::Bus person_bus(options);
+    bus::DdsBus person_bus(options);
     Session person(person_bus, "d");
     SessionConductor person_conductor(person_bus);
     REQUIRE(wait_until([&] {
@@ -68,7 +69,7 @@ TEST_CASE("session: repeating says the newest command of anybody again") {
     }));
   }
   conductor.repeat(launcher.state());
-  bus::Bus late_bus(options);
+  bus::DdsBus late_bus(options);
   Session late(late_bus, "d");
   CHECK(wait_until([&] {
     late.poll();
@@ -83,13 +84,13 @@ TEST_CASE("session: another scene or protocol is a fault that says what to do") 
         "the session plays scene 'ball' (digest aa), this module loaded another (digest bb): "
         "start it with the same scene file and meshes");
   CHECK(scene_mismatch(description("aa", kProtocolVersion + 1), "aa") ==
-        "the session speaks protocol version 2, this module 1: use programs of one release");
+        "the session speaks protocol version 3, this module 2: use programs of one release");
 }
 
 TEST_CASE("session: with the wrong scene a module does not run") {
   // Oracle: definition.
   const auto options = own_bus_options();
-  bus::Bus launcher_bus(options), module_bus(options);
+  bus::DdsBus launcher_bus(options), module_bus(options);
   auto scenes = launcher_bus.writer(bus::kScene);
   Session launcher(launcher_bus, "aa");
   SessionConductor conductor(launcher_bus);

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "modules/bus/dds_bus.h"
 #include "modules/runtime/clock.h"
 #include "tests/modules/runtime/waiting.h"
 
@@ -17,7 +18,7 @@ namespace {
 
 struct Reported {
   bus::BusOptions options = own_bus_options();
-  bus::Bus bus{options}, reader_bus{options};
+  bus::DdsBus bus{options}, reader_bus{options};
   StatusReporter reporter{bus, "collision", 100, true};
   bus::Reader<ModuleStatus> reader = reader_bus.reader(bus::kModuleStatus);
   LoopStatistics loop;
@@ -76,13 +77,12 @@ TEST_CASE("status: rate and load are those since the last status") {
 TEST_CASE("status: tells the age and the losses of each input") {
   // Oracle: by hand.
   Reported r;
-  bus::ReaderStatistics never, known;
-  known.received = 10;
-  known.dropped = 2;
-  known.rejected = 1;
-  known.newest_source_time_ns = kSecond;
-  r.reporter.watch("contacts", never);
-  r.reporter.watch("surface", known);
+  const auto never = r.bus.reader(bus::kContacts);
+  auto known = r.bus.reader(bus::kSurface);
+  for (const std::uint64_t sequence : {1, 2, 3, 4, 5, 6, 7, 8, 11, 12}) {
+    known.input().accept({}, {sequence, 0, kSecond});
+  }
+  known.input().reject({}, "payload");
   r.reporter.publish(kSecond + kSecond / 4, 0, r.loop);
   REQUIRE(r.take());  // an infinite age crosses the wire
   REQUIRE(r.newest.inputs.size() == 2);
@@ -97,9 +97,8 @@ TEST_CASE("status: tells the age and the losses of each input") {
 TEST_CASE("status: an input written after the cycle began is of age zero, and the status leaves") {
   // Oracle: the codec refuses a negative age.
   Reported r;
-  bus::ReaderStatistics newer;
-  newer.newest_source_time_ns = kSecond + 1000;
-  r.reporter.watch("contacts", newer);
+  auto newer = r.bus.reader(bus::kContacts);
+  newer.input().accept({}, {1, 0, kSecond + 1000});
   r.reporter.publish(kSecond, 0, r.loop);
   REQUIRE(r.take());
   CHECK(r.newest.inputs[0].age == 0);

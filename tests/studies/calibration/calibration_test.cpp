@@ -9,6 +9,7 @@
 
 #include "modules/core/error.h"
 #include "studies/calibration/report.h"
+#include "studies/report/progress.h"
 
 namespace palpate::calibration {
 namespace {
@@ -84,7 +85,7 @@ TEST_CASE("calibration: a stop request ends a comparison") {
   // Oracle: the contract.
   Case ball;
   ball.rows = kRows;
-  CHECK_THROWS_AS(compare(ball, 1, [] { return true; }), Stopped);
+  CHECK_THROWS_AS(compare(ball, 1, [] { return true; }), report::Stopped);
 }
 
 TEST_CASE("calibration: tables and CSV hold every row, the worst error only from 30 %") {

@@ -3,15 +3,12 @@
 #include <catch2/catch.hpp>
 
 #include "modules/geometry/primitives.h"
+#include "studies/rigs/squeezed_ball.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
-TEST_CASE("case parts: plates face each other") {
-  // Oracle: a plane is solid below its own z = 0.
-  CHECK(plate(0.1, true).to_world(Vec3::UnitZ()).z() > 0.1);
-  CHECK(plate(0.1, false).to_world(Vec3::UnitZ()).z() < 0.1);
-}
+using rigs::kBallRadius;
 
 TEST_CASE("case parts: the contact's radius is that of the touching nodes' share") {
   // Oracle: of a ball cut by a plane at height c, what lies above has the radius √(R² − c²); a
@@ -28,4 +25,4 @@ TEST_CASE("case parts: the contact's radius is that of the touching nodes' share
 }
 
 }  // namespace
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -5,7 +5,7 @@
 #include "modules/geometry/primitives.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 Vec3 interpolate(const geometry::OrganShape& shape, const Vec3& point, Vec3 (*field)(const Vec3&)) {
@@ -44,4 +44,4 @@ TEST_CASE("displacement field: quadratic elements carry quadratic fields exactly
 }
 
 }  // namespace
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -8,7 +8,7 @@
 #include "studies/chart/local_refinement.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 TEST_CASE("local refinement: the shape stays closed and the same, edges are as short as asked") {
@@ -67,4 +67,4 @@ TEST_CASE("equilibria: a sphere pressed into a block meets the force of Hertz") 
 }
 
 }  // namespace
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -9,7 +9,7 @@
 
 #include "studies/chart/cases.h"
 
-namespace palpate::accuracy::testing {
+namespace palpate::chart::testing {
 
 class WorkFolder {
  public:
@@ -25,13 +25,4 @@ class WorkFolder {
   std::filesystem::path path;
 };
 
-inline Source source() {
-  const std::filesystem::path root = PALPATE_SOURCE_DIR;
-  Source source{root / "studies/reference", root / "scenes", {}};
-  const char* data = std::getenv("PALPATE_DATA");
-  const std::filesystem::path folder = data != nullptr ? data : root / "../shared/data";
-  if (std::filesystem::exists(folder / "truthcube")) source.data = folder;
-  return source;
-}
-
-}  // namespace palpate::accuracy::testing
+}  // namespace palpate::chart::testing

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 
 #include "modules/geometry/primitives.h"
-#include "palpate/session/pipeline.h"
+#include "palpate/session/in_process.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 scene::Scene plate_over_ball(std::vector<scene::ScriptedDevice::Move> moves) {
@@ -26,7 +26,7 @@ TEST_CASE("stage: a pressed ball answers with the force the pipeline gives") {
   // deformation a period earlier here; at rest that is gone.
   const auto ball = geometry::make_ball(0.05, 2);
   const scene::Scene scene = plate_over_ball({{Vec3(0, 0, 0.042), 0.5}, {std::nullopt, 1.5}});
-  pipeline::Pipeline pipeline(scene, {ball}, {geometry::TriangleSurface{}});
+  session::InProcess pipeline(scene, {{ball}, {geometry::TriangleSurface{}}});
   pipeline.run_until(2);
   Pose pose;
   pose.position = Vec3(0, 0, 0.05);
@@ -62,4 +62,4 @@ TEST_CASE("stage: untouched, nothing is felt and nothing moves") {
 }
 
 }  // namespace
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

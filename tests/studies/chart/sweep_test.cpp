@@ -6,7 +6,7 @@
 
 #include "tests/studies/chart/folders.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 const KeepGoing kOn = [] {};
@@ -18,12 +18,10 @@ TEST_CASE("sweep: what was measured is not measured again and comes back the sam
   const std::vector<Case> of{find_case("ball")};
   const std::vector<scene::Model> models{scene::Model::kMassSpring};
   const auto begin = [](const Outlook&) {};
-  const auto first = sweep(of, Extent::kQuick, models, testing::source(), store, begin, kOn).points;
+  const auto first = sweep(of, Extent::kQuick, models, store, begin, kOn).points;
   REQUIRE(first.size() == 1);
   struct Stop {};
-  const auto again = sweep(of, Extent::kQuick, models, testing::source(), store, begin, [] {
-                       throw Stop{};
-                     }).points;
+  const auto again = sweep(of, Extent::kQuick, models, store, begin, [] { throw Stop{}; }).points;
   REQUIRE(again.size() == 1);
   const auto &a = first[0].measurement, &b = again[0].measurement;
   CHECK(a.surface_nodes == b.surface_nodes);
@@ -58,15 +56,15 @@ TEST_CASE("sweep: what it says is left shrinks to nothing as points are done") {
   const std::vector<scene::Model> models{scene::Model::kMassSpring, scene::Model::kImplicitVolume};
   std::vector<Outlook> said;
   const auto say = [&](const Outlook& outlook) { said.push_back(outlook); };
-  sweep({find_case("vibration")}, Extent::kQuick, models, testing::source(), store, say, kOn);
+  sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kOn);
   REQUIRE(said.size() == 2);
   CHECK(std::isnan(said[0].seconds_left));
   CHECK(said[1].seconds_left > 0);
   CHECK(said[1].done == 1);
   CHECK(said[1].total == 2);
-  sweep({find_case("vibration")}, Extent::kQuick, models, testing::source(), store, say, kOn);
+  sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kOn);
   CHECK(said.size() == 2);
 }
 
 }  // namespace
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

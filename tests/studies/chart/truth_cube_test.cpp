@@ -8,18 +8,18 @@
 #include "modules/core/error.h"
 #include "tests/studies/chart/folders.h"
 
-namespace palpate::accuracy {
+namespace palpate::chart {
 namespace {
 
 TEST_CASE("truth cube: beads stand in a grid of 10 mm in the cube and sink under the plate") {
   // Oracle: the experiment's description, 7 × 7 × 7 beads 10 mm apart in a cube of 80 mm; tracking
   // was said to be good to some tenths of a millimetre.
-  const auto source = testing::source();
-  if (!source.data) {
+  const auto folder = truth_cube_folder();
+  if (!folder) {
     std::printf("SKIPPED: no truthcube in PALPATE_DATA\n");
     return;
   }
-  const TruthCube cube = read_truth_cube(*source.data / "truthcube");
+  const TruthCube cube = read_truth_cube(*truth_cube_folder());
   REQUIRE(cube.rest.size() == 343);
   REQUIRE(cube.states.size() == 3);
   Vec3 low = cube.rest[0], high = cube.rest[0];
@@ -62,4 +62,4 @@ TEST_CASE("truth cube: what cannot be read is refused with its place") {
 }
 
 }  // namespace
-}  // namespace palpate::accuracy
+}  // namespace palpate::chart

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "studies/elements/elements_command.h"
 #include "studies/elements/load_path.h"
@@ -12,8 +13,7 @@ namespace palpate::elements_bench {
 namespace {
 
 Setting quick_setting() {
-  return {PALPATE_SOURCE_DIR "/studies/reference", true, [] { return false; },
-          [](const std::string&) {}};
+  return {data_file("reference"), true, [] { return false; }, [](const std::string&) {}};
 }
 
 TEST_CASE("verification: a squeezed ball on a coarse octant is near the reference") {

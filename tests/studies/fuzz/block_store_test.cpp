@@ -9,7 +9,7 @@ namespace {
 
 TEST_CASE("block store: what was written is read back, blocks of other seeds are not") {
   // Oracle: round trip.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   const BlockStore store(folder.path, 1);
   std::vector<Outcome> outcomes(2), back;
   outcomes[0].guards[3] = 17;

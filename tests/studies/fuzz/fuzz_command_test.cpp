@@ -12,9 +12,8 @@ namespace {
 TEST_CASE("fuzz command: fifty random scenes run without an unguarded failure, and are kept") {
   // Oracle: invariants of everything published (lockstep.cpp); the second run reads what the first
   // left.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   FuzzOptions options;
-  options.root = PALPATE_SOURCE_DIR;
   options.out = folder.path;
   options.scenes = 50;
   options.seed = 1;

@@ -1,4 +1,5 @@
 #include "studies/fuzz/organ_watch.h"
+#include "deformation/organ_messages.h"
 
 #include <catch2/catch.hpp>
 
@@ -16,12 +17,12 @@ TEST_CASE("organ watch: an organ at rest is fine, one back at rest without a wor
                                       {geometry::make_ball(world_of::kBallRadius, 1)});
   const double period = 4e-3;
   OrganWatch watch(world, 0, 2 * world_of::kBallRadius, period);
-  CHECK(watch.seen().size() == world.topology(0).rest_positions.size() / 3);
+  CHECK(watch.seen().size() == deformation::surface_message(world, 0).rest_positions.size() / 3);
   CHECK_NOTHROW(watch.look_last());
   for (int k = 0; k < 20; ++k) {
     const double height = world_of::kBallRadius - 2e-4 * k;
     world.set_contacts(world_of::plate_contacts(world, 0, height, 1, 2e-3));
-    world.set_probe(world_of::probe_at(0, Vec3(0, 0, height)));
+    world.set_probe(0, Pose{Vec3(0, 0, height), Quat::Identity()});
     world.advance(period);
     REQUIRE_NOTHROW(watch.look(false));
   }

@@ -13,12 +13,12 @@ TEST_CASE("random scene: its text follows from seed and number alone") {
   CHECK(text_of(random_scene(1, 7)) != text_of(random_scene(2, 7)));
 }
 
-TEST_CASE("random scene: every model, integrator, shape and insult appears") {
+TEST_CASE("random scene: every model, integrator, shape and fault appears") {
   // Oracle: counting; the rarest, 1.5 % of organs, is missed in 2000 scenes with 1e-13.
   std::set<scene::Model> models;
   std::set<scene::Integrator> integrators;
   std::set<Shape> shapes;
-  std::set<Insult> insults;
+  std::set<Fault> faults;
   for (std::uint64_t k = 0; k < 2000; ++k) {
     const RandomScene made = random_scene(3, k);
     for (const auto& organ : made.scene.organs) {
@@ -26,12 +26,12 @@ TEST_CASE("random scene: every model, integrator, shape and insult appears") {
       integrators.insert(organ.integrator);
     }
     for (const auto& placed : made.organ_shapes) shapes.insert(placed.shape);
-    for (const auto& timed : made.insults) insults.insert(timed.insult);
+    for (const auto& timed : made.faults) faults.insert(timed.fault);
   }
   CHECK(models.size() == static_cast<std::size_t>(scene::Model::kModal) + 1);
   CHECK(integrators.size() == 3);
   CHECK(shapes.size() == kShapeCount);
-  CHECK(insults.size() == kInsultCount);
+  CHECK(faults.size() == kFaultCount);
 }
 
 }  // namespace

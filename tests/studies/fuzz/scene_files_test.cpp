@@ -13,7 +13,7 @@ TEST_CASE("scene files: every random scene is one the reader takes") {
   // Oracle: the strict reader: keys, ranges, files.
   for (std::uint64_t k = 0; k < 40; ++k) {
     CAPTURE(k);
-    const accuracy::testing::WorkFolder folder;
+    const chart::testing::WorkFolder folder;
     const RandomScene made = random_scene(7, k);
     const auto file = write_scene(made, testing::shapes(), folder.path);
     scene::Scene read;

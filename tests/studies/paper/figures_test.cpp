@@ -1,5 +1,6 @@
 // The figures of the paper as numbers.
 #include "studies/paper/figures.h"
+#include "modules/core/data_folder.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -7,7 +8,7 @@
 
 #include "tests/studies/paper/temporary_folder.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 using testing::numbers_in;
@@ -17,7 +18,7 @@ using testing::TemporaryFolder;
 struct Run {
   explicit Run(double budget = 240)
       : folder("figures"),
-        options{std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes", folder.path(), true, budget},
+        options{data_file("scenes"), folder.path(), true, budget},
         progress(log, [] { return false; }) {}
 
   std::vector<std::vector<double>> table(const std::string& name) const {
@@ -26,7 +27,7 @@ struct Run {
   TemporaryFolder folder;
   FigureOptions options;
   std::ostringstream log;
-  Progress progress;
+  report::Progress progress;
 };
 
 double largest(const std::vector<std::vector<double>>& rows, std::size_t column) {
@@ -130,4 +131,4 @@ TEST_CASE("speed: every frame of both views is timed") {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::paper

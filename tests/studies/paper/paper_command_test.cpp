@@ -13,7 +13,7 @@
 #include "tests/modules/runtime/waiting.h"
 #include "tests/studies/paper/temporary_folder.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 using testing::TemporaryFolder;
@@ -24,7 +24,7 @@ TEST_CASE("paper command: a figure alone leaves its picture, its tables and the 
   // Oracle: the folder. Pictures need matplotlib, which the tests' machine is to have.
   const TemporaryFolder folder("paper");
   std::ostringstream out, log;
-  const PaperOptions options{folder.path(), {"1"}, false, 240, PALPATE_SOURCE_DIR};
+  const PaperOptions options{folder.path(), {"1"}, false, 240};
   CHECK(run_paper(options, out, log) == kExitDone);
   INFO(log.str());
   CHECK(std::filesystem::file_size(folder.path() / "figure1.png") > 50'000);
@@ -36,8 +36,7 @@ TEST_CASE("paper command: a figure alone leaves its picture, its tables and the 
 TEST_CASE("paper command: a folder that cannot be written is bad input") {
   // Oracle: the error family.
   std::ostringstream out, log;
-  CHECK_THROWS_AS(run_paper({"/proc/nowhere", {"1"}, false, 240, PALPATE_SOURCE_DIR}, out, log),
-                  InputError);
+  CHECK_THROWS_AS(run_paper({"/proc/nowhere", {"1"}, false, 240}, out, log), InputError);
 }
 
 TEST_CASE("paper command: Ctrl-C ends it at once, with 130 and nothing half written") {
@@ -52,11 +51,11 @@ TEST_CASE("paper command: Ctrl-C ends it at once, with 130 and nothing half writ
   child.signal(SIGINT);
   palpate::testing::wait_until([&] { return child.ended().has_value(); });
   REQUIRE(child.ended());
-  CHECK((WIFEXITED(*child.ended()) && WEXITSTATUS(*child.ended()) == kExitStopped));
+  CHECK((WIFEXITED(*child.ended()) && WEXITSTATUS(*child.ended()) == report::kExitStopped));
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
     CHECK(entry.path().extension() != ".part");
   }
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::paper

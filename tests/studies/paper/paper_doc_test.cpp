@@ -17,9 +17,9 @@ std::string page() {
 
 TEST_CASE("paper page: it names the command of every part") {
   // Oracle: what --only takes.
-  for (const auto& part : palpate::bench::paper_parts()) {
+  for (const auto& part : palpate::paper::paper_parts()) {
     INFO(part);
-    std::string command = "palpate chart paper --only ";
+    std::string command = "palpate paper --only ";
     CHECK(page().find(command.append(part)) != std::string::npos);
   }
 }

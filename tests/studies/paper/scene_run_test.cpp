@@ -3,17 +3,18 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "modules/core/data_folder.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/paper/findings.h"
 #include "studies/paper/shape_files.h"
 #include "tests/studies/paper/temporary_folder.h"
 
-namespace palpate::bench {
+namespace palpate::paper {
 namespace {
 
 using testing::TemporaryFolder;
 
-const std::filesystem::path kScenes = std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes";
+const std::filesystem::path kScenes = data_file("scenes");
 
 /// Five nodes 10 cm apart on the x axis, the fourth fixed, and a virtual one.
 SurfaceTopology row_of_nodes() {
@@ -49,11 +50,11 @@ TEST_CASE("scene run: one sample per deformation period, as the pipeline alone g
   // Oracle: the pipeline driven directly.
   const auto scene = scene::load_scene(kScenes / "ball_squeeze.yaml");
   std::ostringstream log;
-  Progress progress(log, [] { return false; });
+  report::Progress progress(log, [] { return false; });
   const auto samples = run_scene(scene, 0.1, progress);
   REQUIRE(samples.size() == 25);
   CHECK(samples.back().time == Approx(0.1));
-  auto pipeline = pipeline::load_pipeline(scene);
+  auto pipeline = session::load_session(scene);
   pipeline.run_until(0.1 - 0.5e-9);
   CHECK(samples.back().volume == pipeline.node_positions(0).volume);
 
@@ -108,4 +109,4 @@ TEST_CASE("findings: printed beside the paper's value, and written") {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::paper

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::bench::testing {
+namespace palpate::paper::testing {
 
 class TemporaryFolder {
  public:
@@ -52,4 +52,4 @@ inline std::vector<std::vector<double>> numbers_in(const std::filesystem::path& 
   return rows;
 }
 
-}  // namespace palpate::bench::testing
+}  // namespace palpate::paper::testing

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
 #include "tests/studies/chart/folders.h"
@@ -12,8 +13,7 @@ namespace palpate::plan {
 namespace {
 
 std::filesystem::path write_scene(const std::filesystem::path& folder, const std::string& needs) {
-  std::filesystem::copy_file(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/meshes/ball.ply",
-                             folder / "ball.ply");
+  std::filesystem::copy_file(data_file("scenes/meshes/ball.ply"), folder / "ball.ply");
   std::ofstream(folder / "scene.yaml") << R"(palpate_scene: 1
 organs:
   - name: ball
@@ -34,7 +34,7 @@ probes:
 
 TEST_CASE("plan command: it writes a scene that can be read, or says what would be needed") {
   // Oracle: the written scene's model, mesh and rate are those of the line 'chosen'; exit codes.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   PlanOptions options;
   options.seconds = 0.5;
   options.scene = write_scene(folder.path, "needs: {force_error: 5, step_hz: 50}\n");
@@ -44,11 +44,11 @@ TEST_CASE("plan command: it writes a scene that can be read, or says what would 
   CHECK_THAT(out.str(), Catch::Contains(std::to_string(planned.organs[0].mesh.nodes) + " nodes"));
   CHECK(planned.rates.deformation >= 50);
   CHECK_THAT(log.str(),
-             Catch::Matches("(.|\\n)*truth: [0-9]+ nodes; a coarser one of [0-9]+ differs"
+             Catch::Matches("(.|\\n)*reference: [0-9]+ nodes; a coarser one of [0-9]+ differs"
                             " by [0-9.]+% of the force(.|\\n)*"));
 
   std::ofstream(options.scene, std::ios::app) << "\n";
-  const accuracy::testing::WorkFolder strict;
+  const chart::testing::WorkFolder strict;
   options.scene = write_scene(strict.path, "needs: {volume_error: 1.0e-12, step_hz: 50}\n");
   std::ostringstream refused;
   CHECK(run_plan(options, refused, log) == kExitFailed);
@@ -58,7 +58,7 @@ TEST_CASE("plan command: it writes a scene that can be read, or says what would 
 
 TEST_CASE("plan command: a scene without needs is refused") {
   // Oracle: the message.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   std::ostringstream out, log;
   CHECK_THROWS_WITH(run_plan({write_scene(folder.path, ""), {}, 1}, out, log),
                     Catch::Contains("key 'needs' asks for nothing"));
@@ -67,7 +67,7 @@ TEST_CASE("plan command: a scene without needs is refused") {
 TEST_CASE("plan command: forces of probes that do not touch yet are not judged") {
   // Oracle: the tip of 10 mm begins 62 mm from the middle of a ball of 50 mm and has moved less
   // than its 2 mm of air after 0.1 s.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   std::ostringstream out, log;
   CHECK_THROWS_WITH(
       run_plan({write_scene(folder.path, "needs: {force_error: 5}\n"), {}, 0.1}, out, log),

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "haptics/device.h"
+#include "modules/core/data_folder.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
-#include "studies/plan/solid_truth.h"
+#include "studies/plan/solid_reference.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
 namespace palpate::plan {
@@ -21,7 +22,7 @@ Course course_of(double force, double surface) {
   return course;
 }
 
-TEST_CASE("plan: errors of a course are root mean squares against the truth") {
+TEST_CASE("plan: errors of a course are root mean squares against the reference") {
   // Oracle: by hand.
   const Errors errors = compare(course_of(1.1, 3e-3), course_of(1, 1e-3));
   CHECK(errors.force == Approx(0.1));
@@ -35,13 +36,13 @@ TEST_CASE("plan: the cheapest that meets all needs is chosen, and losers know wh
   // Oracle: by hand.
   scene::Needs needs;
   needs.force_error = 0.2;
-  const Course truth = course_of(1, 1e-3);
+  const Course reference = course_of(1, 1e-3);
   Course dear = course_of(1.05, 1e-3), wrong = course_of(1.5, 1e-3), slow = course_of(1, 1e-3);
   dear.deformation_cost = 0.3;
   slow.deformation_cost = 2;
   std::vector<Verdict> verdicts;
   for (const Course& course : {wrong, dear, slow}) {
-    verdicts.push_back(judge(needs, {}, course, truth));
+    verdicts.push_back(judge(needs, {}, course, reference));
   }
   REQUIRE(best(verdicts) == &verdicts[1]);
   CHECK_THAT(verdicts[0].failures.at(0), Catch::Contains("force error 0.5 > 0.2"));
@@ -75,8 +76,7 @@ TEST_CASE("plan: a candidate is written into the scene explicitly") {
 
 TEST_CASE("plan: quadratic candidates have as many nodes as the others, not as many corners") {
   // Oracle: the rule; the liver's surface has 544 nodes.
-  const auto scene =
-      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/liver_solid.yaml");
+  const auto scene = scene::load_scene(data_file("scenes/liver_solid.yaml"));
   std::size_t most_linear = 0, most_corners = 0;
   for (const Candidate& candidate : candidates_of(scene)) {
     CHECK(candidate.nodes >= 60);
@@ -87,13 +87,12 @@ TEST_CASE("plan: quadratic candidates have as many nodes as the others, not as m
   CHECK(most_corners == 2 * 544 / 4);
 }
 
-TEST_CASE("plan: the truth of a solid is fine where the probe goes, and of the same shape") {
+TEST_CASE("plan: the reference of a solid is fine where the probe goes, and of the same shape") {
   // Oracle: volume; edges touched by the probe, as the device moves it, and far from it.
   constexpr double kDuration = 4;
   if (geometry::testing::without_gmsh()) return;
-  auto scene =
-      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes/liver_solid.yaml");
-  const auto fine = solid_truth_shape(scene, kDuration, kTruthEdge).surface;
+  auto scene = scene::load_scene(data_file("scenes/liver_solid.yaml"));
+  const auto fine = solid_reference_shape(scene, kDuration, kReferenceEdge).surface;
   scene.organs[0].model = scene::Model::kImplicitVolume;
   const auto coarse = scene::load_organ(scene.organs[0]).surface;
   CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==

@@ -5,7 +5,7 @@
 #include "modules/core/error.h"
 #include "tests/studies/paper/temporary_folder.h"
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
 TEST_CASE("measures: median and number text") {
@@ -30,7 +30,7 @@ TEST_CASE("measures: the machine has a name") {
 
 TEST_CASE("measures: a folder that cannot be made is bad input and named") {
   // Oracle: a file is no folder.
-  const testing::TemporaryFolder folder("measures");
+  const palpate::paper::testing::TemporaryFolder folder("measures");
   make_out_folder(folder.path() / "a/b");
   CHECK(std::filesystem::is_directory(folder.path() / "a/b"));
   const auto file = folder.path() / "file";
@@ -39,4 +39,4 @@ TEST_CASE("measures: a folder that cannot be made is bad input and named") {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::report

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
 TEST_CASE("progress: says what begins, and ends the job when asked to") {
@@ -19,4 +19,4 @@ TEST_CASE("progress: says what begins, and ends the job when asked to") {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::report

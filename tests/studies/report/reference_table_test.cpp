@@ -6,12 +6,12 @@
 #include "modules/core/error.h"
 #include "tests/studies/paper/temporary_folder.h"
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
 TEST_CASE("reference table: is read by column and looked up by value") {
   // Oracle: the table, read by eye.
-  const testing::TemporaryFolder folder("reference_table");
+  const palpate::paper::testing::TemporaryFolder folder("reference_table");
   const auto file = folder.path() / "table.csv";
   std::ofstream(file) << "a,b,kind\n0.5,2,x\n0.75,3e-1,y\n";
   const ReferenceTable table(file);
@@ -24,4 +24,4 @@ TEST_CASE("reference table: is read by column and looked up by value") {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::report

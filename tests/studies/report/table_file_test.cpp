@@ -4,10 +4,10 @@
 
 #include "tests/studies/paper/temporary_folder.h"
 
-namespace palpate::bench {
+namespace palpate::report {
 namespace {
 
-using testing::TemporaryFolder;
+using palpate::paper::testing::TemporaryFolder;
 
 TEST_CASE("table file: rows as written, cells with commas quoted") {
   // Oracle: the text by hand, RFC 4180.
@@ -16,7 +16,7 @@ TEST_CASE("table file: rows as written, cells with commas quoted") {
   table.write_row({0.1, -2e-12});
   table.write_row(std::vector<std::string>{"a, b", "say \"c\""});
   table.finish();
-  CHECK(testing::text_in(folder.path() / "a.csv") ==
+  CHECK(palpate::paper::testing::text_in(folder.path() / "a.csv") ==
         "x_m,word\n0.1,-2e-12\n\"a, b\",\"say \"\"c\"\"\"\n");
 }
 
@@ -28,9 +28,9 @@ TEST_CASE("table file: without finish nothing is left, and what was there stays"
   {
     TableFile table(file, {"x"});
     table.write_row({1.0});
-    CHECK(testing::text_in(file) == "old");
+    CHECK(palpate::paper::testing::text_in(file) == "old");
   }
-  CHECK(testing::text_in(file) == "old");
+  CHECK(palpate::paper::testing::text_in(file) == "old");
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
@@ -40,4 +40,4 @@ TEST_CASE("table file: where nothing can be written it says so") {
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::report

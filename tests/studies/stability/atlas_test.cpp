@@ -68,7 +68,7 @@ TEST_CASE("atlas: frontiers outside the map are said to be so; what stands again
 
 TEST_CASE("atlas: a stored column comes back the same, and only for its own grid") {
   // Oracle: round trip to the ten digits of the file; no try is made for what is stored.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   const ColumnStore store(folder.path / "points");
   Map map = made_up();
   Column back;

@@ -23,7 +23,7 @@ TEST_CASE("locking: linear tetrahedra stiffen towards one half, averaged pressur
 
 TEST_CASE("locking: what was measured is not measured again, and stands in the table") {
   // Oracle: a second call that is stopped at the first measurement finishes all the same.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   struct Stop {};
   CHECK(locking_ratios(true).size() < locking_ratios(false).size());
   CHECK_THROWS_AS(measure_locking({0.45}, folder.path, [] { throw Stop{}; }), Stop);

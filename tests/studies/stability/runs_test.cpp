@@ -52,12 +52,12 @@ TEST_CASE("runs: implicit steps stand at any size, explicit ones do not, and say
   // Oracle: backward Euler damps every mode, xpbd has no stiffness too much.
   Shapes shapes;
   for (const char* name : {"implicit_volume_backward", "xpbd_springs", "corotational"}) {
-    const Subject& subject = subject_named(name);
+    const Scheme& scheme = scheme_named(name);
     INFO(name);
-    CHECK(holds(swing(subject, shapes.shape_for(subject), 1e6, 0.05, kOn).state));
+    CHECK(holds(swing(scheme, shapes.shape_for(scheme), 1e6, 0.05, kOn).state));
   }
-  const Subject& subject = subject_named("implicit_volume");
-  const Verdict verdict = swing(subject, shapes.shape_for(subject), 1e6, 0.05, kOn);
+  const Scheme& scheme = scheme_named("implicit_volume");
+  const Verdict verdict = swing(scheme, shapes.shape_for(scheme), 1e6, 0.05, kOn);
   CHECK(verdict.state == State::kDiverged);
   CHECK_FALSE(verdict.energy < kDivergedGain);
 }
@@ -66,10 +66,10 @@ TEST_CASE("runs: modal motion and ChainMail stand at any step, being exact or no
   // Oracle: an oscillator's exact solution keeps its energy; a Jacobi step of r = ½ only loses it.
   Shapes shapes;
   for (const char* name : {"modal", "chainmail"}) {
-    const Subject& subject = subject_named(name);
+    const Scheme& scheme = scheme_named(name);
     INFO(name);
     for (const double h : {1e-4, 1e-2, 0.1}) {
-      const Verdict verdict = swing(subject, shapes.shape_for(subject), 1e5, h, kOn);
+      const Verdict verdict = swing(scheme, shapes.shape_for(scheme), 1e5, h, kOn);
       CHECK(verdict.state == State::kStable);
       CHECK(verdict.energy < 1.5);
     }
@@ -80,15 +80,15 @@ TEST_CASE("runs: triangles are inverted where they face inwards, however the bal
   // Oracle: none of a turned ball; some around a node drawn sideways over its neighbours. The best
   // rotation of an everted ball is half a turn about any axis a: those normals with (a·n)² < ½.
   Shapes shapes;
-  const Subject& subject = subject_named("implicit_volume");
-  const Specimen specimen(organ_of(subject, 1e4), shapes.shape_for(subject));
-  const auto& model = specimen.model();
-  auto x = specimen.state().positions;
+  const Scheme& scheme = scheme_named("implicit_volume");
+  const TestBody body(organ_of(scheme, 1e4), shapes.shape_for(scheme));
+  const auto& model = body.model();
+  auto x = body.state().positions;
   const Eigen::AngleAxisd turn(3, Vec3(1, 2, -1).normalized());
   for (Vec3& p : x) p = turn * p;
   CHECK(inverted_share(model, x) == 0);
   auto folded = x;
-  folded[0] += kRadius * x[0].unitOrthogonal();
+  folded[0] += kBallRadius * x[0].unitOrthogonal();
   const double around = inverted_share(model, folded) * double(model.triangles.size());
   CHECK(around >= 1);
   CHECK(around <= 6);
@@ -99,23 +99,23 @@ TEST_CASE("runs: triangles are inverted where they face inwards, however the bal
 TEST_CASE("runs: a squeezed ball touches the plates, keeps its volume, and stands at small steps") {
   // Oracle: nodes do not pass the plates; the volume constraint; plain springs lose more than 1 %.
   Shapes shapes;
-  std::unique_ptr<Specimen> end;
-  const Subject& kept = subject_named("implicit_volume");
+  std::unique_ptr<TestBody> end;
+  const Scheme& kept = scheme_named("implicit_volume");
   const Verdict verdict = squeeze(kept, shapes.shape_for(kept), 0.3, 2e-3, kOn, &end);
   CHECK(verdict.state == State::kStable);
   CHECK(verdict.volume_error < 1e-6);
   double highest = 0;
   for (const Vec3& p : end->state().positions) highest = std::max(highest, std::abs(p.z()));
-  CHECK(highest == Approx(0.7 * kRadius).epsilon(1e-3));
-  const Subject& springs = subject_named("mass_spring");
+  CHECK(highest == Approx(0.7 * kBallRadius).epsilon(1e-3));
+  const Scheme& springs = scheme_named("mass_spring");
   CHECK(squeeze(springs, shapes.shape_for(springs), 0.3, 2e-3, kOn).volume_error > 0.01);
 }
 
 TEST_CASE("runs: a sphere driven in and out dents the ball by its depth and leaves it whole") {
   // Oracle: the top node is under the sphere at 20 mm depth, 0.4 R; afterwards it stands.
   Shapes shapes;
-  const Subject& subject = subject_named("implicit_volume");
-  const Verdict verdict = poke(subject, shapes.shape_for(subject), 0.3, 2e-3, kOn);
+  const Scheme& scheme = scheme_named("implicit_volume");
+  const Verdict verdict = poke(scheme, shapes.shape_for(scheme), 0.3, 2e-3, kOn);
   CHECK(verdict.state == State::kStable);
   CHECK(verdict.displacement == Approx(0.4).margin(0.05));
   CHECK(verdict.inverted == 0);
@@ -125,11 +125,11 @@ TEST_CASE("runs: whoever wants it to end ends it") {
   // Oracle: what keep_going throws comes out.
   struct Stop {};
   Shapes shapes;
-  const Subject& subject = subject_named("mass_spring");
-  const auto& shape = shapes.shape_for(subject);
-  CHECK_THROWS_AS(swing(subject, shape, 1e4, 1e-3, [] { throw Stop{}; }), Stop);
-  CHECK_THROWS_AS(squeeze(subject, shape, 0.1, 1e-3, [] { throw Stop{}; }), Stop);
-  CHECK_THROWS_AS(poke(subject, shape, 0.1, 1e-3, [] { throw Stop{}; }), Stop);
+  const Scheme& scheme = scheme_named("mass_spring");
+  const auto& shape = shapes.shape_for(scheme);
+  CHECK_THROWS_AS(swing(scheme, shape, 1e4, 1e-3, [] { throw Stop{}; }), Stop);
+  CHECK_THROWS_AS(squeeze(scheme, shape, 0.1, 1e-3, [] { throw Stop{}; }), Stop);
+  CHECK_THROWS_AS(poke(scheme, shape, 0.1, 1e-3, [] { throw Stop{}; }), Stop);
 }
 
 }  // namespace

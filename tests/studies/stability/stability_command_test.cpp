@@ -12,7 +12,6 @@ namespace {
 
 StabilityOptions quick_in(const std::filesystem::path& out) {
   StabilityOptions options;
-  options.root = PALPATE_SOURCE_DIR;
   options.out = out;
   options.quick = true;
   return options;
@@ -26,7 +25,7 @@ std::string text_of(const std::filesystem::path& file) {
 
 TEST_CASE("stability command: tables and maps appear, and a second run finds the same") {
   // Oracle: the promised files, theory met, and bit-equal tables of a run that measures nothing.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   StabilityOptions options = quick_in(folder.path);
   options.only_maps = {"step_stiffness"};
   options.only_series = {"implicit_volume"};
@@ -48,7 +47,7 @@ TEST_CASE("stability command: tables and maps appear, and a second run finds the
 
 TEST_CASE("stability command: unknown maps and series are refused with what there is") {
   // Oracle: the messages.
-  const accuracy::testing::WorkFolder folder;
+  const chart::testing::WorkFolder folder;
   StabilityOptions options = quick_in(folder.path);
   std::ostringstream out, log;
   options.only_maps = {"weather"};

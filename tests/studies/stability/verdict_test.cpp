@@ -21,16 +21,16 @@ Signals calm() {
   return signals;
 }
 
-const Yardstick kYardstick{1, 0.1, 0.01};
+const Tolerance kTolerance{1, 0.1, 0.01};
 
-State state_of(const Signals& signals) { return judge(signals, kYardstick).state; }
+State state_of(const Signals& signals) { return judge(signals, kTolerance).state; }
 
 TEST_CASE("verdict: a calm swing is stable, and its numbers are those of the signals") {
   // Oracle: the definition.
   auto signals = calm();
   signals.energy[7] = 1.5;
   signals.displacement[30] = 0.4;
-  const Verdict verdict = judge(signals, kYardstick);
+  const Verdict verdict = judge(signals, kTolerance);
   CHECK(verdict.state == State::kStable);
   CHECK(verdict.energy == 1.5);
   CHECK(verdict.displacement == 0.4);
@@ -46,7 +46,7 @@ TEST_CASE("verdict: energy, place, volume or numbers gone make it diverged") {
   CHECK(state_of(signals) == State::kDiverged);
   signals = calm();
   signals.displacement.back() = 1.01 * kDivergedDisplacement;
-  CHECK(is_lost(signals, kYardstick));
+  CHECK(is_lost(signals, kTolerance));
   CHECK(state_of(signals) == State::kDiverged);
   signals = calm();
   signals.energy[50] = std::numeric_limits<double>::quiet_NaN();
@@ -64,7 +64,7 @@ TEST_CASE("verdict: velocities that turn round in every step oscillate, unless t
   auto signals = calm();
   signals.turning.assign(kSteps, 1);
   CHECK(state_of(signals) == State::kOscillating);
-  Yardstick lenient = kYardstick;
+  Tolerance lenient = kTolerance;
   lenient.may_turn = true;
   CHECK(judge(signals, lenient).state == State::kStable);
   signals.kinetic.assign(kSteps, 0.1 * kStill);

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-namespace palpate::bench {
+namespace palpate::volume_methods {
 namespace {
 
 Method method(const std::string& name) {
@@ -14,7 +14,7 @@ Method method(const std::string& name) {
   return {};
 }
 
-TEST_CASE("compared neighbours: volume errors of the squeezed ball fall in the expected order") {
+TEST_CASE("volume methods: volume errors of the squeezed ball fall in the expected order") {
   // Oracle: what each keeps: nothing, a mean radius, the volume up to p/K, up to what the last 1/a
   // has not yet corrected, up to the linearisation of a step, and without that.
   double before = 1;
@@ -31,7 +31,7 @@ TEST_CASE("compared neighbours: volume errors of the squeezed ball fall in the e
   CHECK(squeeze_ball(method("post_stabilisation"), true).held < 1e-12);
 }
 
-TEST_CASE("compared neighbours: methods that keep the same volume feel the same force") {
+TEST_CASE("volume methods: methods that keep the same volume feel the same force") {
   // Oracle: one equilibrium. 1 %: what Promayon's contacts give way by.
   const double force = squeeze_ball(method("implicit_volume"), true).force;
   REQUIRE(force > 0.1);
@@ -41,7 +41,7 @@ TEST_CASE("compared neighbours: methods that keep the same volume feel the same 
   }
 }
 
-TEST_CASE("compared neighbours: no method is given a step that is not stable") {
+TEST_CASE("volume methods: no method is given a step that is not stable") {
   // Oracle: bisection over runs. The bounds are Gershgorin's, so on the safe side.
   for (const Method& each : compared_methods()) {
     INFO(each.name);
@@ -51,7 +51,7 @@ TEST_CASE("compared neighbours: no method is given a step that is not stable") {
   }
 }
 
-TEST_CASE("compared neighbours: springs and smooth energies drift by less than 0.1 % in 4 s") {
+TEST_CASE("volume methods: springs and smooth energies drift by less than 0.1 % in 4 s") {
   // Oracle: symplectic Euler keeps an energy near the true one; methods that move positions after
   // the step do not, and lose.
   for (const char* name : {"mass_spring", "penalty", "bourguignon_cani", "implicit_volume"}) {
@@ -64,4 +64,4 @@ TEST_CASE("compared neighbours: springs and smooth energies drift by less than 0
 }
 
 }  // namespace
-}  // namespace palpate::bench
+}  // namespace palpate::volume_methods

@@ -1,0 +1,62 @@
+// What a haptic tick, a search for contacts and an advance of the organs cost within a whole
+// session, one thread, without transport: for comparing builds.
+//
+// The session is run tick by tick. A tick is haptics alone, haptics and search, or all three: the
+// search is sought twice a period of deformation so that each part is seen without the next. Times
+// are first quartiles: other programs on the machine only ever add.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "modules/core/data_folder.h"
+#include "modules/core/error.h"
+#include "modules/runtime/program.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/session/in_process.h"
+#include "studies/report/measures.h"
+
+namespace {
+
+using namespace palpate;
+
+double first_quartile(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values.empty() ? NAN : values[values.size() / 4];
+}
+
+int run(const std::string& file, double seconds) {
+  auto scene = scene::load_scene(file);
+  scene.rates.collision = 2 * scene.rates.deformation;
+  scene.rates.haptics = 4 * scene.rates.deformation;
+  auto session = session::load_session(scene);
+  std::array<std::vector<double>, 3> costs;  // of ticks with one, two and all three parts [s]
+  for (long tick = 0; session.time() < seconds; ++tick) {
+    const auto begin = std::chrono::steady_clock::now();
+    session.tick();
+    const std::chrono::duration<double> cost = std::chrono::steady_clock::now() - begin;
+    costs[tick % 4 == 0 ? 2 : tick % 2 == 0 ? 1 : 0].push_back(cost.count());
+  }
+  const double haptics = first_quartile(costs[0]), with_search = first_quartile(costs[1]),
+               all = first_quartile(costs[2]);
+  std::printf("%s\n%s, %g s\n", report::machine_name().c_str(), file.c_str(), seconds);
+  std::printf("  haptic tick         %10.2f us\n", 1e6 * haptics);
+  std::printf("  contact search      %10.2f us\n", 1e6 * (with_search - haptics));
+  std::printf("  deformation period  %10.2f us\n", 1e6 * (all - with_search));
+  return kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("What each part of a session's cycle costs.", "palpate-bench-cycle");
+  auto scene = (data_folder() / "scenes/stomach_probe.yaml").string();
+  double seconds = 20;
+  app.add_option("SCENE", scene, "Scene file (YAML)")->capture_default_str();
+  app.add_option("--seconds", seconds, "Of the scene, from its start")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  return runtime::run_program(app, argc, argv, [&] { return run(scene, seconds); });
+}

@@ -1,0 +1,232 @@
+#include "collision/stage.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "collision/contact_margin.h"
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/scene/assets.h"
+
+namespace palpate::collision {
+namespace {
+
+/// The organs' surfaces as deformation tells them, kept in a finder.
+class OrganInputs {
+ public:
+  OrganInputs(bus::Bus& bus, std::vector<ProbeGeometry> probes, std::size_t organs)
+      : surfaces_(bus.reader(bus::kSurface)),
+        positions_(bus.reader(bus::kNodePositions)),
+        probes_(std::move(probes)),
+        organs_(organs) {}
+
+  void take() {
+    while (surfaces_.take(surface_)) take_surface();
+    while (positions_.take(newest_)) take_positions();
+  }
+
+  /// nullptr until the surfaces of all organs are known.
+  ContactFinder* finder() { return finder_ ? &*finder_ : nullptr; }
+  std::uint64_t sequence() const { return sequence_; }  ///< of the newest node positions
+  /// Of node positions, as they come [s]; 0 before the second.
+  double interval() const { return interval_; }
+
+ private:
+  struct OrganInput {
+    std::uint32_t generation = 0;
+    std::vector<geometry::Triangle> triangles;
+    std::size_t surface_node_count = 0;
+    std::vector<Vec3> positions;
+  };
+
+  static void read_positions(const std::vector<float>& from, OrganInput& organ) {
+    organ.positions.resize(organ.surface_node_count);
+    for (std::size_t i = 0; i < organ.surface_node_count; ++i) {
+      organ.positions[i] = Vec3(from[3 * i], from[3 * i + 1], from[3 * i + 2]);
+    }
+  }
+
+  /// A surface starts its organ anew: what was remembered of the search before no longer holds.
+  void take_surface() {
+    if (surface_.organ >= organs_.size()) return;
+    OrganInput& organ = organs_[surface_.organ];
+    const bool same_shape = finder_ && organ.triangles == surface_.triangles;
+    organ.generation = surface_.generation;
+    organ.surface_node_count = surface_.surface_node_count;
+    organ.triangles = surface_.triangles;
+    read_positions(surface_.rest_positions, organ);
+    same_shape ? finder_->reset() : make_finder();
+    if (finder_) finder_->update_organ(surface_.organ, organ.positions);
+  }
+
+  void make_finder() {
+    finder_.reset();
+    std::vector<std::vector<geometry::Triangle>> triangles;
+    for (const OrganInput& organ : organs_) {
+      if (organ.triangles.empty()) return;
+      triangles.push_back(organ.triangles);
+    }
+    finder_.emplace(std::move(triangles), probes_);
+    for (std::size_t i = 0; i < organs_.size(); ++i) {
+      finder_->update_organ(i, organs_[i].positions);
+    }
+  }
+
+  /// Positions of another generation than the surface's wait for their surface.
+  void take_positions() {
+    if (newest_.organ >= organs_.size() || !finder_) return;
+    OrganInput& organ = organs_[newest_.organ];
+    if (newest_.generation != organ.generation ||
+        newest_.positions.size() < 3 * organ.surface_node_count) {
+      return;
+    }
+    read_positions(newest_.positions, organ);
+    finder_->update_organ(newest_.organ, organ.positions);
+    sequence_ = newest_.header.sequence;
+    if (newest_.organ != 0) return;
+    if (came_ns_ != 0) interval_ = seconds_from_ns(newest_.header.source_time_ns - came_ns_);
+    came_ns_ = newest_.header.source_time_ns;
+  }
+
+  bus::Reader<SurfaceTopology> surfaces_;
+  bus::Reader<NodePositions> positions_;
+  std::vector<ProbeGeometry> probes_;
+  std::vector<OrganInput> organs_;
+  std::optional<ContactFinder> finder_;
+  SurfaceTopology surface_;
+  NodePositions newest_;
+  std::uint64_t sequence_ = 0;
+  std::int64_t came_ns_ = 0;
+  double interval_ = 0;
+};
+
+/// The probes' ways from search to search.
+class ProbeInputs {
+ public:
+  ProbeInputs(bus::Bus& bus, std::size_t probes)
+      : states_(bus.reader(bus::kProbeState)),
+        probes_(probes),
+        heard_(probes, runtime::kInputStaleAfter) {}
+
+  void take() {
+    while (states_.take(newest_)) {
+      if (newest_.probe >= probes_.size()) continue;
+      Way& way = probes_[newest_.probe];
+      if (!way.known) way.searched = newest_.pose;
+      way.known = true;
+      way.newest = newest_;
+      heard_.heard(newest_.probe, newest_.header.source_time_ns);
+    }
+  }
+
+  /// The way since the last call.
+  ProbeMotion motion(std::size_t probe) {
+    Way& way = probes_[probe];
+    const ProbeMotion motion{way.searched, way.newest.pose};
+    way.searched = way.newest.pose;
+    return motion;
+  }
+
+  /// A probe that was lost begins where it is found again.
+  void lose(std::size_t probe) { probes_[probe].known = false; }
+
+  const ProbeState& newest(std::size_t probe) const { return probes_[probe].newest; }
+  std::size_t count() const { return probes_.size(); }
+  bool silent(std::size_t probe, std::int64_t now_ns) const { return heard_.silent(probe, now_ns); }
+  bool any_silent(std::int64_t now_ns) const { return heard_.any_silent(now_ns); }
+
+ private:
+  struct Way {
+    bool known = false;
+    ProbeState newest;
+    Pose searched;
+  };
+  bus::Reader<ProbeState> states_;
+  std::vector<Way> probes_;
+  runtime::SilenceWatch heard_;
+  ProbeState newest_;
+};
+
+/// The rates that hold at the moment: a deformation that cannot keep up uses contacts for longer.
+scene::Rates present_rates(scene::Rates rates, double interval) {
+  constexpr double kLongestInterval = 0.05;
+  if (interval > 0) {
+    rates.deformation = std::min(rates.deformation, 1 / std::min(interval, kLongestInterval));
+  }
+  return rates;
+}
+
+const char* acting_guard(bool silent, bool truncated) {
+  if (silent) return "no news of a probe: it touches nothing until it is heard again";
+  return truncated ? "more contacts than a message holds: the deepest are kept" : "";
+}
+
+}  // namespace
+
+struct CollisionStage::Impl {
+  Impl(const scene::Scene& scene, std::vector<ProbeGeometry> geometry, bus::Bus& bus)
+      : rates(scene.rates),
+        organs(bus, std::move(geometry), scene.organs.size()),
+        probes(bus, scene.probes.size()),
+        writer(bus.writer(bus::kContacts)) {}
+
+  /// Contacts of a probe on its way since the last search; none if it is lost.
+  void search(const runtime::Cycle& now, std::uint32_t probe) {
+    const ProbeState& state = probes.newest(probe);
+    contacts.probe = probe;
+    contacts.probe_pose = state.pose;
+    contacts.truncated = false;
+    contacts.contacts.clear();
+    if (probes.silent(probe, now.now_ns)) return probes.lose(probe);
+    const double margin =
+        contact_margin(present_rates(rates, organs.interval()), state.twist.linear.norm());
+    organs.finder()->find(probe, probes.motion(probe), margin, kMaxContactsPerProbe, contacts);
+  }
+
+  scene::Rates rates;
+  OrganInputs organs;
+  ProbeInputs probes;
+  bus::Writer<Contacts> writer;
+  Contacts contacts;
+};
+
+std::vector<ProbeGeometry> probes_of(const scene::Scene& scene,
+                                     std::vector<geometry::TriangleSurface> meshes) {
+  PALPATE_DEMAND(meshes.size() == scene.probes.size());
+  std::vector<ProbeGeometry> probes;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    probes.push_back({scene.probes[i].shape, std::move(meshes[i])});
+  }
+  return probes;
+}
+
+std::vector<ProbeGeometry> load_probes(const scene::Scene& scene) {
+  std::vector<geometry::TriangleSurface> meshes;
+  for (const auto& probe : scene.probes) meshes.push_back(scene::load_probe_mesh(probe));
+  return probes_of(scene, std::move(meshes));
+}
+
+CollisionStage::CollisionStage(const scene::Scene& scene, std::vector<ProbeGeometry> probes,
+                               bus::Bus& bus)
+    : impl_(std::make_unique<Impl>(scene, std::move(probes), bus)) {}
+
+CollisionStage::~CollisionStage() = default;
+
+runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
+  impl_->organs.take();
+  impl_->probes.take();
+  ContactFinder* finder = impl_->organs.finder();
+  if (finder == nullptr) return {.ready = false};
+  if (now.reset) finder->reset();
+  bool truncated = false;
+  for (std::uint32_t probe = 0; probe < impl_->probes.count(); ++probe) {
+    impl_->search(now, probe);
+    impl_->contacts.header = now.header();
+    impl_->contacts.node_positions_sequence = impl_->organs.sequence();
+    impl_->writer.write(impl_->contacts);
+    truncated |= impl_->contacts.truncated;
+  }
+  return {.guard = acting_guard(impl_->probes.any_silent(now.now_ns), truncated)};
+}
+
+}  // namespace palpate::collision

@@ -1,0 +1,34 @@
+// Collision as a stage: probes and organs in, contacts out.
+#pragma once
+
+#include "collision/contact_finder.h"
+#include "modules/bus/bus.h"
+#include "modules/runtime/silence_watch.h"
+#include "modules/runtime/stage.h"
+
+namespace palpate::collision {
+
+/// The probes of a scene with their meshes, those of MeshShapes; others are empty.
+std::vector<ProbeGeometry> probes_of(const scene::Scene& scene,
+                                     std::vector<geometry::TriangleSurface> meshes);
+/// The same with the meshes loaded.
+/// @throws InputError for a mesh that cannot be used
+std::vector<ProbeGeometry> load_probes(const scene::Scene& scene);
+
+/// Each cycle: take the newest organs and probe poses, search each probe's way since the last
+/// search, publish its contacts, none included. A probe not heard of for kInputStaleAfter touches
+/// nothing. Ready once the surfaces of all organs are known.
+class CollisionStage : public runtime::Stage {
+ public:
+  /// @param scene   outlives the stage
+  /// @param probes  one per probe of the scene
+  CollisionStage(const scene::Scene& scene, std::vector<ProbeGeometry> probes, bus::Bus& bus);
+  ~CollisionStage() override;
+  runtime::Health cycle(const runtime::Cycle& now) override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::collision

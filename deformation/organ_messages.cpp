@@ -1,0 +1,55 @@
+#include "deformation/organ_messages.h"
+
+namespace palpate::deformation {
+namespace {
+
+void write_float32(std::span<const Vec3> positions, std::vector<float>& out) {
+  out.resize(3 * positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out[3 * i + axis] = static_cast<float>(positions[i][static_cast<Eigen::Index>(axis)]);
+    }
+  }
+}
+
+}  // namespace
+
+SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ) {
+  const OrganModel& model = world.model(organ);
+  SurfaceTopology message;
+  message.organ = static_cast<std::uint32_t>(organ);
+  message.generation = world.generation(organ);
+  message.name = world.name(organ);
+  message.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count);
+  write_float32(model.rest_positions, message.rest_positions);
+  message.triangles = model.triangles;
+  message.fixed_nodes = model.fixed_nodes;
+  if (model.is_solid()) return message;
+  const SpringNetwork& network = model.network();
+  for (std::size_t s = 0; s < network.springs.size(); ++s) {
+    const Spring& spring = network.springs[s];
+    message.springs.push_back({spring.node_a, spring.node_b, network.family(s)});
+  }
+  return message;
+}
+
+void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out) {
+  const OrganReading reading = world.read(organ);
+  out.organ = static_cast<std::uint32_t>(organ);
+  out.generation = world.generation(organ);
+  out.volume = reading.volume;
+  out.target_volume = reading.target_volume;
+  out.pressure = reading.pressure;
+  out.kinetic_energy = reading.kinetic_energy;
+  out.elastic_energy = reading.elastic_energy;
+  write_float32(reading.positions, out.positions);
+}
+
+ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe) {
+  ContactModel message;
+  static_cast<LocalLaw&>(message) = world.local_law(probe);
+  message.probe = static_cast<std::uint32_t>(probe);
+  return message;
+}
+
+}  // namespace palpate::deformation

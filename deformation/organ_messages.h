@@ -1,0 +1,20 @@
+// What deformation tells of its organs, as messages: the border between physics in doubles and the
+// wire's float32. Headers are the caller's to fill.
+#pragma once
+
+#include "deformation/world.h"
+#include "modules/messages/messages.h"
+
+namespace palpate::deformation {
+
+/// Rest shape, triangles and springs of an organ.
+SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ);
+
+/// Positions (float32), volume, pressure and energies of an organ. No allocation once `out` has
+/// held the organ.
+void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out);
+
+/// The tissue's local law for a probe.
+ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe);
+
+}  // namespace palpate::deformation

@@ -1,0 +1,188 @@
+#include "deformation/stage.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "deformation/guard/guard_log.h"
+#include "deformation/organ_messages.h"
+#include "modules/core/units.h"
+#include "modules/runtime/silence_watch.h"
+#include "modules/scene/assets.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// Brings probes and contacts to the world, and takes away what is too old to be true.
+class ProbeInputs {
+ public:
+  ProbeInputs(bus::Bus& bus, std::size_t probes)
+      : states_(bus.reader(bus::kProbeState)),
+        contacts_(bus.reader(bus::kContacts)),
+        states_heard_(probes, runtime::kInputStaleAfter),
+        contacts_heard_(probes, runtime::kInputStaleAfter) {}
+
+  void bring(std::int64_t now_ns, DeformationWorld& world) {
+    while (states_.take(state_)) {
+      states_heard_.heard(state_.probe, state_.header.source_time_ns);
+      world.set_probe(state_.probe, state_.pose);
+    }
+    while (contacts_.take(newest_)) {
+      contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
+      world.set_contacts(newest_);
+    }
+    for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
+      if (!states_heard_.silent(probe, now_ns) && !contacts_heard_.silent(probe, now_ns)) continue;
+      none_.probe = probe;
+      world.set_contacts(none_);
+    }
+  }
+
+  bool any_silent(std::int64_t now_ns) const {
+    return states_heard_.any_silent(now_ns) || contacts_heard_.any_silent(now_ns);
+  }
+
+ private:
+  bus::Reader<ProbeState> states_;
+  bus::Reader<Contacts> contacts_;
+  runtime::SilenceWatch states_heard_, contacts_heard_;
+  ProbeState state_;
+  Contacts newest_, none_;
+};
+
+/// Simulated time on the session's clock: a world that joins late begins at the time it joins.
+class SimulatedTime {
+ public:
+  /// Only the first call counts. @param session_time  [s]
+  void begin(double session_time) {
+    if (!begin_) begin_ = session_time;
+  }
+  double on_session_clock(double world_time) const { return begin_.value_or(0) + world_time; }
+  /// Simulated per wall second, after an advance in the cycle that woke at `session_time`.
+  double factor(double session_time, double world_time, double period) const {
+    return world_time / (session_time - begin_.value_or(0) + period);
+  }
+
+ private:
+  std::optional<double> begin_;
+};
+
+/// The smallest advance that is a whole sub-step of some organ [s].
+double least_advance(const DeformationWorld& world) {
+  double least = world.stable_step(0);
+  for (std::size_t i = 1; i < world.organ_count(); ++i) {
+    least = std::min(least, world.stable_step(i));
+  }
+  return least;
+}
+
+/// What leaves the process every cycle.
+class Outputs {
+ public:
+  explicit Outputs(bus::Bus& bus)
+      : surfaces_(bus.writer(bus::kSurface)),
+        positions_(bus.writer(bus::kNodePositions)),
+        models_(bus.writer(bus::kContactModel)) {}
+
+  void publish_surfaces(const DeformationWorld& world) {
+    for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
+      SurfaceTopology surface = surface_message(world, organ);
+      surfaces_.write(surface);
+    }
+  }
+
+  void publish(double sim_time, const DeformationWorld& world) {
+    Header header;
+    header.sim_time_ns = ns_from_seconds(sim_time);
+    for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
+      write_node_positions(world, organ, node_positions_);
+      node_positions_.header = header;
+      positions_.write(node_positions_);
+    }
+    for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
+      model_ = contact_model_message(world, probe);
+      model_.header = header;
+      models_.write(model_);
+    }
+  }
+
+ private:
+  bus::Writer<SurfaceTopology> surfaces_;
+  bus::Writer<NodePositions> positions_;
+  bus::Writer<ContactModel> models_;
+  NodePositions node_positions_;
+  ContactModel model_;
+};
+
+/// @param of_world  the world's own; comes first
+const char* acting_guard(const char* of_world, double real_time_factor, bool silent_input) {
+  if (*of_world != '\0') return of_world;
+  if (silent_input) return "a probe or its contacts are stale: it touches nothing";
+  if (real_time_factor < 0.95) return "slower than real time: see the real-time factor";
+  return "";
+}
+
+}  // namespace
+
+struct DeformationStage::Impl {
+  Impl(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
+       ChunkRunner* runner, Guarding guarding)
+      : world(scene, std::move(shapes), runner, guarding),
+        inputs(bus, world.probe_count()),
+        outputs(bus),
+        period(1 / scene.rates.deformation) {
+    outputs.publish_surfaces(world);
+  }
+
+  void reset() {
+    world.reset();
+    time = {};
+    guards.reset();
+    outputs.publish_surfaces(world);
+  }
+
+  runtime::Health advance(const runtime::Cycle& now) {
+    time.begin(now.time());
+    report = world.advance(now.advance);
+    runtime::Health health;
+    health.real_time_factor = time.factor(now.time(), world.time(), period);
+    health.guard = acting_guard(guards.describe(report, world.time()), health.real_time_factor,
+                                inputs.any_silent(now.now_ns));
+    return health;
+  }
+
+  DeformationWorld world;
+  ProbeInputs inputs;
+  Outputs outputs;
+  double period;
+  SimulatedTime time;
+  GuardLog guards;
+  AdvanceReport report;
+};
+
+std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene) {
+  std::vector<geometry::OrganShape> shapes;
+  for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
+  return shapes;
+}
+
+DeformationStage::DeformationStage(const scene::Scene& scene,
+                                   std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
+                                   ChunkRunner* runner, Guarding guarding)
+    : impl_(std::make_unique<Impl>(scene, std::move(shapes), bus, runner, guarding)) {}
+
+DeformationStage::~DeformationStage() = default;
+
+runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
+  if (now.reset) impl_->reset();
+  impl_->inputs.bring(now.now_ns, impl_->world);
+  runtime::Health health;
+  if (now.running) health = impl_->advance(now);
+  impl_->outputs.publish(impl_->time.on_session_clock(impl_->world.time()), impl_->world);
+  health.least_advance = least_advance(impl_->world);
+  return health;
+}
+
+const DeformationWorld& DeformationStage::world() const { return impl_->world; }
+const AdvanceReport& DeformationStage::report() const { return impl_->report; }
+
+}  // namespace palpate::deformation

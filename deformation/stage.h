@@ -1,0 +1,37 @@
+// Deformation as a stage: probes and contacts in, organs and the tissue's local law out.
+#pragma once
+
+#include "deformation/world.h"
+#include "modules/bus/bus.h"
+#include "modules/runtime/stage.h"
+
+namespace palpate::deformation {
+
+/// The rest shapes of a scene's organs.
+/// @throws InputError for a mesh that cannot be used
+std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene);
+
+/// Says the organs' surfaces when built and after a reset. Each cycle: take the newest probes and
+/// contacts, advance all organs by what the cycle may take on, publish them and, per probe, the
+/// local law of the touched tissue. Probes or contacts not heard of for kInputStaleAfter touch
+/// nothing. While the session does not run, the organs stand still.
+class DeformationStage : public runtime::Stage {
+ public:
+  /// @param shapes  one per organ of the scene
+  /// @param runner  outlives the stage; none: the calling thread alone. The bits are the same
+  /// @throws InputError as DeformationWorld does
+  DeformationStage(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
+                   bus::Bus& bus, ChunkRunner* runner = nullptr, Guarding guarding = Guarding::kOn);
+  ~DeformationStage() override;
+  runtime::Health cycle(const runtime::Cycle& now) override;
+
+  const DeformationWorld& world() const;
+  /// Of the last cycle that ran.
+  const AdvanceReport& report() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpate::deformation

@@ -1,0 +1,27 @@
+// The bus between processes: Fast DDS, behind a header that knows no DDS.
+#pragma once
+
+#include "modules/bus/bus.h"
+
+namespace palpate::bus {
+
+class Participant;
+
+/// One DDS participant. Its threads inherit the scheduling of the thread that constructs it: set
+/// real-time priority before.
+class DdsBus : public Bus {
+ public:
+  /// @throws InputError for a domain outside 0 to 200, or a session that is not 1 to 64 letters,
+  /// digits, '_', '-', '.', or an address in PALPATE_INTERFACES that this host does not have
+  /// @throws std::runtime_error if DDS cannot start (domain in use up, no loopback, …)
+  explicit DdsBus(const BusOptions& options);
+  ~DdsBus() override;
+
+  std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) override;
+  std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) override;
+
+ private:
+  std::unique_ptr<Participant> participant_;
+};
+
+}  // namespace palpate::bus

@@ -1,0 +1,97 @@
+#include "modules/bus/input.h"
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include "modules/bus/bus.h"
+
+namespace palpate::bus {
+
+Input::Input(Bus& bus, const TopicInfo& topic)
+    : bus_(bus), topic_(topic), raw_(bus.raw_reader(topic, Keep::kNewest)) {
+  bus_.inputs_.push_back(this);
+}
+
+Input::~Input() { std::erase(bus_.inputs_, this); }
+
+bool Input::wait(double timeout) {
+  const bool ready = !pending_.empty() && pending_.front().header.source_time_ns <= horizon_;
+  return ready || raw_->wait(timeout);
+}
+
+void Input::set_horizon(std::int64_t source_time_ns) {
+  horizon_ = source_time_ns;
+  gated_ = true;
+}
+
+bool Input::heard_until(std::int64_t source_time_ns, std::size_t keys) {
+  gated_ = true;
+  pull();
+  const auto heard = std::ranges::count_if(
+      newest_, [&](const auto& newest) { return newest.second >= source_time_ns; });
+  return static_cast<std::size_t>(heard) >= keys;
+}
+
+const RawSample* Input::next() {
+  if (!gated_) return raw_->take(current_) ? &current_ : nullptr;
+  pull();
+  if (pending_.empty() || pending_.front().header.source_time_ns > horizon_) return nullptr;
+  spare_.splice(spare_.end(), pending_, pending_.begin());
+  return &spare_.back().sample;
+}
+
+void Input::pull() {
+  for (;;) {
+    if (spare_.empty()) spare_.emplace_back();
+    Waiting& arrived = spare_.front();
+    if (!raw_->take(arrived.sample)) return;
+    arrived.header = messages::header_of(arrived.sample.payload);
+    arrived.key = messages::key_of(*topic_.type, arrived.sample.payload);
+    note(arrived);
+    insert(spare_.begin());
+  }
+}
+
+// Arrivals are nearly in order: the place is found from the back.
+void Input::insert(std::list<Waiting>::iterator arrived) {
+  const auto rank = [](const Waiting& w) {
+    return std::tie(w.header.source_time_ns, w.key, w.header.sequence);
+  };
+  auto place = pending_.end();
+  while (place != pending_.begin() && rank(*arrived) < rank(*std::prev(place))) --place;
+  pending_.splice(place, spare_, arrived);
+}
+
+void Input::note(const Waiting& waiting) {
+  if (!waiting.key.readable) return;
+  const auto known = std::ranges::find(newest_, waiting.key, [](const auto& n) { return n.first; });
+  const std::int64_t time_ns = waiting.header.source_time_ns;
+  if (known == newest_.end()) {
+    newest_.emplace_back(waiting.key, time_ns);
+  } else {
+    known->second = std::max(known->second, time_ns);
+  }
+}
+
+void Input::accept(const WriterId& writer, const Header& header) {
+  count(writer, header.sequence);
+  ++statistics_.received;
+  statistics_.newest_source_time_ns =
+      std::max(statistics_.newest_source_time_ns, header.source_time_ns);
+}
+
+void Input::reject(const RawSample& sample, const char* field) {
+  // Its number is no gap, if it can be read at all.
+  const Header header = messages::header_of(sample.payload);
+  if (header.sequence > 0) count(sample.writer, header.sequence);
+  ++statistics_.rejected;
+  statistics_.last_rejected_field = field;
+}
+
+void Input::count(const WriterId& writer, std::uint64_t sequence) {
+  gaps_.count(writer, sequence);
+  statistics_.dropped = gaps_.dropped();
+}
+
+}  // namespace palpate::bus

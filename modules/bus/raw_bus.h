@@ -1,0 +1,50 @@
+// A bus carries payloads (messages as bytes, modules/messages/cdr.h); the typed layer over it is
+// bus.h.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "modules/bus/sequence_gaps.h"
+#include "modules/bus/topics.h"
+
+namespace palpate::bus {
+
+/// Fifty milliseconds of the fastest loop (4 kHz) and more.
+inline constexpr int kBacklogDepth = 256;
+
+/// Which samples wait for a reader that is busy.
+enum class Keep {
+  kNewest,   ///< of each key, unless the bus keeps every sample
+  kBacklog,  ///< of each key the newest kBacklogDepth
+};
+
+struct RawSample {
+  WriterId writer{};                  ///< unique among all that ever were
+  std::int64_t received_time_ns = 0;  ///< by the monotonic clock, or the memory bus's own [ns]
+  std::vector<std::uint8_t> payload;
+};
+
+/// Writes payloads of one topic. Not thread-safe.
+class RawWriter {
+ public:
+  virtual ~RawWriter() = default;
+  /// False if the bus refused it.
+  virtual bool write(messages::Payload payload) = 0;
+  virtual int matched_readers() const = 0;
+  /// Waits until every reader of a reliable topic has what was written, at most `longest` [s].
+  virtual bool wait_until_received(double longest) = 0;
+};
+
+/// Reads payloads of one topic. Not thread-safe.
+class RawReader {
+ public:
+  virtual ~RawReader() = default;
+  /// The next unread sample; false if none. `sample` gives its memory for it.
+  virtual bool take(RawSample& sample) = 0;
+  /// Waits until a sample may be there; false on timeout [s].
+  virtual bool wait(double timeout) = 0;
+  virtual int matched_writers() const = 0;
+};
+
+}  // namespace palpate::bus

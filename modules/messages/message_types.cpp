@@ -1,0 +1,111 @@
+#include "modules/messages/message_types.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "modules/messages/cdr.h"
+#include "modules/messages/describe.h"
+
+namespace palpate::messages {
+namespace {
+
+constexpr std::size_t kEncapsulationBytes = 4;
+constexpr std::size_t kHeaderBytes = 24;
+
+// Finds out what the key is.
+class KeyFinder {
+ public:
+  MessageType::Key key_kind = MessageType::Key::kNone;
+
+  void header(const Header&) {}
+  void key(const char*, std::uint32_t) { key_kind = MessageType::Key::kNumber; }
+  void key(const char*, const std::string&) { key_kind = MessageType::Key::kText; }
+  template <class... Any>
+  void field(const Any&...) {}
+  template <class... Any>
+  void numbers(const Any&...) {}
+  template <class... Any>
+  void list(const Any&...) {}
+  template <class... Any>
+  void derived(const Any&...) {}
+  template <class... Any>
+  void require(const Any&...) {}
+};
+
+template <class Message>
+MessageType::Key key_kind() {
+  KeyFinder finder;
+  const Message message;
+  describe(finder, message);
+  return finder.key_kind;
+}
+
+template <class Message>
+const char* decode_any(Payload payload, AnyMessage& message) {
+  if (!std::holds_alternative<Message>(message)) message.emplace<Message>();
+  return decode(payload, std::get<Message>(message));
+}
+
+template <class T>
+T number(Payload payload, std::size_t place) {
+  std::array<std::uint8_t, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), payload.data() + kEncapsulationBytes + place, sizeof(T));
+  const bool big_endian = (payload[1] & 1u) == 0;
+  if (big_endian) std::ranges::reverse(bytes);
+  return std::bit_cast<T>(bytes);
+}
+
+void append_big_endian(KeyBytes& key, std::uint32_t value) {
+  for (const int shift : {24, 16, 8, 0})
+    key.bytes[key.size++] = static_cast<std::uint8_t>(value >> shift);
+}
+
+KeyBytes unreadable() {
+  KeyBytes key;
+  key.readable = false;
+  return key;
+}
+
+}  // namespace
+
+#define PALPATE_INSTANTIATE(Message)                                                        \
+  template <>                                                                               \
+  const MessageType& type_of<Message>() {                                                   \
+    static const MessageType type{#Message, "palpate::idl::" #Message, key_kind<Message>(), \
+                                  decode_any<Message>};                                     \
+    return type;                                                                            \
+  }
+PALPATE_MESSAGES(PALPATE_INSTANTIATE)
+#undef PALPATE_INSTANTIATE
+
+std::vector<AnyMessage> one_of_each() {
+  std::vector<AnyMessage> messages;
+#define PALPATE_ENTRY(Message) messages.emplace_back(std::in_place_type<Message>);
+  PALPATE_MESSAGES(PALPATE_ENTRY)
+#undef PALPATE_ENTRY
+  return messages;
+}
+
+KeyBytes key_of(const MessageType& type, Payload payload) {
+  KeyBytes key;
+  if (type.key == MessageType::Key::kNone) return key;
+  constexpr std::size_t kFirst = kEncapsulationBytes + kHeaderBytes + sizeof(std::uint32_t);
+  if (payload.size() < kFirst) return unreadable();
+  const auto value = number<std::uint32_t>(payload, kHeaderBytes);
+  append_big_endian(key, value);
+  if (type.key == MessageType::Key::kNumber) return key;
+  // A text: its length, with the zero byte that ends it, and its bytes.
+  if (value > kMaxNameBytes + 1 || payload.size() - kFirst < value) return unreadable();
+  std::memcpy(key.bytes.data() + key.size, payload.data() + kFirst, value);
+  key.size += value;
+  return key;
+}
+
+Header header_of(Payload payload) {
+  if (payload.size() < kEncapsulationBytes + kHeaderBytes) return {};
+  return {number<std::uint64_t>(payload, 0), number<std::int64_t>(payload, 8),
+          number<std::int64_t>(payload, 16)};
+}
+
+}  // namespace palpate::messages

@@ -1,0 +1,65 @@
+// The kinds of message there are, and what can be done with one whose kind is known only at run
+// time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "modules/messages/messages.h"
+
+// A new message is added here, in AnyMessage, in idl/ and in describe.h.
+#define PALPATE_MESSAGES(X) \
+  X(ProbeState)             \
+  X(Contacts)               \
+  X(ContactModel)           \
+  X(NodePositions)          \
+  X(SurfaceTopology)        \
+  X(HapticForce)            \
+  X(ModuleStatus)           \
+  X(SceneDescription)       \
+  X(SessionControl)
+
+namespace palpate::messages {
+
+using AnyMessage = std::variant<ProbeState, Contacts, ContactModel, NodePositions, SurfaceTopology,
+                                HapticForce, ModuleStatus, SceneDescription, SessionControl>;
+
+/// A message as it travels: CDR after its 4 bytes of encapsulation header.
+using Payload = std::span<const std::uint8_t>;
+
+struct MessageType {
+  enum class Key { kNone, kNumber, kText };
+
+  std::string_view name;       ///< "ProbeState"
+  std::string_view wire_name;  ///< "palpate::idl::ProbeState"
+  Key key;                     ///< right after the header
+  /// Fills `message` with a message of this kind (cdr.h).
+  const char* (*decode)(Payload payload, AnyMessage& message);
+};
+
+template <class Message>
+const MessageType& type_of();
+
+/// A fresh message of each kind.
+std::vector<AnyMessage> one_of_each();
+
+/// A message's key as DDS sees it: the key field in big-endian CDR, at most a name of 64 bytes.
+/// Messages without key all have the same, an empty one. No allocation.
+struct KeyBytes {
+  std::array<std::uint8_t, 72> bytes{};
+  std::size_t size = 0;
+  bool readable = true;  ///< false: the payload holds no key where it must be
+
+  bool operator==(const KeyBytes& other) const = default;
+  auto operator<=>(const KeyBytes& other) const = default;
+};
+KeyBytes key_of(const MessageType& type, Payload payload);
+
+/// The first fields of every message, without decoding the rest. Zeros if the payload is too short.
+Header header_of(Payload payload);
+
+}  // namespace palpate::messages

@@ -1,0 +1,193 @@
+#include "modules/recording/diff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+#include <stdexcept>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/messages/csv.h"
+#include "modules/messages/values.h"
+
+namespace palpate::recording {
+namespace {
+
+using messages::Value;
+
+class Comparison {
+ public:
+  explicit Comparison(const DiffOptions& options) : options_(options) {
+    if (options.csv.empty()) return;
+    csv_.open(options.csv);
+    csv_ << "sim_time_s,topic,key,field,largest_difference\n";
+  }
+
+  void add_a(RecordedSample sample) { add(std::move(sample), &Stream::a); }
+  void add_b(RecordedSample sample) { add(std::move(sample), &Stream::b); }
+
+  RecordingDifference finish() {
+    for (const auto& [name, stream] : streams_) {
+      TopicDifference& topic = result_.topics[name.first];
+      topic.only_in_a += stream.a.size();
+      topic.only_in_b += stream.b.size();
+    }
+    if (csv_.is_open()) {
+      csv_.close();
+      if (!csv_) throw std::runtime_error(options_.csv.string() + ": cannot be written");
+    }
+    return std::move(result_);
+  }
+
+ private:
+  // Samples of one topic and key that wait for those of the other file.
+  struct Stream {
+    std::deque<RecordedSample> a, b;
+  };
+
+  void add(RecordedSample sample, std::deque<RecordedSample> Stream::*side) {
+    const std::string topic(sample.topic->name);
+    if (options_.ignore.contains(topic)) return;
+    // What cannot be decoded has no key.
+    const bool valid = sample.topic->type->decode(sample.payload, message_a_) == nullptr;
+    const std::string key = valid ? messages::key_text(message_a_) : std::string();
+    Stream& stream = streams_[{topic, key}];
+    (stream.*side).push_back(std::move(sample));
+    if (stream.a.empty() || stream.b.empty()) return;
+    compare(topic, key, stream.a.front(), stream.b.front());
+    stream.a.pop_front();
+    stream.b.pop_front();
+  }
+
+  void compare(const std::string& topic, const std::string& key, const RecordedSample& a,
+               const RecordedSample& b) {
+    TopicDifference& into = result_.topics[topic];
+    ++into.compared;
+    if (a.payload == b.payload) return;
+    const bool valid_a = a.topic->type->decode(a.payload, message_a_) == nullptr;
+    const bool valid_b = b.topic->type->decode(b.payload, message_b_) == nullptr;
+    sim_time_ns_ = messages::header_of(a.payload).sim_time_ns;
+    bool differs = false;
+    if (valid_a && valid_b) {
+      messages::list_values(message_a_, values_a_);
+      messages::list_values(message_b_, values_b_);
+      differs = compare_values(topic, key, into);
+    } else {
+      differs = true;
+      note(topic, key, "payload", valid_a ? "valid" : "not valid", valid_b ? "valid" : "not valid");
+      ++into.fields["payload"].samples;
+    }
+    into.differing += differs ? 1 : 0;
+  }
+
+  bool compare_values(const std::string& topic, const std::string& key, TopicDifference& into) {
+    std::map<std::string_view, double> largest;  // of the fields that differ
+    const std::size_t count = std::min(values_a_.size(), values_b_.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const Value &a = values_a_[i], &b = values_b_[i];
+      if (a.same_as(b) || options_.ignore.contains(a.field)) continue;
+      double& most = largest[a.field];
+      if (a.field == b.field) most = std::max(most, std::abs(a.real - b.real));
+      note(topic, key, messages::place_of(a), messages::text_of(a), messages::text_of(b));
+      if (a.field != b.field) break;  // a longer list: what follows is shifted
+    }
+    for (const auto& [field, difference] : largest) {
+      FieldDifference& total = into.fields[std::string(field)];
+      ++total.samples;
+      if (difference > total.largest || total.samples == 1) {
+        total.largest = difference;
+        total.largest_sim_time_ns = sim_time_ns_;
+      }
+      if (csv_.is_open()) write_row(topic, key, field, difference);
+    }
+    return !largest.empty();
+  }
+
+  void note(const std::string& topic, const std::string& key, const std::string& field,
+            const std::string& a, const std::string& b) {
+    if (result_.first && result_.first->sim_time_ns <= sim_time_ns_) return;
+    result_.first = Difference{sim_time_ns_, topic, key, field, a, b};
+  }
+
+  void write_row(const std::string& topic, const std::string& key, std::string_view field,
+                 double difference) {
+    messages::write_seconds(csv_, sim_time_ns_);
+    csv_ << ',' << topic << ',' << messages::csv_text(key) << ',' << field << ',';
+    messages::write_number(csv_, difference);
+    csv_ << '\n';
+  }
+
+  const DiffOptions& options_;
+  std::ofstream csv_;
+  RecordingDifference result_;
+  std::map<std::pair<std::string, std::string>, Stream> streams_;
+  messages::AnyMessage message_a_, message_b_;
+  std::vector<Value> values_a_, values_b_;
+  std::int64_t sim_time_ns_ = 0;  // of the samples being compared
+};
+
+void check_names(const DiffOptions& options) {
+  std::set<std::string, std::less<>> known;
+  for (const bus::TopicInfo& topic : bus::all_topics()) known.emplace(topic.name);
+  for (messages::AnyMessage message : messages::one_of_each()) {
+    if (auto* contacts = std::get_if<Contacts>(&message)) contacts->contacts.resize(1);
+    if (auto* status = std::get_if<ModuleStatus>(&message)) status->inputs.resize(1);
+    std::vector<Value> values;
+    messages::list_values(message, values);
+    for (const Value& value : values) known.emplace(value.field);
+  }
+  for (const std::string& name : options.ignore) {
+    if (known.contains(name)) continue;
+    throw InputError("--ignore " + name + ": neither a topic nor a field of a message");
+  }
+}
+
+}  // namespace
+
+bool RecordingDifference::equal() const {
+  return std::ranges::all_of(topics, [](const auto& topic) {
+    const TopicDifference& t = topic.second;
+    return t.differing == 0 && t.only_in_a == 0 && t.only_in_b == 0;
+  });
+}
+
+RecordingDifference compare(const DiffOptions& options) {
+  check_names(options);
+  SampleReader a(options.a), b(options.b);
+  Comparison comparison(options);
+  // In turns: of recordings of one session little waits for the other.
+  for (bool more_a = true, more_b = true; more_a || more_b;) {
+    auto sample_a = more_a ? a.next() : std::nullopt;
+    auto sample_b = more_b ? b.next() : std::nullopt;
+    more_a = sample_a.has_value();
+    more_b = sample_b.has_value();
+    if (more_a) comparison.add_a(std::move(*sample_a));
+    if (more_b) comparison.add_b(std::move(*sample_b));
+  }
+  return comparison.finish();
+}
+
+void print_difference(const RecordingDifference& difference, std::ostream& out) {
+  if (difference.first) {
+    const Difference& first = *difference.first;
+    out << "first difference at " << seconds_from_ns(first.sim_time_ns)
+        << " s of the session: " << first.topic << (first.key.empty() ? "" : " of ") << first.key
+        << ", " << first.field << ": " << first.a << " and " << first.b << "\n\n";
+  }
+  out << "topic             compared  differing  only in A  only in B\n";
+  for (const auto& [name, topic] : difference.topics) {
+    out << std::left << std::setw(16) << name << std::right << std::setw(10) << topic.compared
+        << std::setw(11) << topic.differing << std::setw(11) << topic.only_in_a << std::setw(11)
+        << topic.only_in_b << '\n';
+    for (const auto& [field, d] : topic.fields) {
+      out << "  " << field << ": " << d.samples << " samples, at most " << d.largest << " at "
+          << seconds_from_ns(d.largest_sim_time_ns) << " s\n";
+    }
+  }
+  out << (difference.equal() ? "equal\n" : "different\n");
+}
+
+}  // namespace palpate::recording

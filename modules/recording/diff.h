@@ -1,0 +1,54 @@
+// Compares two recordings sample by sample.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "modules/recording/sample_reader.h"
+
+namespace palpate::recording {
+
+struct DiffOptions {
+  std::filesystem::path a, b;
+  std::set<std::string, std::less<>> ignore = {};  ///< names of topics, and of fields as in idl/
+  std::filesystem::path csv = {};  ///< --csv: a row per sample and field that differ; empty: none
+};
+
+/// Where a value differs. Samples of a topic and key are compared in the order of each file.
+struct Difference {
+  std::int64_t sim_time_ns = 0;  ///< of the sample in A
+  std::string topic, key;
+  std::string field;  ///< "positions_m[17]"
+  std::string a, b;   ///< the values
+};
+
+/// The differences of one field of a topic.
+struct FieldDifference {
+  std::uint64_t samples = 0;  ///< that differ in it
+  double largest = 0;         ///< ∣a − b∣; of texts none
+  std::int64_t largest_sim_time_ns = 0;
+};
+
+struct TopicDifference {
+  std::uint64_t compared = 0, differing = 0;
+  std::uint64_t only_in_a = 0, only_in_b = 0;
+  std::map<std::string, FieldDifference> fields;
+};
+
+struct RecordingDifference {
+  std::optional<Difference> first;  ///< earliest in simulated time
+  std::map<std::string, TopicDifference> topics;
+  bool equal() const;
+};
+
+/// @throws InputError as SampleReader does, or for a name to ignore that is none;
+/// std::runtime_error if the CSV file cannot be written
+RecordingDifference compare(const DiffOptions& options);
+
+void print_difference(const RecordingDifference& difference, std::ostream& out);
+
+}  // namespace palpate::recording

@@ -1,0 +1,50 @@
+#include "modules/recording/recorder_stage.h"
+
+#include <algorithm>
+
+#include "modules/runtime/wiring.h"
+
+namespace palpate::recording {
+
+RecorderStage::RecorderStage(bus::Bus& bus, const std::filesystem::path& file) : file_(file) {
+  for (const bus::TopicInfo& topic : bus::all_topics()) {
+    if (runtime::find_wire(topic.name) == nullptr) continue;
+    inputs_.push_back(std::make_unique<bus::Input>(bus, topic));
+  }
+}
+
+runtime::Health RecorderStage::cycle(const runtime::Cycle&) {
+  write_all();
+  return {};
+}
+
+void RecorderStage::finish(const runtime::Cycle&) {
+  write_all();
+  file_.close();
+}
+
+void RecorderStage::write_all() {
+  samples_.clear();
+  for (const auto& input : inputs_) {
+    while (const bus::RawSample* raw = input->next()) {
+      const Header header = messages::header_of(raw->payload);
+      input->accept(raw->writer, header);
+      TopicSample sample;
+      sample.topic = bus::find_topic(input->topic().name);
+      sample.received_time_ns = std::max<std::int64_t>(0, header.source_time_ns);
+      sample.payload = raw->payload;
+      // DDS fills a payload up to whole words, the memory bus does not.
+      sample.payload.resize((sample.payload.size() + 3) / 4 * 4, 0);
+      samples_.push_back(std::move(sample));
+    }
+  }
+  // Each input hands its samples out in order; here they are merged.
+  std::stable_sort(samples_.begin(), samples_.end(),
+                   [](const TopicSample& a, const TopicSample& b) {
+                     return a.received_time_ns < b.received_time_ns;
+                   });
+  for (const TopicSample& sample : samples_) file_.add(sample);
+  file_.flush();
+}
+
+}  // namespace palpate::recording

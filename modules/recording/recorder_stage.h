@@ -1,0 +1,34 @@
+// The recorder of a lockstep session. What it writes depends on the samples alone: two runs of the
+// same scene leave the same bytes.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "modules/recording/recorder.h"
+#include "modules/runtime/stage.h"
+
+namespace palpate::recording {
+
+/// Writes every sample of the topics that carry physics (runtime::session_wires()), in the order of
+/// source time, topic, key and sequence number, stamped with simulated time. Statuses and commands
+/// tell of the machine and are left out.
+class RecorderStage : public runtime::Stage {
+ public:
+  /// @throws std::runtime_error naming the file if it cannot be written
+  RecorderStage(bus::Bus& bus, const std::filesystem::path& file);
+  runtime::Health cycle(const runtime::Cycle& now) override;
+  void finish(const runtime::Cycle& now) override;
+
+  const SampleFile& file() const { return file_; }
+
+ private:
+  void write_all();
+
+  std::vector<std::unique_ptr<bus::Input>> inputs_;
+  std::vector<TopicSample> samples_;
+  SampleFile file_;
+};
+
+}  // namespace palpate::recording

@@ -1,0 +1,45 @@
+#include "modules/runtime/lockstep.h"
+
+namespace palpate::runtime {
+
+LockstepCursor::LockstepCursor(const scene::Scene& scene, std::string module,
+                               std::vector<bus::Input*> inputs)
+    : rule_(scene, module), grid_(rate_of(module, scene)), inputs_(std::move(inputs)) {
+  open_until(CycleGrid::kSetUp);
+}
+
+bus::Input* LockstepCursor::missing_at(std::int64_t time_ns) {
+  for (bus::Input* input : inputs_) {
+    const std::size_t keys = rule_.keys(input->topic().name);
+    const std::int64_t required = rule_.required(input->topic().name, time_ns);
+    if (keys == 0 || required == CycleGrid::kNever) continue;
+    if (!input->heard_until(required, keys)) return input;
+  }
+  return nullptr;
+}
+
+void LockstepCursor::open_until(std::int64_t time_ns) {
+  for (bus::Input* input : inputs_) {
+    input->set_horizon(rule_.horizon(input->topic().name, time_ns));
+  }
+}
+
+Health LockstepCursor::step(Stage& stage) {
+  open_until(next_ns_);
+  Cycle now;
+  now.sim_time_ns = now.now_ns = next_ns_;
+  now.running = true;
+  now.advance = seconds_from_ns(grid_.period_ns());
+  const Health health = stage.cycle(now);
+  next_ns_ += grid_.period_ns();
+  return health;
+}
+
+void LockstepCursor::finish(Stage& stage, std::int64_t end_ns) {
+  open_until(end_ns - 1);
+  Cycle now;
+  now.sim_time_ns = now.now_ns = end_ns - 1;
+  stage.finish(now);
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,43 @@
+// Stages driven by their data: a cycle begins when its inputs have what they must have by then, and
+// sees nothing later. No clock is read, so the same scene gives the same bits on any machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "modules/bus/bus.h"
+#include "modules/runtime/stage.h"
+#include "modules/runtime/wiring.h"
+
+namespace palpate::runtime {
+
+/// Where one module is in a lockstep session, and what its next cycle waits for.
+class LockstepCursor {
+ public:
+  /// @param scene   outlives the cursor
+  /// @param inputs  the module's own, alive as long as the cursor
+  LockstepCursor(const scene::Scene& scene, std::string module, std::vector<bus::Input*> inputs);
+
+  /// When the next cycle begins, simulated [ns]; the first at 0.
+  std::int64_t next_ns() const { return next_ns_; }
+  /// An input that does not have yet what the next cycle needs; nullptr if none.
+  bus::Input* missing() { return missing_at(next_ns_); }
+  /// The next cycle of `stage`, with nothing missing.
+  Health step(Stage& stage);
+
+  /// The same for the end of a session: all said before `end_ns` has come; then finish.
+  bus::Input* missing_before_end(std::int64_t end_ns) { return missing_at(end_ns - 1); }
+  void finish(Stage& stage, std::int64_t end_ns);
+
+ private:
+  bus::Input* missing_at(std::int64_t time_ns);
+  void open_until(std::int64_t time_ns);
+
+  InputRule rule_;
+  CycleGrid grid_;
+  std::vector<bus::Input*> inputs_;
+  std::int64_t next_ns_ = 0;
+};
+
+}  // namespace palpate::runtime

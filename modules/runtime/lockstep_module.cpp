@@ -1,0 +1,146 @@
+#include "modules/runtime/lockstep_module.h"
+
+#include <spdlog/spdlog.h>
+
+#include <optional>
+
+#include "modules/bus/dds_bus.h"
+#include "modules/runtime/clock.h"
+#include "modules/runtime/lockstep.h"
+#include "modules/runtime/session.h"
+#include "modules/runtime/status_reporter.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::runtime {
+namespace {
+
+constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
+constexpr double kLongestWait = 0.02;  ///< before signals and commands are looked at again [s]
+
+bus::BusOptions lockstep_options(bus::BusOptions options, const std::string& name) {
+  options.participant_name = name;
+  options.every_sample = true;
+  return options;
+}
+
+class LockstepModule {
+ public:
+  LockstepModule(const ModuleOptions& options, const scene::Scene& scene, const std::string& name,
+                 const MakeStage& make)
+      : participants_(options.lockstep),
+        bus_(lockstep_options(options.bus, name)),
+        session_(bus_, scene::scene_digest(scene)),
+        status_(bus_, name, rate_of(name, scene), false) {
+    bus_.set_clock([this] { return clock_ns_; });
+    const std::size_t drivers_own = bus_.inputs().size();
+    stage_ = make(bus_);
+    const auto inputs = bus_.inputs().subspan(drivers_own);
+    cursor_.emplace(scene, name, std::vector<bus::Input*>(inputs.begin(), inputs.end()));
+  }
+
+  void run() {
+    while (goes_on() && !all_matched()) wait_for_command();
+    say(ModuleState::kReady, 0);
+    while (goes_on()) work();
+    if (session_.phase() == SessionPhase::kStopped) finish();
+    say(ModuleState::kStopped, cursor_->next_ns());
+    status_.take_leave();
+    spdlog::info("{} cycles in lockstep, {:.3f} s simulated", loop_.cycles,
+                 seconds_from_ns(cursor_->next_ns()));
+  }
+
+ private:
+  bool goes_on() {
+    session_.poll();
+    if (!session_.fault().empty()) say(ModuleState::kFault, cursor_->next_ns(), session_.fault());
+    return !stop_.requested() && !finished_ && session_.phase() != SessionPhase::kStopped;
+  }
+
+  bool all_matched() const {
+    for (const bus::Output* output : bus_.outputs()) {
+      if (output->matched_readers() < reader_count(output->topic().name, participants_)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// Cycles until the grant is used up or an input is missing; then waits a moment for more.
+  void work() {
+    const std::int64_t until_ns = session_.state().granted_until_ns();
+    bus::Input* missing = nullptr;
+    while (cursor_->next_ns() < until_ns && (missing = cursor_->missing()) == nullptr) {
+      clock_ns_ = cursor_->next_ns();
+      const Health health = cursor_->step(*stage_);
+      ++loop_.cycles;
+      if (*health.guard != '\0') guard_ = health.guard;
+      finished_ = health.finished;
+      if (finished_ || stop_.requested()) return;
+    }
+    if (cursor_->next_ns() >= until_ns && said_ns_ < until_ns) {
+      const bool guarded = *guard_ != '\0';
+      say(guarded ? ModuleState::kDegraded : ModuleState::kRunning, until_ns, guard_);
+      said_ns_ = until_ns;
+      guard_ = "";
+    }
+    if (missing != nullptr) {
+      wait_for(*missing);
+    } else {
+      wait_for_command();
+    }
+  }
+
+  /// Says every few seconds what it is that does not come.
+  void wait_for(bus::Input& missing) {
+    const std::int64_t now_ns = monotonic_now_ns();
+    if (waits_at_ns_ != cursor_->next_ns()) waiting_since_ns_ = now_ns;
+    waits_at_ns_ = cursor_->next_ns();
+    if (now_ns - waiting_since_ns_ > kWaitingLineEveryNs) {
+      spdlog::info("at {:.3f} s, waiting for {}", seconds_from_ns(waits_at_ns_),
+                   missing.topic().name);
+      waiting_since_ns_ = now_ns;
+    }
+    missing.wait(kLongestWait);
+  }
+
+  /// Everything that was said before the end is waited for, unless a signal comes.
+  void finish() {
+    const std::int64_t end_ns = session_.state().granted_until_ns();
+    while (bus::Input* missing = cursor_->missing_before_end(end_ns)) {
+      if (stop_.requested()) return;
+      missing->wait(kLongestWait);
+    }
+    cursor_->finish(*stage_, end_ns);
+  }
+
+  void wait_for_command() { session_.wait(kLongestWait); }
+
+  void say(ModuleState state, std::int64_t sim_time_ns, std::string_view error = {}) {
+    status_.set_state(state, error);
+    status_.publish(monotonic_now_ns(), seconds_from_ns(sim_time_ns), loop_);
+  }
+
+  std::vector<std::string> participants_;
+  StopSignal stop_;
+  std::int64_t clock_ns_ = CycleGrid::kSetUp;
+  bus::DdsBus bus_;
+  Session session_;
+  StatusReporter status_;
+  std::unique_ptr<Stage> stage_;
+  std::optional<LockstepCursor> cursor_;
+  LoopStatistics loop_;
+  std::int64_t said_ns_ = 0;
+  std::int64_t waits_at_ns_ = CycleGrid::kSetUp, waiting_since_ns_ = 0;
+  const char* guard_ = "";
+  bool finished_ = false;
+};
+
+}  // namespace
+
+void run_in_lockstep(const ModuleOptions& options, const scene::Scene& scene,
+                     const std::string& module, const MakeStage& make) {
+  LockstepModule(options, scene, module, make).run();
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,52 @@
+#include "modules/runtime/run_stage.h"
+
+#include <optional>
+
+#include "modules/core/units.h"
+#include "modules/runtime/clock.h"
+#include "modules/runtime/cycle_budget.h"
+#include "modules/runtime/wiring.h"
+
+namespace palpate::runtime {
+namespace {
+
+Cycle cycle_of(Module& module) {
+  Cycle now;
+  now.sim_time_ns = ns_from_seconds(module.time());
+  now.now_ns = module.now_ns();
+  now.running = module.running();
+  now.reset = module.take_reset();
+  now.advance = module.period();
+  return now;
+}
+
+void run_in_real_time(Module& module, Stage& stage) {
+  std::optional<CycleBudget> budget;
+  while (module.next_cycle()) {
+    Cycle now = cycle_of(module);
+    if (budget) now.advance = budget->next();
+    const Health health = stage.cycle(now);
+    if (budget && now.running) {
+      budget->took(now.advance, seconds_from_ns(monotonic_now_ns() - now.now_ns));
+    }
+    if (!budget && health.least_advance > 0) {
+      budget.emplace(module.period(), health.least_advance);
+    }
+    if (health.ready) module.ready();
+    module.set_guard(health.guard);
+    module.set_real_time_factor(health.real_time_factor);
+    if (health.finished) return;
+  }
+}
+
+}  // namespace
+
+void run_stage(const ModuleOptions& options, const scene::Scene& scene, const std::string& name,
+               Priority priority, const MakeStage& make) {
+  if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
+  Module module(options, scene, name, rate_of(name, scene), priority);
+  const auto stage = make(module.bus());
+  run_in_real_time(module, *stage);
+}
+
+}  // namespace palpate::runtime

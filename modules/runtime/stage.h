@@ -1,0 +1,49 @@
+// A process without its loop: what a stage is told each cycle, and what it says of itself.
+//
+// A stage reads its inputs from a bus, works, and writes its outputs to it. It owns no loop, clock,
+// thread or socket; a driver calls it: in real time (module.h), in lockstep between processes
+// (lockstep.h), or with others in one process (palpate/session/in_process.h).
+#pragma once
+
+#include <cstdint>
+
+#include "modules/core/units.h"
+#include "modules/messages/messages.h"
+
+namespace palpate::runtime {
+
+/// Age from which an input no longer counts as telling the present [s].
+inline constexpr double kInputStaleAfter = 0.05;
+
+/// One cycle of a stage.
+struct Cycle {
+  std::int64_t sim_time_ns = 0;  ///< session time at its beginning
+  /// The clock of source times: the host's monotonic one in real time, simulated time in lockstep.
+  std::int64_t now_ns = 0;
+  bool running = false;  ///< the session runs: not waiting, paused or at fault
+  bool reset = false;    ///< the first cycle after a reset
+  double advance = 0;    ///< simulated time this cycle may take on [s]
+
+  double time() const { return seconds_from_ns(sim_time_ns); }
+  /// Of a message of this cycle.
+  Header header() const { return {0, sim_time_ns, now_ns}; }
+};
+
+/// What a stage says of itself after a cycle, for its status.
+struct Health {
+  bool ready = true;            ///< has all it cannot do without
+  const char* guard = "";       ///< which guard acts, or which input is stale; a constant text
+  double real_time_factor = 0;  ///< simulated per wall time; 0: has no meaning
+  double least_advance = 0;     ///< smallest useful Cycle::advance [s]; 0: takes none on
+  bool finished = false;        ///< wants no further cycle
+};
+
+class Stage {
+ public:
+  virtual ~Stage() = default;
+  virtual Health cycle(const Cycle& now) = 0;
+  /// After the last cycle of a lockstep session, all samples of the session being there.
+  virtual void finish(const Cycle&) {}
+};
+
+}  // namespace palpate::runtime

@@ -1,0 +1,102 @@
+#include "modules/runtime/wiring.h"
+
+#include <algorithm>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+
+namespace palpate::runtime {
+namespace {
+
+using Keys = Wire::Keys;
+
+constexpr std::array kWires{
+    Wire{"scene", "", Keys::kOne, false, {}},
+    Wire{"surface", "deformation", Keys::kOrgans, false, {"collision", "visualizer"}},
+    Wire{"probe_state", "haptics", Keys::kProbes, true, {"collision", "deformation", "visualizer"}},
+    Wire{"probe_input", "", Keys::kProbes, false, {"haptics"}},
+    Wire{"contacts", "collision", Keys::kProbes, true, {"deformation", "visualizer"}},
+    Wire{"node_positions", "deformation", Keys::kOrgans, true, {"collision", "visualizer"}},
+    Wire{"contact_model", "deformation", Keys::kProbes, true, {"haptics"}},
+    Wire{"haptic_force", "haptics", Keys::kProbes, true, {"visualizer"}},
+};
+
+std::size_t rank_of(std::string_view module) {
+  const auto found = std::find(kModules.begin(), kModules.end(), module);
+  PALPATE_DEMAND(found != kModules.end());
+  return static_cast<std::size_t>(found - kModules.begin());
+}
+
+}  // namespace
+
+std::span<const Wire> session_wires() { return kWires; }
+
+const Wire* find_wire(std::string_view topic) {
+  const auto found = std::find_if(kWires.begin(), kWires.end(),
+                                  [&](const Wire& wire) { return wire.topic == topic; });
+  return found == kWires.end() ? nullptr : &*found;
+}
+
+CycleGrid::CycleGrid(double rate_hz) : period_ns_(ns_from_seconds(1 / rate_hz)) {
+  PALPATE_DEMAND(period_ns_ > 0);
+}
+
+std::int64_t CycleGrid::last_at(std::int64_t time_ns) const {
+  return time_ns < 0 ? kNever : time_ns / period_ns_ * period_ns_;
+}
+
+double rate_of(std::string_view module, const scene::Scene& scene) {
+  if (module == "haptics") return scene.rates.haptics;
+  if (module == "collision") return scene.rates.collision;
+  if (module == "deformation") return scene.rates.deformation;
+  if (module == "visualizer") return scene.rates.visualizer;
+  PALPATE_DEMAND(module == "recorder");
+  return kRecorderRate;
+}
+
+InputRule::InputRule(const scene::Scene& scene, std::string module)
+    : scene_(scene), module_(std::move(module)) {
+  rank_of(module_);  // is one
+}
+
+bool InputRule::writes_first(const Wire& wire) const {
+  return wire.writer.empty() || rank_of(wire.writer) < rank_of(module_);
+}
+
+std::int64_t InputRule::horizon(std::string_view topic, std::int64_t time_ns) const {
+  const Wire* wire = find_wire(topic);
+  return wire == nullptr || writes_first(*wire) ? time_ns : time_ns - 1;
+}
+
+std::int64_t InputRule::required(std::string_view topic, std::int64_t time_ns) const {
+  const Wire* wire = find_wire(topic);
+  if (wire == nullptr || !wire->every_cycle) return CycleGrid::kSetUp;
+  const CycleGrid grid(rate_of(wire->writer, scene_));
+  return writes_first(*wire) ? grid.last_at(time_ns) : grid.last_before(time_ns);
+}
+
+std::size_t InputRule::keys(std::string_view topic) const {
+  const Wire* wire = find_wire(topic);
+  if (wire == nullptr || (wire->writer.empty() && wire->topic != "scene")) return 0;
+  switch (wire->keys) {
+    case Keys::kProbes:
+      return scene_.probes.size();
+    case Keys::kOrgans:
+      return scene_.organs.size();
+    case Keys::kOne:
+      return 1;
+  }
+  return 0;
+}
+
+int reader_count(std::string_view topic, const std::vector<std::string>& participants) {
+  const Wire* wire = find_wire(topic);
+  if (wire == nullptr) return 0;
+  return static_cast<int>(
+      std::count_if(participants.begin(), participants.end(), [&](const std::string& module) {
+        return module == "recorder" ||
+               std::find(wire->readers.begin(), wire->readers.end(), module) != wire->readers.end();
+      }));
+}
+
+}  // namespace palpate::runtime

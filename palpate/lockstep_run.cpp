@@ -1,0 +1,250 @@
+#include "palpate/lockstep_run.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <optional>
+#include <ostream>
+
+#include "modules/bus/dds_bus.h"
+#include "modules/core/data_folder.h"
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/recording/recorder_stage.h"
+#include "modules/runtime/clock.h"
+#include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/session.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/runtime/wiring.h"
+#include "modules/runtime/worker_team.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/module_group.h"
+#include "palpate/session/in_process.h"
+#include "palpate/session_monitor.h"
+#include "palpate/session_text.h"
+
+namespace palpate::launcher {
+namespace {
+
+constexpr double kConductorRate = 1000;  // [Hz]
+constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
+constexpr std::int64_t kGoodbyeNs = 10 * kNanosecondsPerSecond;
+
+double duration_of(const RunOptions& options, const scene::Scene& scene) {
+  const double duration = options.duration > 0 ? options.duration : scene.duration;
+  if (duration > 0) return duration;
+  throw InputError(scene.file.string() +
+                   ": duration_s is 0; a run without a clock needs an end: give --duration");
+}
+
+/// "palpate:   3.20 of 20 s, 1.9 times real time"
+class Progress {
+ public:
+  Progress(double duration, std::ostream& out) : duration_(duration), out_(out) {}
+
+  /// @param note  what is waited for; may be empty
+  void tell(double simulated, const std::string& note) {
+    const std::int64_t now_ns = runtime::monotonic_now_ns();
+    if (now_ns - told_ns_ < kLineEveryNs) return;
+    told_ns_ = now_ns;
+    const double wall = seconds_from_ns(now_ns - began_ns_);
+    out_ << fmt::format("{:8.2f} of {:g} s, {:.2f} times real time{}{}", simulated, duration_,
+                        simulated / wall, note.empty() ? "" : ", ", note)
+         << std::endl;
+  }
+  double wall_time() const { return seconds_from_ns(runtime::monotonic_now_ns() - began_ns_); }
+
+ private:
+  double duration_;
+  std::ostream& out_;
+  std::int64_t began_ns_ = runtime::monotonic_now_ns();
+  std::int64_t told_ns_ = began_ns_;
+};
+
+bus::BusOptions every_sample(bus::BusOptions options) {
+  options.every_sample = true;
+  return options;
+}
+
+/// Conducts the processes: grants simulated time, one piece ahead of the slowest.
+class LockstepRun {
+ public:
+  LockstepRun(const RunOptions& options, std::ostream& out, std::ostream& log)
+      : options_(options),
+        out_(out),
+        log_(log),
+        scene_(scene::load_scene(options.scene)),
+        digest_(scene::scene_digest(scene_)),
+        duration_(duration_of(options, scene_)),
+        modules_(module_commands(options, program_folder()), log),
+        names_(modules_.reporting_modules()),
+        bus_(every_sample(options.bus)),
+        session_(bus_, digest_),
+        conductor_(bus_),
+        scenes_(bus_.writer(bus::kScene)),
+        monitor_(bus_, scene_),
+        loop_(kConductorRate) {}
+
+  int perform() {
+    SceneDescription description = runtime::scene_description(scene_);
+    description.header.source_time_ns = runtime::CycleGrid::kSetUp;
+    scenes_.write(description);
+    log_ << fmt::format("palpate: session {} of scene {}, in lockstep\n", options_.bus.session,
+                        scene_.name);
+    if (!wait_until_ready()) return end(false);
+    monitor_.tally().start();
+    Progress progress(duration_, out_);
+    while (next_cycle() && slowest_ns() < end_ns()) {
+      grant();
+      progress.tell(seconds_from_ns(slowest_ns()), waited_for());
+    }
+    const bool complete = slowest_ns() >= end_ns();
+    return end(complete, progress.wall_time());
+  }
+
+ private:
+  std::int64_t end_ns() const { return ns_from_seconds(duration_); }
+
+  /// False when a signal says stop, or a process has ended: without it nothing goes on.
+  bool next_cycle() {
+    loop_.wait_for_period();
+    session_.poll();
+    monitor_.poll();
+    for (const auto& ended : modules_.poll()) {
+      failures_[ended.module] = ended.how;
+      if (ended.bad_input) exit_code_ = kExitBadInput;
+      log_ << fmt::format("palpate: {} ended: {}; a lockstep session cannot go on without it\n",
+                          ended.module, ended.how);
+    }
+    return !stop_.requested() && failures_.empty();
+  }
+
+  bool wait_until_ready() {
+    const std::int64_t deadline_ns =
+        runtime::monotonic_now_ns() + ns_from_seconds(options_.ready_deadline);
+    while (next_cycle()) {
+      const auto missing = monitor_.not_ready(names_);
+      if (missing.empty()) return true;
+      if (runtime::monotonic_now_ns() < deadline_ns) continue;
+      log_ << fmt::format("palpate: not ready after {:g} s: {}\n", options_.ready_deadline,
+                          fmt::join(missing, ", "));
+      exit_code_ = kExitFailed;
+      return false;
+    }
+    return false;
+  }
+
+  /// Simulated time that every process has done.
+  std::int64_t slowest_ns() const {
+    std::int64_t slowest = end_ns();
+    for (const auto& name : names_) slowest = std::min(slowest, done_ns(name));
+    return slowest;
+  }
+  std::int64_t done_ns(const std::string& name) const {
+    const ModuleTally* module = monitor_.tally().module(name);
+    return module == nullptr ? 0 : module->newest.header.sim_time_ns;
+  }
+
+  std::string waited_for() const {
+    std::string waited;
+    for (const auto& name : names_) {
+      if (done_ns(name) == slowest_ns()) waited += (waited.empty() ? "" : " ") + name;
+    }
+    return "waiting for " + waited;
+  }
+
+  void grant() {
+    const std::int64_t piece = ns_from_seconds(kGrant);
+    const std::int64_t until = std::min(end_ns(), slowest_ns() / piece * piece + 2 * piece);
+    if (until > session_.state().granted_until_ns()) conductor_.grant(session_.state(), until);
+  }
+
+  int end(bool complete, double wall_time = 0) {
+    conductor_.command(session_.state(), SessionCommand::kStop);
+    const std::int64_t deadline_ns = runtime::monotonic_now_ns() + kGoodbyeNs;
+    while (complete && modules_.any_running() && runtime::monotonic_now_ns() < deadline_ns &&
+           !stop_.requested()) {
+      loop_.wait_for_period();
+      monitor_.poll();
+      for (const auto& ended : modules_.poll()) {
+        if (ended.failed) failures_[ended.module] = ended.how;
+      }
+    }
+    modules_.stop();
+    monitor_.poll();
+    if (wall_time > 0) {
+      SessionEnd said{scene_.name, seconds_from_ns(slowest_ns()), wall_time, modules_.last_words(),
+                      failures_};
+      write_summary(said);
+    }
+    if (exit_code_ != kExitDone) return exit_code_;
+    return failures_.empty() ? kExitDone : kExitFailed;
+  }
+
+  void write_summary(const SessionEnd& said) {
+    write_run_summary(options_, summary(monitor_.tally(), said), out_);
+  }
+
+  const RunOptions& options_;
+  std::ostream& out_;
+  std::ostream& log_;
+  runtime::StopSignal stop_;
+  scene::Scene scene_;
+  std::string digest_;
+  double duration_;
+  ModuleGroup modules_;  // before the bus: processes are born from a program of one thread
+  std::vector<std::string> names_;
+  bus::DdsBus bus_;
+  runtime::Session session_;
+  runtime::SessionConductor conductor_;
+  bus::Writer<SceneDescription> scenes_;
+  SessionMonitor monitor_;
+  runtime::PeriodicLoop loop_;
+  int exit_code_ = kExitDone;
+  std::map<std::string, std::string> failures_;
+};
+
+session::InProcessOptions options_of(ChunkRunner& runner) {
+  session::InProcessOptions options;
+  options.runner = &runner;
+  return options;
+}
+
+}  // namespace
+
+int run_lockstep(const RunOptions& options, std::ostream& out, std::ostream& log) {
+  return LockstepRun(options, out, log).perform();
+}
+
+int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& log) {
+  const runtime::StopSignal stop;
+  const scene::Scene scene = scene::load_scene(options.scene);
+  const double duration = duration_of(options, scene);
+  runtime::WorkerTeam team(scene.deformation_threads);
+  session::InProcess session(scene, session::load_assets(scene), options_of(team));
+  auto scenes = session.bus().writer(bus::kScene);
+  SceneDescription description = runtime::scene_description(scene);
+  description.header.source_time_ns = runtime::CycleGrid::kSetUp;
+  scenes.write(description);
+  if (!options.record.empty()) {
+    session.add("recorder", [&](bus::Bus& bus) {
+      return std::make_unique<recording::RecorderStage>(bus, options.record);
+    });
+  }
+  SessionMonitor monitor(session.bus(), scene);
+  monitor.tally().start();
+  log << fmt::format("palpate: scene {} in one process\n", scene.name);
+  Progress progress(duration, out);
+  while (session.time() < duration && !stop.requested()) {
+    session.tick();
+    monitor.poll();
+    progress.tell(session.time(), "");
+  }
+  const double reached = std::min(duration, session.time());
+  session.finish(reached);
+  const SessionEnd said{scene.name, reached, progress.wall_time(), {}, {}};
+  write_run_summary(options, summary(monitor.tally(), said), out);
+  return kExitDone;
+}
+
+}  // namespace palpate::launcher

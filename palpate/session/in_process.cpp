@@ -1,0 +1,200 @@
+#include "palpate/session/in_process.h"
+
+#include <algorithm>
+#include <map>
+
+#include "collision/stage.h"
+#include "deformation/organ_messages.h"
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/scene/assets.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::session {
+namespace {
+
+/// Keeps the newest message of each key.
+template <class Message>
+class Newest {
+ public:
+  Newest(bus::Bus& bus, const bus::TopicOf<Message>& topic, std::uint32_t Message::*key,
+         std::size_t keys)
+      : reader_(bus.reader(topic)), key_(key), newest_(keys) {}
+
+  void listen() {
+    while (reader_.take(arrived_)) {
+      const std::uint32_t key = arrived_.*key_;
+      if (key < newest_.size()) std::swap(newest_[key], arrived_);
+    }
+  }
+  Message& operator[](std::size_t key) { return newest_.at(key); }
+  const Message& operator[](std::size_t key) const { return newest_.at(key); }
+
+ private:
+  bus::Reader<Message> reader_;
+  std::uint32_t Message::*key_;
+  std::vector<Message> newest_;
+  Message arrived_;
+};
+
+/// A stage with its place in the session.
+struct Member {
+  std::string module;
+  std::unique_ptr<runtime::Stage> stage;
+  runtime::LockstepCursor cursor;
+  runtime::Health health;
+};
+
+}  // namespace
+
+Assets load_assets(const scene::Scene& scene) {
+  Assets assets;
+  for (const auto& organ : scene.organs) assets.organs.push_back(scene::load_organ(organ));
+  for (const auto& probe : scene.probes) {
+    assets.probe_meshes.push_back(scene::load_probe_mesh(probe));
+  }
+  return assets;
+}
+
+struct InProcess::Impl {
+  Impl(const scene::Scene& scene_in, Assets assets, const InProcessOptions& options)
+      : scene(scene_in),
+        tapped(options.tap ? options.tap(carrier) : nullptr),
+        probes(carrier, bus::kProbeState, &ProbeState::probe, scene.probes.size()),
+        contacts(carrier, bus::kContacts, &Contacts::probe, scene.probes.size()),
+        models(carrier, bus::kContactModel, &ContactModel::probe, scene.probes.size()),
+        forces(carrier, bus::kHapticForce, &HapticForce::probe, scene.probes.size()),
+        nodes(carrier, bus::kNodePositions, &NodePositions::organ, scene.organs.size()),
+        surfaces(carrier, bus::kSurface, &SurfaceTopology::organ, scene.organs.size()) {
+    const auto clock = [this] { return clock_ns; };
+    carrier.set_clock(clock);
+    if (tapped) tapped->set_clock(clock);
+    add("haptics", [&](bus::Bus& bus) {
+      auto stage = std::make_unique<haptics::HapticsStage>(scene, bus, warnings);
+      haptics = stage.get();
+      return stage;
+    });
+    add("collision", [&](bus::Bus& bus) {
+      return std::make_unique<collision::CollisionStage>(
+          scene, collision::probes_of(scene, std::move(assets.probe_meshes)), bus);
+    });
+    add("deformation", [&](bus::Bus& bus) {
+      auto stage = std::make_unique<deformation::DeformationStage>(
+          scene, std::move(assets.organs), bus, options.runner, options.guarding);
+      deformation = stage.get();
+      return stage;
+    });
+    for (std::size_t organ = 0; organ < scene.organs.size(); ++organ) {
+      deformation::write_node_positions(deformation->world(), organ, nodes[organ]);
+    }
+    listen();
+  }
+
+  bus::Bus& stages_bus() { return tapped ? *tapped : static_cast<bus::Bus&>(carrier); }
+
+  void add(const std::string& module,
+           const std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>& make) {
+    const std::size_t others = stages_bus().inputs().size();
+    auto stage = make(stages_bus());
+    const auto own = stages_bus().inputs().subspan(others);
+    members.push_back({module,
+                       std::move(stage),
+                       {scene, module, std::vector<bus::Input*>(own.begin(), own.end())},
+                       {}});
+  }
+
+  std::int64_t next_ns() const {
+    const auto earlier = [](const Member& a, const Member& b) {
+      return a.cursor.next_ns() < b.cursor.next_ns();
+    };
+    return std::min_element(members.begin(), members.end(), earlier)->cursor.next_ns();
+  }
+
+  void tick() {
+    const std::int64_t now_ns = clock_ns = next_ns();
+    for (Member& member : members) {
+      if (member.cursor.next_ns() != now_ns) continue;
+      member.health = member.cursor.step(*member.stage);
+    }
+    listen();
+  }
+
+  void finish(std::int64_t end_ns) {
+    for (Member& member : members) member.cursor.finish(*member.stage, end_ns);
+  }
+
+  void listen() {
+    probes.listen();
+    contacts.listen();
+    models.listen();
+    forces.listen();
+    nodes.listen();
+    surfaces.listen();
+  }
+
+  const scene::Scene scene;
+  std::int64_t clock_ns = runtime::CycleGrid::kSetUp;
+  bus::MemoryBus carrier{true};
+  std::unique_ptr<bus::Bus> tapped;
+  Newest<ProbeState> probes;
+  Newest<Contacts> contacts;
+  Newest<ContactModel> models;
+  Newest<HapticForce> forces;
+  Newest<NodePositions> nodes;
+  Newest<SurfaceTopology> surfaces;
+  std::vector<std::string> warnings;
+  haptics::HapticsStage* haptics = nullptr;
+  deformation::DeformationStage* deformation = nullptr;
+  std::vector<Member> members;  ///< in the order of runtime::kModules
+};
+
+InProcess::InProcess(const scene::Scene& scene, Assets assets, const InProcessOptions& options)
+    : impl_(std::make_unique<Impl>(scene, std::move(assets), options)) {}
+
+InProcess::~InProcess() = default;
+InProcess::InProcess(InProcess&&) noexcept = default;
+
+void InProcess::add(const std::string& module,
+                    const std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>& make) {
+  impl_->add(module, make);
+}
+
+void InProcess::run_until(double time) {
+  const std::int64_t until_ns = ns_from_seconds(time);
+  while (impl_->next_ns() < until_ns) impl_->tick();
+}
+
+void InProcess::tick() { impl_->tick(); }
+double InProcess::time() const { return seconds_from_ns(impl_->next_ns()); }
+void InProcess::finish(double time) { impl_->finish(ns_from_seconds(time)); }
+
+const scene::Scene& InProcess::scene() const { return impl_->scene; }
+bus::Bus& InProcess::bus() { return impl_->carrier; }
+const deformation::DeformationWorld& InProcess::world() const {
+  return impl_->deformation->world();
+}
+haptics::HapticsStage& InProcess::haptics() { return *impl_->haptics; }
+
+const runtime::Health& InProcess::health(const std::string& module) const {
+  const auto found = std::find_if(impl_->members.begin(), impl_->members.end(),
+                                  [&](const Member& member) { return member.module == module; });
+  PALPATE_DEMAND(found != impl_->members.end());
+  return found->health;
+}
+
+const ProbeState& InProcess::probe(std::size_t probe) const { return impl_->probes[probe]; }
+const Contacts& InProcess::contacts(std::size_t probe) const { return impl_->contacts[probe]; }
+const ContactModel& InProcess::contact_model(std::size_t probe) const {
+  return impl_->models[probe];
+}
+const HapticForce& InProcess::haptic_force(std::size_t probe) const { return impl_->forces[probe]; }
+const NodePositions& InProcess::node_positions(std::size_t organ) const {
+  return impl_->nodes[organ];
+}
+const SurfaceTopology& InProcess::surface(std::size_t organ) const {
+  return impl_->surfaces[organ];
+}
+
+InProcess load_session(const scene::Scene& scene) { return InProcess(scene, load_assets(scene)); }
+
+}  // namespace palpate::session

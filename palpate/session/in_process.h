@@ -1,0 +1,80 @@
+// A whole session in one process: the stages of haptics, collision and deformation in lockstep on
+// the memory bus, as fast as the machine allows. What studies and checks run instead of a wiring of
+// their own, and what `palpate run --in-process` is.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deformation/stage.h"
+#include "haptics/stage.h"
+#include "modules/bus/memory_bus.h"
+#include "modules/geometry/organ_shape.h"
+#include "modules/geometry/triangle_surface.h"
+#include "modules/runtime/lockstep.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::session {
+
+/// What a scene's files hold.
+struct Assets {
+  std::vector<geometry::OrganShape> organs;             ///< one per organ
+  std::vector<geometry::TriangleSurface> probe_meshes;  ///< one per probe; empty: no MeshShape
+};
+/// @throws InputError for a mesh that cannot be used
+Assets load_assets(const scene::Scene& scene);
+
+struct InProcessOptions {
+  ChunkRunner* runner = nullptr;  ///< of deformation; outlives the session
+  deformation::Guarding guarding = deformation::Guarding::kOn;
+  /// The bus that the stages see, given the one that carries: for taps. None: the same.
+  std::function<std::unique_ptr<bus::Bus>(bus::Bus&)> tap;
+};
+
+class InProcess {
+ public:
+  /// @throws InputError as the stages do
+  InProcess(const scene::Scene& scene, Assets assets, const InProcessOptions& options = {});
+  ~InProcess();
+  InProcess(InProcess&&) noexcept;
+
+  /// Another module, by its name in runtime::kModules; before the first cycle.
+  void add(const std::string& module,
+           const std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>& make);
+
+  /// All cycles that begin before `time` [s].
+  void run_until(double time);
+  /// All cycles that begin at the next instant at which one does.
+  void tick();
+  /// That instant [s].
+  double time() const;
+  /// Ends the session at `time` [s]: what was said before it reaches every module.
+  void finish(double time);
+
+  const scene::Scene& scene() const;
+  bus::Bus& bus();  ///< for listening
+  const deformation::DeformationWorld& world() const;
+  haptics::HapticsStage& haptics();
+  const runtime::Health& health(const std::string& module) const;  ///< after its last cycle
+
+  // The newest of what the stages said; before the first of its kind a default one, of organs the
+  // rest shape.
+  const ProbeState& probe(std::size_t probe) const;
+  const Contacts& contacts(std::size_t probe) const;
+  const ContactModel& contact_model(std::size_t probe) const;
+  const HapticForce& haptic_force(std::size_t probe) const;
+  const NodePositions& node_positions(std::size_t organ) const;
+  const SurfaceTopology& surface(std::size_t organ) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A session of the scene with its files loaded.
+/// @throws InputError as load_assets() and the stages do
+InProcess load_session(const scene::Scene& scene);
+
+}  // namespace palpate::session

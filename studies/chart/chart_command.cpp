@@ -1,0 +1,133 @@
+#include "studies/chart/chart_command.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "modules/core/data_folder.h"
+#include "modules/core/error.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/scene/schema.h"
+#include "studies/chart/accuracy_tables.h"
+#include "studies/chart/truth_cube.h"
+#include "studies/report/measures.h"
+#include "studies/report/plot_script.h"
+#include "studies/report/progress.h"
+
+namespace palpate::chart {
+namespace {
+
+std::vector<Case> wanted_cases(const ChartOptions& options, std::ostream& log) {
+  std::vector<Case> wanted;
+  for (const auto& name : options.only_cases) wanted.push_back(find_case(name));
+  if (wanted.empty()) wanted = cases();
+  const auto without_data = [&](const Case& of) {
+    if (std::string(of.name) != "truthcube" || truth_cube_folder()) return false;
+    log << "truthcube: SKIPPED: PALPATE_DATA is not there\n";
+    return true;
+  };
+  wanted.erase(std::remove_if(wanted.begin(), wanted.end(), without_data), wanted.end());
+  return wanted;
+}
+
+std::vector<scene::Model> wanted_models(const ChartOptions& options) {
+  if (options.only_models.empty()) return model_hierarchy();
+  std::vector<scene::Model> wanted;
+  for (const auto& name : options.only_models) {
+    const auto all = model_hierarchy();
+    const auto found = std::find_if(
+        all.begin(), all.end(), [&](scene::Model model) { return name == scene::word_of(model); });
+    if (found == all.end()) {
+      throw InputError(
+          fmt::format("model '{}': must be one of {}", name, fmt::join(model_names(), ", ")));
+    }
+    wanted.push_back(*found);
+  }
+  return wanted;
+}
+
+std::string line_of(const Outlook& outlook) {
+  std::string line = fmt::format("{} of {}: {}", outlook.done + 1, outlook.total, outlook.job);
+  if (!std::isnan(outlook.seconds_left)) {
+    line += fmt::format("; about {:.0f} min left", std::ceil(outlook.seconds_left / 60));
+  }
+  return line;
+}
+
+/// How well the beads of the Truth Cube themselves are known.
+void print_noise(const std::vector<Case>& of, std::ostream& out) {
+  for (const Case& each : of) {
+    if (std::string(each.name) != "truthcube") continue;
+    const TruthCube cube = read_truth_cube(*truth_cube_folder());
+    for (const auto& [compression, beads] : cube.states) {
+      out << fmt::format("Truth Cube at {:g} %: tracking noise of the beads {:.2f} mm\n",
+                         100 * compression, 1e3 * tracking_noise(cube, compression));
+    }
+  }
+}
+
+/// Bullet squeezes the ball in a program of its own, ours beside it.
+void measure_peers(const ChartOptions& options, std::ostream& log) {
+  if (!std::filesystem::exists(options.bullet_program)) {
+    log << "Bullet: SKIPPED: palpate-bench-bullet was not built (libbullet-dev)\n";
+    return;
+  }
+  const auto table = options.out / "bullet.csv";
+  if (!options.again && std::filesystem::exists(table)) return;
+  std::vector<std::string> words{options.bullet_program.string(), "--out", options.out.string()};
+  if (options.extent != Extent::kFull) words.insert(words.end(), {"--nodes", "642"});
+  if (options.extent == Extent::kQuick) words.emplace_back("--quick");
+  if (report::run_program(words) != 0) {
+    throw std::runtime_error(options.bullet_program.string() + " failed");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> case_names() {
+  std::vector<std::string> names;
+  for (const Case& each : cases()) names.emplace_back(each.name);
+  return names;
+}
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const auto model : model_hierarchy()) names.emplace_back(scene::word_of(model));
+  return names;
+}
+
+int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log) {
+  report::make_out_folder(options.out);
+  const auto of = wanted_cases(options, log);
+  const auto models = wanted_models(options);
+  if (options.again) std::filesystem::remove_all(options.out / "points");
+  const PointStore store(options.out / "points");
+  const runtime::StopSignal stop;
+  const KeepGoing keep_going = [&] {
+    if (stop.requested()) throw report::Stopped{};
+  };
+  try {
+    const auto result = sweep(
+        of, options.extent, models, store,
+        [&](const Outlook& outlook) { log << line_of(outlook) << std::endl; }, keep_going);
+    write_tables(result, options.out);
+    print(result, out);
+    print_noise(of, out);
+    if (options.peers) measure_peers(options, log);
+    out << "on " << report::machine_name() << '\n';
+    report::draw_figures(data_file("plots/plot_accuracy.py"), options.out);
+    out << "in " << options.out.string()
+        << ": the charts, points.csv, samples.csv, profiles.csv, reference_solutions.csv"
+        << (std::filesystem::exists(options.out / "bullet.csv") ? ", bullet.csv" : "")
+        << "; points/ is what a next run starts from\n";
+    return kExitDone;
+  } catch (const report::Stopped&) {
+    log << "stopped; finished points stay in " << (options.out / "points").string()
+        << " and are not measured again" << std::endl;
+    return report::kExitStopped;
+  }
+}
+
+}  // namespace palpate::chart

@@ -1,0 +1,30 @@
+// `palpate chart`: what each model costs and how wrong it is, on the same cases.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "studies/chart/sweep.h"
+
+namespace palpate::chart {
+
+struct ChartOptions {
+  std::filesystem::path out = "out/accuracy";
+  std::vector<std::string> only_cases;  ///< empty: all
+  std::vector<std::string> only_models;
+  Extent extent = Extent::kUsual;
+  std::filesystem::path bullet_program;  ///< palpate-bench-bullet, if it was built
+  bool peers = true;
+  bool again = false;  ///< measures anew what has been measured
+};
+
+/// What only_cases and only_models may hold.
+std::vector<std::string> case_names();
+std::vector<std::string> model_names();
+
+/// The whole command. @return an exit code @throws InputError
+int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log);
+
+}  // namespace palpate::chart

@@ -1,0 +1,118 @@
+#include "studies/rigs/squeezed_ball.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "deformation/model/organ_model.h"
+#include "deformation/organ_messages.h"
+#include "modules/geometry/primitives.h"
+#include "modules/geometry/tools/gmsh_tool.h"
+
+namespace palpate::rigs {
+
+scene::Organ ball_organ() {
+  scene::Organ organ;
+  organ.name = "ball";
+  organ.tissue.youngs_modulus = 10e3;
+  organ.tissue.wall_thickness = 3e-3;
+  return organ;
+}
+
+geometry::OrganShape filled_ball(int levels) {
+  const auto surface = geometry::make_ball(kBallRadius, levels);
+  return geometry::shape_of(geometry::fill_surface(surface, geometry::mean_edge_length(surface)));
+}
+
+Pose plate_pose(double height, bool facing_up) {
+  Pose pose;
+  pose.position = Vec3(0, 0, height);
+  if (!facing_up) pose.rotation = Quat(0, 1, 0, 0);
+  return pose;
+}
+
+std::vector<Pose> add_plates(scene::Scene& scene) {
+  for (const char* name : {"upper_plate", "lower_plate"}) {
+    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
+  }
+  return {plate_pose(kBallRadius, false), plate_pose(-kBallRadius, true)};
+}
+
+scene::Scene plate_scene(const scene::Organ& organ) {
+  scene::Scene scene;
+  scene.organs.push_back(organ);
+  add_plates(scene);
+  return scene;
+}
+
+double minimum_jerk(double t) {
+  t = std::clamp(t, 0.0, 1.0);
+  return t * t * t * (10 + t * (6 * t - 15));
+}
+
+double equatorial_radius(const std::vector<geometry::Triangle>& triangles,
+                         const std::function<Vec3(std::size_t)>& position) {
+  double sum = 0;
+  int crossings = 0;
+  for (const auto& triangle : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = position(triangle[k]), b = position(triangle[(k + 1) % 3]);
+      if ((a.z() < 0) == (b.z() < 0)) continue;
+      const Vec3 crossing = a + a.z() / (a.z() - b.z()) * (b - a);
+      sum += std::hypot(crossing.x(), crossing.y());
+      ++crossings;
+    }
+  }
+  return sum / crossings;
+}
+
+ContactSet plate_contacts(const deformation::DeformationWorld& world, std::uint32_t probe,
+                          double height, int side, double margin) {
+  const SurfaceTopology& topology = deformation::surface_message(world, 0);
+  NodePositions nodes;
+  deformation::write_node_positions(world, 0, nodes);
+  std::vector<std::pair<std::uint32_t, int>> corners(topology.surface_node_count);
+  for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      corners[topology.triangles[t][static_cast<std::size_t>(k)]] = {t, k};
+    }
+  }
+  ContactSet contacts;
+  contacts.probe = probe;
+  contacts.probe_pose.position = Vec3(0, 0, height);
+  for (std::size_t node = 0; node < corners.size(); ++node) {
+    const float* p = &nodes.positions[3 * node];
+    Contact contact;
+    contact.gap = side * (height - p[2]);
+    if (contact.gap > margin) continue;
+    contact.triangle = corners[node].first;
+    contact.barycentric = Vec3::Unit(corners[node].second);
+    contact.point_on_probe = Vec3(p[0], p[1], height);
+    contact.normal = Vec3(0, 0, side);
+    contacts.contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+double Plates::contact_area(const deformation::OrganState& state) const {
+  deformation::VolumeGradient volume;
+  deformation::evaluate_volume(model_, state.positions, volume);
+  double area = 0;
+  for (std::size_t i = 0; i < model_.surface_node_count; ++i) {
+    if (touch_.impulse(0, i) > 0) area += volume.gradient[i].z();
+  }
+  return area;
+}
+
+void Plates::step(deformation::OrganDynamics& dynamics, double h, double new_height, double near,
+                  deformation::OrganState& state) {
+  const Vec3 position = height_ * Vec3::UnitZ();
+  const Vec3 velocity = (new_height - height_) / h * Vec3::UnitZ();
+  const std::array<Obstacle, 2> plates{
+      {{position, velocity, 0, -Vec3::UnitZ()}, {-position, -velocity, 0, Vec3::UnitZ()}}};
+  touch_.step(plates, near, h, dynamics, state);
+  height_ = new_height;
+  force_ = 0;
+  for (std::size_t i = 0; i < model_.surface_node_count; ++i) force_ += touch_.impulse(0, i) / h;
+}
+
+}  // namespace palpate::rigs

@@ -1,0 +1,104 @@
+#include "collision/stage.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/bus/memory_bus.h"
+#include "modules/geometry/primitives.h"
+
+using namespace palpate;
+using collision::CollisionStage;
+
+namespace {
+
+constexpr double kRadius = 0.05;
+constexpr std::int64_t kMs = 1'000'000;
+
+/// A ball that somebody publishes, and a finger over it.
+struct Session {
+  scene::Scene scene;
+  bus::MemoryBus bus;
+  bus::Writer<SurfaceTopology> surfaces = bus.writer(bus::kSurface);
+  bus::Writer<ProbeState> probes = bus.writer(bus::kProbeState);
+  bus::Reader<Contacts> contacts = bus.reader(bus::kContacts);
+  Contacts newest;
+
+  Session() {
+    scene.organs.resize(1);
+    scene.probes.push_back({"finger", scene::SphereShape{0.01}, 0.1, scene::TopicDevice{}});
+  }
+
+  CollisionStage stage() { return {scene, collision::load_probes(scene), bus}; }
+
+  void publish_ball() {
+    const auto ball = geometry::make_ball(kRadius, 2);
+    SurfaceTopology surface;
+    surface.generation = 1;
+    surface.name = "ball";
+    surface.surface_node_count = static_cast<std::uint32_t>(ball.nodes.size());
+    for (const Vec3& p : ball.nodes) {
+      for (int axis = 0; axis < 3; ++axis) {
+        surface.rest_positions.push_back(static_cast<float>(p[axis]));
+      }
+    }
+    surface.triangles = ball.triangles;
+    REQUIRE(surfaces.write(surface));
+  }
+
+  void move_finger(double height, std::int64_t now_ns) {
+    ProbeState state;
+    state.header.source_time_ns = now_ns;
+    state.pose.position = Vec3(0, 0, height);
+    REQUIRE(probes.write(state));
+  }
+
+  /// Contacts of a cycle at `now_ns`.
+  std::size_t search(CollisionStage& stage, std::int64_t now_ns) {
+    runtime::Cycle now;
+    now.now_ns = now_ns;
+    now.running = true;
+    stage.cycle(now);
+    while (contacts.take(newest)) {
+    }
+    return newest.contacts.size();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("collision stage: is not ready, and says nothing, before it knows every organ") {
+  // Oracle: by hand.
+  Session session;
+  auto stage = session.stage();
+  session.move_finger(0.05, kMs);
+  CHECK_FALSE(stage.cycle({}).ready);
+  CHECK_FALSE(session.contacts.take(session.newest));
+  session.publish_ball();
+  CHECK(stage.cycle({}).ready);
+  CHECK(session.contacts.take(session.newest));
+}
+
+TEST_CASE("collision stage: a finger in the ball touches it, one far away does not") {
+  // Oracle: geometry, the ball's top is at 5 cm.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball();
+  session.move_finger(0.2, kMs);
+  CHECK(session.search(stage, kMs) == 0);
+  session.move_finger(0.055, 5 * kMs);
+  CHECK(session.search(stage, 5 * kMs) > 0);
+  CHECK(session.newest.probe_pose.position.z() == 0.055);
+}
+
+TEST_CASE("collision stage: a probe that fell silent touches nothing, and its status says so") {
+  // Oracle: the documented limit, runtime::kInputStaleAfter.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball();
+  session.move_finger(0.055, kMs);
+  REQUIRE(session.search(stage, kMs) > 0);
+  const std::int64_t late = kMs + ns_from_seconds(runtime::kInputStaleAfter) + 1;
+  CHECK(session.search(stage, late) == 0);
+  runtime::Cycle now;
+  now.now_ns = late;
+  CHECK(std::string(stage.cycle(now).guard).find("no news of a probe") == 0);
+}

@@ -1,0 +1,75 @@
+#include "deformation/stage.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/bus/memory_bus.h"
+#include "tests/deformation/organs.h"
+
+using namespace palpate;
+using namespace palpate::deformation;
+
+namespace {
+
+constexpr double kPeriod = 4e-3;
+
+struct Session {
+  scene::Scene scene = testing::ball_scene(1);
+  bus::MemoryBus bus;
+  bus::Reader<SurfaceTopology> surfaces = bus.reader(bus::kSurface);
+  bus::Reader<NodePositions> nodes = bus.reader(bus::kNodePositions);
+  bus::Reader<ContactModel> models = bus.reader(bus::kContactModel);
+  SurfaceTopology surface;
+  NodePositions positions;
+  ContactModel model;
+  DeformationStage stage{scene, {geometry::make_ball(testing::kBallRadius, 1)}, bus};
+
+  runtime::Health cycle(bool running, bool reset = false) {
+    runtime::Cycle now;
+    now.running = running;
+    now.reset = reset;
+    now.advance = kPeriod;
+    return stage.cycle(now);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("deformation stage: says its organs' surfaces when built, and again after a reset") {
+  // Oracle: the generation counts.
+  Session session;
+  REQUIRE(session.surfaces.take(session.surface));
+  CHECK(session.surface.generation == 1);
+  CHECK(session.surface.name == session.scene.organs[0].name);
+  CHECK_FALSE(session.surfaces.take(session.surface));
+  session.cycle(true, /*reset=*/true);
+  REQUIRE(session.surfaces.take(session.surface));
+  CHECK(session.surface.generation == 2);
+}
+
+TEST_CASE(
+    "deformation stage: advances by what the cycle may take on, and only while the session "
+    "runs; both times it speaks") {
+  // Oracle: the world's own time.
+  Session session;
+  session.cycle(false);
+  CHECK(session.stage.world().time() == 0);
+  CHECK(session.nodes.take(session.positions));
+  CHECK(session.models.take(session.model));
+  const auto health = session.cycle(true);
+  CHECK(session.stage.world().time() == kPeriod);
+  CHECK(session.nodes.take(session.positions));
+  CHECK(session.positions.header.sim_time_ns == 4'000'000);
+  CHECK(health.least_advance > 0);
+  CHECK(health.least_advance <= kPeriod);
+}
+
+TEST_CASE("deformation stage: probes that nobody speaks for touch nothing, and it says so") {
+  // Oracle: the documented limit; the clock stands a second after the last word.
+  Session session;
+  runtime::Cycle now;
+  now.running = true;
+  now.advance = kPeriod;
+  now.now_ns = 1'000'000'000;
+  CHECK(std::string(session.stage.cycle(now).guard) ==
+        "a probe or its contacts are stale: it touches nothing");
+}

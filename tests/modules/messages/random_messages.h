@@ -1,0 +1,263 @@
+// Messages with random content, made by walking their description: valid ones, and ones with one
+// field spoiled.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "modules/messages/cdr.h"
+#include "modules/messages/describe.h"
+
+namespace palpate::messages::testing {
+
+using Random = std::mt19937_64;
+
+inline double real(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+inline std::uint64_t whole(Random& random, std::uint64_t low, std::uint64_t high) {
+  return std::uniform_int_distribution<std::uint64_t>(low, high)(random);
+}
+
+/// Fills a message; rules across fields are left to random_message.
+class RandomFiller {
+ public:
+  explicit RandomFiller(Random& random) : random_(random) {}
+
+  void header(Header& h) { describe(*this, h); }
+  template <class T>
+  void key(const char* name, T& value) {
+    field(name, value, Rule::kName);
+  }
+  template <class T>
+  void field(const char*, T& value, Rule rule) {
+    fill(value, rule);
+  }
+  template <class List>
+  void numbers(const char*, List& list, const Bounds& bounds) {
+    using Entry = typename List::value_type;
+    list.resize(length(bounds) * (std::is_arithmetic_v<Entry> ? bounds.numbers_per_entry : 1));
+    for (Entry& entry : list) fill_entry(entry);
+  }
+  template <class List, class Parts>
+  void numbers(const char*, List& list, const Bounds& bounds, const Parts& parts) {
+    list.resize(length(bounds));
+    for (auto& entry : list) {
+      for (auto* part : parts(entry)) fill(*part, Rule::kPlain);
+    }
+  }
+  template <class List>
+  void list(const char*, List& list, std::size_t max, const char*) {
+    list.resize(length({1, 0, max}));
+    for (auto& entry : list) describe(*this, entry);
+  }
+  template <class Compute>
+  void derived(const char*, const Compute&) {}
+  template <class Holds>
+  void require(const char*, const Holds&) {}
+
+ private:
+  std::size_t length(const Bounds& bounds) {
+    constexpr std::size_t kLongest = 40;
+    return whole(random_, bounds.min_entries,
+                 std::min(bounds.max_entries, std::max(bounds.min_entries, kLongest)));
+  }
+  void fill_entry(float& x) { x = static_cast<float>(real(random_, -1, 1)); }
+  void fill_entry(std::uint32_t& x) { fill(x, Rule::kPlain); }
+  void fill_entry(std::array<std::uint32_t, 3>& entry) {
+    for (std::uint32_t& x : entry) fill(x, Rule::kPlain);
+  }
+  void fill(std::uint64_t& x, Rule rule) { x = whole(random_, rule == Rule::kFromOne, ~0ull); }
+  void fill(std::int64_t& x, Rule rule) {
+    x = static_cast<std::int64_t>(
+        random_() >> (rule == Rule::kAtLeastZero || rule == Rule::kSinceSetUp ? 1 : 0));
+  }
+  void fill(std::uint32_t& x, Rule rule) {
+    x = static_cast<std::uint32_t>(rule == Rule::kForceLimits ? whole(random_, 0, 63) : random_());
+  }
+  void fill(bool& x, Rule) { x = whole(random_, 0, 1) == 1; }
+  template <Enumeration E>
+  void fill(E& x, Rule) {
+    x = static_cast<E>(whole(random_, 0, Words<E>::texts.size() - 1));
+  }
+  void fill(double& x, Rule rule) {
+    x = real(random_, rule == Rule::kPlain ? -5 : 0, rule == Rule::kFraction ? 1 : 5);
+    if (rule == Rule::kAge && x < 1) x = std::numeric_limits<double>::infinity();
+  }
+  void fill(Vec3& v, Rule rule) {
+    for (double& x : v) x = real(random_, -5, 5);
+    if (rule == Rule::kUnit) v.normalize();
+    if (rule == Rule::kWeights) v = v.cwiseAbs() / v.cwiseAbs().sum();
+  }
+  void fill(Quat& q, Rule) {
+    for (double& x : q.coeffs()) x = real(random_, -5, 5);
+    q.normalize();
+  }
+  void fill(Mat3& k, Rule) {
+    Vec3 a, b;
+    fill(a, Rule::kPlain);
+    fill(b, Rule::kPlain);
+    k = a * a.transpose() + b * b.transpose();
+  }
+  void fill(std::string& text, Rule rule) {
+    text.resize(whole(random_, rule == Rule::kName, rule == Rule::kName ? kMaxNameBytes : 200));
+    for (char& c : text) c = static_cast<char>(whole(random_, 1, 255));
+  }
+
+  Random& random_;
+};
+
+/// Makes indices exist and differ.
+inline void mend(Random& random, SurfaceTopology& m) {
+  const std::size_t nodes = m.rest_positions.size() / 3;
+  const auto node = [&] { return static_cast<std::uint32_t>(whole(random, 0, nodes - 1)); };
+  const auto after = [&](std::uint32_t first, std::size_t steps) {
+    return static_cast<std::uint32_t>((first + steps) % nodes);
+  };
+  m.surface_node_count = static_cast<std::uint32_t>(nodes);
+  for (auto& t : m.triangles) {
+    t[0] = node();
+    t[1] = after(t[0], 1);
+    t[2] = after(t[0], 2);
+  }
+  for (auto& spring : m.springs) {
+    spring.node_a = node();
+    spring.node_b = after(spring.node_a, 1);
+  }
+  m.fixed_nodes.resize(nodes / 4);
+  for (std::uint32_t& fixed : m.fixed_nodes) fixed = node();
+}
+
+template <class Message>
+void fill(Random& random, Message& message) {
+  RandomFiller filler(random);
+  describe(filler, message);
+  if constexpr (std::same_as<Message, SurfaceTopology>) {
+    while (message.rest_positions.size() < 9) message.rest_positions.push_back(1);
+    mend(random, message);
+  }
+}
+
+template <class Message>
+Message random_message(Random& random) {
+  Message message;
+  fill(random, message);
+  return message;
+}
+
+/// A topology of that many surface nodes, triangles and springs, all indices in range.
+inline SurfaceTopology random_topology(Random& random, std::size_t nodes, std::size_t triangles,
+                                       std::size_t springs) {
+  auto m = random_message<SurfaceTopology>(random);
+  m.rest_positions.resize(3 * nodes, 0.5f);
+  m.triangles.resize(triangles);
+  m.springs.resize(springs);
+  mend(random, m);
+  return m;
+}
+
+template <class Message>
+std::vector<std::uint8_t> payload_of(const Message& message) {
+  std::vector<std::uint8_t> payload;
+  write_payload(message, payload);
+  return payload;
+}
+
+/// Every bit the same.
+template <class Message>
+bool equal(const Message& a, const Message& b) {
+  return payload_of(a) == payload_of(b);
+}
+
+/// Breaks the rule of the `place`-th thing that has one, counted along the description.
+class Spoiler {
+ public:
+  explicit Spoiler(std::size_t place) : left_(place) {}
+  /// The field it broke; nullptr if there are fewer places.
+  const char* spoiled() const { return spoiled_; }
+
+  void header(Header& h) { describe(*this, h); }
+  template <class T>
+  void key(const char* name, T& value) {
+    field(name, value, Rule::kName);
+  }
+  template <class T>
+  void field(const char* name, T& value, Rule rule) {
+    spoil(name, value, rule);
+  }
+  void numbers(const char* name, std::vector<float>& list, const Bounds&) {
+    for (float& x : list) {
+      if (here(name)) x = std::numeric_limits<float>::infinity();
+    }
+    if (here(name)) list.push_back(0);
+    if (here(name)) list.clear();
+  }
+  template <class List>
+  void numbers(const char* name, List& list, const Bounds& bounds) {
+    if (here(name)) list.resize(bounds.max_entries + 1);
+  }
+  template <class List, class Parts>
+  void numbers(const char* name, List& list, const Bounds& bounds, const Parts&) {
+    // Two lists from one: the second is as long as the first whatever happens.
+    if (bounds.min_entries != bounds.max_entries && here(name)) list.resize(bounds.max_entries + 1);
+  }
+  template <class List>
+  void list(const char* name, List& list, std::size_t max, const char*) {
+    for (auto& entry : list) describe(*this, entry);
+    if (here(name)) list.resize(max + 1);
+  }
+  template <class Compute>
+  void derived(const char*, const Compute&) {}
+  template <class Holds>
+  void require(const char*, const Holds&) {}
+
+ private:
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+  // True once, at the place to spoil.
+  bool here(const char* name) {
+    if (spoiled_ != nullptr || left_-- > 0) return false;
+    spoiled_ = name;
+    return true;
+  }
+  void spoil(const char* name, std::uint64_t& x, Rule rule) {
+    if (rule == Rule::kFromOne && here(name)) x = 0;
+  }
+  void spoil(const char* name, std::int64_t& x, Rule rule) {
+    if (rule == Rule::kAtLeastZero && here(name)) x = -1;
+    if (rule == Rule::kSinceSetUp && here(name)) x = -2;
+  }
+  void spoil(const char* name, std::uint32_t& x, Rule rule) {
+    if (rule == Rule::kForceLimits && here(name)) x = 64;
+  }
+  void spoil(const char*, bool&, Rule) {}
+  template <Enumeration E>
+  void spoil(const char* name, E& x, Rule) {
+    if (here(name)) x = static_cast<E>(Words<E>::texts.size());
+  }
+  void spoil(const char* name, double& x, Rule rule) {
+    if (here(name)) x = kNan;
+    if (rule != Rule::kAge && here(name)) x = std::numeric_limits<double>::infinity();
+    if (rule != Rule::kPlain && here(name)) x = -1e-300;
+    if (rule == Rule::kFraction && here(name)) x = 1 + 1e-9;
+  }
+  template <Composed T>
+  void spoil(const char* name, T& value, Rule rule) {
+    for_each_number(value, [&](double& x) {
+      if (here(name)) x = kNan;
+    });
+    if (rule == Rule::kPlain) return;
+    if (here(name)) for_each_number(value, [](double& x) { x *= -1.001; });
+  }
+  void spoil(const char* name, std::string& text, Rule rule) {
+    if (here(name)) text = std::string(1, '\0');
+    if (here(name)) text.assign((rule == Rule::kName ? kMaxNameBytes : kMaxTextBytes) + 1, 'x');
+    if (rule == Rule::kName && here(name)) text.clear();
+  }
+
+  std::size_t left_;
+  const char* spoiled_ = nullptr;
+};
+
+}  // namespace palpate::messages::testing

@@ -1,0 +1,118 @@
+#include "modules/recording/diff.h"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "modules/recording/commands.h"
+#include "tests/modules/recording/payloads.h"
+#include "tests/modules/recording/recording_files.h"
+
+namespace palpate::recording {
+namespace {
+
+struct Changes {
+  std::uint64_t other_pressure_at = 0;  ///< sample of organ 1 from which its pressure is 0.5 more
+  std::uint64_t samples = 10;           ///< of each organ
+  bool other_writer = false;
+};
+
+std::filesystem::path record(const std::filesystem::path& file, const Changes& changes) {
+  SampleFile recording(file, {});
+  for (std::uint64_t i = 1; i <= changes.samples; ++i) {
+    for (std::uint32_t organ = 0; organ < 2; ++organ) {
+      NodePositions nodes = node_positions(i, 1e-3, 10);
+      nodes.organ = organ;
+      const bool differs = changes.other_pressure_at > 0 && i >= changes.other_pressure_at;
+      if (organ == 1 && differs) nodes.pressure += 0.5;
+      if (organ == 1 && differs && i == 8) nodes.positions[2] += 0.25f;
+      recording.add(raw_sample(bus::kNodePositions, nodes, long(i), changes.other_writer ? 2 : 1));
+    }
+  }
+  recording.close();
+  return file;
+}
+
+}  // namespace
+
+TEST_CASE("diff: a recording equals itself, whoever wrote it and whenever it arrived") {
+  // Oracle: the same samples by another writer.
+  TempFolder folder;
+  const auto a = record(folder / "a.mcap", {});
+  const auto b = record(folder / "b.mcap", {.other_writer = true});
+  const RecordingDifference difference = compare({.a = a, .b = b});
+  CHECK(difference.equal());
+  CHECK_FALSE(difference.first);
+  CHECK(difference.topics.at("node_positions").compared == 20);
+}
+
+TEST_CASE("diff: names the first tick, key, field and values that differ") {
+  // Oracle: the pressure of organ 1, 0.5 Pa more from its sample 6 on, at 6 · 4 ms; one coordinate
+  // 0.25 m off in sample 8.
+  TempFolder folder;
+  const auto a = record(folder / "a.mcap", {});
+  const auto b = record(folder / "b.mcap", {.other_pressure_at = 6});
+  const RecordingDifference difference =
+      compare({.a = a, .b = b, .csv = folder / "differences.csv"});
+  CHECK_FALSE(difference.equal());
+  REQUIRE(difference.first);
+  CHECK(difference.first->sim_time_ns == 24'000'000);
+  CHECK(difference.first->topic == "node_positions");
+  CHECK(difference.first->key == "1");
+  CHECK(difference.first->field == "pressure_pa");
+  CHECK(difference.first->a == "10");
+  CHECK(difference.first->b == "10.5");
+  const TopicDifference& topic = difference.topics.at("node_positions");
+  CHECK(topic.differing == 5);
+  REQUIRE(topic.fields.size() == 2);
+  CHECK(topic.fields.at("pressure_pa").samples == 5);
+  CHECK(topic.fields.at("pressure_pa").largest == 0.5);
+  CHECK(topic.fields.at("positions_m").samples == 1);
+  CHECK(topic.fields.at("positions_m").largest == Approx(0.25));
+  CHECK(topic.fields.at("positions_m").largest_sim_time_ns == 32'000'000);
+  const std::string csv = text_of(folder / "differences.csv");
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6);
+  CHECK(csv.find("0.024,node_positions,1,pressure_pa,0.5\n") != std::string::npos);
+}
+
+TEST_CASE("diff: samples that one recording lacks are counted") {
+  // Oracle: 10 and 7 samples of two organs.
+  TempFolder folder;
+  const auto a = record(folder / "a.mcap", {});
+  const auto b = record(folder / "b.mcap", {.samples = 7});
+  const RecordingDifference difference = compare({.a = a, .b = b});
+  CHECK_FALSE(difference.equal());
+  CHECK(difference.topics.at("node_positions").only_in_a == 6);
+  CHECK(difference.topics.at("node_positions").only_in_b == 0);
+  CHECK(difference.topics.at("node_positions").compared == 14);
+}
+
+TEST_CASE("diff: what is to be ignored makes no difference, and must exist") {
+  // Oracle: the fields and topics that differ.
+  TempFolder folder;
+  const auto a = record(folder / "a.mcap", {});
+  const auto b = record(folder / "b.mcap", {.other_pressure_at = 6});
+  CHECK(compare({.a = a, .b = b, .ignore = {"node_positions"}}).equal());
+  CHECK(compare({.a = a, .b = b, .ignore = {"pressure_pa", "positions_m"}}).equal());
+  CHECK_FALSE(compare({.a = a, .b = b, .ignore = {"pressure_pa"}}).equal());
+  CHECK_THROWS_WITH(compare({.a = a, .b = b, .ignore = {"pressure"}}),
+                    "--ignore pressure: neither a topic nor a field of a message");
+}
+
+TEST_CASE("diff: the command's exit code says equal, different or bad input") {
+  // Oracle: 0, 1 and 2.
+  TempFolder folder;
+  const auto a = record(folder / "a.mcap", {});
+  const auto b = record(folder / "b.mcap", {.other_pressure_at = 6});
+  std::ostringstream out, err;
+  CHECK(run_diff_command({.a = a, .b = a}, out, err) == 0);
+  CHECK(out.str().ends_with("equal\n"));
+  CHECK(run_diff_command({.a = a, .b = b}, out, err) == 1);
+  CHECK(out.str().find("first difference at 0.024 s of the session: node_positions of 1, "
+                       "pressure_pa: 10 and 10.5\n") != std::string::npos);
+  CHECK(err.str().empty());
+  CHECK(run_diff_command({.a = a, .b = folder / "none.mcap"}, out, err) == 2);
+  CHECK(err.str().find("none.mcap") != std::string::npos);
+}
+
+}  // namespace palpate::recording

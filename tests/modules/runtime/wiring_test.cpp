@@ -1,0 +1,77 @@
+#include "modules/runtime/wiring.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/bus/topics.h"
+
+using namespace palpate;
+using namespace palpate::runtime;
+
+namespace {
+
+scene::Scene two_probes_one_organ() {
+  scene::Scene scene;
+  scene.organs.resize(1);
+  scene.probes.resize(2);
+  scene.rates = {1000, 300, 100, 30};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("wiring: every topic it names exists, and its writer and readers are modules") {
+  // Oracle: the topics' own list.
+  for (const Wire& wire : session_wires()) {
+    INFO(wire.topic);
+    CHECK(bus::find_topic(wire.topic) != nullptr);
+    for (const std::string_view reader : wire.readers) {
+      const bool known = std::find(kModules.begin(), kModules.end(), reader) != kModules.end();
+      CHECK((reader.empty() || known));
+    }
+  }
+}
+
+TEST_CASE("wiring: cycles lie on whole periods") {
+  // Oracle: by hand, 300 Hz is a period of 3,333,333 ns.
+  const CycleGrid grid(300);
+  CHECK(grid.period_ns() == 3'333'333);
+  CHECK(grid.last_at(0) == 0);
+  CHECK(grid.last_at(3'333'332) == 0);
+  CHECK(grid.last_at(3'333'333) == 3'333'333);
+  CHECK(grid.last_before(3'333'333) == 0);
+  CHECK(grid.last_before(0) == CycleGrid::kNever);
+}
+
+TEST_CASE(
+    "wiring: a module waits for what those before it say at the same instant, and sees of "
+    "those after it what they said before") {
+  // Oracle: by hand.
+  const auto scene = two_probes_one_organ();
+  const InputRule collision(scene, "collision");
+  const std::int64_t at = 10'000'000;  // the third cycle of 300 Hz begins at 9,999,999 ns
+  CHECK(collision.required("probe_state", at) == 10'000'000);
+  CHECK(collision.horizon("probe_state", at) == at);
+  CHECK(collision.keys("probe_state") == 2);
+  CHECK(collision.required("node_positions", at) == 0);
+  CHECK(collision.horizon("node_positions", at) == at - 1);
+  CHECK(collision.keys("node_positions") == 1);
+  CHECK(collision.required("node_positions", 0) == CycleGrid::kNever);
+  CHECK(collision.required("surface", 0) == CycleGrid::kSetUp);
+
+  const InputRule haptics(scene, "haptics");
+  CHECK(haptics.required("contact_model", at) == 0);
+  CHECK(haptics.keys("probe_input") == 0);  // an outside program is waited for by nobody
+
+  const InputRule recorder(scene, "recorder");
+  CHECK(recorder.required("contact_model", at) == at);
+  CHECK(recorder.required("contacts", at) == 9'999'999);
+  CHECK(recorder.keys("scene") == 1);
+}
+
+TEST_CASE("wiring: a topic's readers are counted among those who take part") {
+  // Oracle: by hand.
+  CHECK(reader_count("probe_state", {"haptics", "collision", "deformation"}) == 2);
+  CHECK(reader_count("probe_state", {"haptics", "collision", "deformation", "recorder"}) == 3);
+  CHECK(reader_count("contact_model", {"haptics", "visualizer"}) == 1);
+  CHECK(reader_count("module_status", {"visualizer", "recorder"}) == 0);
+}

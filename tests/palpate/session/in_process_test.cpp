@@ -1,0 +1,200 @@
+#include "palpate/session/in_process.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "modules/geometry/primitives.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::session {
+namespace {
+
+constexpr double kRadius = 0.05;
+constexpr double kTip = 0.008;
+
+/// A ball held at its lower third, pressed from above by a spherical tip along a script.
+scene::Scene press_scene(std::vector<scene::ScriptedDevice::Move> moves, double friction = 0.1) {
+  scene::Scene scene;
+  scene::Organ organ;
+  organ.name = "ball";
+  organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
+  organ.tissue.drag = 10;
+  organ.springs.inner_ratio = 0.6;  // so that a tip meets a force worth comparing
+  scene.organs.push_back(organ);
+  scene::ScriptedDevice device;
+  device.start = Vec3(0, 0, kRadius + kTip + 0.005);
+  device.moves = std::move(moves);
+  scene.probes.push_back({"tip", scene::SphereShape{kTip}, friction, device});
+  return scene;
+}
+
+InProcess ball_session(const scene::Scene& scene, int levels = 3) {
+  return InProcess(scene, {{geometry::make_ball(kRadius, levels)}, {geometry::TriangleSurface{}}});
+}
+
+Vec3 at_depth(double depth) { return Vec3(0, 0, kRadius + kTip - depth); }
+
+/// How often a closed surface winds around p: 1 inside, 0 outside (Van Oosterom & Strackee 1983).
+double winding_number(const Vec3& p, const NodePositions& nodes,
+                      const std::vector<geometry::Triangle>& triangles) {
+  double solid_angle = 0;
+  for (const auto& t : triangles) {
+    Vec3 r[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      r[k] = Eigen::Map<const Eigen::Vector3f>(&nodes.positions[3 * t[k]]).cast<double>() - p;
+    }
+    const double n0 = r[0].norm(), n1 = r[1].norm(), n2 = r[2].norm();
+    const double below =
+        n0 * n1 * n2 + r[0].dot(r[1]) * n2 + r[0].dot(r[2]) * n1 + r[1].dot(r[2]) * n0;
+    solid_angle += 2 * std::atan2(r[0].dot(r[1].cross(r[2])), below);
+  }
+  return solid_angle / (4 * M_PI);
+}
+
+TEST_CASE("session in process: a pressed ball pushes back along the normal and keeps its volume") {
+  // Oracle: invariants; nothing touches before, everything is pushed up after.
+  auto session = ball_session(press_scene({{at_depth(0.015), 1.0}, {std::nullopt, 1.0}}));
+  session.run_until(0.05);
+  CHECK(session.haptic_force(0).force.norm() == 0);
+  double worst = 0;
+  while (session.time() < 2.0) {
+    session.tick();
+    const auto& nodes = session.node_positions(0);
+    worst = std::max(worst, std::abs(nodes.volume / nodes.target_volume - 1));
+  }
+  CHECK(worst < 1e-4);
+  const Vec3 force = session.haptic_force(0).force;
+  CHECK(force.z() > 0.05);
+  CHECK(force.head<2>().norm() < 0.05 * force.z());
+  CHECK(session.node_positions(0).pressure > 1);
+}
+
+TEST_CASE("session in process: at rest the hand feels what the tissue gets, within 1 %") {
+  // Oracle: action = reaction.
+  auto session = ball_session(press_scene({{at_depth(0.012), 1.0}, {std::nullopt, 1.0}}));
+  session.run_until(2.0);
+  const Vec3 tissue = session.contact_model(0).force, hand = session.haptic_force(0).force;
+  REQUIRE(tissue.norm() > 0.02);
+  CHECK((hand - tissue).norm() < 0.01 * tissue.norm());
+  CHECK(session.haptic_force(0).limits == kForceNotLimited);
+}
+
+TEST_CASE(
+    "session in process: friction drags a sliding tip back, and no more than its coefficient "
+    "allows") {
+  // Oracle: Coulomb's law. 5 %: the normals of several contacts differ a little.
+  const double mu = 0.2;
+  auto session = ball_session(
+      press_scene({{at_depth(0.010), 1.0}, {at_depth(0.010) + Vec3(0.015, 0, 0), 1.0}}, mu));
+  session.run_until(1.6);
+  const auto& model = session.contact_model(0);
+  REQUIRE(model.touching);
+  CHECK(model.force.x() < 0);
+  const double normal = model.force.dot(model.normal);
+  CHECK((model.force - normal * model.normal).norm() <= mu * normal * 1.05);
+}
+
+TEST_CASE("session in process: the same scene gives the same bits") {
+  // Oracle: itself, run twice.
+  const auto scene =
+      press_scene({{at_depth(0.012), 0.3}, {at_depth(0.010) + Vec3(0.02, 0, 0), 0.3}});
+  auto first = ball_session(scene, 2), second = ball_session(scene, 2);
+  for (int tick = 0; tick < 600; ++tick) {
+    first.tick();
+    second.tick();
+    REQUIRE(first.haptic_force(0).force == second.haptic_force(0).force);
+  }
+  CHECK(first.node_positions(0).positions == second.node_positions(0).positions);
+  CHECK(first.node_positions(0).pressure == second.node_positions(0).pressure);
+}
+
+TEST_CASE("session in process: a tip at 500 mm/s does not pass through, at any collision rate") {
+  // Oracle: winding number; the tip's centre never enters the organ.
+  auto scene = press_scene({{at_depth(0.035), 0.08}, {std::nullopt, 0.2}});  // 1.875·40 mm/80 ms
+  scene.rates.collision = GENERATE(50.0, 100.0, 250.0, 1000.0);
+  auto session = ball_session(scene);
+  const auto triangles = geometry::make_ball(kRadius, 3).triangles;
+  double fastest = 0, force = 0;
+  for (int tick = 0; tick < 280; ++tick) {
+    session.tick();
+    fastest = std::max(fastest, session.probe(0).twist.linear.norm());
+    force = std::max(force, session.contact_model(0).force.z());
+    if (tick % 10 != 0) continue;
+    INFO("collision at " << scene.rates.collision << " Hz, t = " << session.time() << " s");
+    CHECK(winding_number(session.probe(0).pose.position, session.node_positions(0), triangles) <
+          0.5);
+  }
+  CHECK(fastest > 0.5);
+  CHECK(force > 0.1);
+}
+
+TEST_CASE("session in process: a sliding tip feels a steady force, however late contacts are") {
+  // Oracle: the same slide with contacts of every step. A slow collision leaves contacts up to four
+  // deformation steps old; what is felt may then differ by what a contact found late would add. The
+  // largest step is that of first touch: the three nodes of a triangle take on the tip's speed v
+  // (1.875 of the mean) within one step, 3 m v/T.
+  const auto slide = [](double collision_hz, double& largest_step) {
+    auto scene = press_scene({{at_depth(0.012), 1.0}, {at_depth(0.012) + Vec3(0.03, 0, 0), 2.0}});
+    scene.rates.collision = collision_hz;
+    auto session = ball_session(scene);
+    std::vector<double> forces;
+    while (session.time() < 2.9) {
+      session.run_until(session.time() + 0.004);
+      forces.push_back(session.contact_model(0).force.norm());
+      if (forces.size() < 2) continue;
+      largest_step = std::max(largest_step, std::abs(forces.back() - forces[forces.size() - 2]));
+    }
+    return forces;
+  };
+  double step_at_250 = 0, step_at_60 = 0;
+  const auto prompt = slide(250, step_at_250), late = slide(62.5, step_at_60);
+  const double largest = *std::max_element(prompt.begin(), prompt.end());
+  REQUIRE(largest > 0.05);
+  const double node_mass = 1058 * 4 / 3.0 * M_PI * std::pow(kRadius, 3) / 648;
+  const double first_touch = 3 * node_mass * 1.875 * 0.017 / 0.004;
+  CHECK(step_at_250 < first_touch);
+  CHECK(step_at_60 < first_touch);
+  for (std::size_t i = 0; i < prompt.size(); ++i) {
+    CHECK(std::abs(prompt[i] - late[i]) < 0.05 * largest);
+  }
+}
+
+TEST_CASE(
+    "session in process: an insufflated stomach follows its curve and swells against the finger") {
+  // Oracle: the scene's own curve, met to 1e-5; the force on a resting finger grows with filling.
+  auto session =
+      load_session(scene::load_scene(PALPATE_SOURCE_DIR "/scenes/stomach_insufflated.yaml"));
+  double worst = 0, empty_force = 0, full_force = 0, fullest = 0;
+  const double rest_volume = session.node_positions(0).target_volume;
+  while (session.time() < 10) {
+    session.run_until(session.time() + 0.1);
+    const NodePositions& nodes = session.node_positions(0);
+    worst = std::max(worst, std::abs(nodes.volume / nodes.target_volume - 1));
+    fullest = std::max(fullest, nodes.volume / rest_volume);
+    const double force = session.haptic_force(0).force.norm();
+    if (session.time() > 2 && session.time() < 3) empty_force = std::max(empty_force, force);
+    if (session.time() > 8) full_force = std::max(full_force, force);
+  }
+  CHECK(worst <= 1e-5);
+  CHECK(fullest == Approx(1.27).epsilon(0.005));  // 1.25 and 2 % of breathing
+  CHECK(full_force > 3 * empty_force);
+}
+
+TEST_CASE("session in process: every module runs at its own rate") {
+  // Oracle: the k-th cycle begins at k/rate.
+  auto scene = press_scene({{std::nullopt, 1.0}});
+  scene.rates.collision = 200;
+  scene.rates.deformation = 100;
+  auto session = ball_session(scene, 1);
+  for (int tick = 0; tick < 100; ++tick) {
+    session.tick();
+    CHECK(session.probe(0).header.sim_time_ns == tick * 1'000'000);
+    CHECK(session.contacts(0).header.sim_time_ns == tick / 5 * 5'000'000);
+    // what a period leads to
+    CHECK(session.node_positions(0).header.sim_time_ns == (tick / 10 + 1) * 10'000'000);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::session

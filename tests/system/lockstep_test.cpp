@@ -1,0 +1,90 @@
+// Lockstep over DDS with the real processes, beside the same session in one process.
+#include <sys/wait.h>
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "palpate/child_process.h"
+#include "tests/modules/runtime/waiting.h"
+#include "tests/palpate/ball_scene.h"
+
+using namespace palpate;
+using namespace palpate::testing;
+
+namespace {
+
+constexpr const char* kPress =
+    "scripted: {start_m: [0, 0, 0.065], moves: [{to_m: [0.01, 0, 0.045], duration_s: 0.3}]}";
+constexpr double kDeadline = 100;  // [s]; a run takes about one
+
+/// `palpate run` to its end. @param meddle  called again and again while it runs
+int run(const BallScene& scene, std::vector<std::string> more,
+        const std::function<void(pid_t)>& meddle = {}) {
+  const bus::BusOptions options = own_bus_options();
+  std::vector<std::string> arguments{
+      "run",      scene.file().string(),         "--headless", "--session", options.session,
+      "--domain", std::to_string(options.domain)};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  launcher::ChildProcess child(std::filesystem::path(PALPATE_BIN_DIR) / "palpate", arguments);
+  const bool ended = wait_until(
+      [&] {
+        for (const auto& line : child.take_lines()) UNSCOPED_INFO(line);
+        if (meddle) meddle(child.process_id());
+        return child.ended().has_value();
+      },
+      kDeadline);
+  if (!ended || !WIFEXITED(*child.ended())) return -1;
+  return WEXITSTATUS(*child.ended());
+}
+
+std::string bytes(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<pid_t> children_of(pid_t parent) {
+  const std::string id = std::to_string(parent);
+  std::ifstream stream("/proc/" + id + "/task/" + id + "/children");
+  return {std::istream_iterator<pid_t>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE(
+    "lockstep: four processes leave the bytes that one process leaves, also when any of them "
+    "is stopped for a while") {
+  // Oracle: the same session in one process.
+  const BallScene scene(kPress, "rates: {collision_hz: 300, deformation_hz: 100}\n");
+  const auto one = scene.folder() / "one.mcap", four = scene.folder() / "four.mcap";
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.5", "--record", one.string()}) == 0);
+  const std::string expected = bytes(one);
+  REQUIRE(expected.size() > 10'000);
+
+  REQUIRE(run(scene, {"--lockstep", "--duration", "0.5", "--record", four.string()}) == 0);
+  CHECK(bytes(four) == expected);
+
+  std::mt19937 random(7);
+  int stops = 0;
+  const auto stop_one = [&](pid_t launcher) {
+    const auto children = children_of(launcher);
+    if (children.empty()) return;
+    const pid_t chosen = children[random() % children.size()];
+    if (kill(chosen, SIGSTOP) != 0) return;
+    ++stops;
+    usleep(20'000);
+    kill(chosen, SIGCONT);
+  };
+  REQUIRE(run(scene, {"--lockstep", "--duration", "0.5", "--record", four.string()}, stop_one) ==
+          0);
+  CHECK(stops > 3);
+  CHECK(bytes(four) == expected);
+}
+
+TEST_CASE("lockstep: without an end there is nothing to run") {
+  // Oracle: exit codes of a program.
+  const BallScene scene(kPress);
+  CHECK(run(scene, {"--lockstep"}) == 2);
+  CHECK(run(scene, {"--in-process"}) == 2);
+}

@@ -1,0 +1,232 @@
+#include "visualizer/stage.h"
+
+#include <spdlog/spdlog.h>
+
+#include <optional>
+
+#include "modules/core/error.h"
+#include "modules/runtime/run_stage.h"
+#include "modules/scene/assets.h"
+#include "modules/scene/scene_reader.h"
+#include "visualizer/frame_schedule.h"
+#include "visualizer/offscreen_display.h"
+#include "visualizer/probe_shape.h"
+#include "visualizer/renderer.h"
+
+namespace palpate::visualizer {
+namespace {
+
+constexpr double kMarginAroundOrgans = 1.25;
+
+/// Everything the visualizer hears.
+struct Inputs {
+  bus::Reader<SurfaceTopology> surfaces;
+  bus::Reader<NodePositions> positions;
+  bus::Reader<ProbeState> probes;
+  bus::Reader<Contacts> contacts;
+  bus::Reader<HapticForce> forces;
+  bus::Reader<ModuleStatus> statuses;
+
+  explicit Inputs(bus::Bus& bus)
+      : surfaces(bus.reader(bus::kSurface)),
+        positions(bus.reader(bus::kNodePositions)),
+        probes(bus.reader(bus::kProbeState)),
+        contacts(bus.reader(bus::kContacts)),
+        forces(bus.reader(bus::kHapticForce)),
+        statuses(bus.reader(bus::kModuleStatus)) {}
+
+  /// Surfaces first: node positions of a surface not known yet are of no use.
+  void receive(SceneView& view, std::int64_t now_ns) {
+    SurfaceTopology surface;
+    while (surfaces.take(surface)) view.receive(std::move(surface));
+    NodePositions nodes;
+    while (positions.take(nodes)) view.receive(std::move(nodes), now_ns);
+    ProbeState probe;
+    while (probes.take(probe)) view.receive(probe);
+    Contacts touching;
+    while (contacts.take(touching)) view.receive(std::move(touching));
+    HapticForce force;
+    while (forces.take(force)) view.receive(force);
+    ModuleStatus status;
+    while (statuses.take(status)) view.receive(std::move(status), now_ns);
+  }
+};
+
+std::vector<geometry::TriangleSurface> probe_surfaces(const scene::Scene& scene) {
+  std::vector<geometry::TriangleSurface> surfaces;
+  for (const scene::Probe& probe : scene.probes) {
+    surfaces.push_back(probe_surface(probe.shape, 1.0, scene::load_probe_mesh(probe)));
+  }
+  return surfaces;
+}
+
+std::vector<double> reaches_of(const std::vector<geometry::TriangleSurface>& surfaces) {
+  std::vector<double> reaches;
+  for (const auto& surface : surfaces) reaches.push_back(reach(surface));
+  return reaches;
+}
+
+/// The picture and what happens in it.
+class Studio {
+ public:
+  Studio(const scene::Scene& scene, bool window)
+      : view(scene),
+        surfaces_(probe_surfaces(scene)),
+        interaction(reaches_of(surfaces_)),
+        renderer({.window = window, .title = "Palpate: " + scene.name}, surfaces_) {
+    aim();
+  }
+
+  void draw(std::int64_t now_ns) {
+    const Layout layout = make_layout(renderer.width(), renderer.height());
+    interaction.camera.width = static_cast<int>(layout.scene.width);
+    interaction.camera.height = static_cast<int>(layout.scene.height);
+    if (!aimed_ && anything_to_see()) aim();
+    view.refresh();
+    const DrawList list = make_draw_list(view, interaction.options);
+    renderer.draw(list, make_overlay(view, list, interaction, layout, now_ns), interaction.camera);
+  }
+
+  bool anything_to_see() const {
+    for (const OrganView& organ : view.organs()) {
+      if (organ.known) return true;
+    }
+    return false;
+  }
+
+  SceneView view;
+
+ private:
+  std::vector<geometry::TriangleSurface> surfaces_;
+
+ public:
+  Interaction interaction;
+  Renderer renderer;
+
+ private:
+  /// The scene's camera, else all organs from the front; once they are known, not again.
+  void aim() {
+    aimed_ = anything_to_see();
+    const Camera& old = interaction.camera;
+    const double radius = kMarginAroundOrgans * view.radius();
+    Camera camera = frontal_camera(view.center(), radius, old.width, old.height);
+    const auto& wanted = view.scene().camera;
+    if (wanted.target) camera.target = *wanted.target;
+    if (wanted.position) camera.position = *wanted.position;
+    interaction.camera = camera;
+  }
+
+  bool aimed_ = false;
+};
+
+/// Draws into the window each cycle; without one only the pictures that are kept.
+class VisualizerStage : public runtime::Stage {
+ public:
+  VisualizerStage(const scene::Scene& scene, const VisualizerOptions& options, bool window,
+                  bool commands, bus::Bus& bus)
+      : options_(options),
+        window_(window),
+        commands_(commands),
+        inputs_(bus),
+        controls_(bus.reader(bus::kSessionControl)),
+        probe_inputs_(bus.writer(bus::kProbeInput)),
+        conductor_(bus),
+        schedule_(options.frame_interval),
+        studio_(scene, window) {}
+
+  ~VisualizerStage() override {
+    if (options_.screenshot.empty()) return;
+    try {
+      studio_.draw(last_ns_);
+      studio_.renderer.write_png(options_.screenshot);
+    } catch (const std::exception& error) {
+      spdlog::error("{}", error.what());
+    }
+  }
+
+  runtime::Health cycle(const runtime::Cycle& now) override {
+    last_ns_ = now.now_ns;
+    listen(now.now_ns);
+    const Requests requests = studio_.interaction.handle(studio_.renderer.take_events(), view());
+    const bool keep = !options_.frames.empty() && now.running && studio_.anything_to_see() &&
+                      schedule_.take_due(view().sim_time());
+    if (window_ || keep) studio_.draw(now.now_ns);
+    if (keep) studio_.renderer.write_png(options_.frames / frame_name(view().sim_time()));
+    carry_out(requests, now);
+    return {.finished = requests.close};
+  }
+
+ private:
+  SceneView& view() { return studio_.view; }
+
+  void listen(std::int64_t now_ns) {
+    inputs_.receive(view(), now_ns);
+    SessionControl control;
+    while (controls_.take(control)) session_.apply(control);
+    view().receive(session_.last_command());
+  }
+
+  void carry_out(const Requests& requests, const runtime::Cycle& now) {
+    if (requests.probe_input) {
+      ProbeState wanted = *requests.probe_input;
+      wanted.header = now.header();
+      probe_inputs_.write(wanted);
+    }
+    if (requests.pause_or_resume && commands_) {
+      conductor_.command(session_, session_.phase() == runtime::SessionPhase::kRunning
+                                       ? SessionCommand::kPause
+                                       : SessionCommand::kStart);
+    }
+    if (requests.reset && commands_) {
+      runtime::SessionState after = session_;
+      after.apply(next_command(session_, SessionCommand::kReset, now.now_ns));
+      conductor_.command(session_, SessionCommand::kReset);
+      conductor_.command(after, SessionCommand::kStart);
+    }
+    if (requests.screenshot) {
+      const std::filesystem::path file = "palpate_" + frame_name(view().sim_time()).string();
+      studio_.renderer.write_png(file);
+      spdlog::info("screenshot {}", std::filesystem::absolute(file).string());
+    }
+  }
+
+  VisualizerOptions options_;
+  bool window_, commands_;
+  Inputs inputs_;
+  bus::Reader<SessionControl> controls_;
+  bus::Writer<ProbeState> probe_inputs_;
+  runtime::SessionConductor conductor_;
+  runtime::SessionState session_;
+  FrameSchedule schedule_;
+  Studio studio_;
+  std::int64_t last_ns_ = 0;
+};
+
+}  // namespace
+
+void run_visualizer(const runtime::ModuleOptions& common, const VisualizerOptions& options) {
+  const scene::Scene scene = scene::load_scene(common.scene);
+  if (!options.frames.empty()) {
+    std::error_code error;
+    std::filesystem::create_directories(options.frames, error);
+    if (error) {
+      throw InputError("--frames '" + options.frames.string() + "': must be a folder that can be " +
+                       "written (" + error.message() + ")");
+    }
+  }
+  const bool window = !options.headless && display_works();
+  if (!window && !options.headless) spdlog::info("no display: drawing without a window");
+  std::optional<OffscreenDisplay> display;
+  if (!window) {
+    draw_with_one_thread();
+    display.emplace();
+  }
+  // In lockstep the launcher alone conducts: a key pressed at some moment would change the bits.
+  const bool commands = common.lockstep.empty();
+  runtime::run_stage(
+      common, scene, "visualizer", runtime::Priority::kBackground, [&](bus::Bus& bus) {
+        return std::make_unique<VisualizerStage>(scene, options, window, commands, bus);
+      });
+}
+
+}  // namespace palpate::visualizer
