@@ -5,8 +5,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "deformation/steppers/corotational.h"
-#include "deformation/steppers/nodal_pressure.h"
+#include "deformation/elements/average_nodal_pressure.h"
+#include "deformation/elements/corotational.h"
+#include "deformation/steppers/linearly_implicit_euler.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/schema.h"
 
@@ -61,15 +62,15 @@ scene::Organ hung_organ(scene::Model model, const geometry::TetMesh& mesh) {
 void print_step_cost(scene::Model model, const geometry::TetMesh& mesh) {
   const auto organ = hung_organ(model, mesh);
   const auto built = build_organ_model(organ, Vec3(0, 0, -9.81), geometry::shape_of(mesh));
-  std::unique_ptr<ImplicitTissue> tissue;
+  const LinearTetrahedra tetrahedra(built.rest_positions, built.mesh().tetrahedra);
+  std::unique_ptr<ElasticForceElements> elements;
   if (model == scene::Model::kCorotational) {
-    tissue = std::make_unique<Corotational>(built);
+    elements = std::make_unique<Corotational>(tetrahedra, built.mesh().elastic());
   } else {
-    tissue = std::make_unique<NodalPressure>(built);
+    elements = std::make_unique<AverageNodalPressure>(tetrahedra, built.mesh().elastic());
   }
   const auto dynamics = make_dynamics(organ, built, kStep);
-  const auto& solid = dynamic_cast<const ImplicitSolid&>(*dynamics);
-  const LinearTetrahedra tetrahedra(built);
+  const auto& solid = dynamic_cast<const LinearlyImplicitEuler&>(*dynamics);
   auto state = rest_state(built);
   std::vector<Vec4f> p(built.node_count(), Vec4f(1e-3f, 2e-3f, 3e-3f, 0)), out = p;
   std::vector<Vec3> plain_p(built.node_count(), Vec3(1e-3, 2e-3, 3e-3)), plain_out = plain_p;
@@ -79,8 +80,9 @@ void print_step_cost(scene::Model model, const geometry::TetMesh& mesh) {
   for (int k = 0; k < kRounds; ++k) {
     time_least(step, [&] { dynamics->step(kStep, {}, state); });
     iterations += static_cast<double>(solid.iterations_used()) / kRounds;
-    time_least(linearisation, [&] { tissue->linearise(state.positions, kStep); });
-    time_least(product, [&] { tissue->apply(p, out); });
+    time_least(linearisation,
+               [&] { elements->linearise(state.positions, kStep * kStep, built.masses); });
+    time_least(product, [&] { elements->apply(p, out); });
     time_least(yardstick, [&] { plain_product(tetrahedra, 2e3, 1e4, plain_p, plain_out); });
   }
   const double per_tetrahedron = 1e9 / static_cast<double>(tetrahedra.size());

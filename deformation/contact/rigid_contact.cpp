@@ -6,7 +6,7 @@
 #include "deformation/elements/quadrature.h"
 #include "modules/core/error.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 namespace {
 
 std::array<double, 6> rest_areas(const QuadraticMesh& mesh, const BoundaryFace& face) {
@@ -41,7 +41,7 @@ Gap gap_at(const Obstacle& obstacle, const Vec3& position) {
           (Mat3::Identity() - normal * normal.transpose()) / distance};
 }
 
-RigidContact::RigidContact(const MixedSolid& solid, std::vector<std::uint32_t> faces,
+RigidContact::RigidContact(const TaylorHoodElements& solid, std::vector<std::uint32_t> faces,
                            double penalty)
     : solid_(solid),
       faces_(std::move(faces)),
@@ -109,7 +109,7 @@ void RigidContact::add_tangent(std::size_t element, const SolidState& state, Ele
                                bool positive) const {
   // After a stride of the obstacle t is far above any stress tissue bears; taken at its word, the
   // turning of the normal would make the tangent indefinite.
-  const double most_bending = positive ? kMostBending * solid_.tissue().shear_modulus
+  const double most_bending = positive ? kMostBending * solid_.tissue().shear_modulus()
                                        : std::numeric_limits<double>::infinity();
   for (const std::size_t c : of_element_[element]) {
     const BoundaryFace& face = solid_.mesh().faces[faces_[c]];
@@ -165,4 +165,4 @@ std::vector<ContactOutcome> RigidContact::outcomes(const SolidState& state) cons
   return outcomes;
 }
 
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

@@ -14,9 +14,9 @@
 #include <variant>
 #include <vector>
 
-#include "deformation/contact/contact.h"
+#include "deformation/contact/element_contact.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 
 struct Plane {
   Vec3 point = Vec3::Zero();
@@ -44,12 +44,12 @@ struct ContactOutcome {
   std::size_t touching = 0;   ///< integration points with traction
 };
 
-class RigidContact : public Contact {
+class RigidContact : public ElementContact {
  public:
   /// @param solid    outlives this
   /// @param faces    of its mesh that may touch: indices into mesh().faces
   /// @param penalty  ε > 0 [Pa/m]
-  RigidContact(const MixedSolid& solid, std::vector<std::uint32_t> faces, double penalty);
+  RigidContact(const TaylorHoodElements& solid, std::vector<std::uint32_t> faces, double penalty);
 
   /// Places the obstacles; multipliers of the same count of obstacles are kept.
   void set_obstacles(std::vector<Obstacle> obstacles);
@@ -84,7 +84,7 @@ class RigidContact : public Contact {
     return (obstacle * faces_.size() + candidate) * kPoints + static_cast<std::size_t>(point);
   }
 
-  const MixedSolid& solid_;
+  const TaylorHoodElements& solid_;
   std::vector<std::uint32_t> faces_;
   double penalty_ = 0;
   std::vector<std::array<double, kPoints>> areas_;    ///< of the points at rest [m²]
@@ -93,4 +93,4 @@ class RigidContact : public Contact {
   std::vector<double> multipliers_;  ///< λ [Pa]  (obstacles × faces × points)
 };
 
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

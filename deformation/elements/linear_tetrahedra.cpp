@@ -4,8 +4,10 @@
 
 namespace palpate::deformation {
 
-LinearTetrahedra::LinearTetrahedra(const OrganModel& model) : corners(model.mesh().tetrahedra) {
-  const auto& x = model.rest_positions;
+LinearTetrahedra::LinearTetrahedra(const std::vector<Vec3>& rest_positions,
+                                   std::vector<geometry::Tetrahedron> tetrahedra)
+    : node_count(rest_positions.size()), corners(std::move(tetrahedra)) {
+  const auto& x = rest_positions;
   for (const auto& t : corners) {
     Mat3 edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = x[t[static_cast<std::size_t>(k) + 1]] - x[t[0]];

@@ -1,21 +1,23 @@
-// Tetrahedra with linear functions: what of them is constant.
+// Tetrahedra with linear shape functions N_a: what of them is constant.
 #pragma once
 
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "modules/geometry/tet_mesh.h"
 
 namespace palpate::deformation {
 
 using Mat34 = Eigen::Matrix<double, 3, 4>;
 
 struct LinearTetrahedra {
+  std::size_t node_count = 0;
   std::vector<geometry::Tetrahedron> corners;
   std::vector<double> volumes;   ///< V at rest [m³]
   std::vector<Mat34> gradients;  ///< g_a = ∇N_a at rest, by columns [1/m]
 
-  /// @param model  a solid
-  explicit LinearTetrahedra(const OrganModel& model);
+  /// @param rest_positions  [m]
+  LinearTetrahedra(const std::vector<Vec3>& rest_positions,
+                   std::vector<geometry::Tetrahedron> tetrahedra);
 
   std::size_t size() const { return corners.size(); }
 

@@ -5,7 +5,7 @@
 
 #include "modules/core/error.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 namespace {
 
 using Edge = std::array<std::uint32_t, 2>;
@@ -31,7 +31,7 @@ std::array<int, kFaceNodes> face_locals(int face) {
 
 }  // namespace
 
-QuadraticMesh make_quadratic(const TetMesh& mesh) {
+QuadraticMesh make_quadratic(const geometry::TetMesh& mesh) {
   QuadraticMesh result;
   result.nodes = mesh.nodes;
   result.corner_count = mesh.nodes.size();
@@ -98,4 +98,4 @@ void curve_onto_sphere(QuadraticMesh& mesh, const Vec3& centre, double radius) {
   }
 }
 
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

@@ -3,13 +3,12 @@
 
 #include "modules/geometry/tet_mesh.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 
 inline constexpr int kElementNodes = 10;
 inline constexpr int kFaceNodes = 6;
 
 using geometry::kTetrahedronEdges;
-using geometry::TetMesh;
 using geometry::Tetrahedron;
 
 struct BoundaryFace {
@@ -31,7 +30,7 @@ struct QuadraticMesh {
 
 /// Adds the edges' middles; edges are straight. Corners come first and keep their indices.
 /// @param mesh  every node in some tetrahedron
-QuadraticMesh make_quadratic(const TetMesh& mesh);
+QuadraticMesh make_quadratic(const geometry::TetMesh& mesh);
 
 /// From nodes in any order, each in some tetrahedron. Faces are not looked for.
 /// @param middles  of the tetrahedra's edges, as kTetrahedronEdges
@@ -42,4 +41,4 @@ QuadraticMesh make_quadratic(std::vector<Vec3> nodes, const std::vector<Tetrahed
 /// within 1e-6 of the radius, move radially onto it. The elements become isoparametric there.
 void curve_onto_sphere(QuadraticMesh& mesh, const Vec3& centre, double radius);
 
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

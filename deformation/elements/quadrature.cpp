@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace palpate::elements {
+namespace palpate::deformation {
 namespace {
 
 std::array<TetrahedronPoint, 4> make_four_point_rule() {
@@ -108,4 +108,4 @@ Eigen::Matrix<double, kFaceNodes, 2> face_shape_gradient(const Vec3& l) {
   return gradient;
 }
 
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

@@ -7,7 +7,7 @@
 
 #include "deformation/elements/quadratic_mesh.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 
 struct TetrahedronPoint {
   Eigen::Vector4d barycentric;
@@ -37,4 +37,4 @@ Eigen::Matrix<double, kFaceNodes, 1> face_shape(const Vec3& barycentric);
 /// ∂N_a/∂(L₁, L₂) with L₀ = 1 − L₁ − L₂.
 Eigen::Matrix<double, kFaceNodes, 2> face_shape_gradient(const Vec3& barycentric);
 
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "deformation/model/body.h"
+#include "deformation/model/internal_state.h"
 
 namespace palpate::deformation {
 
@@ -17,6 +18,7 @@ struct OrganState {
   /// with just so much, and the volume becomes what it becomes. Not below 0.
   double pressure_limit = std::numeric_limits<double>::infinity();
   double pressure = 0;  ///< p = −λ of the last step [Pa]
+  InternalState internal;
 };
 
 /// At rest, with the rest volume as target.

@@ -50,7 +50,7 @@ void add_masses(const TetMesh& solid, Body& body) {
 /// tetrahedra, with λ = 2μ, for averaged volumes do not hold single nodes. Middle nodes get the
 /// mean of their ends.
 void add_stiffness(const TetMesh& solid, Body& body) {
-  const double shear = solid.youngs_modulus / (2 * (1 + solid.poisson_ratio));
+  const double shear = solid.elastic().shear_modulus();
   const auto& x = body.rest_positions;
   for (const auto& t : solid.tetrahedra) {
     const double volume = volume_of(t, x);

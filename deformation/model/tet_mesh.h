@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "deformation/materials/elastic_constants.h"
 #include "modules/geometry/organ_shape.h"
 
 namespace palpate::deformation {
@@ -15,6 +16,8 @@ struct TetMesh {
   double youngs_modulus = 0;                             ///< [Pa]
   double poisson_ratio = 0;
   double density = 0;  ///< [kg/m³]
+
+  ElasticConstants elastic() const { return {youngs_modulus, poisson_ratio}; }
 };
 
 /// How many tetrahedra enclose no positive volume at these positions [m].

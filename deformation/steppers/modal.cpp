@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deformation/steppers/quadratic_elements.h"
-#include "deformation/steppers/vibration.h"
+#include "deformation/steppers/modal_analysis.h"
+#include "deformation/steppers/newton_backward_euler.h"
 
 namespace palpate::deformation {
 namespace {
@@ -57,7 +57,7 @@ void Modal::find_modes(std::size_t count) {
   const std::size_t rigid = model_.fixed_nodes.empty() ? 6 : 0;
   const std::size_t free_coordinates = 3 * (model_.node_count() - model_.fixed_nodes.size());
   const std::size_t wanted = rigid + std::min(count, free_coordinates / 4);
-  const auto found = elements::vibrate(solid, held_coordinates(model_), wanted);
+  const auto found = modal_analysis(solid, dirichlet_dofs(model_), wanted);
   modes_ = found.modes;
   momenta_ = found.momenta;
   frequencies_ = Eigen::Map<const Eigen::VectorXd>(found.angular_frequencies.data(),
@@ -72,34 +72,35 @@ void Modal::find_modes(std::size_t count) {
 }
 
 StepReport Modal::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  read(state);
+  InternalState& internal = state.internal;
+  if (!internal.goes_with(state.positions, state.velocities)) {
+    internal.amplitudes = amplitudes(state);
+    internal.rates = momenta_.transpose() * coordinates(state.velocities);
+  }
   prepare(h, rows);
-  if (!move_freely(h, rows)) move_in_touch(h, rows);
+  if (!move_freely(h, rows, internal)) move_in_touch(h, rows, internal);
   write(state);
   return {};
 }
 
-void Modal::read(const OrganState& state) {
-  if (left_.positions == state.positions && left_.velocities == state.velocities) return;
-  const auto rest = coordinates(model_.rest_positions);
-  amplitudes_ = momenta_.transpose() * (coordinates(state.positions) - rest);
-  rates_ = momenta_.transpose() * coordinates(state.velocities);
-  left_.positions = state.positions;
-  left_.velocities = state.velocities;
+/// Of the positions alone.
+Eigen::VectorXd Modal::amplitudes(const OrganState& state) const {
+  return momenta_.transpose() * (coordinates(state.positions) - coordinates(model_.rest_positions));
 }
 
-void Modal::write(OrganState& state) {
-  Eigen::MatrixX2d both(amplitudes_.size(), 2);
-  both << amplitudes_, rates_;
+void Modal::write(OrganState& state) const {
+  InternalState& internal = state.internal;
+  Eigen::MatrixX2d both(internal.amplitudes.size(), 2);
+  both << internal.amplitudes, internal.rates;
   const Eigen::MatrixX2d moved = modes_ * both;
   for (std::size_t i = 0; i < model_.node_count(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
     state.positions[i] = model_.rest_positions[i] + moved.block<3, 1>(at, 0);
     state.velocities[i] = moved.block<3, 1>(at, 1);
   }
-  state.pressure = pressures_.dot(amplitudes_);
-  left_.positions = state.positions;
-  left_.velocities = state.velocities;
+  state.pressure = pressures_.dot(internal.amplitudes);
+  internal.positions = state.positions;
+  internal.velocities = state.velocities;
 }
 
 void Modal::prepare(double h, std::span<const ContactRow> contacts) {
@@ -127,12 +128,12 @@ double Modal::separation(std::size_t row, const ContactRow& contact,
 }
 
 /// @returns false, and leaves the amplitudes, if a contact would be penetrated
-bool Modal::move_freely(double h, std::span<ContactRow> contacts) {
-  Eigen::VectorXd a = amplitudes_, rates = rates_;
+bool Modal::move_freely(double h, std::span<ContactRow> contacts, InternalState& state) const {
+  Eigen::VectorXd a = state.amplitudes, rates = state.rates;
   for (Eigen::Index k = 0; k < a.size(); ++k) {
     propagate(h, frequencies_[k], damping_[k], load_[k], a[k], rates[k]);
   }
-  const Eigen::VectorXd mean = (a - amplitudes_) / h;
+  const Eigen::VectorXd mean = (a - state.amplitudes) / h;
   for (std::size_t r = 0; r < contacts.size(); ++r) {
     if (rows_[r].along > 0 && separation(r, contacts[r], mean) < 0) return false;
   }
@@ -140,56 +141,59 @@ bool Modal::move_freely(double h, std::span<ContactRow> contacts) {
     contact.normal_impulse = 0;
     contact.tangential_impulse.setZero();
   }
-  amplitudes_ = a;
-  rates_ = rates;
+  state.amplitudes = a;
+  state.rates = rates;
   return true;
 }
 
 /// Sweeps end when no contact velocity changes by more than 1e-9 m/s, or after 200.
-void Modal::move_in_touch(double h, std::span<ContactRow> contacts) {
-  const Eigen::VectorXd forces = load_ - frequencies_.cwiseAbs2().cwiseProduct(amplitudes_);
-  rates_ = mobility_.cwiseProduct(rates_ + h * forces);
+void Modal::move_in_touch(double h, std::span<ContactRow> contacts, InternalState& state) const {
+  const Eigen::VectorXd forces = load_ - frequencies_.cwiseAbs2().cwiseProduct(state.amplitudes);
+  Eigen::VectorXd& rates = state.rates;
+  rates = mobility_.cwiseProduct(rates + h * forces);
   for (std::size_t r = 0; r < contacts.size(); ++r) {
     contacts[r].tangential_impulse.setZero();
-    add_impulse(rows_[r], -contacts[r].normal_impulse * contacts[r].normal);
+    add_impulse(rows_[r], -contacts[r].normal_impulse * contacts[r].normal, rates);
   }
   double change = 1;
   for (int sweep = 0; sweep < kMaxSweeps && change > kVelocityTolerance; ++sweep) {
     change = 0;
     for (std::size_t r = 0; r < contacts.size(); ++r) {
-      if (rows_[r].along > 0) change = std::max(change, relax(r, contacts[r]));
+      if (rows_[r].along > 0) change = std::max(change, relax(r, contacts[r], rates));
     }
   }
-  amplitudes_ += h * rates_;
+  state.amplitudes += h * rates;
 }
 
-void Modal::add_impulse(const Row& row, const Vec3& impulse) {
-  rates_ += mobility_.cwiseProduct(row.motion.transpose() * impulse);
+void Modal::add_impulse(const Row& row, const Vec3& impulse, Eigen::VectorXd& rates) const {
+  rates += mobility_.cwiseProduct(row.motion.transpose() * impulse);
 }
 
 /// @returns the change of the contact's velocity [m/s]
-double Modal::relax(std::size_t r, ContactRow& contact) {
+double Modal::relax(std::size_t r, ContactRow& contact, Eigen::VectorXd& rates) const {
   const Row& row = rows_[r];
   const double before = contact.normal_impulse;
-  contact.normal_impulse = std::max(0.0, before - separation(r, contact, rates_) / row.along);
+  contact.normal_impulse = std::max(0.0, before - separation(r, contact, rates) / row.along);
   const double pressed = contact.normal_impulse - before;
-  if (pressed != 0) add_impulse(row, -pressed * contact.normal);
+  if (pressed != 0) add_impulse(row, -pressed * contact.normal, rates);
   double change = std::abs(pressed) * row.along;
   if (contact.friction == 0 || row.across <= 0) return change;
-  const Vec3 velocity = row.motion * rates_ - contact.probe_velocity;
+  const Vec3 velocity = row.motion * rates - contact.probe_velocity;
   const Vec3 sliding = velocity - contact.normal * contact.normal.dot(velocity);
   Vec3 wanted = contact.tangential_impulse - sliding / row.across;
   const double most = contact.friction * contact.normal_impulse, size = wanted.norm();
   if (size > most) wanted *= most / size;
   const Vec3 rubbed = wanted - contact.tangential_impulse;
   contact.tangential_impulse = wanted;
-  add_impulse(row, rubbed);
+  add_impulse(row, rubbed, rates);
   return std::max(change, rubbed.norm() * row.across);
 }
 
 double Modal::elastic_energy(const OrganState& state) {
-  read(state);
-  return frequencies_.cwiseProduct(amplitudes_).squaredNorm() / 2;
+  const InternalState& internal = state.internal;
+  const bool known = internal.goes_with(state.positions, state.velocities);
+  return frequencies_.cwiseProduct(known ? internal.amplitudes : amplitudes(state)).squaredNorm() /
+         2;
 }
 
 }  // namespace palpate::deformation

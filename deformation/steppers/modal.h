@@ -6,8 +6,8 @@
 // (elements/vibration.h). A body nothing holds has its six rigid motions among them, rotation
 // linearised: it swells as it turns, by 1.5 % at 10°. Each mode is an oscillator
 //   ä + (2ζω + drag) ȧ + ω² a = Uᵀ (M gravity + contact forces)
-// with ζ the tissue's damping ratio. The amplitudes are those of the state, a = UᵀM (x − X): what
-// of a state the modes cannot show is dropped.
+// with ζ the tissue's damping ratio. The amplitudes are state.internal's; of an organ put elsewhere
+// from outside they are a = UᵀM (x − X), and what the modes cannot show is dropped.
 //
 // While no contact would be penetrated, motion is exact for any step. Else the step is backward
 // Euler, whose damping keeps contacts from ringing, with W = U (1 + h(2ζω + drag) + h²ω²)⁻¹ Uᵀ as
@@ -51,26 +51,24 @@ class Modal : public OrganDynamics {
   };
 
   void find_modes(std::size_t count);
-  void read(const OrganState& state);
-  void write(OrganState& state);
-  bool move_freely(double h, std::span<ContactRow> contacts);
-  void move_in_touch(double h, std::span<ContactRow> contacts);
+  Eigen::VectorXd amplitudes(const OrganState& state) const;
+  void write(OrganState& state) const;
+  bool move_freely(double h, std::span<ContactRow> contacts, InternalState& state) const;
+  void move_in_touch(double h, std::span<ContactRow> contacts, InternalState& state) const;
   void prepare(double h, std::span<const ContactRow> contacts);
   /// Separation speed beyond what is allowed along n, < 0: penetrates [m/s]
   double separation(std::size_t row, const ContactRow& contact, const Eigen::VectorXd& rates) const;
-  void add_impulse(const Row& row, const Vec3& impulse);
-  double relax(std::size_t row, ContactRow& contact);
+  void add_impulse(const Row& row, const Vec3& impulse, Eigen::VectorXd& rates) const;
+  double relax(std::size_t row, ContactRow& contact, Eigen::VectorXd& rates) const;
 
   const OrganModel& model_;
-  Eigen::MatrixXd modes_;               ///< U [kg^−½]  (3 node_count × modes)
-  Eigen::MatrixXd momenta_;             ///< M U [kg^½]  (3 node_count × modes)
-  Eigen::VectorXd frequencies_;         ///< ω  (modes)
-  Eigen::VectorXd pressures_;           ///< mean pressure per amplitude  (modes)
-  Eigen::VectorXd damping_;             ///< 2ζω + drag [1/s]  (modes)
-  Eigen::VectorXd load_;                ///< UᵀM gravity  (modes)
-  Eigen::VectorXd amplitudes_, rates_;  ///< a, ȧ of the state last left  (modes)
-  OrganState left_;                     ///< that state
-  Eigen::VectorXd mobility_;            ///< (1 + h(2ζω + drag) + h²ω²)⁻¹  (modes)
+  Eigen::MatrixXd modes_;        ///< U [kg^−½]  (3 node_count × modes)
+  Eigen::MatrixXd momenta_;      ///< M U [kg^½]  (3 node_count × modes)
+  Eigen::VectorXd frequencies_;  ///< ω  (modes)
+  Eigen::VectorXd pressures_;    ///< mean pressure per amplitude  (modes)
+  Eigen::VectorXd damping_;      ///< 2ζω + drag [1/s]  (modes)
+  Eigen::VectorXd load_;         ///< UᵀM gravity  (modes)
+  Eigen::VectorXd mobility_;     ///< (1 + h(2ζω + drag) + h²ω²)⁻¹  (modes)
   std::vector<Row> rows_;
 };
 

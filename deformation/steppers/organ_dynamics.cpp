@@ -2,12 +2,13 @@
 
 #include <cmath>
 
+#include "deformation/elements/average_nodal_pressure.h"
+#include "deformation/elements/corotational.h"
 #include "deformation/steppers/backward_euler.h"
 #include "deformation/steppers/chainmail.h"
-#include "deformation/steppers/corotational.h"
+#include "deformation/steppers/linearly_implicit_euler.h"
 #include "deformation/steppers/modal.h"
-#include "deformation/steppers/nodal_pressure.h"
-#include "deformation/steppers/quadratic_elements.h"
+#include "deformation/steppers/newton_backward_euler.h"
 #include "deformation/steppers/symplectic_euler.h"
 #include "deformation/steppers/xpbd_springs.h"
 #include "deformation/steppers/xpbd_tetrahedra.h"
@@ -102,17 +103,25 @@ std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const Or
       }
       return std::make_unique<SymplecticEuler>(model, runner);
     case scene::Model::kCorotational:
-      return std::make_unique<ImplicitSolid>(model, std::make_unique<Corotational>(model),
-                                             iterations(Corotational::kIterations));
+      return std::make_unique<LinearlyImplicitEuler>(
+          model,
+          std::make_unique<Corotational>(
+              LinearTetrahedra(model.rest_positions, model.mesh().tetrahedra),
+              model.mesh().elastic()),
+          iterations(Corotational::kIterations));
     case scene::Model::kNodalPressure:
-      return std::make_unique<ImplicitSolid>(model, std::make_unique<NodalPressure>(model),
-                                             iterations(NodalPressure::kIterations));
+      return std::make_unique<LinearlyImplicitEuler>(
+          model,
+          std::make_unique<AverageNodalPressure>(
+              LinearTetrahedra(model.rest_positions, model.mesh().tetrahedra),
+              model.mesh().elastic()),
+          iterations(AverageNodalPressure::kIterations));
     case scene::Model::kXpbdSprings:
       return std::make_unique<XpbdSprings>(model, iterations(1));
     case scene::Model::kXpbdTetrahedra:
-      return std::make_unique<XpbdTetrahedra>(model, iterations(1));
+      return std::make_unique<XpbdTetrahedra>(model, model.mesh(), iterations(1));
     case scene::Model::kQuadraticElements:
-      return std::make_unique<QuadraticElements>(model);
+      return std::make_unique<NewtonBackwardEuler>(model);
     case scene::Model::kModal:
       return std::make_unique<Modal>(model, organ.solid.modes, organ.tissue.damping_ratio);
     default:

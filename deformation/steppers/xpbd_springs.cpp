@@ -2,13 +2,13 @@
 
 namespace palpate::deformation {
 
-void free_flight(const OrganModel& model, double h, const OrganState& state,
+void free_flight(const Body& body, double h, const OrganState& state,
                  std::vector<Vec3>& velocities) {
   velocities.resize(state.velocities.size());
-  const double kept = 1 / (1 + h * model.drag);
+  const double kept = 1 / (1 + h * body.drag);
   for (std::size_t i = 0; i < velocities.size(); ++i) {
-    const bool moves = model.inverse_masses[i] > 0;
-    velocities[i] = moves ? Vec3(kept * (state.velocities[i] + h * model.gravity)) : Vec3::Zero();
+    const bool moves = body.inverse_masses[i] > 0;
+    velocities[i] = moves ? Vec3(kept * (state.velocities[i] + h * body.gravity)) : Vec3::Zero();
   }
 }
 

@@ -50,7 +50,7 @@ class XpbdSprings : public OrganDynamics {
 };
 
 /// (v + h·gravity)/(1 + h·drag), zero where nodes are fixed  (node_count)
-void free_flight(const OrganModel& model, double h, const OrganState& state,
+void free_flight(const Body& body, double h, const OrganState& state,
                  std::vector<Vec3>& velocities);
 
 }  // namespace palpate::deformation

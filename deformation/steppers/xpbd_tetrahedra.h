@@ -2,9 +2,9 @@
 //   M. Macklin, M. Müller, "A Constraint-based Formulation of Stable Neo-Hookean Materials",
 //   MIG 2021;  steps as in xpbd_springs.h.
 //
-//   ψ(F) = μ/2 (tr FᵀF − 3) + λ/2 (J − 1 − μ/λ)²,   μ and λ − μ: Lamé's constants
-// (B. Smith, F. de Goes, T. Kim, "Stable Neo-Hookean Flesh Simulation", ACM Trans. Graph. 37, 2018:
-// finite when flat or inside out). Per tetrahedron of volume V two constraints and compliances:
+// The tissue is that of materials/stable_neo_hookean.h with λ for its λ̂,
+//   ψ(F) = μ/2 (tr FᵀF − 3) + λ/2 (J − 1 − μ/λ)² − μ²/(2λ)
+// Per tetrahedron of volume V two constraints and compliances:
 //   C_D = √(tr FᵀF),        α_D = 1/(μ V h²),   ∂C_D/∂F = F/C_D
 //   C_H = J − 1 − μ/λ,      α_H = 1/(λ V h²),   ∂C_H/∂F = cofactor of F
 // At rest neither vanishes, but their forces cancel. So that an organ at rest stays there, both are
@@ -22,6 +22,8 @@
 #include <span>
 #include <vector>
 
+#include "deformation/elements/linear_tetrahedra.h"
+#include "deformation/materials/stable_neo_hookean.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -34,9 +36,10 @@ class XpbdTetrahedra : public OrganDynamics {
   /// tetrahedra and ν from 0 to 0.49 swing stably up to 1.78 … 4.3 of it.
   static constexpr double kStepOfBound = 1.5;
 
-  /// @param model       a solid of linear tetrahedra, ν < ½; outlives this
+  /// @param body        outlives this
+  /// @param mesh        of linear tetrahedra, ν < ½
   /// @param iterations  passes over the tetrahedra in each step, ≥ 1
-  explicit XpbdTetrahedra(const OrganModel& model, int iterations = 1);
+  XpbdTetrahedra(const Body& body, const TetMesh& mesh, int iterations = 1);
 
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
@@ -44,22 +47,18 @@ class XpbdTetrahedra : public OrganDynamics {
   double elastic_energy(const OrganState& state) override;
 
  private:
-  struct Element {
-    Mat3 inverse_edges;  ///< (X₁−X₀, X₂−X₀, X₃−X₀)⁻¹ [1/m]
-    double volume = 0;   ///< V [m³]
-  };
   /// Of M⁻¹K, K the shear stiffness μ V ∇N_i·∇N_j alone [rad²/s²].
   double squared_frequency_bound() const;
   Mat3 deformation_gradient(std::size_t element, const std::vector<Vec3>& positions) const;
   /// @returns V times the mean stress, of which compression is negative [J]
   double relax(std::size_t element, double h);
 
-  const OrganModel& model_;
+  const Body& body_;
   int iterations_;
   std::vector<std::array<double, 2>> multipliers_;  ///< λ_D, λ_H of this step  (tetrahedra)
-  double shear_modulus_, lame_;                     ///< μ, λ [Pa]
+  StableNeoHookean law_;                            ///< μ, λ: its μ, λ̂
+  LinearTetrahedra tetrahedra_;
   double largest_step_ = kStep;
-  std::vector<Element> elements_;
   std::vector<Vec3> positions_, velocities_;
 };
 

@@ -182,10 +182,10 @@ Measurement measure_beam(const Setting& setting, const KeepGoing& keep_going) {
 
 Measurement bend_beam(int level, const KeepGoing& keep_going) {
   constexpr std::array kSizes{"0.007", "0.005"};
-  const elements::MixedSolid solid(
-      elements::make_quadratic(
+  const deformation::TaylorHoodElements solid(
+      deformation::make_quadratic(
           geometry::mesh_block(kBeamLow, kBeamHigh, kSizes[static_cast<std::size_t>(level)])),
-      elements::NeoHookean::from_engineering(kStiff, kPoissonRatio), kDensity);
+      deformation::ElasticConstants(kStiff, kPoissonRatio), kDensity);
   std::vector<char> held;
   for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
   Measurement result = summary(solid);
@@ -241,10 +241,10 @@ Measurement press_block(int level, const KeepGoing& keep_going) {
   std::ostringstream size;
   size << kSizes[static_cast<std::size_t>(level)] * kTip
        << " + 0.012*((x*x+y*y+(z-0.08)^2)/(x*x+y*y+(z-0.08)^2+0.0004))^2";
-  const elements::MixedSolid solid(
-      elements::make_quadratic(
+  const deformation::TaylorHoodElements solid(
+      deformation::make_quadratic(
           geometry::mesh_block(Vec3::Zero(), {kHalf, kHalf, kHeight}, size.str())),
-      elements::NeoHookean::from_engineering(kYoungsModulus, kPoissonRatio), kDensity);
+      deformation::ElasticConstants(kYoungsModulus, kPoissonRatio), kDensity);
   std::vector<char> held;
   held.reserve(solid.displacement_count());
   for (const Vec3& node : solid.mesh().nodes) {

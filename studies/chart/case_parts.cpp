@@ -35,11 +35,11 @@ Measurement summary(const Stage& stage, const geometry::OrganShape& shape) {
   return result;
 }
 
-Measurement summary(const elements::MixedSolid& solid) {
+Measurement summary(const deformation::TaylorHoodElements& solid) {
   const auto& mesh = solid.mesh();
   std::vector<char> on_surface(mesh.nodes.size(), 0);
   for (const auto& face : mesh.faces) {
-    for (int k = 0; k < elements::kFaceNodes; ++k) on_surface[mesh.face_node(face, k)] = 1;
+    for (int k = 0; k < deformation::kFaceNodes; ++k) on_surface[mesh.face_node(face, k)] = 1;
   }
   Measurement result;
   for (const char on : on_surface) (on ? result.surface_nodes : result.inner_nodes) += 1;

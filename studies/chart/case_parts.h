@@ -1,7 +1,7 @@
 // What the cases have in common. Each measure_…() is one case of cases.h.
 #pragma once
 
-#include "deformation/elements/mixed_solid.h"
+#include "deformation/elements/taylor_hood.h"
 #include "studies/chart/cases.h"
 #include "studies/chart/stage.h"
 #include "studies/report/reference_table.h"
@@ -29,7 +29,7 @@ void move_and_settle(Stage& stage, std::vector<Pose>& poses, const std::vector<V
 /// Sizes, step, cost and volume error of the stage so far.
 Measurement summary(const Stage& stage, const geometry::OrganShape& shape);
 /// Sizes of a reference.
-Measurement summary(const elements::MixedSolid& solid);
+Measurement summary(const deformation::TaylorHoodElements& solid);
 
 /// √(A/π), A the share of the surface, across `normal`, of nodes less than kTouchDistance outside
 /// of an obstacle; a node's share is a third of its triangles [m].

@@ -10,8 +10,8 @@
 namespace palpate::chart {
 namespace {
 
-using elements::MixedSolid;
-using elements::SolidState;
+using deformation::SolidState;
+using deformation::TaylorHoodElements;
 
 constexpr double kStride = 0.1;        // radii, of the sphere between equilibria
 constexpr int kMostHalvings = 2;       // a fold is not followed: it takes hours
@@ -28,7 +28,8 @@ elements_bench::Setting quiet(const std::function<void()>& keep_going) {
   return setting;
 }
 
-std::vector<std::uint32_t> faces_near(const MixedSolid& solid, const Vec3& place, double reach) {
+std::vector<std::uint32_t> faces_near(const TaylorHoodElements& solid, const Vec3& place,
+                                      double reach) {
   const auto& mesh = solid.mesh();
   std::vector<std::uint32_t> near;
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
@@ -40,10 +41,10 @@ std::vector<std::uint32_t> faces_near(const MixedSolid& solid, const Vec3& place
 /// A point of the surface: its face and the shape functions there.
 struct SurfacePoint {
   std::uint32_t face = 0;
-  Eigen::Matrix<double, elements::kFaceNodes, 1> shape;
+  Eigen::Matrix<double, deformation::kFaceNodes, 1> shape;
 };
 
-SurfacePoint nearest_point(const MixedSolid& solid, const Vec3& mark) {
+SurfacePoint nearest_point(const TaylorHoodElements& solid, const Vec3& mark) {
   const auto& mesh = solid.mesh();
   SurfacePoint nearest;
   double least = std::numeric_limits<double>::infinity();
@@ -56,19 +57,19 @@ SurfacePoint nearest_point(const MixedSolid& solid, const Vec3& mark) {
     const double distance = (closest.point - mark).norm();
     if (distance >= least) continue;
     least = distance;
-    nearest = {f, elements::face_shape(closest.weights)};
+    nearest = {f, deformation::face_shape(closest.weights)};
   }
   return nearest;
 }
 
-std::vector<Vec3> displacements(const MixedSolid& solid, const SolidState& state,
+std::vector<Vec3> displacements(const TaylorHoodElements& solid, const SolidState& state,
                                 const std::vector<Vec3>& marks) {
   const auto& mesh = solid.mesh();
   std::vector<Vec3> found;
   for (const Vec3& mark : marks) {
     const SurfacePoint point = nearest_point(solid, mark);
     Vec3& sum = found.emplace_back(Vec3::Zero());
-    for (int k = 0; k < elements::kFaceNodes; ++k) {
+    for (int k = 0; k < deformation::kFaceNodes; ++k) {
       const auto node = mesh.face_node(mesh.faces[point.face], k);
       sum += point.shape[k] * (state.positions[node] - mesh.nodes[node]);
     }
@@ -78,12 +79,12 @@ std::vector<Vec3> displacements(const MixedSolid& solid, const SolidState& state
 
 }  // namespace
 
-std::vector<Pressed> press_at_rest(const MixedSolid& solid, std::vector<char> held,
+std::vector<Pressed> press_at_rest(const TaylorHoodElements& solid, std::vector<char> held,
                                    const Press& press, const std::function<void()>& keep_going) {
   const auto& tissue = solid.tissue();
-  elements::RigidContact contact(solid, faces_near(solid, press.place, kReach * press.radius),
-                                 kPenaltyRatio * 3 * tissue.shear_modulus / press.radius);
-  elements::EquilibriumSolver solver(solid, std::move(held), &contact);
+  deformation::RigidContact contact(solid, faces_near(solid, press.place, kReach * press.radius),
+                                    kPenaltyRatio * 3 * tissue.shear_modulus() / press.radius);
+  deformation::QuasiStaticNewton solver(solid, std::move(held), &contact);
   const auto setting = quiet(keep_going);
   elements_bench::LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(kStride * press.radius);
@@ -92,7 +93,7 @@ std::vector<Pressed> press_at_rest(const MixedSolid& solid, std::vector<char> he
   for (const double depth : press.depths) {
     const bool reached = path.advance_to(depth, [&](double at, SolidState&) {
       const Vec3 centre = press.place + (at - press.radius) * press.direction;
-      contact.set_obstacles({elements::Sphere{centre, press.radius}});
+      contact.set_obstacles({deformation::Sphere{centre, press.radius}});
     });
     if (!reached) break;
     const auto outcome = contact.outcomes(path.state())[0];
@@ -103,18 +104,18 @@ std::vector<Pressed> press_at_rest(const MixedSolid& solid, std::vector<char> he
 }
 
 // Weight as inertia: M f (x − x̂) with x̂ = X + g/f is −M g, but for the part f |x − X|/|g|.
-std::vector<Vec3> sag_at_rest(const MixedSolid& solid, std::vector<char> held, const Vec3& gravity,
-                              const std::vector<Vec3>& marks,
+std::vector<Vec3> sag_at_rest(const TaylorHoodElements& solid, std::vector<char> held,
+                              const Vec3& gravity, const std::vector<Vec3>& marks,
                               const std::function<void()>& keep_going) {
   constexpr double kFactor = 1e-3;  // f [1/s²]
   constexpr int kStrides = 8;
-  elements::EquilibriumSolver solver(solid, std::move(held), nullptr);
+  deformation::QuasiStaticNewton solver(solid, std::move(held), nullptr);
   SolidState state = solid.rest_state();
   for (int k = 1; k <= kStrides; ++k) {
     keep_going();
     std::vector<Vec3> predicted = solid.mesh().nodes;
     for (Vec3& x : predicted) x += double(k) / kStrides / kFactor * gravity;
-    if (!solver.solve(state, elements::Inertia{kFactor, predicted}).converged) {
+    if (!solver.solve(state, deformation::Inertia{kFactor, predicted}).converged) {
       throw std::runtime_error("the reference found no equilibrium under its weight");
     }
   }

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "deformation/elements/mixed_solid.h"
+#include "deformation/elements/taylor_hood.h"
 
 namespace palpate::chart {
 
@@ -23,14 +23,15 @@ struct Pressed {
 };
 
 /// One per depth; fewer if Newton's method fails at one.
-/// @param held        as EquilibriumSolver
+/// @param held        as QuasiStaticNewton
 /// @param keep_going  asked between loads; may throw
-std::vector<Pressed> press_at_rest(const elements::MixedSolid& solid, std::vector<char> held,
-                                   const Press& press, const std::function<void()>& keep_going);
+std::vector<Pressed> press_at_rest(const deformation::TaylorHoodElements& solid,
+                                   std::vector<char> held, const Press& press,
+                                   const std::function<void()>& keep_going);
 
 /// Displacements of the surface's points nearest to the marks, under `gravity` [m/s²].
 /// @throws std::runtime_error if Newton's method fails
-std::vector<Vec3> sag_at_rest(const elements::MixedSolid& solid, std::vector<char> held,
+std::vector<Vec3> sag_at_rest(const deformation::TaylorHoodElements& solid, std::vector<char> held,
                               const Vec3& gravity, const std::vector<Vec3>& marks,
                               const std::function<void()>& keep_going);
 

@@ -109,9 +109,10 @@ Measurement press_at_rest(const Place& place, int level, const KeepGoing& keep_g
   const auto coarse = surface_of(organ, kNodes[1]);
   const Vec3 touched(place.x, front_of(coarse, place.x, place.z), place.z);
   const auto surface = refine_around(coarse, touched, kFinest[at], kGrowth[at]);
-  const elements::MixedSolid solid(
-      elements::make_quadratic(geometry::fill_surface(surface, geometry::mean_edge_length(coarse))),
-      elements::NeoHookean::from_engineering(kYoungsModulus, kPoissonRatio), kDensity);
+  const deformation::TaylorHoodElements solid(
+      deformation::make_quadratic(
+          geometry::fill_surface(surface, geometry::mean_edge_length(coarse))),
+      deformation::ElasticConstants(kYoungsModulus, kPoissonRatio), kDensity);
   std::vector<char> held;
   for (const Vec3& node : solid.mesh().nodes) {
     held.insert(held.end(), 3, deformation::is_fixed(organ, node));

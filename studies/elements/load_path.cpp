@@ -8,8 +8,9 @@
 
 namespace palpate::elements_bench {
 
-LoadPath::LoadPath(const elements::MixedSolid& solid, elements::EquilibriumSolver& solver,
-                   elements::RigidContact* contact, const Setting& setting)
+LoadPath::LoadPath(const deformation::TaylorHoodElements& solid,
+                   deformation::QuasiStaticNewton& solver, deformation::RigidContact* contact,
+                   const Setting& setting)
     : solver_(solver), contact_(contact), setting_(setting), state_(solid.rest_state()) {}
 
 bool LoadPath::attempt(double load, const Apply& apply) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "deformation/contact/rigid_contact.h"
-#include "deformation/steppers/equilibrium.h"
+#include "deformation/steppers/quasi_static_newton.h"
 #include "studies/elements/verification.h"
 
 namespace palpate::elements_bench {
@@ -10,11 +10,11 @@ namespace palpate::elements_bench {
 class LoadPath {
  public:
   /// Sets the load, a number; may move the state to a better start, and held coordinates.
-  using Apply = std::function<void(double load, elements::SolidState& state)>;
+  using Apply = std::function<void(double load, deformation::SolidState& state)>;
 
   /// @param contact  null: none. All outlive this.
-  LoadPath(const elements::MixedSolid& solid, elements::EquilibriumSolver& solver,
-           elements::RigidContact* contact, const Setting& setting);
+  LoadPath(const deformation::TaylorHoodElements& solid, deformation::QuasiStaticNewton& solver,
+           deformation::RigidContact* contact, const Setting& setting);
 
   void set_longest_stride(double stride) { longest_stride_ = stride; }
   void set_most_halvings(int count) { most_halvings_ = count; }
@@ -25,16 +25,16 @@ class LoadPath {
   /// @throws Stopped
   bool advance_to(double load, const Apply& apply);
 
-  const elements::SolidState& state() const { return state_; }
+  const deformation::SolidState& state() const { return state_; }
   int take_iterations();  ///< Newton iterations since the call before
 
  private:
   bool attempt(double load, const Apply& apply);
 
-  elements::EquilibriumSolver& solver_;
-  elements::RigidContact* contact_;
+  deformation::QuasiStaticNewton& solver_;
+  deformation::RigidContact* contact_;
   const Setting& setting_;
-  elements::SolidState state_;
+  deformation::SolidState state_;
   double load_ = 0, longest_stride_ = 0.1;
   int most_halvings_ = 6, iterations_ = 0;
 };

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "deformation/steppers/vibration.h"
+#include "deformation/steppers/modal_analysis.h"
 #include "modules/core/error.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "studies/elements/load_path.h"
@@ -14,7 +14,7 @@
 namespace palpate::elements_bench {
 namespace {
 
-using namespace elements;
+using namespace deformation;
 
 constexpr double kYoungsModulus = 5000, kPoissonsRatio = 0.499;
 constexpr double kBallRadius = 0.05, kBallDensity = 1060;
@@ -30,15 +30,15 @@ std::string text(const char* format, Numbers... numbers) {
   return buffer;
 }
 
-NeoHookean tissue() { return NeoHookean::from_engineering(kYoungsModulus, kPoissonsRatio); }
+ElasticConstants tissue() { return {kYoungsModulus, kPoissonsRatio}; }
 
-Run described(const MixedSolid& solid, double size) {
+Run described(const TaylorHoodElements& solid, double size) {
   return {size, solid.mesh().nodes.size(), solid.element_count(), solid.dof_count(), {}, true};
 }
 
 /// Coordinates with `held(position, axis)`.
 template <typename Held>
-std::vector<char> held_where(const MixedSolid& solid, const Held& held) {
+std::vector<char> held_where(const TaylorHoodElements& solid, const Held& held) {
   std::vector<char> flags;
   for (const Vec3& p : solid.mesh().nodes) {
     for (int axis = 0; axis < 3; ++axis) flags.push_back(held(p, axis));
@@ -48,7 +48,7 @@ std::vector<char> held_where(const MixedSolid& solid, const Held& held) {
 
 /// Faces with all corners where `inside(position)`.
 template <typename Inside>
-std::vector<std::uint32_t> faces_where(const MixedSolid& solid, const Inside& inside) {
+std::vector<std::uint32_t> faces_where(const TaylorHoodElements& solid, const Inside& inside) {
   std::vector<std::uint32_t> faces;
   const auto& mesh = solid.mesh();
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
@@ -59,7 +59,7 @@ std::vector<std::uint32_t> faces_where(const MixedSolid& solid, const Inside& in
   return faces;
 }
 
-std::size_t node_at(const MixedSolid& solid, const Vec3& place) {
+std::size_t node_at(const TaylorHoodElements& solid, const Vec3& place) {
   const auto& nodes = solid.mesh().nodes;
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -68,7 +68,7 @@ std::size_t node_at(const MixedSolid& solid, const Vec3& place) {
   return nearest;
 }
 
-MixedSolid ball(geometry::BallPart part, const std::string& size) {
+TaylorHoodElements ball(geometry::BallPart part, const std::string& size) {
   auto mesh = make_quadratic(geometry::mesh_ball(kBallRadius, part, size));
   curve_onto_sphere(mesh, Vec3::Zero(), kBallRadius);
   return {std::move(mesh), tissue(), kBallDensity};
@@ -76,13 +76,13 @@ MixedSolid ball(geometry::BallPart part, const std::string& size) {
 
 Run squeezed_ball(double size, const Setting& setting) {
   // Three times coarser in the middle, where nothing happens.
-  const MixedSolid solid =
+  const TaylorHoodElements solid =
       ball(geometry::BallPart::kOctant,
            text("%g - %g*(x*x+y*y+z*z)", 3 * size * kBallRadius, 2 * size / kBallRadius));
   RigidContact contact(
       solid, faces_where(solid, [](const Vec3& p) { return p.norm() > (1 - 1e-6) * kBallRadius; }),
       kPenaltyRatio * kYoungsModulus / kBallRadius);
-  EquilibriumSolver solver(
+  QuasiStaticNewton solver(
       solid, held_where(solid, [](const Vec3& p, int axis) { return p[axis] == 0; }), &contact);
   LoadPath path(solid, solver, &contact, setting);
   const std::size_t equator = node_at(solid, {kBallRadius, 0, 0});
@@ -115,12 +115,12 @@ Run bonded_block(double size, const Setting& setting) {
   // Stress is singular at the two bonded edges: elements shrink with the distance from them.
   const auto expression = text("%g*(0.05 + 0.95*(((x-%g)^2+(z-%g)^2)*((y-%g)^2+(z-%g)^2))^0.5/%g)",
                                size * a, a, a, a, a, a * a);
-  const MixedSolid solid(
+  const TaylorHoodElements solid(
       make_quadratic(geometry::mesh_block(Vec3::Zero(), Vec3::Constant(a), expression)), tissue(),
       1000);
   const auto held =
       held_where(solid, [](const Vec3& p, int axis) { return p.z() == a || p[axis] == 0; });
-  EquilibriumSolver solver(solid, held, nullptr);
+  QuasiStaticNewton solver(solid, held, nullptr);
   LoadPath path(solid, solver, nullptr, setting);
   path.set_longest_stride(0.025);
   const std::size_t face_centre = node_at(solid, {a, 0, 0});
@@ -154,7 +154,7 @@ Run indented_block(double size, const Setting& setting) {
   const auto expression =
       text("%g + 0.012*((x*x+y*y+(z-0.08)*(z-0.08))/(x*x+y*y+(z-0.08)*(z-0.08)+0.0004))^2",
            size * kIndenterRadius);
-  const MixedSolid solid(
+  const TaylorHoodElements solid(
       make_quadratic(geometry::mesh_block(Vec3::Zero(), {kHalfWidth, kHalfWidth, top}, expression)),
       tissue(), 1000);
   RigidContact contact(solid,
@@ -164,7 +164,7 @@ Run indented_block(double size, const Setting& setting) {
                                             std::hypot(p.x(), p.y()) < 5 * kIndenterRadius;
                                    }),
                        kPenaltyRatio / 100 * kYoungsModulus / kIndenterRadius);
-  EquilibriumSolver solver(
+  QuasiStaticNewton solver(
       solid,
       held_where(solid,
                  [](const Vec3& p, int axis) { return p.z() == 0 || (axis < 2 && p[axis] == 0); }),
@@ -189,7 +189,7 @@ Run indented_block(double size, const Setting& setting) {
 /// Modes of one family and degree stand together; each is compared by its mean. Families nearer to
 /// each other than the mesh's splitting may swap members.
 Run vibrating_ball(double size, const Setting& setting) {
-  const MixedSolid solid = ball(geometry::BallPart::kWhole, text("%g", size * kBallRadius));
+  const TaylorHoodElements solid = ball(geometry::BallPart::kWhole, text("%g", size * kBallRadius));
   Run run = described(solid, size);
   const report::ReferenceTable reference(setting.reference_folder / "E_ball_frequencies.csv");
   std::vector<std::size_t> wanted;  // rows
@@ -200,7 +200,8 @@ Run vibrating_ball(double size, const Setting& setting) {
     count += static_cast<std::size_t>(reference.at("multiplicity", row));
   }
   if (setting.stop()) throw report::Stopped{};
-  const auto vibration = vibrate(solid, std::vector<char>(solid.displacement_count(), 0), count);
+  const auto vibration =
+      modal_analysis(solid, std::vector<char>(solid.displacement_count(), 0), count);
   std::size_t next = 6;
   for (const std::size_t row : wanted) {
     const double members = reference.at("multiplicity", row),

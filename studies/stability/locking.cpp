@@ -50,16 +50,15 @@ scene::Scene plates_scene(Model model, double poisson_ratio) {
 }
 
 /// An octant, three times coarser in the middle, where nothing happens.
-elements::MixedSolid octant(double poisson_ratio) {
-  auto mesh = elements::make_quadratic(geometry::mesh_ball(
+deformation::TaylorHoodElements octant(double poisson_ratio) {
+  auto mesh = deformation::make_quadratic(geometry::mesh_ball(
       kBallRadius, geometry::BallPart::kOctant,
       fmt::format("{:g} - {:g}*(x*x+y*y+z*z)", 3 * kEdge * kBallRadius, 2 * kEdge / kBallRadius)));
-  elements::curve_onto_sphere(mesh, Vec3::Zero(), kBallRadius);
-  return {std::move(mesh), elements::NeoHookean::from_engineering(kLockingModulus, poisson_ratio),
-          kDensity};
+  deformation::curve_onto_sphere(mesh, Vec3::Zero(), kBallRadius);
+  return {std::move(mesh), deformation::ElasticConstants(kLockingModulus, poisson_ratio), kDensity};
 }
 
-std::vector<char> symmetry_of(const elements::MixedSolid& solid) {
+std::vector<char> symmetry_of(const deformation::TaylorHoodElements& solid) {
   std::vector<char> held;
   for (const Vec3& p : solid.mesh().nodes) {
     for (int axis = 0; axis < 3; ++axis) held.push_back(p[axis] == 0);
@@ -67,7 +66,7 @@ std::vector<char> symmetry_of(const elements::MixedSolid& solid) {
   return held;
 }
 
-std::vector<std::uint32_t> outer_faces(const elements::MixedSolid& solid) {
+std::vector<std::uint32_t> outer_faces(const deformation::TaylorHoodElements& solid) {
   std::vector<std::uint32_t> faces;
   const auto& mesh = solid.mesh();
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
@@ -101,9 +100,9 @@ LockingPoint kept(const std::filesystem::path& file, const std::function<Locking
 }  // namespace
 
 double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
-  const elements::MixedSolid solid = octant(poisson_ratio);
-  elements::RigidContact contact(solid, outer_faces(solid), kPenalty);
-  elements::EquilibriumSolver solver(solid, symmetry_of(solid), &contact);
+  const deformation::TaylorHoodElements solid = octant(poisson_ratio);
+  deformation::RigidContact contact(solid, outer_faces(solid), kPenalty);
+  deformation::QuasiStaticNewton solver(solid, symmetry_of(solid), &contact);
   const elements_bench::Setting setting{{},
                                         false,
                                         [&] {
@@ -113,8 +112,8 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
                                         [](const std::string&) {}};
   elements_bench::LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(kStride);
-  const bool done = path.advance_to(kLockingCompression, [&](double at, elements::SolidState&) {
-    contact.set_obstacles({elements::Plane{Vec3(0, 0, kBallRadius * (1 - at)), -Vec3::UnitZ()}});
+  const bool done = path.advance_to(kLockingCompression, [&](double at, deformation::SolidState&) {
+    contact.set_obstacles({deformation::Plane{Vec3(0, 0, kBallRadius * (1 - at)), -Vec3::UnitZ()}});
   });
   if (!done) {
     throw std::runtime_error(

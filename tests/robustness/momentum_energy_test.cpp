@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "deformation/steppers/quadratic_elements.h"
+#include "deformation/steppers/newton_backward_euler.h"
 #include "tests/robustness/models_under_test.h"
 
 namespace palpate::deformation {
@@ -54,7 +54,7 @@ std::vector<Vec3> momenta(const Moving& m) {
   const auto solid = quadratic_solid(m.model);
   for (std::size_t e = 0; e < solid.element_count(); ++e) {
     const auto& nodes = solid.mesh().elements[e];
-    const elements::ElementMass mass = solid.mass(e);
+    const deformation::ElementMass mass = solid.mass(e);
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       for (std::size_t b = 0; b < nodes.size(); ++b) {
         momenta[nodes[a]] += mass(Eigen::Index(a), Eigen::Index(b)) * m.state.velocities[nodes[b]];

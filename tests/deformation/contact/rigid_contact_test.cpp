@@ -5,13 +5,13 @@
 #include <catch2/catch.hpp>
 #include <numeric>
 
-#include "deformation/steppers/equilibrium.h"
+#include "deformation/steppers/quasi_static_newton.h"
 #include "tests/deformation/elements/solids.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 namespace {
 
-std::vector<std::uint32_t> all_faces(const MixedSolid& solid) {
+std::vector<std::uint32_t> all_faces(const TaylorHoodElements& solid) {
   std::vector<std::uint32_t> faces(solid.mesh().faces.size());
   std::iota(faces.begin(), faces.end(), 0u);
   return faces;
@@ -86,12 +86,12 @@ TEST_CASE("rigid contact: a block between frictionless plates carries the uniaxi
   // Oracle: incompressible uniaxial solution μ(λ − λ⁻²); force within 1e-4, no deeper than said.
   const auto solid = testing::solid(testing::block({0.02, 0.02, 0.02}, 2, 2, 2), 0.5);
   RigidContact contact(solid, all_faces(solid), 1e4 * 3000 / 0.02);
-  EquilibriumSolver solver(solid, testing::symmetry(solid), &contact);
+  QuasiStaticNewton solver(solid, testing::symmetry(solid), &contact);
   contact.set_obstacles({Plane{Vec3(0, 0, 0.016), -Vec3::UnitZ()}});
   auto state = solid.rest_state();
   const auto report = solver.solve(state);
   REQUIRE(report.converged);
-  CHECK(report.deepest <= EquilibriumSolver::kMostPenetration * solid.size());
+  CHECK(report.deepest <= QuasiStaticNewton::kMostPenetration * solid.size());
   const auto outcome = contact.outcomes(state)[0];
   const double stress = 1000 * (1 / (0.8 * 0.8) - 0.8);
   CHECK(outcome.force.z() == Approx(stress * 0.0004).epsilon(3e-4));  // 2e-5 of the size deep
@@ -100,4 +100,4 @@ TEST_CASE("rigid contact: a block between frictionless plates carries the uniaxi
 }
 
 }  // namespace
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

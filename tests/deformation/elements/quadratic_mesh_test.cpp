@@ -6,7 +6,7 @@
 #include "modules/geometry/organ_shape.h"
 #include "solids.h"
 
-namespace palpate::elements {
+namespace palpate::deformation {
 namespace {
 
 TEST_CASE("quadratic mesh: every edge has one node in its middle, on faces too") {
@@ -54,7 +54,8 @@ TEST_CASE("quadratic mesh: nodes may come in any order") {
 
 TEST_CASE("quadratic mesh: curving moves edge nodes of faces on the sphere only") {
   // Oracle: a tetrahedron with one face on the unit sphere, worked by hand.
-  TetMesh corner{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}, {{0, 1, 2, 3}}};
+  geometry::TetMesh corner{{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()},
+                           {{0, 1, 2, 3}}};
   auto mesh = make_quadratic(corner);
   const auto straight = mesh.nodes;
   curve_onto_sphere(mesh, Vec3::Zero(), 1);
@@ -69,4 +70,4 @@ TEST_CASE("quadratic mesh: curving moves edge nodes of faces on the sphere only"
 }
 
 }  // namespace
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-namespace palpate::elements {
+namespace palpate::deformation {
 namespace {
 
 template <typename Rule>
@@ -72,4 +72,4 @@ TEST_CASE("quadrature: shapes are 1 at their node, sum to 1, and have the printe
 }
 
 }  // namespace
-}  // namespace palpate::elements
+}  // namespace palpate::deformation

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "deformation/elements/mixed_solid.h"
+#include "deformation/elements/taylor_hood.h"
 #include "modules/core/error.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
-namespace palpate::elements::testing {
+namespace palpate::deformation::testing {
 
 using geometry::testing::block;
 using geometry::testing::without_gmsh;
@@ -18,7 +18,7 @@ inline double noise(std::size_t i) {
 }
 
 /// Nodes strictly inside moved by up to `amount`.
-inline void shake_interior(TetMesh& mesh, const Vec3& size, double amount) {
+inline void shake_interior(geometry::TetMesh& mesh, const Vec3& size, double amount) {
   for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
     const Vec3 p = mesh.nodes[i];
     if ((p.array() <= 0).any() || (p.array() >= size.array()).any()) continue;
@@ -26,12 +26,12 @@ inline void shake_interior(TetMesh& mesh, const Vec3& size, double amount) {
   }
 }
 
-inline MixedSolid solid(const TetMesh& mesh, double poissons_ratio) {
-  return {make_quadratic(mesh), NeoHookean::from_engineering(3000, poissons_ratio), 1000};
+inline TaylorHoodElements solid(const geometry::TetMesh& mesh, double poissons_ratio) {
+  return {make_quadratic(mesh), ElasticConstants(3000, poissons_ratio), 1000};
 }
 
 /// Some state away from rest, J > 0.
-inline SolidState shaken(const MixedSolid& solid, double amount) {
+inline SolidState shaken(const TaylorHoodElements& solid, double amount) {
   auto state = solid.rest_state();
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     state.positions[i] += amount * Vec3(noise(3 * i), noise(3 * i + 1), noise(3 * i + 2));
@@ -43,7 +43,7 @@ inline SolidState shaken(const MixedSolid& solid, double amount) {
 }
 
 /// x = 0, y = 0 and z = 0 are planes of symmetry.
-inline std::vector<char> symmetry(const MixedSolid& solid) {
+inline std::vector<char> symmetry(const TaylorHoodElements& solid) {
   std::vector<char> held;
   for (const Vec3& p : solid.mesh().nodes) {
     for (int axis = 0; axis < 3; ++axis) held.push_back(p[axis] == 0);
@@ -51,4 +51,4 @@ inline std::vector<char> symmetry(const MixedSolid& solid) {
   return held;
 }
 
-}  // namespace palpate::elements::testing
+}  // namespace palpate::deformation::testing

@@ -1,7 +1,7 @@
 #include "deformation/steppers/modal.h"
 
-#include "deformation/steppers/quadratic_elements.h"
-#include "deformation/steppers/vibration.h"
+#include "deformation/steppers/modal_analysis.h"
+#include "deformation/steppers/newton_backward_euler.h"
 #include "squeeze.h"
 
 namespace palpate::deformation {
@@ -76,7 +76,7 @@ TEST_CASE("modal: a mode swings and decays as a damped oscillator, whatever the 
   // Oracle: analytic, e^(−δt) (cos ω't + δ/ω' sin ω't), from a shape found apart, for light and
   // for strong damping.
   const auto model = testing::block_model(standing_organ(), 2);
-  const auto found = elements::vibrate(quadratic_solid(model), held_coordinates(model), 12);
+  const auto found = deformation::modal_analysis(quadratic_solid(model), dirichlet_dofs(model), 12);
   for (const double damping_ratio : {0.05, 1.5}) {
     Modal modal(model, 12, damping_ratio);
     for (const int k : {0, 4}) {
@@ -125,7 +125,7 @@ TEST_CASE("modal: a standing block sags like the elements it comes from") {
   };
   const auto model = testing::block_model(organ, 2, gravity);
   Modal modal(model, 60, 0.1);
-  QuadraticElements elements(model);
+  NewtonBackwardEuler elements(model);
   const Vec3 wanted = sag(elements, model), found = sag(modal, model);
   CHECK(found.x() == Approx(wanted.x()).epsilon(0.03));
   CHECK(found.z() == Approx(wanted.z()).epsilon(0.03));
@@ -174,7 +174,7 @@ TEST_CASE("modal: friction stays within Coulomb's cone and drags the organ along
   double momentum = 0;
   for (std::size_t e = 0; e < solid.element_count(); ++e) {
     const Eigen::VectorXd shares = solid.mass(e).rowwise().sum();
-    for (int a = 0; a < elements::kElementNodes; ++a) {
+    for (int a = 0; a < deformation::kElementNodes; ++a) {
       momentum += shares[a] * state.velocities[solid.mesh().elements[e][a]].x();
     }
   }

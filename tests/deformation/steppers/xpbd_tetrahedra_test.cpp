@@ -17,21 +17,21 @@ TEST_CASE("XPBD tetrahedra: an organ at rest stays there") {
   // Its two constraints pull against each other: rounding, below 1e-12 m.
   for (const double poisson_ratio : {0.3, 0.499}) {
     const auto model = testing::block_model(tetrahedra_organ(poisson_ratio, 0), 3);
-    XpbdTetrahedra xpbd(model);
+    XpbdTetrahedra xpbd(model, model.mesh());
     testing::check_stays_at_rest(model, xpbd, 1e-12);
   }
 }
 
 TEST_CASE("XPBD tetrahedra: free fall with drag is backward Euler's") {
   const auto model = testing::block_model(tetrahedra_organ(0.45, 3), 2, Vec3(1, 2, -9.81));
-  XpbdTetrahedra xpbd(model);
+  XpbdTetrahedra xpbd(model, model.mesh());
   testing::check_free_fall(model, xpbd);
 }
 
 TEST_CASE("XPBD tetrahedra: a shaken organ keeps its momentum and loses energy") {
   // Oracle: invariants; every visit moves four nodes by internal impulses.
   const auto model = testing::block_model(tetrahedra_organ(0.45, 0), 3);
-  XpbdTetrahedra xpbd(model);
+  XpbdTetrahedra xpbd(model, model.mesh());
   OrganState state = rest_state(model);
   Vec3 momentum = Vec3::Zero();
   double energy = 0;
@@ -57,9 +57,9 @@ TEST_CASE("XPBD tetrahedra: many passes end next to backward Euler's step") {
   // beside that of E alone. Not zero: each pass pushes along gradients as they were then. Without
   // the multipliers in a pass, every further one would push anew.
   const auto model = testing::block_model(tetrahedra_organ(0.3, 0), 2);
-  const double h = XpbdTetrahedra(model).largest_step() / 2;
+  const double h = XpbdTetrahedra(model, model.mesh()).largest_step() / 2;
   const auto slope = [&](int passes) {
-    XpbdTetrahedra xpbd(model, passes);
+    XpbdTetrahedra xpbd(model, model.mesh(), passes);
     OrganState state = rest_state(model);
     for (std::size_t i = 0; i < model.node_count(); ++i) {
       const Vec3& x = state.positions[i];
@@ -110,15 +110,15 @@ TEST_CASE("XPBD tetrahedra: stiff tissue and fine meshes shorten the step") {
   // Oracle: dimension, h ~ a √(ρ/μ); the bound is stable, and three times it is not.
   auto organ = tetrahedra_organ(0.45, 0);
   const auto soft = testing::block_model(organ, 3);
-  CHECK(XpbdTetrahedra(soft).largest_step() == XpbdTetrahedra::kStep);
+  CHECK(XpbdTetrahedra(soft, soft.mesh()).largest_step() == XpbdTetrahedra::kStep);
   organ.tissue.youngs_modulus = 10e6;
   const auto coarse = testing::block_model(organ, 3), fine = testing::block_model(organ, 6);
   organ.tissue.youngs_modulus = 40e6;
   const auto stiff = testing::block_model(organ, 3);
-  XpbdTetrahedra xpbd(coarse);
+  XpbdTetrahedra xpbd(coarse, coarse.mesh());
   const double h = xpbd.largest_step();
-  CHECK(XpbdTetrahedra(fine).largest_step() == Approx(h / 2));
-  CHECK(XpbdTetrahedra(stiff).largest_step() == Approx(h / 2));
+  CHECK(XpbdTetrahedra(fine, fine.mesh()).largest_step() == Approx(h / 2));
+  CHECK(XpbdTetrahedra(stiff, stiff.mesh()).largest_step() == Approx(h / 2));
   CHECK(kept_of_kick(coarse, xpbd, h) < 1);
   CHECK_FALSE(kept_of_kick(coarse, xpbd, 3 * h) < 10);
 }
@@ -126,7 +126,7 @@ TEST_CASE("XPBD tetrahedra: stiff tissue and fine meshes shorten the step") {
 TEST_CASE("XPBD tetrahedra: turned inside out, an organ finds back to its shape") {
   // Oracle: the shape at rest.
   const auto model = testing::block_model(tetrahedra_organ(0.45, 20), 2);
-  XpbdTetrahedra xpbd(model);
+  XpbdTetrahedra xpbd(model, model.mesh());
   OrganState state = rest_state(model);
   state.positions[0] = -1.5 * state.positions[0];
   for (int k = 0; k < 2000; ++k) xpbd.step(XpbdTetrahedra::kStep, {}, state);
@@ -163,7 +163,7 @@ TEST_CASE("XPBD tetrahedra: a block between smooth plates nears the formula as s
   std::array<double, 2> errors{};
   for (const int k : {0, 1}) {
     struct Shorter : XpbdTetrahedra {
-      Shorter(const OrganModel& of, double step) : XpbdTetrahedra(of), longest(step) {}
+      Shorter(const OrganModel& of, double step) : XpbdTetrahedra(of, of.mesh()), longest(step) {}
       double largest_step() const override { return longest; }
       double longest;
     } xpbd(model, XpbdTetrahedra::kStep / (k + 1));

@@ -35,8 +35,8 @@ TEST_CASE("equilibria: a beam sags by its weight as beam theory has it") {
   const double E = 200e3, nu = 0, length = 0.1, width = 0.02, g = 0.5;
   const auto mesh = geometry::mesh_block({0, -width / 2, -width / 2},
                                          {length, width / 2, width / 2}, "0.01 + 0*x");
-  const elements::MixedSolid solid(elements::make_quadratic(mesh),
-                                   elements::NeoHookean::from_engineering(E, nu), 1060);
+  const deformation::TaylorHoodElements solid(deformation::make_quadratic(mesh),
+                                              deformation::ElasticConstants(E, nu), 1060);
   std::vector<char> held;
   for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
   const auto moved = sag_at_rest(solid, held, Vec3(0, 0, -g), {{length, 0, 0}}, [] {});
@@ -54,8 +54,8 @@ TEST_CASE("equilibria: a sphere pressed into a block meets the force of Hertz") 
   const auto mesh =
       geometry::mesh_block({-0.02, -0.02, 0}, {0.02, 0.02, 0.02},
                            "0.0012 + 0.008*((x*x+y*y+(z-0.02)^2)/(x*x+y*y+(z-0.02)^2+0.0001))^2");
-  const elements::MixedSolid solid(elements::make_quadratic(mesh),
-                                   elements::NeoHookean::from_engineering(E, nu), 1060);
+  const deformation::TaylorHoodElements solid(deformation::make_quadratic(mesh),
+                                              deformation::ElasticConstants(E, nu), 1060);
   std::vector<char> held;
   for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.z() == 0);
   const Press press{{0, 0, 0.02}, -Vec3::UnitZ(), radius, {depth}, {{0, 0, 0.02}}};

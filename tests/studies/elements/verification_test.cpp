@@ -19,7 +19,7 @@ Setting quick_setting() {
 TEST_CASE("verification: a squeezed ball on a coarse octant is near the reference") {
   // Oracle: reference case A, another package. Coarse: 3 % of force, 4 % of the bulge from 5 to 20
   // %.
-  if (elements::testing::without_gmsh()) return;
+  if (deformation::testing::without_gmsh()) return;
   const auto run = run_case("A", 0.3, quick_setting());
   CHECK(run.complete);
   REQUIRE(run.rows.size() == 4);
@@ -31,7 +31,7 @@ TEST_CASE("verification: a squeezed ball on a coarse octant is near the referenc
 
 TEST_CASE("verification: a free ball vibrates as Lamb says") {
   // Oracle: Lamb's exact roots; a coarse ball within 2 % in all families, 0.5 % in the two lowest.
-  if (elements::testing::without_gmsh()) return;
+  if (deformation::testing::without_gmsh()) return;
   const auto run = run_case("E", 0.35, quick_setting());
   REQUIRE(run.rows.size() == 7);
   for (const Row& row : run.rows) CHECK(row.force == Approx(row.reference_force).epsilon(0.02));
@@ -49,7 +49,7 @@ TEST_CASE("verification: the command prints errors and orders, and stops when as
   options.cases = {"C"};
   options.sizes = {1};
   options.quick = true;
-  if (elements::testing::without_gmsh()) return;
+  if (deformation::testing::without_gmsh()) return;
   CHECK(run_elements(
             options, [] { return true; }, out, log) == kExitFailed);
   CHECK(log.str() == "stopped\n");

@@ -1,0 +1,33 @@
+// Elements that make up a body's elastic forces, as an implicit step needs them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "modules/core/wide_vectors.h"
+
+namespace palpate::deformation {
+
+/// Elastic forces f(x) of a body's nodes and, about x, the matrix A = diag(shift) + scale K that a
+/// step solves with: K approximates −∂f/∂x and is symmetric positive semidefinite. Keeps no state
+/// but buffers. Rows of fixed nodes are like any other.
+class ElasticForceElements {
+ public:
+  virtual ~ElasticForceElements() = default;
+
+  /// Takes forces and A at these positions [m]  (node_count).
+  /// @param scale  > 0; h² of a step [s²]
+  /// @param shift  > 0, each for the three coordinates of a node [kg]  (node_count)
+  virtual void linearise(const std::vector<Vec3>& positions, double scale,
+                         std::span<const double> shift) = 0;
+
+  virtual const std::vector<Vec3>& forces() const = 0;    ///< f [N]  (node_count)
+  virtual const std::vector<Mat3>& diagonal() const = 0;  ///< 3×3 blocks of A [kg]  (node_count)
+
+  /// out = A p. @param p, out  (node_count)
+  virtual void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) = 0;
+
+  virtual double energy(const std::vector<Vec3>& positions) = 0;  ///< [J]
+};
+
+}  // namespace palpate::deformation

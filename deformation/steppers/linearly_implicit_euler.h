@@ -1,0 +1,80 @@
+// Linearly implicit Euler: of backward Euler, one Newton iteration from the inertial prediction
+// x̃ = x + h v,
+//   A Δv = h f(x̃) + h M (gravity − drag v) − Bᵀ (impulses),   A = (1 + h·drag) M + h² K(x̃)
+// by rounds of preconditioned conjugate gradients, the contacts inside (augmented_contacts.h). What
+// the iterations leave of the residual acts on in the next step: equilibria are those of f, however
+// few iterations are made.
+//   D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH 1998.
+//
+// There is no global volume constraint: tissue keeps its volume by what it is made of, and
+// state.target_volume is not looked at.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "deformation/contact/augmented_contacts.h"
+#include "deformation/elements/elastic_force_elements.h"
+#include "deformation/linear_algebra/conjugate_gradients.h"
+#include "deformation/steppers/organ_dynamics.h"
+
+namespace palpate::deformation {
+
+class LinearlyImplicitEuler : public OrganDynamics {
+ public:
+  /// Not for stability: contacts are taken as flat over a step [s].
+  static constexpr double kLargestStep = 0.01;
+
+  /// @param body       outlives this
+  /// @param iterations  of conjugate gradients per step, at most
+  LinearlyImplicitEuler(const Body& body, std::unique_ptr<ElasticForceElements> elements,
+                        int iterations);
+
+  double largest_step() const override { return kLargestStep; }
+  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  double elastic_energy(const OrganState& state) override {
+    return elements_->energy(state.positions);
+  }
+
+  int iterations_used() const { return iterations_used_; }  ///< of the last step
+
+ private:
+  /// A, with the contacts that press, for conjugate_gradients().
+  struct System {
+    LinearlyImplicitEuler& step;
+    std::span<const ContactRow> rows;
+
+    double begin();
+    double curvature();
+    double descend(double length);
+    void turn(double kept);
+  };
+
+  void linearise(double h, const OrganState& state);
+  /// Δv and the contacts' impulses together.
+  void solve(double h, std::span<ContactRow> rows, const OrganState& state);
+  void take_preconditioner(std::span<const ContactRow> rows);
+  void take_residual(std::span<const ContactRow> rows);
+  double precondition();
+  void keep_momentum(double h, std::span<const ContactRow> rows, const OrganState& state);
+  double mean_pressure() const;
+
+  const Body& body_;
+  std::unique_ptr<ElasticForceElements> elements_;
+  int max_iterations_, iterations_used_ = 0;
+  double total_mass_ = 0;
+  AugmentedContacts contacts_;
+  std::vector<double> shift_;                         ///< (1 + h·drag) m [kg]
+  std::vector<Vec3> predicted_;                       ///< x̃ [m]
+  std::vector<Vec3> velocities_;                      ///< v + Δv [m/s]
+  std::vector<Mat3> inverse_diagonal_;                ///< of A without contacts [1/kg]
+  std::vector<Mat3> diagonal_;                        ///< with contacts [kg]
+  std::vector<std::array<Vec4f, 3>> preconditioner_;  ///< its inverse blocks, by columns
+  std::vector<Vec4f> change_;                         ///< Δv [m/s]
+  std::vector<Vec4f> load_;                           ///< right-hand side without contacts [N·s]
+  std::vector<Vec4f> residual_;                       ///< r [N·s]
+  std::vector<Vec4f> preconditioned_, direction_, product_;
+};
+
+}  // namespace palpate::deformation

@@ -1,0 +1,73 @@
+// Equilibrium of a solid under constrained nodes, obstacles and, in motion, inertia: Newton's
+// method.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "deformation/contact/element_contact.h"
+#include "deformation/linear_algebra/multifrontal_ldlt.h"
+
+namespace palpate::deformation {
+
+/// Adds M factor (x − predicted): what a time integrator makes of inertia.
+struct Inertia {
+  double factor = 0;                ///< [1/s²]
+  std::span<const Vec3> predicted;  ///< [m]  (node_count)
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;  ///< of Newton: factorizations
+  double deepest = 0;  ///< penetration left [m]
+};
+
+class QuasiStaticNewton {
+ public:
+  /// Force unit f = μ · size².
+  static constexpr double kForceTolerance = 1e-9;   ///< of f
+  static constexpr int kMostIterations = 40;        ///< in all
+  static constexpr double kMostPenetration = 2e-5;  ///< of the size
+
+  /// @param solid    outlives this
+  /// @param constrained     true: this coordinate of this node does not move  (3 · node_count)
+  /// @param contact  outlives this; null: none
+  QuasiStaticNewton(const TaylorHoodElements& solid, std::vector<char> constrained,
+                    ElementContact* contact);
+
+  /// From `state`, constrained coordinates where they are to be. Stops when, in this order,
+  ///   1. ‖r_u‖ ≤ kForceTolerance f and ‖r_p‖ ≤ kForceTolerance size³, and
+  ///   2. no point penetrates by more than kMostPenetration · size, and friction is settled: else
+  ///      λ is augmented and 1. starts anew;
+  /// not converged after kMostIterations, or where no step along Newton's direction keeps J > 0.
+  NewtonReport solve(SolidState& state, std::optional<Inertia> inertia = {});
+
+  /// Residual of the whole; empty if J ≤ 0 somewhere. Constrained coordinates have their reactions'
+  /// sign turned: r is the force the support has to exert [N].
+  Eigen::VectorXd residual(const SolidState& state, const std::optional<Inertia>& inertia) const;
+
+  /// Factors the tangent. @param positive  as in TaylorHoodElements::tangent()
+  /// @returns false if it is singular
+  bool factor(const SolidState& state, const std::optional<Inertia>& inertia,
+              bool positive = false);
+  const MultifrontalLdlt& factorization() const { return factor_; }
+  bool is_constrained(std::size_t coordinate) const { return constrained_[coordinate] != 0; }
+
+ private:
+  /// Factors a tangent whose K is positive: the true one where it is.
+  bool factor_descending(const SolidState& state, const std::optional<Inertia>& inertia);
+  double norm(const Eigen::VectorXd& residual) const;
+  /// Newton's step, shortened where contact closes on the way or J would fall to 0; moves the
+  /// state.
+  bool search(const Eigen::VectorXd& direction, const std::optional<Inertia>& inertia,
+              SolidState& state, Eigen::VectorXd& residual) const;
+
+  const TaylorHoodElements& solid_;
+  std::vector<char> constrained_;
+  ElementContact* contact_;
+  std::vector<ElementMass> masses_;  ///< empty until inertia was asked for
+  MultifrontalLdlt factor_;
+};
+
+}  // namespace palpate::deformation

@@ -1,0 +1,80 @@
+// All that influences the steps to come is in the state.
+#include "modules/scene/schema.h"
+#include "squeeze.h"
+
+namespace palpate::deformation {
+namespace {
+
+constexpr double kStep = 5e-4;  // [s]
+
+/// A state and the impulses its contacts start from.
+struct Moment {
+  OrganState state;
+  std::vector<ContactRow> rows;
+};
+
+/// Presses the top of the block of squeeze.h with a rough plate, tilted and oblique so that no two
+/// nodes are alike. @param from  steps done before
+void press(OrganDynamics& dynamics, int from, int steps, Moment& now) {
+  const Vec3 normal = Vec3(0.02, -0.01, 1).normalized(), velocity(0.03, 0.01, -0.1);
+  for (int k = from; k < from + steps; ++k) {
+    const Vec3 plate = Vec3(0, 0, 0.031) + k * kStep * velocity;
+    for (ContactRow& row : now.rows) {
+      row.normal = normal;
+      row.gap = normal.dot(plate - now.state.positions[row.nodes[0]]);
+      row.probe_velocity = velocity;
+      row.friction = 0.3;
+    }
+    dynamics.step(std::min(kStep, dynamics.largest_step()), now.rows, now.state);
+  }
+}
+
+Moment start(const OrganModel& model) {
+  Moment now{rest_state(model), {}};
+  for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
+    if (now.state.positions[i].z() < 0.0299) continue;
+    now.rows.emplace_back();
+    now.rows.back().nodes = {i, i, i};
+    now.rows.back().weights = Vec3::UnitX();
+  }
+  return now;
+}
+
+void check_same_bits(const OrganState& a, const OrganState& b) {
+  CHECK(a.positions == b.positions);
+  CHECK(a.velocities == b.velocities);
+  CHECK(a.pressure == b.pressure);
+}
+
+TEST_CASE("restored state: continues as if it had never been left") {
+  // Oracle: the steps that follow without a pause, bit by bit; by the stepper that went elsewhere
+  // meanwhile, and by one that never saw the organ.
+  for (std::size_t m = 0; m < scene::Words<scene::Model>::texts.size(); ++m) {
+    const auto kind = static_cast<scene::Model>(m);
+    if (!scene::is_solid(kind)) continue;
+    CAPTURE(scene::word_of(kind));
+    const auto organ = testing::reference_ball(kind);
+    const auto model = testing::block_model(organ, 2);
+    const auto dynamics = make_dynamics(organ, model, kStep);
+    Moment straight = start(model);
+    press(*dynamics, 0, 25, straight);
+    const Moment kept = straight;
+    press(*dynamics, 25, 25, straight);
+    double force = 0;
+    for (const ContactRow& row : straight.rows) force += row.normal_impulse / kStep;
+    REQUIRE(force > 0);
+
+    Moment again = kept;
+    press(*dynamics, 25, 25, again);
+    check_same_bits(again.state, straight.state);
+    CHECK(dynamics->elastic_energy(again.state) == dynamics->elastic_energy(straight.state));
+
+    Moment elsewhere = kept;
+    const auto fresh = make_dynamics(organ, model, kStep);
+    press(*fresh, 25, 25, elsewhere);
+    check_same_bits(elsewhere.state, straight.state);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::deformation
