@@ -59,5 +59,5 @@ Headers, static libraries and a CMake package (palpate::bus) to write and read
 the topics of a session, and the message types as IDL for any other DDS.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME palpate-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfastrtps-dev, libfastcdr-dev, libeigen3-dev")
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfastrtps-dev, libeigen3-dev")
 include(CPack)

@@ -1,64 +1,19 @@
-// The haptic loop's body allocates nothing: every operator new of this program is counted.
-#include <atomic>
+// The haptic loop's body allocates nothing: every operator new of its thread is counted.
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
 #include "haptics/device.h"
 #include "haptics/haptic_renderer.h"
+#include "tests/counted_allocations.h"
 #include "tests/haptics/temporary_file.h"
-
-namespace {
-
-std::atomic<long> allocations = 0;
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-
-void* counted_aligned(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
-  const auto align = static_cast<std::size_t>(alignment);
-  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, std::align_val_t align) {
-  return counted_aligned(size, align);
-}
-void* operator new[](std::size_t size, std::align_val_t align) {
-  return counted_aligned(size, align);
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size ? size : 1);
-}
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(size ? size : 1);
-}
-void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
 
 using namespace palpate;
 using namespace palpate::haptics;
+using palpate::testing::allocations;
 
 namespace {
 
 /// Allocations of 10,000 ticks of `device` and a renderer fed at 250 Hz, bad models among them.
-long allocations_of_ticks(Device& device) {
+std::size_t allocations_of_ticks(Device& device) {
   HapticRenderer renderer({}, 1e-3);
   auto* topic = dynamic_cast<TopicDevice*>(&device);
   LocalLaw model;
@@ -68,7 +23,7 @@ long allocations_of_ticks(Device& device) {
   model.validity_radius = 0.01;
   Pose commanded;
   RenderedForce out;
-  const long before = allocations;
+  const std::size_t before = allocations();
   for (int i = 0; i < 10'000; ++i) {
     const double time = 1e-3 * i;
     model.anchor = Vec3(0, 0, 1e-4 * (i % 100));
@@ -78,17 +33,17 @@ long allocations_of_ticks(Device& device) {
     if (topic && i % 16 == 0) topic->command(commanded, 0);
     renderer.tick(time, device.read(time), out);
   }
-  return allocations - before;
+  return allocations() - before;
 }
 
 }  // namespace
 
 TEST_CASE("allocation: the counter counts") {
   // Oracle: one allocation made on purpose.
-  const long before = allocations;
+  const std::size_t before = allocations();
   void* memory = ::operator new(10);
   ::operator delete(memory);
-  CHECK(allocations == before + 1);
+  CHECK(allocations() == before + 1);
 }
 
 TEST_CASE("allocation: 10,000 ticks of each device allocate nothing") {

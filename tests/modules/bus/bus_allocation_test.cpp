@@ -1,43 +1,17 @@
 // The haptic loop may not allocate: counts operator new in the calling thread.
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
 #include "modules/bus/memory_bus.h"
+#include "tests/counted_allocations.h"
 #include "tests/modules/bus/loopback.h"
 #include "tests/modules/messages/random_messages.h"
-
-namespace {
-
-thread_local std::size_t allocations = 0;
-
-void* counted(std::size_t bytes) {
-  ++allocations;
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return counted(bytes); }
-void* operator new[](std::size_t bytes) { return counted(bytes); }
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(bytes == 0 ? 1 : bytes);
-}
-void* operator new[](std::size_t bytes, const std::nothrow_t& tag) noexcept {
-  return operator new(bytes, tag);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace palpate::bus {
 namespace {
 
 using messages::testing::Random;
 using messages::testing::random_message;
+using palpate::testing::allocations;
 using testing::Pair;
 using testing::take_soon;
 
@@ -54,13 +28,13 @@ Allocations count_allocations(Writer<Message>& writer, Reader<Message>& reader) 
   Allocations counted;
   constexpr int kRounds = 100;
   for (int round = 0; round < kRounds; ++round) {
-    std::size_t before = allocations;
+    std::size_t before = allocations();
     const bool written = writer.write(sent);
-    const std::size_t in_write = allocations - before;
+    const std::size_t in_write = allocations() - before;
     const bool arrived = reader.wait(testing::kDeadline);
-    before = allocations;
+    before = allocations();
     const bool taken = reader.take(received);
-    const std::size_t in_take = allocations - before;
+    const std::size_t in_take = allocations() - before;
     REQUIRE((written && arrived && taken));
     if (round < kRounds / 2) continue;
     counted.in_write += in_write;
@@ -91,9 +65,9 @@ void check_no_allocation(const TopicOf<Message>& topic) {
 
 TEST_CASE("bus: the counter of allocations counts", "[bus]") {
   // Oracle: one allocation made by hand.
-  const std::size_t before = allocations;
+  const std::size_t before = allocations();
   const auto memory = std::make_unique<int>(1);
-  CHECK(allocations - before == 1);
+  CHECK(allocations() - before == 1);
   CHECK(*memory == 1);
 }
 

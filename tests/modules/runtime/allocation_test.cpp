@@ -1,41 +1,15 @@
 // The loop of a module may not allocate: counts operator new in the calling thread.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstdlib>
-#include <new>
 
 #include "modules/runtime/module.h"
 #include "modules/scene/scene.h"
+#include "tests/counted_allocations.h"
 #include "tests/modules/bus/loopback.h"
-
-namespace {
-
-thread_local std::size_t allocations = 0;
-
-void* counted(std::size_t bytes) {
-  ++allocations;
-  if (void* memory = std::malloc(bytes == 0 ? 1 : bytes)) return memory;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t bytes) { return counted(bytes); }
-void* operator new[](std::size_t bytes) { return counted(bytes); }
-void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(bytes == 0 ? 1 : bytes);
-}
-void* operator new[](std::size_t bytes, const std::nothrow_t& none) noexcept {
-  return operator new(bytes, none);
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace palpate;
 using namespace palpate::runtime;
+using palpate::testing::allocations;
 
 TEST_CASE("allocation: a running module allocates nothing but what DDS takes for a status") {
   // Oracle: the count of operator new, over a second with four statuses.
@@ -60,10 +34,10 @@ TEST_CASE("allocation: a running module allocates nothing but what DDS takes for
   std::size_t most = 0;
   for (int i = 0; i < 500; ++i) {
     module.set_guard(i % 100 < 50 ? "an input is stale" : "");
-    const std::size_t before = allocations;
+    const std::size_t before = allocations();
     module.next_cycle();
-    cycles_that_allocated += allocations > before;
-    most = std::max(most, allocations - before);
+    cycles_that_allocated += allocations() > before;
+    most = std::max(most, allocations() - before);
   }
   REQUIRE(bus::testing::wait_until([&] { return statuses.take(last); }));
   const auto written = static_cast<int>(last.header.sequence - first.header.sequence);
