@@ -43,7 +43,7 @@ std::array<std::string, 2> two_lines(const std::string& text) {
   const std::size_t space = text.rfind(' ', kLetters);
   const std::size_t end = space == std::string::npos ? kLetters : space;
   std::string second = text.substr(text[end] == ' ' ? end + 1 : end);
-  if (second.size() > kLetters) second = second.substr(0, kLetters - 3) + "...";
+  if (second.size() > kLetters) second.replace(kLetters - 3, std::string::npos, "...");
   return {text.substr(0, end), second};
 }
 

@@ -2,7 +2,7 @@
 
 namespace palpate::runtime {
 
-LockstepCursor::LockstepCursor(const scene::Scene& scene, std::string module,
+LockstepCursor::LockstepCursor(const scene::Scene& scene, const std::string& module,
                                std::vector<bus::Input*> inputs)
     : rule_(scene, module), grid_(rate_of(module, scene)), inputs_(std::move(inputs)) {
   open_until(CycleGrid::kSetUp);

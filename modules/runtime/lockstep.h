@@ -17,7 +17,8 @@ class LockstepCursor {
  public:
   /// @param scene   outlives the cursor
   /// @param inputs  the module's own, alive as long as the cursor
-  LockstepCursor(const scene::Scene& scene, std::string module, std::vector<bus::Input*> inputs);
+  LockstepCursor(const scene::Scene& scene, const std::string& module,
+                 std::vector<bus::Input*> inputs);
 
   /// When the next cycle begins, simulated [ns]; the first at 0.
   std::int64_t next_ns() const { return next_ns_; }

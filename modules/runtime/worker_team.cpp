@@ -34,7 +34,7 @@ void WorkerTeam::run(std::size_t count, ChunkBody body) {
   // The ticket is closed while the run changes, or a worker late from the last one takes its end
   // for a chunk.
   ticket_ = kClosed;
-  body_ = &body;
+  body_ = &body;  // cppcheck-suppress danglingLifetime; all chunks end before this returns
   count_ = count;
   done_ = 0;
   const std::uint32_t run = run_ + 1;
