@@ -17,9 +17,12 @@ bool Writer<Message>::write(Message& message) {
   header.sequence = sequence_ + 1;
   const std::int64_t given_ns = header.source_time_ns;
   if (given_ns == 0) header.source_time_ns = bus_->now_ns();
-  refused_field_ = messages::encode(message, payload_);
+  const char* refused_field = messages::encode(message, payload_);
   header.source_time_ns = given_ns;
-  if (refused_field_ != nullptr) return false;
+  if (refused_field != nullptr) {
+    output_->refuse(refused_field);
+    return false;
+  }
   ++sequence_;
   return output_->raw().write(payload_);
 }

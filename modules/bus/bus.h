@@ -37,8 +37,7 @@ class Writer {
   /// Waits until every reader of a state topic has what was written, at most `longest` [s]: who
   /// writes and leaves at once may not be heard. False if time was up.
   bool wait_until_received(double longest) { return output_->raw().wait_until_received(longest); }
-  /// Wire name (idl/) of the field for which the last write was refused; nullptr if it was not.
-  const char* refused_field() const { return refused_field_; }
+  const WriterStatistics& statistics() const { return output_->statistics(); }
 
  private:
   friend class Bus;
@@ -48,7 +47,6 @@ class Writer {
   std::unique_ptr<Output> output_;
   std::vector<std::uint8_t> payload_;
   std::uint64_t sequence_ = 0;
-  const char* refused_field_ = nullptr;
 };
 
 /// Reads messages of one topic; poll it from the module's own loop, until take gives false. Not

@@ -1,4 +1,5 @@
-// One writer without its message type: what a runtime asks before it says that it is ready.
+// One writer without its message type: what a runtime asks before it says that it is ready, and
+// what a watcher asks of messages that never left.
 #pragma once
 
 #include <memory>
@@ -8,6 +9,11 @@
 namespace palpate::bus {
 
 class Bus;
+
+struct WriterStatistics {
+  std::uint64_t refused = 0;  ///< by the codec, thus not written: size, range, not finite
+  const char* last_refused_field = nullptr;  ///< its wire name (idl/); nullptr if none
+};
 
 class Output {
  public:
@@ -19,11 +25,19 @@ class Output {
   const TopicInfo& topic() const { return topic_; }
   int matched_readers() const { return raw_->matched_readers(); }
   RawWriter& raw() { return *raw_; }
+  const WriterStatistics& statistics() const { return statistics_; }
+
+  // For Writer:
+  void refuse(const char* field) {
+    ++statistics_.refused;
+    statistics_.last_refused_field = field;
+  }
 
  private:
   Bus& bus_;
   TopicInfo topic_;
   std::unique_ptr<RawWriter> raw_;
+  WriterStatistics statistics_;
 };
 
 }  // namespace palpate::bus

@@ -100,6 +100,19 @@ Tap lose_tap(std::function<bool(const Passing&)> lost) {
   };
 }
 
+Tap repeat_tap(std::size_t times) {
+  return [times](const Passing& passing, const Forward& forward) {
+    for (std::size_t i = 0; i < times; ++i) forward(passing.payload);
+  };
+}
+
+Tap tap_while(std::function<bool(const Passing&)> acts, Tap tap) {
+  return [acts = std::move(acts), tap = std::move(tap)](const Passing& passing,
+                                                        const Forward& forward) mutable {
+    acts(passing) ? tap(passing, forward) : forward(passing.payload);
+  };
+}
+
 Tap corrupt_tap(std::function<void(Bytes&)> change) {
   return [change = std::move(change)](const Passing& passing, const Forward& forward) {
     Bytes bytes = copy_of(passing.payload);

@@ -1,5 +1,5 @@
 // Taps sit between a bus and its writers: they see each payload written on a topic, and record,
-// meter, delay, lose or corrupt it. Faults and measurements then need no second wiring of a
+// meter, delay, lose, repeat or corrupt it. Faults and measurements then need no second wiring of a
 // session: its stages run on a tapped bus.
 #pragma once
 
@@ -61,6 +61,9 @@ Tap time_delay_tap(std::int64_t delay_ns);
 /// Payloads for which `lost` is true do not travel.
 Tap lose_tap(std::function<bool(const Passing&)> lost);
 
+/// Each payload travels `times` times.
+Tap repeat_tap(std::size_t times);
+
 /// Changes the bytes.
 Tap corrupt_tap(std::function<void(std::vector<std::uint8_t>&)> change);
 
@@ -81,5 +84,8 @@ Tap change_tap(std::function<void(Message&)> change, bool checked) {
     forward(changed);
   };
 }
+
+/// `tap` while `acts` is true of what is written; the rest travels as it is.
+Tap tap_while(std::function<bool(const Passing&)> acts, Tap tap);
 
 }  // namespace palpate::bus

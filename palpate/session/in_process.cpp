@@ -69,22 +69,22 @@ struct InProcess::Impl {
     const auto clock = [this] { return clock_ns; };
     carrier.set_clock(clock);
     if (tapped) tapped->set_clock(clock);
-    add("haptics", [&](bus::Bus& bus) {
+    add("haptics", options, [&](bus::Bus& bus) {
       auto stage = std::make_unique<haptics::HapticsStage>(scene, bus, warnings);
       haptics = stage.get();
       return stage;
     });
-    add("collision", [&](bus::Bus& bus) {
+    add("collision", options, [&](bus::Bus& bus) {
       return std::make_unique<collision::CollisionStage>(
           scene, collision::probes_of(scene, std::move(assets.probe_meshes)), bus);
     });
-    add("deformation", [&](bus::Bus& bus) {
+    add("deformation", options, [&](bus::Bus& bus) {
       auto stage = std::make_unique<deformation::DeformationStage>(
           scene, std::move(assets.organs), bus, options.runner, options.guarding);
       deformation = stage.get();
       return stage;
     });
-    for (std::size_t organ = 0; organ < scene.organs.size(); ++organ) {
+    for (std::size_t organ = 0; deformation && organ < scene.organs.size(); ++organ) {
       deformation::write_node_positions(deformation->world(), organ, nodes[organ]);
     }
     listen();
@@ -92,10 +92,15 @@ struct InProcess::Impl {
 
   bus::Bus& stages_bus() { return tapped ? *tapped : static_cast<bus::Bus&>(carrier); }
 
-  void add(const std::string& module,
-           const std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>& make) {
+  void add(const std::string& module, const InProcessOptions& options, const MakeStage& usual) {
+    if (!options.make) return add(module, usual);
+    add(module, [&](bus::Bus& bus) { return options.make(module, bus, usual); });
+  }
+
+  void add(const std::string& module, const MakeStage& make) {
     const std::size_t others = stages_bus().inputs().size();
     auto stage = make(stages_bus());
+    if (stage == nullptr) return;
     const auto own = stages_bus().inputs().subspan(others);
     members.push_back({module,
                        std::move(stage),
@@ -154,10 +159,7 @@ InProcess::InProcess(const scene::Scene& scene, Assets assets, const InProcessOp
 InProcess::~InProcess() = default;
 InProcess::InProcess(InProcess&&) noexcept = default;
 
-void InProcess::add(const std::string& module,
-                    const std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>& make) {
-  impl_->add(module, make);
-}
+void InProcess::add(const std::string& module, const MakeStage& make) { impl_->add(module, make); }
 
 void InProcess::run_until(double time) {
   const std::int64_t until_ns = ns_from_seconds(time);
@@ -170,10 +172,14 @@ void InProcess::finish(double time) { impl_->finish(ns_from_seconds(time)); }
 
 const scene::Scene& InProcess::scene() const { return impl_->scene; }
 bus::Bus& InProcess::bus() { return impl_->carrier; }
-const deformation::DeformationWorld& InProcess::world() const {
-  return impl_->deformation->world();
+haptics::HapticsStage& InProcess::haptics() {
+  PALPATE_DEMAND(impl_->haptics != nullptr);
+  return *impl_->haptics;
 }
-haptics::HapticsStage& InProcess::haptics() { return *impl_->haptics; }
+const deformation::DeformationStage& InProcess::deformation() const {
+  PALPATE_DEMAND(impl_->deformation != nullptr);
+  return *impl_->deformation;
+}
 
 const runtime::Health& InProcess::health(const std::string& module) const {
   const auto found = std::find_if(impl_->members.begin(), impl_->members.end(),

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "deformation/stage.h"
@@ -26,11 +27,19 @@ struct Assets {
 /// @throws InputError for a mesh that cannot be used
 Assets load_assets(const scene::Scene& scene);
 
+/// Makes a stage on the session's bus.
+using MakeStage = std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>;
+
 struct InProcessOptions {
   ChunkRunner* runner = nullptr;  ///< of deformation; outlives the session
   deformation::Guarding guarding = deformation::Guarding::kOn;
   /// The bus that the stages see, given the one that carries: for taps. None: the same.
   std::function<std::unique_ptr<bus::Bus>(bus::Bus&)> tap;
+  /// How a module's stage is made, given the usual way: to time it (timed_stage.h), to put another
+  /// in its place, or, with nullptr, to go without the module. None: the usual way.
+  std::function<std::unique_ptr<runtime::Stage>(std::string_view module, bus::Bus& bus,
+                                                const MakeStage& usual)>
+      make;
 };
 
 class InProcess {
@@ -41,8 +50,7 @@ class InProcess {
   InProcess(InProcess&&) noexcept;
 
   /// Another module, by its name in runtime::kModules; before the first cycle.
-  void add(const std::string& module,
-           const std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>& make);
+  void add(const std::string& module, const MakeStage& make);
 
   /// All cycles that begin before `time` [s].
   void run_until(double time);
@@ -55,8 +63,10 @@ class InProcess {
 
   const scene::Scene& scene() const;
   bus::Bus& bus();  ///< for listening
-  const deformation::DeformationWorld& world() const;
+  // Of the usual stages; a broken demand where another is in their place.
   haptics::HapticsStage& haptics();
+  const deformation::DeformationStage& deformation() const;
+  const deformation::DeformationWorld& world() const { return deformation().world(); }
   const runtime::Health& health(const std::string& module) const;  ///< after its last cycle
 
   // The newest of what the stages said; before the first of its kind a default one, of organs the

@@ -2,7 +2,8 @@
 
 #include <limits>
 
-#include "modules/messages/message_checks.h"
+#include "modules/core/units.h"
+#include "modules/messages/cdr.h"
 
 namespace palpate::fuzz {
 namespace {
@@ -11,10 +12,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDenormal = 1e-310, kHuge = 1e300;
 
-template <class Message>
-const char* refused_field(Message& message) {
-  message.header.sequence = 1;  // the codec's to fill
-  return messages::first_invalid_field(message);
+constexpr double kSpell = 0.1;               // of loss, delay and repetition [s]
+constexpr std::int64_t kDelay = 30'000'000;  // [ns]
+
+bool is_of_transport(Fault fault) { return fault >= Fault::kLost; }
+
+bool acts(const TimedFault& timed, double time, double period) {
+  const double lasts = is_of_transport(timed.fault) ? kSpell : period;
+  return timed.time <= time && time < timed.time + lasts;
 }
 
 void corrupt_contact(Fault fault, Contact& contact) {
@@ -48,6 +53,55 @@ void corrupt_contact(Fault fault, Contact& contact) {
   }
 }
 
+template <class Message>
+bus::Tap tap_of(Fault fault) {
+  switch (fault) {
+    case Fault::kLost:
+      return bus::lose_tap([](const bus::Passing&) { return true; });
+    case Fault::kLate:
+      return bus::time_delay_tap(kDelay);
+    case Fault::kTwice:
+      return bus::repeat_tap(2);
+    default:
+      return bus::change_tap<Message>([fault](Message& message) { corrupt(fault, message); },
+                                      false);
+  }
+}
+
+template <class Message>
+void tap_topic(const RandomScene& scene, const bus::TopicOf<Message>& topic, bus::TappedBus& bus) {
+  for (const TimedFault& timed : scene.faults) {
+    const auto concerns = [timed, period = 1 / scene.scene.rates.deformation,
+                           message = Message()](const bus::Passing& passing) mutable {
+      return acts(timed, seconds_from_ns(passing.now_ns), period) &&
+             messages::read_payload(passing.payload, message) == nullptr &&
+             message.probe == timed.probe;
+    };
+    bus.set_tap(topic.name, bus::tap_while(concerns, tap_of<Message>(timed.fault)));
+  }
+}
+
+class FaultyDevice : public haptics::Device {
+ public:
+  FaultyDevice(std::unique_ptr<haptics::Device> device, std::vector<TimedFault> faults,
+               double period)
+      : device_(std::move(device)), faults_(std::move(faults)), period_(period) {}
+
+  haptics::DeviceSample read(double time) override {
+    haptics::DeviceSample sample = device_->read(time);
+    for (const TimedFault& timed : faults_) {
+      if (!acts(timed, time, period_)) continue;
+      sample.pose.position.x() = sample.twist.linear.y() = kNaN;
+    }
+    return sample;
+  }
+
+ private:
+  std::unique_ptr<haptics::Device> device_;
+  std::vector<TimedFault> faults_;
+  double period_;  ///< of deformation [s]
+};
+
 }  // namespace
 
 void corrupt(Fault fault, ProbeState& message) {
@@ -76,10 +130,21 @@ void corrupt(Fault fault, ContactModel& message) {
   }
 }
 
-const char* refusal(ProbeState message) { return refused_field(message); }
-const char* refusal(Contacts message) { return refused_field(message); }
-const char* refusal(ContactModel message) { return refused_field(message); }
-const char* refusal(NodePositions message) { return refused_field(message); }
-const char* refusal(HapticForce message) { return refused_field(message); }
+void tap_faults(const RandomScene& scene, bus::TappedBus& bus) {
+  tap_topic(scene, bus::kProbeState, bus);
+  tap_topic(scene, bus::kContacts, bus);
+  tap_topic(scene, bus::kContactModel, bus);
+}
+
+std::unique_ptr<haptics::Device> faulty_device(const RandomScene& scene, std::uint32_t probe) {
+  std::vector<std::string> warnings;
+  std::vector<TimedFault> faults = scene.faults;
+  std::erase_if(faults, [probe](const TimedFault& timed) {
+    return timed.probe != probe || timed.fault != Fault::kDeviceNotANumber;
+  });
+  return std::make_unique<FaultyDevice>(
+      haptics::make_device(scene.scene.probes[probe].device, warnings), std::move(faults),
+      1 / scene.scene.rates.deformation);
+}
 
 }  // namespace palpate::fuzz

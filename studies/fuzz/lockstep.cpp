@@ -2,16 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cmath>
-
-#include "collision/contact_finder.h"
-#include "collision/contact_margin.h"
-#include "deformation/organ_messages.h"
-#include "deformation/world.h"
-#include "haptics/device.h"
-#include "haptics/haptic_renderer.h"
+#include "modules/bus/tap.h"
 #include "modules/core/error.h"
-#include "modules/core/units.h"
+#include "palpate/session/in_process.h"
 #include "studies/fuzz/faults.h"
 #include "studies/fuzz/organ_watch.h"
 #include "studies/fuzz/scene_shapes.h"
@@ -29,66 +22,29 @@ double cost_of(scene::Model model) {
   return model == scene::Model::kElementVolume ? 5 : 1;
 }
 
-struct Clock {
-  std::int64_t period_ns, next_ns = 0;
-  explicit Clock(double rate_hz) : period_ns(ns_from_seconds(1 / rate_hz)) {}
-  bool take(std::int64_t now_ns) {
-    if (now_ns < next_ns) return false;
-    next_ns += period_ns;
-    return true;
-  }
-};
-
-struct ProbeRun {
-  std::unique_ptr<haptics::Device> device;
-  haptics::HapticRenderer renderer;
-  ProbeState sent, known;  ///< by haptics; to the others, who refuse what cannot be
-  Pose searched;
-  bool was_searched = false;
-  Contacts contacts;
-  ContactModel model;
-  HapticForce force;
-};
-
 class Lockstep {
  public:
-  Lockstep(const RandomScene& scene, std::vector<geometry::OrganShape> shapes,
-           const ShapeStore& store, deformation::Guarding guarding, Outcome& outcome)
+  Lockstep(const RandomScene& scene, const ShapeStore& store, deformation::Guarding guarding,
+           Outcome& outcome)
       : scene_(scene),
         outcome_(outcome),
-        faults_(scene.faults),
-        finder_(triangles_of(shapes), probe_geometry(scene, store)),
-        world_(scene.scene, std::move(shapes), nullptr, guarding),
-        guarding_(guarding) {
-    std::vector<std::string> warnings;
-    const scene::Scene& s = scene.scene;
-    for (const auto& probe : s.probes) {
-      probes_.push_back({haptics::make_device(probe.device, warnings),
-                         haptics::HapticRenderer(s.haptics, 1 / s.rates.haptics),
-                         {},
-                         {},
-                         {},
-                         false,
-                         {},
-                         {},
-                         {}});
+        guarding_(guarding),
+        session_(scene.scene, assets_of(scene, store), options()) {
+    for (std::uint32_t i = 0; i < scene.scene.probes.size(); ++i) {
+      session_.haptics().set_device(i, faulty_device(scene, i));
     }
-    for (std::size_t i = 0; i < world_.organ_count(); ++i) {
-      organs_.emplace_back(world_, i, scene.organ_shapes[i].size.maxCoeff(), period());
+    for (std::size_t i = 0; i < scene.scene.organs.size(); ++i) {
+      organs_.emplace_back(session_.surface(i), scene.organ_shapes[i].size.maxCoeff(), period());
     }
   }
 
   void run() {
-    Clock haptics(scene_.scene.rates.haptics), collision(scene_.scene.rates.collision),
-        deformation(scene_.scene.rates.deformation);
-    for (std::int64_t now = 0; seconds_from_ns(now) < scene_.scene.duration && cost_ < kNodeSteps;
-         now = haptics.next_ns) {
-      time_ = outcome_.time = seconds_from_ns(now);
-      haptics.take(now);
-      take_faults();
-      for (std::uint32_t i = 0; i < probes_.size(); ++i) tick(i);
-      if (collision.take(now)) search();
-      if (deformation.take(now)) advance();
+    while (session_.time() < scene_.scene.duration && cost_ < kNodeSteps) {
+      outcome_.time = session_.time();
+      session_.tick();
+      look_at_messages();
+      look_at_forces();
+      if (advanced_ != session_.world().time()) look_at_organs();
     }
     if (guarding_ == deformation::Guarding::kOn) return;
     for (const OrganWatch& organ : organs_) organ.look_last();
@@ -97,96 +53,59 @@ class Lockstep {
  private:
   double period() const { return 1 / scene_.scene.rates.deformation; }
 
+  session::InProcessOptions options() {
+    session::InProcessOptions options;
+    options.guarding = guarding_;
+    options.tap = [this](bus::Bus& carrier) {
+      auto tapped = std::make_unique<bus::TappedBus>(carrier);
+      tap_faults(scene_, *tapped);
+      bus_ = tapped.get();
+      return tapped;
+    };
+    return options;
+  }
+
   void count(Guard guard, bool acted = true) {
     outcome_.guards[static_cast<std::size_t>(guard)] += acted;
   }
 
-  /// Those due by now go to the messages of this tick; of slower modules, to the next ones.
-  void take_faults() {
-    for (const TimedFault& fault : faults_) {
-      if (fault.time <= time_) pending_.push_back(fault);
+  /// A probe state may tell of a device's fault, contacts of the organ's they were found on; what
+  /// the other messages tell is ours to keep sound.
+  void look_at_messages() {
+    std::uint64_t refused = 0;
+    for (const bus::Input* input : bus_->inputs()) refused += input->statistics().rejected;
+    for (const bus::Output* output : bus_->outputs()) {
+      const auto& [times, field] = output->statistics();
+      const std::string_view topic = output->topic().name;
+      if (times > 0 && topic != bus::kProbeState.name && topic != bus::kContacts.name) {
+        throw Failure{fmt::format("{} not sound ({}): refused by its writer", topic, field)};
+      }
+      refused += times;
     }
-    std::erase_if(faults_, [&](const TimedFault& fault) { return fault.time <= time_; });
+    count(Guard::kMessageRefused, refused > refused_);
+    refused_ = refused;
   }
 
-  template <class Message>
-  bool passes(std::uint32_t probe, Message& message) {
-    for (const TimedFault& timed : pending_) {
-      if (timed.probe == probe) corrupt(timed.fault, message);
-    }
-    const bool refused = refusal(message) != nullptr;
-    count(Guard::kMessageRefused, refused);
-    return !refused;
-  }
-
-  void tick(std::uint32_t i) {
-    ProbeRun& probe = probes_[i];
-    haptics::DeviceSample sample = probe.device->read(time_);
-    for (const TimedFault& timed : pending_) {
-      if (timed.probe != i || timed.fault != Fault::kDeviceNotANumber) continue;
-      sample.pose.position.x() = sample.twist.linear.y() = std::nan("");
-    }
-    probe.renderer.tick(time_, sample, probe.force);
-    const scene::Haptics& limits = scene_.scene.haptics;
-    if (refusal(probe.force) != nullptr) throw Failure{"force not finite: haptic force"};
-    if (probe.force.force.norm() > limits.max_force * (1 + 1e-9)) {
-      throw Failure{fmt::format("force above limit: {} N", probe.force.force.norm())};
-    }
-    probe.sent.probe = i;
-    probe.sent.pose = sample.pose;
-    probe.sent.twist = sample.twist;
-    ProbeState message = probe.sent;
-    if (!passes(i, message)) return;
-    probe.known = message;
-    known_ |= std::uint64_t{1} << i;
-  }
-
-  bool is_known(std::uint32_t i) const { return (known_ >> i & 1) != 0; }
-
-  void search() {
-    for (std::size_t i = 0; i < organs_.size(); ++i) finder_.update_organ(i, organs_[i].seen());
-    for (std::uint32_t i = 0; i < probes_.size(); ++i) {
-      if (!is_known(i)) continue;
-      ProbeRun& probe = probes_[i];
-      const Pose& pose = probe.known.pose;
-      const collision::ProbeMotion motion{probe.was_searched ? probe.searched : pose, pose};
-      const double speed = probe.known.twist.linear.norm();
-      finder_.find(i, motion, collision::contact_margin(scene_.scene.rates, speed),
-                   kMaxContactsPerProbe, probe.contacts);
-      probe.contacts.probe = i;
-      probe.contacts.probe_pose = pose;
-      probe.searched = pose;
-      probe.was_searched = true;
-      if (refusal(probe.contacts) != nullptr) count(Guard::kMessageRefused);
-      Contacts message = probe.contacts;
-      if (passes(i, message)) world_.set_contacts(message);
+  void look_at_forces() {
+    for (std::size_t i = 0; i < scene_.scene.probes.size(); ++i) {
+      const HapticForce& force = session_.haptic_force(i);
+      if (force.force.norm() > scene_.scene.haptics.max_force * (1 + 1e-9)) {
+        throw Failure{fmt::format("force above limit: {} N", force.force.norm())};
+      }
+      count(Guard::kForceNotFinite, (force.limits & kForceNotFinite) != 0);
     }
   }
 
-  void advance() {
-    for (std::uint32_t i = 0; i < probes_.size(); ++i) {
-      if (is_known(i)) world_.set_probe(probes_[i].known.probe, probes_[i].known.pose);
-    }
+  void look_at_organs() {
+    advanced_ = session_.world().time();
+    const deformation::AdvanceReport& report = session_.deformation().report();
+    count_guards(report);
     for (std::size_t i = 0; i < organs_.size(); ++i) {
-      cost_ += double(world_.substeps(i, period())) * double(organs_[i].seen().size()) *
+      const NodePositions& nodes = session_.node_positions(i);
+      organs_[i].look(nodes, report.diverged);
+      cost_ += double(session_.world().substeps(i, period())) * double(nodes.positions.size() / 3) *
                cost_of(scene_.scene.organs[i].model);
     }
-    const deformation::AdvanceReport report = world_.advance(period());
-    count_guards(report);
-    for (OrganWatch& organ : organs_) organ.look(report.diverged);
-    for (std::uint32_t i = 0; i < probes_.size(); ++i) publish_model(i);
-    pending_.clear();
-  }
-
-  void publish_model(std::uint32_t i) {
-    ProbeRun& probe = probes_[i];
-    probe.model = deformation::contact_model_message(world_, i);
-    if (const char* field = refusal(probe.model)) {
-      throw Failure{fmt::format("contact model not sound ({}): of probe {}", field, i)};
-    }
-    ContactModel message = probe.model;
-    if (passes(i, message)) probe.renderer.update_law(message, time_);
-    count(Guard::kModelRefused, probe.renderer.refused_laws() > 0);
   }
 
   void count_guards(const deformation::AdvanceReport& r) {
@@ -204,14 +123,12 @@ class Lockstep {
 
   const RandomScene& scene_;
   Outcome& outcome_;
-  std::vector<TimedFault> faults_, pending_;
-  collision::ContactFinder finder_;
-  deformation::DeformationWorld world_;
   deformation::Guarding guarding_;
+  const bus::TappedBus* bus_ = nullptr;  ///< the session's
+  session::InProcess session_;
   std::vector<OrganWatch> organs_;
-  std::vector<ProbeRun> probes_;
-  std::uint64_t known_ = 0;  ///< bit i: a pose of probe i has come
-  double time_ = 0, cost_ = 0;
+  std::uint64_t refused_ = 0;       ///< messages so far
+  double advanced_ = 0, cost_ = 0;  ///< simulated [s], in steps of nodes of springs
 };
 
 }  // namespace
@@ -221,7 +138,7 @@ Outcome run_lockstep(const RandomScene& scene, const ShapeStore& shapes,
   Outcome outcome;
   bool runs = false;
   try {
-    Lockstep lockstep(scene, shapes_in_world(scene, shapes), shapes, guarding, outcome);
+    Lockstep lockstep(scene, shapes, guarding, outcome);
     runs = true;
     lockstep.run();
   } catch (const Failure& failure) {

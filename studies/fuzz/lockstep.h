@@ -1,5 +1,5 @@
-// A random scene through the libraries of all processes, one after the other, every message looked
-// at as the processes' codecs do, some corrupted on the way.
+// A random scene as a session in one process, some of its messages corrupted, lost, delayed or
+// repeated on their way.
 #pragma once
 
 #include "deformation/simulated_organ.h"

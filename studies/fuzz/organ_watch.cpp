@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "deformation/contact/probe_contacts.h"
-#include "deformation/organ_messages.h"
-#include "studies/fuzz/faults.h"
+#include "deformation/guard/state_guard.h"
 #include "studies/fuzz/outcome.h"
 
 namespace palpate::fuzz {
@@ -32,25 +31,16 @@ double largest_distance(const std::vector<Vec3>& nodes) {
 
 }  // namespace
 
-OrganWatch::OrganWatch(const deformation::DeformationWorld& world, std::size_t organ, double size,
-                       double period)
-    : world_(world), organ_(organ), size_(size), period_(period) {
-  take_positions(deformation::surface_message(world, organ).rest_positions, rest_);
-  look(false);
+OrganWatch::OrganWatch(const SurfaceTopology& surface, double size, double period)
+    : size_(size), period_(period), triangles_(surface.triangles) {
+  take_positions(surface.rest_positions, rest_);
+  seen_ = rest_;
 }
 
-void OrganWatch::look(bool replaced) {
+void OrganWatch::look(const NodePositions& nodes, bool replaced) {
   before_ = seen_;
-  deformation::write_node_positions(world_, organ_, nodes_);
-  if (const char* field = refusal(nodes_)) {
-    throw Failure{fmt::format("node positions not sound ({}): of organ {}, energies {} J and {} J",
-                              field, organ_, nodes_.kinetic_energy, nodes_.elastic_energy)};
-  }
-  take_positions(nodes_.positions, seen_);
-  look_at_nodes(replaced);
-}
-
-void OrganWatch::look_at_nodes(bool replaced) {
+  take_positions(nodes.positions, seen_);
+  volume_ = nodes.volume;
   double fastest = 0, farthest = 0, away = 0;
   for (std::size_t n = 0; n < seen_.size(); ++n) {
     farthest = std::max(farthest, seen_[n].norm());
@@ -80,8 +70,7 @@ void OrganWatch::look_last() const {
   if (largest_distance(seen_) > deformation::kMaxGrowth * largest_distance(rest_)) {
     throw Failure{"grown: organ"};
   }
-  const auto& triangles = world_.model(organ_).triangles;
-  if (nodes_.volume < -deformation::kTurnedVolume * geometry::enclosed_volume(rest_, triangles)) {
+  if (volume_ < -deformation::kTurnedVolume * geometry::enclosed_volume(rest_, triangles_)) {
     throw Failure{"turned inside out: organ"};
   }
 }

@@ -26,14 +26,14 @@ enum class Guard : std::uint8_t {
   kTissueInverted,
   kProbeJumped,
   kMessageRefused,
-  kModelRefused
+  kForceNotFinite
 };
 inline constexpr std::size_t kGuardCount = 16;
 inline constexpr std::array<const char*, kGuardCount> kGuardNames{
     "not_finite",      "too_fast",        "energy_grew",     "too_large",
     "turned_inside",   "collapsed",       "back_to_rest",    "step_reduced",
     "pressure_capped", "volume_released", "volume_skipped",  "contacts_ignored",
-    "tissue_inverted", "probe_jumped",    "message_refused", "model_refused"};
+    "tissue_inverted", "probe_jumped",    "message_refused", "force_not_finite"};
 
 /// What became of a scene in which a guard of the state acted (acts_on_state()) without any.
 enum class Unguarded : std::uint8_t { kNotTried, kFine, kFailed };
@@ -50,7 +50,7 @@ struct Failure {
 struct Outcome {
   Ending ending = Ending::kRan;
   Unguarded unguarded = Unguarded::kNotTried;
-  std::array<std::uint32_t, kGuardCount> guards{};  ///< advances in which each acted
+  std::array<std::uint32_t, kGuardCount> guards{};  ///< cycles in which each acted
   double time = 0;                                  ///< simulated [s]
   std::string what;  ///< "kind: details" of a failure; the message of a refusal
 

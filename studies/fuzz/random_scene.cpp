@@ -15,11 +15,27 @@ namespace {
 
 using scene::Model;
 
-constexpr std::array<const char*, kFaultCount> kFaultNames{
-    "pose_not_a_number",  "pose_infinite", "pose_denormal",      "pose_huge",      "rotation_zero",
-    "gap_not_a_number",   "normal_nan",    "normal_denormal",    "point_infinite", "point_huge",
-    "gap_huge",           "unknown_organ", "unknown_triangle",   "unknown_probe",  "many_contacts",
-    "model_not_a_number", "model_huge",    "device_not_a_number"};
+constexpr std::array<const char*, kFaultCount> kFaultNames{"pose_not_a_number",
+                                                           "pose_infinite",
+                                                           "pose_denormal",
+                                                           "pose_huge",
+                                                           "rotation_zero",
+                                                           "gap_not_a_number",
+                                                           "normal_nan",
+                                                           "normal_denormal",
+                                                           "point_infinite",
+                                                           "point_huge",
+                                                           "gap_huge",
+                                                           "unknown_organ",
+                                                           "unknown_triangle",
+                                                           "unknown_probe",
+                                                           "many_contacts",
+                                                           "model_not_a_number",
+                                                           "model_huge",
+                                                           "device_not_a_number",
+                                                           "lost",
+                                                           "late",
+                                                           "twice"};
 
 /// All as likely, but for those that factorize large matrices.
 Model random_model(RandomStream& random) {

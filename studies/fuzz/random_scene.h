@@ -10,7 +10,7 @@
 
 namespace palpate::fuzz {
 
-/// What a message is corrupted by, once.
+/// What happens to messages on their way, or to a device.
 enum class Fault : std::uint8_t {
   kPoseNotANumber,
   kPoseInfinite,
@@ -29,9 +29,12 @@ enum class Fault : std::uint8_t {
   kManyContacts,
   kModelNotANumber,
   kModelHuge,
-  kDeviceNotANumber
+  kDeviceNotANumber,
+  kLost,
+  kLate,
+  kTwice
 };
-inline constexpr std::size_t kFaultCount = 18;
+inline constexpr std::size_t kFaultCount = 21;
 const char* name_of(Fault fault);
 
 struct TimedFault {

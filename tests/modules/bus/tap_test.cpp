@@ -101,6 +101,26 @@ TEST_CASE("tap: what is lost shows as a gap", "[bus]") {
   CHECK(line.statistics().dropped == 2);
 }
 
+TEST_CASE("tap: what is repeated arrives so often", "[bus]") {
+  // Oracle: counts by hand.
+  Line line;
+  line.bus().set_tap("probe_state", repeat_tap(3));
+  CHECK(line.write(2) == Xs{1, 1, 1, 2, 2, 2});
+}
+
+TEST_CASE("tap: a tap for a while leaves alone what is written before and after", "[bus]") {
+  // Oracle: the clock that the test sets.
+  Line line;
+  const auto nothing_travels = lose_tap([](const Passing&) { return true; });
+  line.bus().set_tap("probe_state",
+                     tap_while([](const Passing& p) { return p.now_ns == 1; }, nothing_travels));
+  CHECK(line.write(1) == Xs{1});
+  line.set_time(1);
+  CHECK(line.write(2).empty());
+  line.set_time(2);
+  CHECK(line.write(1) == Xs{4});
+}
+
 TEST_CASE("tap: corrupted bytes are refused by the reader", "[bus]") {
   // Oracle: a payload cut short cannot be read.
   Line line;

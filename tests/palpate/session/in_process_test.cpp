@@ -4,8 +4,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "haptics/placed_device.h"
 #include "modules/geometry/primitives.h"
 #include "modules/scene/scene_reader.h"
+#include "palpate/session/timed_stage.h"
 
 namespace palpate::session {
 namespace {
@@ -194,6 +196,53 @@ TEST_CASE("session in process: every module runs at its own rate") {
     // what a period leads to
     CHECK(session.node_positions(0).header.sim_time_ns == (tick / 10 + 1) * 10'000'000);
   }
+}
+
+TEST_CASE("session in process: a module is timed, replaced or left out, and the rest is as usual") {
+  // Oracle: a clock that counts its readings, 1 s each; who searches no contacts feels nothing.
+  static double readings = 0;
+  const auto clock = [] { return ++readings; };
+  double seconds = 0;
+  const auto scene = press_scene({{at_depth(0.012), 0.2}});
+  InProcessOptions timed, blind;
+  timed.make = [&](std::string_view module, bus::Bus& bus,
+                   const MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
+    if (module != "deformation") return usual(bus);
+    return std::make_unique<TimedStage>(usual(bus), clock, seconds);
+  };
+  blind.make = [](std::string_view module, bus::Bus& bus, const MakeStage& usual) {
+    return module == "collision" ? nullptr : usual(bus);
+  };
+  const auto assets = [] {
+    return Assets{{geometry::make_ball(kRadius, 2)}, {geometry::TriangleSurface{}}};
+  };
+  InProcess usual(scene, assets()), watched(scene, assets(), timed), unseen(scene, assets(), blind);
+  for (InProcess* session : {&usual, &watched, &unseen}) session->run_until(0.2);
+  CHECK(seconds == 50);  // periods of 4 ms
+  REQUIRE(usual.haptic_force(0).force.norm() > 0.01);
+  CHECK(watched.haptic_force(0).force == usual.haptic_force(0).force);
+  CHECK(unseen.contacts(0).header.sequence == 0);
+  CHECK(unseen.haptic_force(0).force.norm() == 0);
+}
+
+TEST_CASE("session in process: a placed probe is where it was put last") {
+  // Oracle: the poses given.
+  const auto scene = press_scene({{std::nullopt, 1.0}});
+  auto session = ball_session(scene, 1);
+  auto device = std::make_unique<haptics::PlacedDevice>(Pose{});
+  haptics::PlacedDevice& placed = *device;
+  session.haptics().set_device(0, std::move(device));
+  Pose pose;
+  pose.position = Vec3(0.1, 0, 0);
+  placed.place(pose, {Vec3(0, 0.5, 0), Vec3::Zero()});
+  session.tick();
+  CHECK(session.probe(0).pose.position == pose.position);
+  CHECK(session.probe(0).twist.linear == Vec3(0, 0.5, 0));
+  pose.position.x() = 0.2;
+  placed.place(pose);
+  session.tick();
+  CHECK(session.probe(0).pose.position == pose.position);
+  CHECK(session.probe(0).twist.linear == Vec3::Zero());
 }
 
 }  // namespace
