@@ -141,8 +141,9 @@ function(palpate_tests name)
   # A test without its data says "SKIPPED: …" and returns; ctest then counts it as skipped, not passed.
   set(properties TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" SKIP_REGULAR_EXPRESSION "SKIPPED:")
   if(PALPATE_SANITIZE STREQUAL "thread")
-    list(APPEND properties ENVIRONMENT
-         "TSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/tsan_suppressions.txt")
+    # Inside Fast DDS 2.9.1, TSan misses the clocked locks and then reports their unlocking and order;
+    # what libraries built without TSan do is left out, their locks still count for our code.
+    list(APPEND properties ENVIRONMENT "TSAN_OPTIONS=ignore_noninstrumented_modules=1")
   elseif(PALPATE_SANITIZE)  # Fast DDS 2.9.1 frees a reader's statistics by their base's size
     set(options "new_delete_type_mismatch=0")
     if(ARG_DRAWS)  # the drivers of OpenGL keep some hundred bytes

@@ -1,13 +1,12 @@
 #include "modules/runtime/periodic_loop.h"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <random>
 
 #include "modules/runtime/clock.h"
 #include "modules/runtime/stop_signal.h"
+#include "tests/modules/runtime/waiting.h"
 
 using palpate::runtime::begin_period;
 using palpate::runtime::monotonic_now_ns;
@@ -86,16 +85,15 @@ TEST_CASE("periodic loop: a signal ends the wait") {
   const palpate::runtime::StopSignal stop;
   PeriodicLoop loop(0.01);
   loop.wait_for_period();
-  struct itimerval_guard {
-    ~itimerval_guard() { alarm(0); }
-  } guard;
-  struct sigaction action {
-  }, earlier{};
-  action.sa_handler = [](int) { raise(SIGTERM); };
-  sigaction(SIGALRM, &action, &earlier);
-  alarm(1);
+  sigevent event{};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGTERM;
+  timer_t timer;
+  REQUIRE(timer_create(CLOCK_MONOTONIC, &event, &timer) == 0);
+  const itimerspec every_50_ms = {{0, 50'000'000}, {0, 50'000'000}};
+  timer_settime(timer, 0, &every_50_ms, nullptr);
   CHECK_FALSE(loop.wait_for_period());
-  sigaction(SIGALRM, &earlier, nullptr);
-  CHECK(stop.requested());
+  timer_delete(timer);
+  CHECK(palpate::testing::wait_until([&] { return stop.requested(); }));
   CHECK(loop.statistics().cycles == 1);
 }
