@@ -110,15 +110,16 @@ Variant plain_variant(const deformation::OrganModel& model, double h) {
 }
 
 Variant kernel_variant(const std::string& name, const deformation::OrganModel& model, double h,
-                       InstructionSet set, ChunkRunner* runner) {
+                       bool with_volume, InstructionSet set, ChunkRunner* runner) {
   auto state = std::make_shared<deformation::OrganState>(swinging(model));
   auto free = std::make_shared<deformation::FreeStep>();
-  auto kernel = std::make_shared<deformation::SpringKernel>(model, runner, set);
+  auto kernel =
+      std::make_shared<deformation::SpringKernel>(model, model.network(), with_volume, runner, set);
   return {name,
-          [&model, h, state, free, kernel] {
+          [with_volume, h, state, free, kernel] {
             kernel->free_step(h, *state, *free);
             double impulse = 0;
-            if (model.preserve_volume) {
+            if (with_volume) {
               const double rate = (free->volume.volume - state->target_volume) / h;
               impulse = (rate + free->volume_velocity) / free->volume.denominator;
             }
@@ -133,7 +134,7 @@ struct Traffic {
 };
 
 Traffic traffic_of(const deformation::OrganModel& model) {
-  const deformation::SpringKernelLayout layout(model);
+  const deformation::SpringKernelLayout layout(model, model.network(), true);
   const auto view = layout.view();
   const auto& last = view.slices[view.slice_count - 1];
   const std::size_t rows = view.slice_count * deformation::kernel::kLanes;
@@ -166,18 +167,16 @@ void print(const Variant& variant, const Variant& plain, std::size_t springs) {
 void measure(const scene::Organ& organ, const Vec3& gravity,
              const geometry::TriangleSurface& surface) {
   const auto model = deformation::build_organ_model(organ, gravity, surface);
-  auto without = model;
-  without.preserve_volume = false;
   const double h = 0.9 * deformation::stable_step_bound(model);
   const auto sets = deformation::available_instruction_sets();
   runtime::WorkerTeam team(2);
 
   std::vector<Variant> variants{plain_variant(model, h), streaming_variant(traffic_of(model))};
   for (const InstructionSet set : sets) {
-    variants.push_back(kernel_variant(deformation::name_of(set), model, h, set, nullptr));
+    variants.push_back(kernel_variant(deformation::name_of(set), model, h, true, set, nullptr));
   }
-  variants.push_back(kernel_variant("the last, no volume", without, h, sets.back(), nullptr));
-  variants.push_back(kernel_variant("the last, two threads", model, h, sets.back(), &team));
+  variants.push_back(kernel_variant("the last, no volume", model, h, false, sets.back(), nullptr));
+  variants.push_back(kernel_variant("the last, two threads", model, h, true, sets.back(), &team));
 
   const double plain_step = seconds_per_step(variants[0], 1);
   const int steps = std::max(kLeastSteps, static_cast<int>(kTurn / plain_step));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "deformation/models.h"
 #include "modules/geometry/triangle_surface.h"
 
 namespace palpate::deformation {
@@ -26,9 +27,9 @@ SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const 
     : model_(std::move(model)),
       dynamics_(std::move(dynamics)),
       target_volume_(organ.filling),
-      guard_(*model_, knows_energy(organ.model)),
+      guard_(*model_, row_of(organ.model).knows_energy),
       guarding_(guarding),
-      holds_volume_(organ.model == scene::Model::kImplicitVolume),
+      holds_volume_(row_of(organ.model).has_volume_constraint),
       pressure_limit_(holds_volume_ ? pressure_cap(organ.tissue, model_->rest_volume)
                                     : std::numeric_limits<double>::infinity()) {
   reset();

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "deformation/guard/state_guard.h"
+#include "deformation/model/organ_model.h"
 #include "deformation/model/target_volume.h"
 #include "deformation/steppers/organ_dynamics.h"
 

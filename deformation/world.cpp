@@ -7,7 +7,6 @@
 
 #include "deformation/contact/probe_contacts.h"
 #include "deformation/springs/spring_forces.h"
-#include "deformation/steppers/organ_dynamics.h"
 #include "modules/core/error.h"
 
 namespace palpate::deformation {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "deformation/models.h"
 #include "deformation/simulated_organ.h"
-#include "deformation/steppers/organ_dynamics.h"
 #include "modules/core/touch.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/scene.h"

@@ -17,6 +17,7 @@
 #include "modules/runtime/clock.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 
@@ -66,9 +67,9 @@ std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& sh
               : fmt::format("  springs: {} structural, {} bending, {} inner\n", springs[0],
                             springs[1], springs[2]);
   text += fmt::format("  volume {:.1f} cm3, mass {:.3f} kg, model {}\n", 1e6 * volume,
-                      organ.tissue.density * volume, scene::word_of(organ.model));
+                      organ.tissue.density * volume, organ.model);
   if (!shape.is_solid()) text += calibration_text(organ);
-  if (!deformation::has_own_steps(organ.model))
+  if (scene::format_of(organ.model).has_integrator)
     text += integrator_text(organ, world.integrator(index));
   text += fmt::format("  largest step {:.1f} us: {} sub-steps of {:.1f} us in a period\n",
                       1e6 * world.stable_step(index), substeps, 1e6 * period / substeps);

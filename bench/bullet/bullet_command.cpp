@@ -75,10 +75,10 @@ std::vector<Setting> settings_for(const Ball& ball, const Squeeze& squeeze,
   add("backward Euler, one step", {.integrator = Integrator::kBackwardEuler});
   add("backward Euler, one step, 1 correction",
       {.integrator = Integrator::kBackwardEuler, .corrections = 1});
-  const Method xpbd{.model = scene::Model::kXpbdSprings};
+  const Method xpbd{.model = "xpbd_springs"};
   add("XPBD springs, " + std::to_string(PalpateBall(ball, xpbd).substeps()) + " sub-steps", xpbd);
   add("XPBD springs, 1 step that no scene takes: soft",
-      {.model = scene::Model::kXpbdSprings, .one_step = true});
+      {.model = "xpbd_springs", .one_step = true});
   settings.push_back({"whole pipeline as a scene runs it", true,
                       [&ball, squeeze] { return std::make_unique<PipelineBall>(ball, squeeze); }});
   return settings;

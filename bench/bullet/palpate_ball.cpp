@@ -9,14 +9,10 @@ namespace {
 
 constexpr double kNear = 5e-4;  // [m]: a node this close to a plate may touch within a step
 
-deformation::OrganModel corrected(deformation::OrganModel model, int corrections) {
-  model.volume_corrections = corrections;
-  return model;
-}
-
 scene::Organ stepped_by(const Method& method, scene::Organ organ) {
   organ.model = method.model;
   organ.integrator = method.integrator;
+  organ.volume_corrections = static_cast<std::size_t>(method.corrections);
   return organ;
 }
 
@@ -51,7 +47,7 @@ scene::Scene plates_scene(const Ball& ball, const Squeeze& squeeze) {
 
 PalpateBall::PalpateBall(const Ball& ball, const Method& method)
     : ball_(ball),
-      model_(corrected(ball.model, method.corrections)),
+      model_(ball.model),
       dynamics_(deformation::make_dynamics(stepped_by(method, ball.organ), model_, kStep)),
       state_(deformation::rest_state(model_)),
       corners_(model_.surface_node_count),

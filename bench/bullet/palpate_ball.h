@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/bullet/squeezed_ball.h"
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 #include "haptics/device.h"
 #include "palpate/session/in_process.h"
 
@@ -10,7 +10,7 @@ namespace palpate::bench {
 
 /// How the ball's springs are stepped.
 struct Method {
-  scene::Model model = scene::Model::kImplicitVolume;
+  std::string model = "implicit_volume";
   scene::Integrator integrator = scene::Integrator::kSymplecticEuler;
   int corrections = 0;  ///< Newton corrections of the volume per step
   /// One sub-step even where the method would take more for accuracy.

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
   app.add_option("MESH", mesh, "Mesh of tetrahedra, as a scene names it")->required();
   return runtime::run_program(app, argc, argv, [&] {
     const auto tetrahedra = geometry::read_tetrahedra(mesh);
-    for (const auto model : {scene::Model::kCorotational, scene::Model::kNodalPressure}) {
+    for (const auto model : {"corotational", "nodal_pressure"}) {
       solids_bench::print_step_cost(model, tetrahedra);
     }
     return kExitDone;

@@ -7,6 +7,7 @@
 
 #include "deformation/elements/average_nodal_pressure.h"
 #include "deformation/elements/corotational.h"
+#include "deformation/models.h"
 #include "deformation/steppers/linearly_implicit_euler.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/schema.h"
@@ -42,12 +43,12 @@ void plain_product(const LinearTetrahedra& tetrahedra, double mu, double lambda,
   }
 }
 
-scene::Organ hung_organ(scene::Model model, const geometry::TetMesh& mesh) {
+scene::Organ hung_organ(const std::string& model, const geometry::TetMesh& mesh) {
   scene::Organ organ;
   organ.name = "solid";
   organ.model = model;
   organ.tissue.youngs_modulus = 5e3;
-  organ.solid.poisson_ratio = model == scene::Model::kCorotational ? 0.45 : 0.499;
+  organ.solid.poisson_ratio = model == "corotational" ? 0.45 : 0.499;
   Vec3 low = mesh.nodes[0], high = low;
   for (const Vec3& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
   const double margin = (high - low).norm();
@@ -59,12 +60,12 @@ scene::Organ hung_organ(scene::Model model, const geometry::TetMesh& mesh) {
 
 }  // namespace
 
-void print_step_cost(scene::Model model, const geometry::TetMesh& mesh) {
+void print_step_cost(const std::string& model, const geometry::TetMesh& mesh) {
   const auto organ = hung_organ(model, mesh);
   const auto built = build_organ_model(organ, Vec3(0, 0, -9.81), geometry::shape_of(mesh));
   const LinearTetrahedra tetrahedra(built.rest_positions, built.mesh().tetrahedra);
   std::unique_ptr<ElasticForceElements> elements;
-  if (model == scene::Model::kCorotational) {
+  if (model == "corotational") {
     elements = std::make_unique<Corotational>(tetrahedra, built.mesh().elastic());
   } else {
     elements = std::make_unique<AverageNodalPressure>(tetrahedra, built.mesh().elastic());
@@ -86,8 +87,8 @@ void print_step_cost(scene::Model model, const geometry::TetMesh& mesh) {
     time_least(yardstick, [&] { plain_product(tetrahedra, 2e3, 1e4, plain_p, plain_out); });
   }
   const double per_tetrahedron = 1e9 / static_cast<double>(tetrahedra.size());
-  std::printf("%s: %zu nodes, %zu tetrahedra, %.1f iterations per step of 10 ms\n",
-              scene::word_of(model), built.node_count(), tetrahedra.size(), iterations);
+  std::printf("%s: %zu nodes, %zu tetrahedra, %.1f iterations per step of 10 ms\n", model.c_str(),
+              built.node_count(), tetrahedra.size(), iterations);
   std::printf("  step           %8.3f ms, of %d the least\n", 1e3 * step, kRounds);
   std::printf("  linearisation  %8.3f ms, %6.1f ns per tetrahedron\n", 1e3 * linearisation,
               linearisation * per_tetrahedron);

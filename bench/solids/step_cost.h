@@ -9,6 +9,6 @@ namespace palpate::solids_bench {
 /// Prints milliseconds per step of 10 ms of an organ that sways under gravity, a tenth of it fixed;
 /// and, alternating with it, of its linearisation, of one product with its matrix, and of the
 /// yardstick: the same product by a plain loop over the tetrahedra in double.
-void print_step_cost(scene::Model model, const geometry::TetMesh& mesh);
+void print_step_cost(const std::string& model, const geometry::TetMesh& mesh);
 
 }  // namespace palpate::solids_bench

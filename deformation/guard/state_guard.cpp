@@ -38,20 +38,6 @@ double largest_rest_distance(const Body& body) {
 
 }  // namespace
 
-bool knows_energy(scene::Model model) {
-  switch (model) {
-    case scene::Model::kPenalty:
-    case scene::Model::kPromayon:
-    case scene::Model::kBourguignonCani:
-    case scene::Model::kZordan:
-    case scene::Model::kElementVolume:
-    case scene::Model::kChainMail:
-      return false;
-    default:
-      return true;
-  }
-}
-
 StateGuard::StateGuard(const Body& body, bool knows_energy)
     : body_(body),
       knows_energy_(knows_energy),

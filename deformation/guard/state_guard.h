@@ -51,10 +51,6 @@ inline constexpr double kUnpaidMemory = 10.0;
 /// Tissue parts from the probe faster than this where a penetration is undone in a hurry [m/s].
 inline constexpr double kPushedSpeed = 0.2;
 
-/// Whether elastic_energy() is all a model stores and its contacts' impulses all it is given. Not
-/// so for those that store energy in their contents, and those that move nodes by no force.
-bool knows_energy(scene::Model model);
-
 class StateGuard {
  public:
   /// @param body  outlives this

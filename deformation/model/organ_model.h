@@ -14,8 +14,6 @@ namespace palpate::deformation {
 /// Constant after construction.
 struct OrganModel : Body {
   std::variant<SpringNetwork, TetMesh> material;
-  bool preserve_volume = true;  ///< V and its gradient are wanted at each step's start
-  int volume_corrections = 0;   ///< Newton corrections per step
 
   bool is_solid() const { return std::holds_alternative<TetMesh>(material); }
   /// Of an organ of springs; there is none of a solid.

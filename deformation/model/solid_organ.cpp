@@ -1,34 +1,11 @@
 #include "deformation/model/organ_model.h"
 
-#include "modules/core/error.h"
-#include "modules/scene/schema.h"
-
 namespace palpate::deformation {
 namespace {
 
 /// Hinton's shares of a straight quadratic tetrahedron: diagonals 1/70 and 4/105 of the consistent
 /// mass, scaled to a sum of 1.
 constexpr double kCornerShare = 1.0 / 36, kMiddleShare = 4.0 / 27;
-/// Without a pressure of its own an element answers a change of volume with E/(3(1−2ν)).
-constexpr double kLargestPoissonRatio = 0.4999;
-
-bool has_pressures(scene::Model model) {
-  return model == scene::Model::kNodalPressure || scene::is_quadratic(model);
-}
-
-void check_poisson_ratio(const scene::Organ& organ) {
-  if (has_pressures(organ.model) || organ.solid.poisson_ratio <= kLargestPoissonRatio) return;
-  throw InputError("organ '" + organ.name + "': model " + scene::word_of(organ.model) +
-                   " needs solid: poisson_ratio at most 0.4999; nodal_pressure and "
-                   "quadratic_elements take up to 0.5");
-}
-
-/// A solid's volume is its own.
-void check_filling(const scene::Organ& organ) {
-  if (organ.filling.points.empty() && organ.filling.breathing_amplitude == 0) return;
-  throw InputError("organ '" + organ.name + "': key 'filling' does not go with model " +
-                   scene::word_of(organ.model) + ", a solid; models of surfaces are filled");
-}
 
 double volume_of(const geometry::Tetrahedron& t, const std::vector<Vec3>& nodes) {
   return geometry::tetrahedron_volume(nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]]);
@@ -75,8 +52,6 @@ void add_stiffness(const TetMesh& solid, Body& body) {
 
 OrganModel build_solid(const scene::Organ& organ, const Vec3& gravity,
                        const geometry::OrganShape& shape) {
-  check_poisson_ratio(organ);
-  check_filling(organ);
   OrganModel model;
   const TetMesh mesh{shape.tetrahedra, shape.edge_nodes, organ.tissue.youngs_modulus,
                      organ.solid.poisson_ratio, organ.tissue.density};
@@ -95,7 +70,6 @@ OrganModel build_solid(const scene::Organ& organ, const Vec3& gravity,
   model.material = mesh;
   model.gravity = gravity;
   model.drag = organ.tissue.drag;
-  model.preserve_volume = false;
   return model;
 }
 

@@ -6,6 +6,7 @@
 #include "deformation/model/organ_model.h"
 #include "deformation/model/volume_gradient.h"
 #include "modules/core/error.h"
+#include "modules/scene/models.h"
 
 namespace palpate::deformation {
 namespace {
@@ -60,17 +61,13 @@ std::vector<double> axial_damping(const SpringNetwork& network, const std::vecto
   return damping;
 }
 
-/// The others use springs alone at the step's start.
-bool wants_volume(scene::Model model) {
-  return model == scene::Model::kImplicitVolume || model == scene::Model::kPenalty ||
-         model == scene::Model::kBaumgarte || model == scene::Model::kPostStabilisation ||
-         model == scene::Model::kXpbdSprings;
-}
-
 }  // namespace
 
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
                              const geometry::OrganShape& rest_shape) {
+  if (const std::string reason = scene::impossible_for_model(organ); !reason.empty()) {
+    throw InputError("organ '" + organ.name + "': " + reason);
+  }
   return rest_shape.is_solid() ? build_solid(organ, gravity, rest_shape)
                                : build_spring_organ(organ, gravity, rest_shape.surface);
 }
@@ -97,8 +94,6 @@ OrganModel build_spring_organ(const scene::Organ& organ, const Vec3& gravity,
   model.material = std::move(network);
   model.gravity = gravity;
   model.drag = organ.tissue.drag;
-  model.preserve_volume = wants_volume(organ.model);
-  model.volume_corrections = static_cast<int>(organ.volume_corrections);
 
   VolumeGradient at_rest;
   evaluate_volume(model, model.rest_positions, at_rest);

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "deformation/model/organ_state.h"
+#include "deformation/model/spring_network.h"
 
 namespace palpate::deformation {
 
@@ -11,9 +12,10 @@ namespace palpate::deformation {
 /// u = (x_b − x_a)/l:   f_a += (k (l − l₀) + c (v_b − v_a)·u) u,   f_b −= the same.
 /// Both act along the spring, so momentum and angular momentum are kept. A spring of zero length
 /// has no direction and gives no force.
-void add_spring_forces(const OrganModel& model, const OrganState& state, std::vector<Vec3>& forces);
+void add_spring_forces(const SpringNetwork& network, const OrganState& state,
+                       std::vector<Vec3>& forces);
 
-double elastic_energy(const OrganModel& model,
+double elastic_energy(const SpringNetwork& network,
                       const std::vector<Vec3>& positions);  ///< Σ ½k(l−l₀)² [J]
 
 }  // namespace palpate::deformation

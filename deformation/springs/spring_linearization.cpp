@@ -9,16 +9,16 @@ constexpr float kTinySquare = 1e-20f;  // [m²]
 
 }  // namespace
 
-SpringLinearization::SpringLinearization(const OrganModel& model)
-    : model_(model),
-      positions_(model.node_count()),
-      masses_(model.node_count()),
-      diagonal_(model.node_count()) {
-  for (std::size_t s = 0; s < model.network().springs.size(); ++s) {
-    const Spring& spring = model.network().springs[s];
+SpringLinearization::SpringLinearization(const Body& body, const SpringNetwork& network)
+    : body_(body),
+      positions_(body.node_count()),
+      masses_(body.node_count()),
+      diagonal_(body.node_count()) {
+  for (std::size_t s = 0; s < network.springs.size(); ++s) {
+    const Spring& spring = network.springs[s];
     constants_.push_back({static_cast<float>(spring.rest_length),
                           static_cast<float>(spring.stiffness),
-                          static_cast<float>(model.network().damping[s])});
+                          static_cast<float>(network.damping[s])});
     couplings_.push_back({spring.node_a, spring.node_b, 0, 0});
   }
 }
@@ -26,10 +26,10 @@ SpringLinearization::SpringLinearization(const OrganModel& model)
 void SpringLinearization::linearise(const std::vector<Vec3>& positions, double h) {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     positions_[i] = wide(positions[i] - positions[0]);
-    masses_[i] = static_cast<float>((1 + h * model_.drag) * model_.masses[i]);
+    masses_[i] = static_cast<float>((1 + h * body_.drag) * body_.masses[i]);
   }
   const auto step = static_cast<float>(h);
-  sums_.assign(model_.node_count(), {});
+  sums_.assign(body_.node_count(), {});
   for (std::size_t s = 0; s < couplings_.size(); ++s) {
     Coupling& coupling = couplings_[s];
     const Constants& spring = constants_[s];

@@ -18,15 +18,16 @@
 #include <array>
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "deformation/model/body.h"
+#include "deformation/model/spring_network.h"
 #include "modules/core/wide_vectors.h"
 
 namespace palpate::deformation {
 
 class SpringLinearization {
  public:
-  /// @param model  outlives this
-  explicit SpringLinearization(const OrganModel& model);
+  /// @param body  outlives this
+  SpringLinearization(const Body& body, const SpringNetwork& network);
 
   /// Takes A at these positions [m] (node_count) for a step of h [s].
   void linearise(const std::vector<Vec3>& positions, double h);
@@ -53,7 +54,7 @@ class SpringLinearization {
     float across = 0;
   };
 
-  const OrganModel& model_;
+  const Body& body_;
   std::vector<Constants> constants_;  ///< as the model's springs
   std::vector<Coupling> couplings_;   ///< likewise
   std::vector<Vec4f> positions_;      ///< from the first node, so that float has digits enough

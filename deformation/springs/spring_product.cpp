@@ -29,8 +29,12 @@ Mat3 symmetric(const std::array<double, kBlockNumbers>& n, double mass) {
 
 }  // namespace
 
-SpringProduct::SpringProduct(const OrganModel& model, ChunkRunner* runner, InstructionSet set)
-    : model_(model), runner_(runner), functions_(functions_of(set)), layout_(model) {
+SpringProduct::SpringProduct(const Body& body, const SpringNetwork& network, bool with_volume,
+                             ChunkRunner* runner, InstructionSet set)
+    : body_(body),
+      runner_(runner),
+      functions_(functions_of(set)),
+      layout_(body, network, with_volume) {
   const kernel::Layout layout = layout_.view();
   const std::size_t rows = layout.slice_count * kLanes;
   const kernel::Slice& last = layout.slices[layout.slice_count - 1];
@@ -38,9 +42,9 @@ SpringProduct::SpringProduct(const OrganModel& model, ChunkRunner* runner, Instr
   masses_.resize(rows + layout.virtual_node_count);
   inner_along_.resize(rows);
   inner_across_.resize(rows);
-  nodes_.resize(model.node_count());
+  nodes_.resize(body.node_count());
   dots_.resize(layout.chunk_count * kLanes);
-  diagonal_.assign(model.node_count(), Mat3::Zero());
+  diagonal_.assign(body.node_count(), Mat3::Zero());
   const std::size_t virtual_parts = layout.virtual_node_count * layout.chunk_count * kLanes;
   blocks_.resize(kBlockNumbers * rows);
   virtual_blocks_.resize(kBlockNumbers * virtual_parts);
@@ -58,7 +62,7 @@ void SpringProduct::run(ChunkBody body) {
 }
 
 void SpringProduct::linearise(const std::vector<Vec3>& positions, double h) {
-  PALPATE_DEMAND(positions.size() == model_.node_count());
+  PALPATE_DEMAND(positions.size() == body_.node_count());
   h_ = static_cast<float>(h);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     nodes_[i].position = wide(positions[i] - positions[0]);
@@ -77,13 +81,13 @@ void SpringProduct::take_diagonal(double h) {
   const kernel::Layout layout = layout_.view();
   const std::size_t surface_count = layout.surface_node_count;
   const std::size_t rows = layout.slice_count * kLanes;
-  const double mass_factor = 1 + h * model_.drag;
+  const double mass_factor = 1 + h * body_.drag;
   std::array<double, kBlockNumbers> numbers;
   for (std::size_t i = 0; i < surface_count; ++i) {
     const float* const block = &blocks_[kBlockNumbers * kLanes * (i / kLanes) + i % kLanes];
     for (std::size_t n = 0; n < kBlockNumbers; ++n) numbers[n] = block[n * kLanes];
-    masses_[i] = static_cast<float>(mass_factor * model_.masses[i]);
-    diagonal_[i] = symmetric(numbers, mass_factor * model_.masses[i]);
+    masses_[i] = static_cast<float>(mass_factor * body_.masses[i]);
+    diagonal_[i] = symmetric(numbers, mass_factor * body_.masses[i]);
   }
   for (std::size_t k = 0; k < layout.virtual_node_count; ++k) {
     numbers.fill(0);
@@ -94,7 +98,7 @@ void SpringProduct::take_diagonal(double h) {
         for (std::size_t lane = 0; lane < kLanes; ++lane) numbers[n] += *number++;
       }
     }
-    const double mass = mass_factor * model_.masses[surface_count + k];
+    const double mass = mass_factor * body_.masses[surface_count + k];
     masses_[rows + k] = static_cast<float>(mass);
     diagonal_[surface_count + k] = symmetric(numbers, mass);
   }

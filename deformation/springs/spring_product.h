@@ -8,7 +8,6 @@
 
 #include <vector>
 
-#include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/springs/spring_product_arrays.h"
 #include "modules/core/aligned_vector.h"
@@ -19,10 +18,12 @@ namespace palpate::deformation {
 
 class SpringProduct {
  public:
-  /// @param model   outlives this
+  /// @param body         outlives this
+  /// @param with_volume  as of the kernel beside it: neighbours then stand in the same order
   /// @param runner  outlives this; none: the calling thread alone
-  explicit SpringProduct(const OrganModel& model, ChunkRunner* runner = nullptr,
-                         InstructionSet set = available_instruction_sets().back());
+  SpringProduct(const Body& body, const SpringNetwork& network, bool with_volume,
+                ChunkRunner* runner = nullptr,
+                InstructionSet set = available_instruction_sets().back());
 
   /// Takes A at these positions [m] (node_count) for a step of h [s].
   void linearise(const std::vector<Vec3>& positions, double h);
@@ -42,7 +43,7 @@ class SpringProduct {
   void run(ChunkBody body);
   void take_diagonal(double h);
 
-  const OrganModel& model_;
+  const Body& body_;
   ChunkRunner* runner_;
   const kernel::ProductFunctions& functions_;
   SpringKernelLayout layout_;

@@ -16,8 +16,12 @@ void add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) {
 
 }  // namespace
 
-BackwardEuler::BackwardEuler(const OrganModel& model, int iterations)
-    : model_(model), max_iterations_(iterations), springs_(model), kernel_(model) {
+BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, int iterations)
+    : model_(model),
+      volume_(volume),
+      max_iterations_(iterations),
+      springs_(model, model.network(), volume.is_kept),
+      kernel_(model, model.network(), volume.is_kept) {
   for (const double mass : model.masses) total_mass_ += mass;
   for (auto* buffer : {&change_, &residual_, &trial_}) {
     buffer->assign(model.node_count(), Vec3::Zero());
@@ -44,7 +48,7 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   // 5. the new state, and what the linearisation of the volume left
   add(1, change_, state.velocities);
   add(h, state.velocities, state.positions);
-  for (int k = 0; volume_row_ && k < model_.volume_corrections; ++k) correct_volume(h, rows, state);
+  for (int k = 0; volume_row_ && k < volume_.corrections; ++k) correct_volume(h, rows, state);
   state.pressure = -volume_impulse_ / h;
   return report;
 }
@@ -94,7 +98,7 @@ void BackwardEuler::linearise_springs(double h, const OrganState& state) {
 bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradient& volume,
                                      const std::vector<Vec3>& velocities) {
   volume_row_.reset();
-  if (!model_.preserve_volume) return true;
+  if (!volume_.is_kept) return true;
   if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
   double rate = (volume.volume - target_volume) / h;
   volume.denominator = 0;  // of these mobilities from here on

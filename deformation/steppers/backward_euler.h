@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "deformation/contact/constraint_projection.h"
+#include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/springs/spring_product.h"
 #include "deformation/steppers/organ_dynamics.h"
@@ -39,9 +40,10 @@ class BackwardEuler : public OrganDynamics {
   /// Passes over all springs in a step: forces, residual, one product per iteration.
   static constexpr int passes(int iterations) { return iterations + 2; }
 
-  /// @param model       outlives this
+  /// @param model       of springs, outlives this
   /// @param iterations  of conjugate gradients per step, at most
-  explicit BackwardEuler(const OrganModel& model, int iterations = kIterations);
+  explicit BackwardEuler(const OrganModel& model, const KeptVolume& volume = {},
+                         int iterations = kIterations);
 
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
@@ -74,6 +76,7 @@ class BackwardEuler : public OrganDynamics {
   void correct_volume(double h, std::span<ContactRow> rows, OrganState& state);
 
   const OrganModel& model_;
+  KeptVolume volume_;
   int max_iterations_, iterations_used_ = 0;
   double total_mass_ = 0;
   SpringProduct springs_;

@@ -17,7 +17,7 @@ Vec3 missing(const ChainMail::Link& link, const Vec3& along) {
 }  // namespace
 
 ChainMail::ChainMail(const OrganModel& model)
-    : model_(model), links_of_(model.node_count()), kernel_(model) {
+    : model_(model), links_of_(model.node_count()), kernel_(model, model.network(), false) {
   const SpringNetwork& network = model.network();
   for (std::size_t s = 0; s < network.springs.size(); ++s) {
     if (network.family(s) == SpringFamily::kBending) continue;

@@ -18,6 +18,7 @@
 // the springs' force; on a moving one the push of its motion comes on top.
 #pragma once
 
+#include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/steppers/organ_dynamics.h"
 

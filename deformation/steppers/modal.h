@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "deformation/model/organ_model.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "deformation/contact/taylor_hood_contact.h"
+#include "deformation/model/organ_model.h"
 #include "deformation/steppers/organ_dynamics.h"
 #include "deformation/steppers/quasi_static_newton.h"
 

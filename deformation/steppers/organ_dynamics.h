@@ -1,12 +1,10 @@
 // One way to advance an organ: how its contents are modelled, and how time is stepped.
 #pragma once
 
-#include <memory>
 #include <span>
 
 #include "deformation/contact/contact_solve.h"
-#include "deformation/model/organ_model.h"
-#include "modules/core/parallel.h"
+#include "deformation/model/organ_state.h"
 
 namespace palpate::deformation {
 
@@ -31,30 +29,9 @@ class OrganDynamics {
 
   /// Stored in springs or tissue [J].
   virtual double elastic_energy(const OrganState& state) = 0;
+
+  /// Stored in the contents beside that, where the model has such an energy [J].
+  virtual double stored_energy(const OrganState& /*state*/) const { return 0; }
 };
-
-/// How an organ's springs are stepped, and what that was decided by.
-struct IntegratorChoice {
-  scene::Integrator integrator = scene::Integrator::kSymplecticEuler;  ///< not kAutomatic
-  /// Passes over all springs per simulated second that each would need.
-  double symplectic_passes = 0, backward_passes = 0;
-};
-
-/// Whether a model steps by a method of its own, so that no integrator can be chosen.
-bool has_own_steps(scene::Model model);
-
-/// What `organ` asks for. Automatic is backward Euler where symplectic Euler needs more than twice
-/// the passes over the springs, else symplectic Euler, which neither damps nor lags.
-/// @param period  of an advance, which is divided into equal steps [s]
-IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,
-                                   double period);
-
-/// The organ's model with the integrator chosen.
-/// @param model   outlives the dynamics
-/// @param period  of an advance [s]
-/// @param runner  outlives the dynamics; none: the calling thread alone. The bits are the same
-/// @throws InputError if the integrator does not go with the organ's model
-std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
-                                             double period, ChunkRunner* runner = nullptr);
 
 }  // namespace palpate::deformation

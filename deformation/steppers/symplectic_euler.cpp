@@ -5,16 +5,10 @@
 #include "deformation/springs/spring_forces.h"
 
 namespace palpate::deformation {
-namespace {
-
-/// Of the bound; Gershgorin is on the safe side, the volume constraint takes a few per cent.
-constexpr double kStepSafety = 0.9;
-
-}  // namespace
 
 void apply_forces(const OrganModel& model, double h, OrganState& state, std::vector<Vec3>& forces) {
   forces.assign(model.node_count(), Vec3::Zero());
-  add_spring_forces(model, state, forces);
+  add_spring_forces(model.network(), state, forces);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     const Vec3 acceleration = model.inverse_masses[i] * forces[i] + model.gravity;
     const Vec3 velocity =
@@ -45,7 +39,7 @@ void correct_volume(const OrganModel& model, double h, std::span<ContactRow> row
 
 ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
                                          std::span<ContactRow> rows, OrganState& state,
-                                         StepBuffers& buffers) {
+                                         StepBuffers& buffers, const KeptVolume& kept) {
   // 1. springs, damping, drag, gravity → unconstrained velocities
   apply_forces(model, h, state, buffers.forces);
 
@@ -54,8 +48,8 @@ ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
   const VolumeRow volume{buffers.volume, (buffers.volume.volume - state.target_volume) / h};
 
   // 3. contact impulses and the one volume multiplier → velocities at the end of the step
-  auto report = solve_contacts_and_volume(model, model.preserve_volume ? &volume : nullptr, h, rows,
-                                          state.velocities);
+  auto report =
+      solve_contacts_and_volume(model, kept.is_kept ? &volume : nullptr, h, rows, state.velocities);
 
   // 4. positions
   for (std::size_t i = 0; i < model.node_count(); ++i) {
@@ -63,42 +57,44 @@ ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
   }
 
   // 5. what the linearisation left
-  for (int k = 0; model.preserve_volume && k < model.volume_corrections; ++k) {
+  for (int k = 0; kept.is_kept && k < kept.corrections; ++k) {
     correct_volume(model, h, rows, state, buffers, report);
   }
   state.pressure = -report.volume_impulse / h;
   return report;
 }
 
-SymplecticEuler::SymplecticEuler(const OrganModel& model, ChunkRunner* runner)
-    : model_(model), largest_step_(largest_step(model)), kernel_(model, runner) {}
-
-double SymplecticEuler::largest_step(const OrganModel& model) {
-  return kStepSafety * stable_step_bound(model);
-}
+SymplecticEuler::SymplecticEuler(const OrganModel& model, std::unique_ptr<VolumeRule> rule,
+                                 ChunkRunner* runner)
+    : model_(model),
+      rule_(std::move(rule)),
+      kernel_(model, model.network(), rule_->reads_gradient(), runner) {}
 
 StepReport SymplecticEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. unconstrained velocities, volume and its gradient at the old positions
+  // 1. springs, damping, drag, gravity; volume and its gradient; what the rule makes of them
   kernel_.free_step(h, state, free_);
-  const VolumeRow volume{free_.volume, (free_.volume.volume - state.target_volume) / h};
+  const VolumeAction action = rule_->before_contacts(h, state, free_);
 
   // 2. contact impulses and the one volume multiplier
-  auto report = solve_contacts(model_, model_.preserve_volume ? &volume : nullptr,
-                               free_.volume_velocity, h, rows, free_.velocities);
+  const VolumeRow volume{free_.volume, action.rate.value_or(0)};
+  auto report = solve_contacts(model_, action.rate ? &volume : nullptr, free_.volume_velocity, h,
+                               rows, free_.velocities);
   if (std::abs(report.volume_impulse) > h * state.pressure_limit) {
     push_with(std::copysign(h * state.pressure_limit, report.volume_impulse), h, rows, state);
     return {.pressure_capped = true};
   }
 
   // 3. velocities at the end of the step, positions
-  const int corrections = model_.preserve_volume ? model_.volume_corrections : 0;
+  const int corrections = rule_->corrections();
   if (corrections > 0) start_ = state.positions;
   kernel_.finish_step(h, report.volume_impulse, free_, state);
 
   // 4. what the linearisation left
   for (int k = 0; k < corrections; ++k) correct_volume(h, rows, state, report);
-  state.pressure = -report.volume_impulse / h;
-  return {.volume_skipped = report.volume_skipped};
+  state.pressure = action.pressure.value_or(-report.volume_impulse / h);
+  if (rule_->reads_end_gradient()) kernel_.evaluate_volume(state.positions, free_);
+  const bool corrected = rule_->after_step(h, free_.volume, state);
+  return {.volume_skipped = action.skipped || report.volume_skipped || !corrected};
 }
 
 /// What the plain correct_volume() does, the step's end taken again from its start.

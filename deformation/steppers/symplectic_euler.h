@@ -1,11 +1,15 @@
-// One step of an organ by semi-implicit (symplectic) Euler, contacts and volume inside.
+// Semi-implicit (symplectic) Euler of an organ of springs, contacts inside. How the volume acts is
+// a rule of its own (volume_rule.h).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/steppers/organ_dynamics.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
@@ -27,21 +31,25 @@ void correct_volume(const OrganModel& model, double h, std::span<ContactRow> row
                     OrganState& state, StepBuffers& buffers, ContactSolveReport& report);
 
 /// Advances the state by h [s]. Stable for h below stable_step_bound(). Contact rows must hold
-/// their gaps at the current positions. The plain code, without a limit of the pressure:
-/// SymplecticEuler does the same faster.
+/// their gaps at the current positions. The plain code of the implicit constraint, without a limit
+/// of the pressure: SymplecticEuler does the same faster.
 ContactSolveReport symplectic_euler_step(const OrganModel& model, double h,
                                          std::span<ContactRow> rows, OrganState& state,
-                                         StepBuffers& buffers);
+                                         StepBuffers& buffers, const KeptVolume& volume = {});
 
 class SymplecticEuler : public OrganDynamics {
  public:
+  /// @param model   of springs, outlives this
   /// @param runner  outlives this; none: the calling thread alone
-  explicit SymplecticEuler(const OrganModel& model, ChunkRunner* runner = nullptr);
-  static double largest_step(const OrganModel& model);
-  double largest_step() const override { return largest_step_; }
+  SymplecticEuler(const OrganModel& model, std::unique_ptr<VolumeRule> rule,
+                  ChunkRunner* runner = nullptr);
+  double largest_step() const override { return rule_->largest_step(); }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
   double elastic_energy(const OrganState& state) override {
     return kernel_.elastic_energy(state.positions);
+  }
+  double stored_energy(const OrganState& state) const override {
+    return rule_->stored_energy(state);
   }
 
  private:
@@ -50,8 +58,9 @@ class SymplecticEuler : public OrganDynamics {
                       ContactSolveReport& report);
 
   const OrganModel& model_;
-  double largest_step_;
+  std::unique_ptr<VolumeRule> rule_;
   SpringKernel kernel_;
+  // Of one step:
   FreeStep free_;
   std::vector<Vec3> start_;  ///< positions, for corrections
 };

@@ -2,8 +2,8 @@
 
 namespace palpate::deformation {
 
-void free_flight(const Body& body, double h, const OrganState& state,
-                 std::vector<Vec3>& velocities) {
+void inertial_prediction(const Body& body, double h, const OrganState& state,
+                         std::vector<Vec3>& velocities) {
   velocities.resize(state.velocities.size());
   const double kept = 1 / (1 + h * body.drag);
   for (std::size_t i = 0; i < velocities.size(); ++i) {
@@ -13,8 +13,8 @@ void free_flight(const Body& body, double h, const OrganState& state,
 }
 
 StepReport XpbdSprings::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. where all would fly alone; 2. springs
-  free_flight(model_, h, state, free_.velocities);
+  // 1. inertial prediction; 2. springs
+  inertial_prediction(model_, h, state, free_.velocities);
   visits_.relax(h, iterations_, state.positions, free_.velocities, positions_);
 
   // 3. volume, as it would be there, and contacts
@@ -22,7 +22,7 @@ StepReport XpbdSprings::step(double h, std::span<ContactRow> rows, OrganState& s
   // Φ(x) + h g·Δv = 0, written for v̂ + Δv as the solver wants it.
   const VolumeRow volume{free_.volume,
                          (free_.volume.volume - state.target_volume) / h - free_.volume_velocity};
-  const auto report = solve_contacts(model_, model_.preserve_volume ? &volume : nullptr,
+  const auto report = solve_contacts(model_, volume_.is_kept ? &volume : nullptr,
                                      free_.volume_velocity, h, rows, free_.velocities);
 
   // 4. the new state

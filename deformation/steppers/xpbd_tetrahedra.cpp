@@ -58,7 +58,7 @@ Mat3 XpbdTetrahedra::deformation_gradient(std::size_t element,
 
 StepReport XpbdTetrahedra::step(double h, std::span<ContactRow> rows, OrganState& state) {
   // 1. where all would fly alone; 2. tetrahedra
-  free_flight(body_, h, state, velocities_);
+  inertial_prediction(body_, h, state, velocities_);
   positions_.resize(velocities_.size());
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     positions_[i] = state.positions[i] + h * velocities_[i];

@@ -24,6 +24,7 @@
 
 #include "deformation/elements/linear_tetrahedra.h"
 #include "deformation/materials/stable_neo_hookean.h"
+#include "deformation/model/tet_mesh.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {

@@ -20,4 +20,10 @@ namespace palpate::deformation {
 /// all over): no multiplier can change the volume, and the step goes on without one.
 inline constexpr double kVanishedDenominator = 1e-6;
 
+/// How a stepper of springs keeps the volume by this constraint.
+struct KeptVolume {
+  bool is_kept = true;
+  int corrections = 0;  ///< Newton corrections at each step's end
+};
+
 }  // namespace palpate::deformation

@@ -6,6 +6,7 @@
 #include "modules/core/units.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/scene/models.h"
 
 namespace palpate::scene {
 namespace {
@@ -52,15 +53,16 @@ geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Soli
 
 geometry::OrganShape load_organ(const Organ& organ) {
   const std::string owner = "organ '" + organ.name + "'";
+  const ModelFormat& format = format_of(organ.model);
   geometry::OrganShape shape;
   if (holds_tetrahedra(organ.mesh.file)) {
     shape = load_tetrahedra(organ.mesh, owner);
-    if (!is_solid(organ.model)) shape = geometry::OrganShape(std::move(shape.surface));
+    if (!format.is_solid()) shape = geometry::OrganShape(std::move(shape.surface));
   } else {
     shape = geometry::OrganShape(load(organ.mesh, owner));
-    if (is_solid(organ.model)) shape = filled(shape.surface, organ.solid, owner);
+    if (format.is_solid()) shape = filled(shape.surface, organ.solid, owner);
   }
-  if (is_quadratic(organ.model)) shape = geometry::with_edge_nodes(shape);
+  if (format.is_quadratic()) shape = geometry::with_edge_nodes(shape);
   for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {
     for (Vec3& node : *nodes) node = organ.pose.to_world(node);
   }

@@ -26,6 +26,7 @@ struct KeyList {
     choose_one = true;
   }
   void require(bool, const char*) {}
+  void fits(const char*, const std::string&) {}
   template <class T>
   void unique_names(const char*, const std::vector<T>&) {}
 };

@@ -66,6 +66,9 @@ class ObjectReader {
   void require(bool holds, const char* rule) const {
     if (!holds) object_.refuse(rule);
   }
+  void fits(const char*, const std::string& misfit) const {
+    if (!misfit.empty()) object_.refuse(misfit);
+  }
 
   template <class T>
   void unique_names(const char* key, const std::vector<T>& list) const {

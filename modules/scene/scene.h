@@ -35,6 +35,8 @@ struct Springs {
   double bending_ratio = 0.1;  ///< `bending_ratio`: stiffness over a structural spring's [0 … 10]
   double inner_ratio = 0.05;   ///< `inner_ratio`: stiffness per area over E t / R² [0 … 100]
   std::size_t virtual_nodes = 6;  ///< `virtual_nodes` on the dominant axis [0 … 64]; 0 = no inner
+
+  bool operator==(const Springs&) const = default;
 };
 
 /// Nodes whose rest position lies inside do not move.
@@ -46,36 +48,6 @@ struct BoxRegion {
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();  ///< `min_m`, `max_m`, in W; min < max
 };
 using Region = std::variant<SphereRegion, BoxRegion>;  ///< keys `sphere`, `box`
-
-/// How an organ's contents are modelled: its own method and those it is compared with.
-enum class Model {
-  kImplicitVolume,     ///< springs and the one implicit volume constraint
-  kMassSpring,         ///< springs alone
-  kPenalty,            ///< pressure proportional to the volume error
-  kBaumgarte,          ///< the constraint on accelerations, stabilised
-  kPromayon,           ///< projection along the volume gradient
-  kPostStabilisation,  ///< the constraint on velocities, positions projected afterwards
-  kBourguignonCani,    ///< springs to the barycentre
-  kZordan,             ///< volumes of pyramids over each triangle
-  kElementVolume,      ///< one volume constraint per element
-  kChainMail,          ///< kinematic, 3D ChainMail
-  kXpbdSprings,        ///< springs and volume by extended position-based dynamics
-  kXpbdTetrahedra,     ///< neo-Hookean tetrahedra by extended position-based dynamics
-  kCorotational,       ///< linear tetrahedra, corotational, implicit
-  kNodalPressure,      ///< linear neo-Hookean tetrahedra with averaged pressures, implicit
-  kQuadraticElements,  ///< quadratic neo-Hookean tetrahedra with continuous pressure, implicit
-  kModal               ///< lowest vibrations of quadratic_elements
-};
-
-/// Whether the organ is a solid filled with tetrahedra, not a surface of springs.
-constexpr bool is_solid(Model model) { return model >= Model::kXpbdTetrahedra; }
-/// Whether its tetrahedra have nodes in the middles of their edges.
-constexpr bool is_quadratic(Model model) { return model >= Model::kQuadraticElements; }
-
-/// Whether its steps iterate a number of times that can be chosen.
-constexpr bool has_iterations(Model model) {
-  return model >= Model::kXpbdSprings && model <= Model::kNodalPressure;
-}
 
 /// Parameters that models of solids need beside the tissue.
 struct Solid {
@@ -105,9 +77,9 @@ struct Organ {
   Tissue tissue;
   Springs springs;
   Solid solid;
-  Model model = Model::kImplicitVolume;  ///< `model`
-  std::size_t volume_corrections = 0;    ///< `volume_corrections`, Newton [0 … 5]
-  std::size_t iterations = 0;            ///< `iterations` [0 … 1000]; 0: the model's own
+  std::string model = "implicit_volume";  ///< `model`, a word of models.h
+  std::size_t volume_corrections = 0;     ///< `volume_corrections`, Newton [0 … 5]
+  std::size_t iterations = 0;             ///< `iterations` [0 … 1000]; 0: the model's own
   Integrator integrator = Integrator::kAutomatic;  ///< `integrator`
   Filling filling;                                 ///< `filling`
   std::vector<Region> fixed;                       ///< `fixed`

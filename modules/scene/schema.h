@@ -16,6 +16,7 @@
 #include <type_traits>
 
 #include "modules/core/organ_limits.h"
+#include "modules/scene/models.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::scene {
@@ -27,25 +28,6 @@ inline constexpr const char* kFormatKey = "palpate_scene";
 /// The words for the values of an enumeration, in its order.
 template <class Enum>
 struct Words;
-template <>
-struct Words<Model> {
-  static constexpr std::array texts{"implicit_volume",
-                                    "mass_spring",
-                                    "penalty",
-                                    "baumgarte",
-                                    "promayon",
-                                    "post_stabilisation",
-                                    "bourguignon_cani",
-                                    "zordan",
-                                    "element_volume",
-                                    "chainmail",
-                                    "xpbd_springs",
-                                    "xpbd_tetrahedra",
-                                    "corotational",
-                                    "nodal_pressure",
-                                    "quadratic_elements",
-                                    "modal"};
-};
 template <>
 struct Words<Integrator> {
   static constexpr std::array texts{"automatic", "symplectic_euler", "backward_euler"};
@@ -70,6 +52,7 @@ struct About {
   bool required = false;
   const char* default_text = nullptr;  ///< said instead of the value, where none can be shown
   bool is_length_unit = false;         ///< a text naming a unit of length
+  bool is_model = false;               ///< a text that is the word of a model
 
   About needed() const {
     About copy = *this;
@@ -190,22 +173,19 @@ void describe(V& v, Organ& organ) {
   v.field("tissue", organ.tissue, plain("what it is made of"));
   v.field("springs", organ.springs, plain("spring families without a continuum meaning"));
   v.field("solid", organ.solid, plain("what models filled with tetrahedra need beside"));
-  v.field("model", organ.model, plain("how its contents are modelled"));
+  About model = plain("how its contents are modelled; see the table of models");
+  model.is_model = true;
+  v.field("model", organ.model, model);
   v.field("volume_corrections", organ.volume_corrections,
           ranged("", 0, 5, "Newton corrections of the volume in each step, of implicit_volume"));
-  v.field(
-      "iterations", organ.iterations,
-      ranged("", 0, 1000,
-             "per step: passes over the constraints of xpbd_springs (1) and xpbd_tetrahedra (1), "
-             "conjugate gradients at most of corotational (20) and nodal_pressure (40); 0 = "
-             "the model's own"));
-  v.require(organ.iterations == 0 || has_iterations(organ.model),
-            "iterations must be 0 unless model is xpbd_springs, xpbd_tetrahedra, corotational or "
-            "nodal_pressure");
+  v.field("iterations", organ.iterations,
+          ranged("", 0, 1000, "per step; 0 = the model's own, see the table of models"));
   v.field("integrator", organ.integrator,
           plain("of implicit_volume and mass_spring; automatic = what costs less here"));
   v.field("filling", organ.filling, plain("the volume asked for, over the rest volume"));
   v.field("fixed", organ.fixed, plain("regions of W whose nodes do not move"));
+  v.fits("a key that the model does not read must be left out, see the table of models",
+         misfit_of_model(organ));
 }
 
 template <class V>

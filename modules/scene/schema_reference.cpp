@@ -27,7 +27,7 @@ class SchemaTable {
     row(key, "true or false", about, value ? "true" : "false");
   }
   void field(const char* key, std::string& value, const About& about) {
-    row(key, "text", about, value);
+    row(key, about.is_model ? model_words() : "text", about, value);
   }
   void field(const char* key, std::filesystem::path&, const About& about) {
     row(key, "file", about, "");
@@ -71,6 +71,7 @@ class SchemaTable {
     object_below(key, object);
   }
   void require(bool, const char* rule) { rules_ += std::string("\nRule: ") + rule + ".\n"; }
+  void fits(const char* rule, const std::string&) { require(true, rule); }
   template <class T>
   void unique_names(const char* key, const std::vector<T>&) {
     rules_ += std::string("\nRule: no two `") + key + "` have the same name.\n";
@@ -112,13 +113,38 @@ class SchemaTable {
   bool choose_one_ = false;
 };
 
+std::string reads(const ModelFormat& format) {
+  std::string keys = format.is_solid() ? "solid" : "springs, filling";
+  if (format.has_integrator) keys += ", integrator";
+  if (format.has_volume_corrections) keys += ", volume_corrections";
+  if (format.iterations > 0) {
+    keys += ", iterations (" + std::to_string(format.iterations) + " " + format.iterates + ")";
+  }
+  if (format.has_modes) keys += ", modes";
+  return keys;
+}
+
+std::string model_reference() {
+  std::string text =
+      "### Models\n\n| model | what it is | nodes joined by | reads, beside what all read |\n"
+      "|---|---|---|---|\n";
+  for (const ModelFormat& format : model_formats()) {
+    text += std::string("| `") + format.word + "` | " + format.meaning + " | " +
+            (format.is_quadratic() ? "quadratic tetrahedra"
+             : format.is_solid()   ? "linear tetrahedra"
+                                   : "springs on the surface") +
+            " | " + reads(format) + " |\n";
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string schema_reference() {
   SchemaTable table("");
   Scene scene;
   describe(table, scene);
-  return table.text();
+  return table.text() + model_reference();
 }
 
 }  // namespace palpate::scene

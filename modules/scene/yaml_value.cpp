@@ -1,5 +1,6 @@
 #include "modules/scene/yaml_value.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -125,6 +126,12 @@ void check_name(const YamlValue& value, const std::string& text) {
 std::string text_from(const YamlValue& value, const About& about) {
   if (!value.node.IsScalar()) value.refuse("must be a text");
   const std::string& text = value.node.Scalar();
+  if (about.is_model) {
+    const auto is_it = [&](const ModelFormat& format) { return text == format.word; };
+    if (!std::ranges::any_of(model_formats(), is_it)) {
+      value.refuse("must be one of: " + model_words());
+    }
+  }
   check_name(value, text);
   if (about.is_length_unit) {
     try {

@@ -38,7 +38,8 @@ struct YamlValue {
 double number_from(const YamlValue& value, const About& about);
 std::size_t count_from(const YamlValue& value, const About& about);
 bool flag_from(const YamlValue& value);
-/// 1 … 255 bytes without control characters; with about.is_length_unit, a unit of length.
+/// 1 … 255 bytes without control characters; with about.is_length_unit, a unit of length;
+/// with about.is_model, the word of a model.
 std::string text_from(const YamlValue& value, const About& about);
 /// The index of one of `words`.
 std::size_t word_from(const YamlValue& value, std::span<const char* const> words);

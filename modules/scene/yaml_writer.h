@@ -24,7 +24,9 @@ class YamlWriter {
   void field(const char* key, double value, const About&) { line(key, number_text(value)); }
   void field(const char* key, std::size_t value, const About&) { line(key, std::to_string(value)); }
   void field(const char* key, bool value, const About&) { line(key, value ? "true" : "false"); }
-  void field(const char* key, std::string& value, const About&) { line(key, quoted_text(value)); }
+  void field(const char* key, std::string& value, const About& about) {
+    line(key, about.is_model ? value : quoted_text(value));
+  }
   void field(const char* key, std::filesystem::path& value, const About&) {
     files_.push_back(value);
     const auto shown = file_names_ == FileNames::kFull ? value : value.filename();
@@ -67,6 +69,7 @@ class YamlWriter {
     if (T* chosen = std::get_if<T>(&variant)) field(key, *chosen, about);
   }
   void require(bool, const char*) {}
+  void fits(const char*, const std::string&) {}
   template <class T>
   void unique_names(const char*, const std::vector<T>&) {}
 

@@ -25,9 +25,8 @@ std::vector<std::string> columns(const std::vector<std::string>& further) {
 }
 
 std::vector<std::string> row_of(const Point& p, const std::vector<double>& numbers) {
-  std::vector<std::string> row{p.of.name, scene::word_of(p.setting.model),
-                               std::to_string(p.setting.level), number(p.setting.rate),
-                               std::to_string(p.setting.iterations)};
+  std::vector<std::string> row{p.of.name, p.setting.model, std::to_string(p.setting.level),
+                               number(p.setting.rate), std::to_string(p.setting.iterations)};
   for (const double value : numbers) row.push_back(number(value));
   return row;
 }
@@ -135,7 +134,7 @@ void print(const SweepResult& result, std::ostream& out) {
     out << fmt::format(
         "{:<10} {:<19} {:>5} {:>6g} {:>5} {:>7} {:>8.3g} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} "
         "{:>9}{}\n",
-        p.of.name, scene::word_of(p.setting.model), p.setting.level, p.setting.rate,
+        p.of.name, p.setting.model, p.setting.level, p.setting.rate,
         p.setting.iterations > 0 ? std::to_string(p.setting.iterations) : "",
         m.surface_nodes + m.inner_nodes, 1e3 * m.step, short_number(m.cost),
         per_cent(force_error(m)), short_number(1e3 * shape_error(m)),

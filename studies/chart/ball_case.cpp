@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 #include "modules/core/data_folder.h"
 #include "modules/geometry/primitives.h"
+#include "modules/scene/models.h"
 #include "studies/chart/case_parts.h"
 #include "studies/rigs/squeezed_ball.h"
 

@@ -6,6 +6,7 @@
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/scene/models.h"
 #include "studies/chart/case_parts.h"
 #include "studies/chart/displacement_field.h"
 #include "studies/chart/equilibria.h"

@@ -32,16 +32,14 @@ std::vector<Case> wanted_cases(const ChartOptions& options, std::ostream& log) {
   return wanted;
 }
 
-std::vector<scene::Model> wanted_models(const ChartOptions& options) {
+std::vector<std::string> wanted_models(const ChartOptions& options) {
   if (options.only_models.empty()) return model_hierarchy();
-  std::vector<scene::Model> wanted;
+  std::vector<std::string> wanted;
   for (const auto& name : options.only_models) {
     const auto all = model_hierarchy();
-    const auto found = std::find_if(
-        all.begin(), all.end(), [&](scene::Model model) { return name == scene::word_of(model); });
+    const auto found = std::ranges::find(all, name);
     if (found == all.end()) {
-      throw InputError(
-          fmt::format("model '{}': must be one of {}", name, fmt::join(model_names(), ", ")));
+      throw InputError(fmt::format("model '{}': must be one of {}", name, fmt::join(all, ", ")));
     }
     wanted.push_back(*found);
   }
@@ -89,12 +87,6 @@ void measure_peers(const ChartOptions& options, std::ostream& log) {
 std::vector<std::string> case_names() {
   std::vector<std::string> names;
   for (const Case& each : cases()) names.emplace_back(each.name);
-  return names;
-}
-
-std::vector<std::string> model_names() {
-  std::vector<std::string> names;
-  for (const auto model : model_hierarchy()) names.emplace_back(scene::word_of(model));
   return names;
 }
 

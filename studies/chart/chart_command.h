@@ -20,9 +20,8 @@ struct ChartOptions {
   bool again = false;  ///< measures anew what has been measured
 };
 
-/// What only_cases and only_models may hold.
+/// What only_cases may hold.
 std::vector<std::string> case_names();
-std::vector<std::string> model_names();
 
 /// The whole command. @return an exit code @throws InputError
 int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log);

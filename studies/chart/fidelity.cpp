@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 
 namespace palpate::chart {
@@ -13,28 +14,26 @@ constexpr double kSolidWall = 0.16, kSolidInnerRatio = 10;  // docs/calibration.
 
 }  // namespace
 
-double unlocked_poisson_ratio(scene::Model model, double wanted) {
+double unlocked_poisson_ratio(const std::string& model, double wanted) {
   constexpr double kUnlocked = 0.45;
-  const bool locks = model == scene::Model::kCorotational || model == scene::Model::kXpbdTetrahedra;
+  const bool locks = model == "corotational" || model == "xpbd_tetrahedra";
   return locks ? std::min(wanted, kUnlocked) : wanted;
 }
 
 std::string Setting::name() const {
-  return fmt::format("{}, level {}, {:g} Hz", scene::word_of(model), level, rate) +
+  return fmt::format("{}, level {}, {:g} Hz", model, level, rate) +
          (iterations > 0 ? fmt::format(", {} iterations", iterations) : "");
 }
 
 std::string Setting::key() const {
-  return fmt::format("{}-{}-{:g}", scene::word_of(model), level, rate) +
+  return fmt::format("{}-{}-{:g}", model, level, rate) +
          (iterations > 0 ? fmt::format("-{}", iterations) : "");
 }
 
-std::vector<scene::Model> model_hierarchy() {
-  using scene::Model;
-  return {Model::kMassSpring,     Model::kImplicitVolume,   Model::kPenalty,
-          Model::kPromayon,       Model::kElementVolume,    Model::kXpbdSprings,
-          Model::kXpbdTetrahedra, Model::kCorotational,     Model::kNodalPressure,
-          Model::kModal,          Model::kQuadraticElements};
+std::vector<std::string> model_hierarchy() {
+  return {"mass_spring",    "implicit_volume", "penalty",           "promayon",
+          "element_volume", "xpbd_springs",    "xpbd_tetrahedra",   "corotational",
+          "nodal_pressure", "modal",           "quadratic_elements"};
 }
 
 scene::Organ solid_organ(const Setting& setting, double radius, std::size_t virtual_nodes,

@@ -11,7 +11,7 @@ namespace palpate::chart {
 
 /// A model at one mesh size and step: one point of a chart.
 struct Setting {
-  scene::Model model = scene::Model::kImplicitVolume;
+  std::string model = "implicit_volume";
   int level = 1;               ///< of the mesh, 0 coarse; each level halves the edges
   double rate = 250;           ///< steps asked for per simulated second [Hz]; a model may sub-step
   std::size_t iterations = 0;  ///< scene key of this name; 0: as many as the model has
@@ -21,10 +21,10 @@ struct Setting {
 };
 
 /// The models of the chart, plain springs first, the most accurate last.
-std::vector<scene::Model> model_hierarchy();
+std::vector<std::string> model_hierarchy();
 
 /// Linear tetrahedra without averaged pressures lock near ½: at most 0.45 for them, else as wanted.
-double unlocked_poisson_ratio(scene::Model model, double wanted);
+double unlocked_poisson_ratio(const std::string& model, double wanted);
 
 /// A filled solid of `radius` (of the ball of equal volume) as a scene would have it, with the
 /// springs calibrated for solids (docs/calibration.md) where the model has springs.

@@ -4,6 +4,7 @@
 #include "modules/core/data_folder.h"
 #include "modules/runtime/program.h"
 #include "studies/chart/chart_command.h"
+#include "studies/chart/fidelity.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
@@ -17,7 +18,7 @@ int main(int argc, char** argv) {
                  "Only these cases: " + CLI::detail::join(chart::case_names(), ", "))
       ->delimiter(',');
   app.add_option("--model", options.only_models,
-                 "Only these models: " + CLI::detail::join(chart::model_names(), ", "))
+                 "Only these models: " + CLI::detail::join(chart::model_hierarchy(), ", "))
       ->delimiter(',');
   app.add_flag("--quick", quick, "Coarse meshes, one step: under 2 minutes");
   app.add_flag("--full", full, "Fine meshes, four steps: hours")->excludes("--quick");

@@ -9,6 +9,7 @@
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/chart/case_parts.h"
 #include "studies/chart/displacement_field.h"
@@ -50,7 +51,7 @@ double front_of(const geometry::TriangleSurface& surface, double x, double z) {
 constexpr std::array<std::size_t, 3> kNodes{150, 550, 2000};
 
 geometry::TriangleSurface surface_of(scene::Organ organ, std::size_t nodes) {
-  organ.model = scene::Model::kImplicitVolume;
+  organ.model = "implicit_volume";
   organ.mesh.nodes = nodes;
   return scene::load_organ(organ).surface;
 }

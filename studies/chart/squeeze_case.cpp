@@ -51,8 +51,8 @@ Measurement measure_squeeze(const Setting& setting, const KeepGoing& keep_going)
 
 Measurement squeeze_in_small_steps(int level, const KeepGoing& keep_going) {
   constexpr std::array kRates{1000.0, 2000.0};  // [Hz]
-  return measure_squeeze(
-      {scene::Model::kQuadraticElements, 1, kRates[static_cast<std::size_t>(level)]}, keep_going);
+  return measure_squeeze({"quadratic_elements", 1, kRates[static_cast<std::size_t>(level)]},
+                         keep_going);
 }
 
 }  // namespace palpate::chart

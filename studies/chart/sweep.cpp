@@ -6,13 +6,14 @@
 #include <chrono>
 #include <cmath>
 
+#include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/reference_solutions.h"
 
 namespace palpate::chart {
 namespace {
 
-bool is_slow(scene::Model model) { return model == scene::Model::kQuadraticElements; }
+bool is_slow(const std::string& model) { return model == "quadratic_elements"; }
 
 bool wanted(const Case& of, const Setting& setting, Extent extent) {
   const int finest = extent == Extent::kQuick ? 0 : extent == Extent::kUsual ? 1 : 2;
@@ -31,9 +32,9 @@ std::vector<double> rates_of(Extent extent) {
 }
 
 /// Beside the model's own count: fewer and more.
-std::vector<std::size_t> iterations_of(scene::Model model) {
-  if (!scene::has_iterations(model)) return {};
-  const bool xpbd = model == scene::Model::kXpbdSprings || model == scene::Model::kXpbdTetrahedra;
+std::vector<std::size_t> iterations_of(const std::string& model) {
+  if (scene::format_of(model).iterations == 0) return {};
+  const bool xpbd = model == "xpbd_springs" || model == "xpbd_tetrahedra";
   return xpbd ? std::vector<std::size_t>{2, 4, 8} : std::vector<std::size_t>{5, 10, 80};
 }
 
@@ -44,7 +45,7 @@ bool sweeps_iterations(const Case& of, const Setting& setting, Extent extent) {
          setting.rate < 51;
 }
 
-bool is_wanted(const std::vector<scene::Model>& models, scene::Model model) {
+bool is_wanted(const std::vector<std::string>& models, const std::string& model) {
   return std::find(models.begin(), models.end(), model) != models.end();
 }
 
@@ -100,9 +101,9 @@ void run(std::vector<Job>& jobs, const PointStore& store,
 // Steps per second grow with the rate, and cost per step with nodes: eight times per level, more
 // for direct solvers; fitted to the usual chart, good to a factor of two or three.
 double weight_of(const Setting& setting) {
-  const bool springs = setting.model < scene::Model::kXpbdSprings;
-  const bool implicit = setting.model == scene::Model::kCorotational ||
-                        setting.model == scene::Model::kNodalPressure || is_slow(setting.model);
+  const bool springs = !scene::is_solid(setting.model) && setting.model != "xpbd_springs";
+  const bool implicit = setting.model == "corotational" || setting.model == "nodal_pressure" ||
+                        is_slow(setting.model);
   const double model = is_slow(setting.model) ? 12 : springs ? 0.3 : 1;
   const double growth = is_slow(setting.model) ? 20 : 7;
   return model * std::pow(growth, setting.level) * (implicit ? setting.rate / 100 : 1);
@@ -112,7 +113,7 @@ std::vector<Setting> settings_of(const Case& of, Extent extent) {
   std::vector<Setting> settings;
   if (of.reference == Reference::kOwn && extent == Extent::kQuick)
     return settings;  // references take minutes
-  for (const scene::Model model : model_hierarchy()) {
+  for (const std::string& model : model_hierarchy()) {
     for (int level = 0; level < of.level_count; ++level) {
       for (const double rate : rates_of(extent)) {
         Setting setting{model, level, rate};
@@ -130,7 +131,7 @@ std::vector<Setting> settings_of(const Case& of, Extent extent) {
 }
 
 SweepResult sweep(const std::vector<Case>& of, Extent extent,
-                  const std::vector<scene::Model>& models, const PointStore& store,
+                  const std::vector<std::string>& models, const PointStore& store,
                   const std::function<void(const Outlook&)>& begin, const KeepGoing& keep_going) {
   SweepResult result;
   for (const Case& each : of) {

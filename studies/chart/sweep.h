@@ -44,7 +44,7 @@ struct Outlook {
 /// @param begin  told of each job before it is done
 /// @throws what a measurement throws; finished points stay in the store
 SweepResult sweep(const std::vector<Case>& of, Extent extent,
-                  const std::vector<scene::Model>& models, const PointStore& store,
+                  const std::vector<std::string>& models, const PointStore& store,
                   const std::function<void(const Outlook&)>& begin, const KeepGoing& keep_going);
 
 }  // namespace palpate::chart

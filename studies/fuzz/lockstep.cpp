@@ -4,6 +4,7 @@
 
 #include "modules/bus/tap.h"
 #include "modules/core/error.h"
+#include "modules/scene/models.h"
 #include "palpate/session/in_process.h"
 #include "studies/fuzz/faults.h"
 #include "studies/fuzz/organ_watch.h"
@@ -15,11 +16,11 @@ namespace {
 constexpr double kNodeSteps = 4e5;  // that a scene may cost
 
 /// Of a node's step, over one of springs; measured, to one digit.
-double cost_of(scene::Model model) {
-  if (model == scene::Model::kQuadraticElements) return 3000;
-  if (model >= scene::Model::kCorotational) return 100;
-  if (model == scene::Model::kXpbdTetrahedra) return 10;
-  return model == scene::Model::kElementVolume ? 5 : 1;
+double cost_of(const std::string& model) {
+  if (model == "quadratic_elements") return 3000;
+  if (model == "xpbd_tetrahedra") return 10;
+  if (scene::is_solid(model)) return 100;
+  return model == "element_volume" ? 5 : 1;
 }
 
 class Lockstep {

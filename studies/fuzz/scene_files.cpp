@@ -13,8 +13,7 @@ void write_mesh(scene::Mesh& mesh, const PlacedShape& placed, const ShapeStore& 
   const auto stem = mesh.file.stem().string();
   mesh.file =
       stem.substr(0, stem.find('_', stem.find('_') + 1)) + "_" + name_of(placed.shape) + ".ply";
-  geometry::write_surface(shapes.shape(placed, scene::Model::kMassSpring).surface,
-                          folder / mesh.file);
+  geometry::write_surface(shapes.shape(placed, "mass_spring").surface, folder / mesh.file);
 }
 
 }  // namespace

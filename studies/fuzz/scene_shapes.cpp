@@ -21,9 +21,9 @@ session::Assets assets_of(const RandomScene& scene, const ShapeStore& store) {
   }
   for (std::size_t i = 0; i < scene.scene.probes.size(); ++i) {
     const bool is_mesh = std::holds_alternative<scene::MeshShape>(scene.scene.probes[i].shape);
-    assets.probe_meshes.push_back(
-        is_mesh ? store.shape(scene.probe_shapes[i], scene::Model::kMassSpring).surface
-                : geometry::TriangleSurface{});
+    assets.probe_meshes.push_back(is_mesh
+                                      ? store.shape(scene.probe_shapes[i], "mass_spring").surface
+                                      : geometry::TriangleSurface{});
   }
   return assets;
 }

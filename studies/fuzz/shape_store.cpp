@@ -5,6 +5,7 @@
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/primitives.h"
 #include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/scene/models.h"
 
 namespace palpate::fuzz {
 namespace {
@@ -66,7 +67,7 @@ const geometry::TriangleSurface& ShapeStore::surface(Shape shape) const {
   return entries_[static_cast<std::size_t>(shape)].surface;
 }
 
-geometry::OrganShape ShapeStore::shape(const PlacedShape& placed, scene::Model model) const {
+geometry::OrganShape ShapeStore::shape(const PlacedShape& placed, const std::string& model) const {
   const Entry& entry = entries_[static_cast<std::size_t>(placed.shape)];
   geometry::OrganShape shape =
       scene::is_solid(model) ? entry.solid : geometry::OrganShape(entry.surface);

@@ -30,7 +30,7 @@ class ShapeStore {
   explicit ShapeStore(const std::filesystem::path& scenes);
 
   /// In the mesh's own frame [m]; as float32 files hold it.
-  geometry::OrganShape shape(const PlacedShape& placed, scene::Model model) const;
+  geometry::OrganShape shape(const PlacedShape& placed, const std::string& model) const;
   const geometry::TriangleSurface& surface(Shape shape) const;
 
  private:

@@ -81,9 +81,9 @@ void write_samples(const std::vector<Sample>& samples, const std::filesystem::pa
   table.finish();
 }
 
-std::string model_key(scene::Model model) {
-  PALPATE_DEMAND(model == scene::Model::kImplicitVolume || model == scene::Model::kMassSpring);
-  return model == scene::Model::kMassSpring ? "mass_spring" : "implicit_volume";
+std::string model_key(const std::string& model) {
+  PALPATE_DEMAND(model == "implicit_volume" || model == "mass_spring");
+  return model == "mass_spring" ? "mass_spring" : "implicit_volume";
 }
 
 double worst_volume_error(const std::vector<Sample>& samples) {

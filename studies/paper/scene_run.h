@@ -49,7 +49,7 @@ std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, report:
 void write_samples(const std::vector<Sample>& samples, const std::filesystem::path& file);
 
 /// "implicit_volume" or "mass_spring": the key in the scene file.
-std::string model_key(scene::Model model);
+std::string model_key(const std::string& model);
 
 /// The largest |V − V*|/V*.
 double worst_volume_error(const std::vector<Sample>& samples);

@@ -16,7 +16,7 @@ Findings make_volume_figure(const FigureOptions& options, report::Progress& prog
   Findings findings;
   for (const std::string organ : {"stomach", "liver"}) {
     auto scene = scene::load_scene(options.scenes / (organ + "_probe.yaml"));
-    for (const auto model : {scene::Model::kMassSpring, scene::Model::kImplicitVolume}) {
+    for (const std::string model : {"mass_spring", "implicit_volume"}) {
       const std::string run = organ + ", " + model_key(model);
       progress.begin("Figure 3: volume over time, " + run);
       scene.organs[0].model = model;

@@ -8,6 +8,7 @@
 
 #include "haptics/device.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/displacement_field.h"
 #include "studies/chart/fidelity.h"
@@ -20,19 +21,17 @@ constexpr std::size_t kMarks = 60;
 constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
 constexpr double kReferenceRateOfFluid = 500, kReferenceRateOfSolid = 200;  // [Hz]
 
-std::vector<scene::Model> models_for(scene::Needs::Contents contents) {
-  using scene::Model;
+std::vector<std::string> models_for(scene::Needs::Contents contents) {
   if (contents == scene::Needs::Contents::kFluid) {
-    return {Model::kMassSpring, Model::kPenalty, Model::kImplicitVolume, Model::kXpbdSprings};
+    return {"mass_spring", "penalty", "implicit_volume", "xpbd_springs"};
   }
-  return {Model::kMassSpring,   Model::kImplicitVolume, Model::kXpbdTetrahedra,
-          Model::kCorotational, Model::kNodalPressure,  Model::kModal};
+  return {"mass_spring",  "implicit_volume", "xpbd_tetrahedra",
+          "corotational", "nodal_pressure",  "modal"};
 }
 
 std::size_t nodes_of(const scene::Scene& scene) {
   return scene::load_organ(
-             scene_with(scene, {scene::Model::kImplicitVolume, scene.organs[0].mesh.nodes, 100})
-                 .organs[0])
+             scene_with(scene, {"implicit_volume", scene.organs[0].mesh.nodes, 100}).organs[0])
       .surface.nodes.size();
 }
 
@@ -78,7 +77,7 @@ void check(const char* what, const std::optional<double>& need, double value,
 }  // namespace
 
 std::string Candidate::name() const {
-  return fmt::format("{}, {} nodes, {:g} Hz{}", scene::word_of(model), nodes, rate,
+  return fmt::format("{}, {} nodes, {:g} Hz{}", model, nodes, rate,
                      integrator == scene::Integrator::kBackwardEuler ? ", backward_euler" : "");
 }
 
@@ -95,9 +94,9 @@ std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface) {
 Candidate reference_of(const scene::Scene& scene) {
   const std::size_t nodes = nodes_of(scene);
   if (scene.needs.contents == scene::Needs::Contents::kSolid) {
-    return {scene::Model::kNodalPressure, nodes, kReferenceRateOfSolid};
+    return {"nodal_pressure", nodes, kReferenceRateOfSolid};
   }
-  return {scene::Model::kImplicitVolume, std::min(4 * nodes, kMostNodes), kReferenceRateOfFluid,
+  return {"implicit_volume", std::min(4 * nodes, kMostNodes), kReferenceRateOfFluid,
           scene::Integrator::kSymplecticEuler};
 }
 
@@ -105,7 +104,7 @@ std::vector<Candidate> candidates_of(const scene::Scene& scene) {
   const std::size_t nodes = nodes_of(scene);
   const double least = scene.needs.step_rate;
   std::vector<Candidate> candidates;
-  for (const scene::Model model : models_for(scene.needs.contents)) {
+  for (const std::string& model : models_for(scene.needs.contents)) {
     for (std::size_t count : {nodes / 4, nodes / 2, nodes, 2 * nodes}) {
       // Of a quadratic mesh these are corners: a quarter of them makes as many nodes.
       if (scene::is_quadratic(model)) count /= 4;
@@ -124,6 +123,7 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   organ.model = candidate.model;
   organ.integrator = candidate.integrator;
   organ.iterations = 0;
+  scene::drop_ignored_keys(organ);
   organ.solid.poisson_ratio =
       chart::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
   organ.mesh.nodes = candidate.nodes;

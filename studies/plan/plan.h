@@ -14,7 +14,7 @@ namespace palpate::plan {
 
 /// One way to run the scene.
 struct Candidate {
-  scene::Model model = scene::Model::kImplicitVolume;
+  std::string model = "implicit_volume";
   std::size_t nodes = 0;  ///< of the surface mesh, as the scene's key `nodes`
   double rate = 0;        ///< of deformation [Hz]
   scene::Integrator integrator = scene::Integrator::kAutomatic;

@@ -42,7 +42,7 @@ Vec3 nearest_point(const geometry::TriangleSurface& surface, const Vec3& to) {
 geometry::OrganShape solid_reference_shape(const scene::Scene& scene, double duration,
                                            double edge) {
   scene::Organ hull = scene.organs[0];
-  hull.model = scene::Model::kImplicitVolume;
+  hull.model = "implicit_volume";
   const auto coarse = scene::load_organ(hull).surface;
   auto surface = coarse;
   for (const auto& probe : scene.probes) {

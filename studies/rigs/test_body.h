@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 #include "modules/geometry/organ_shape.h"
 
 namespace palpate::rigs {

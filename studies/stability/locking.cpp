@@ -16,8 +16,6 @@
 namespace palpate::stability {
 namespace {
 
-using scene::Model;
-
 constexpr int kVersion = 1;           // of what is stored
 constexpr double kDensity = 1060;     // [kg/m³]
 constexpr double kPlateSpeed = 0.02;  // [m/s]
@@ -36,7 +34,7 @@ geometry::OrganShape solid_ball() {
       geometry::fill_surface(surface, sum / static_cast<double>(edges.size())));
 }
 
-scene::Scene plates_scene(Model model, double poisson_ratio) {
+scene::Scene plates_scene(const std::string& model, double poisson_ratio) {
   scene::Scene scene;
   const chart::Setting setting{model, 0, kRate};
   scene.organs.push_back(chart::solid_organ(setting, kBallRadius, 1, kLockingModulus, kDensity));
@@ -122,7 +120,8 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
   return 4 * contact.outcomes(path.state())[0].force.z();
 }
 
-LockingPoint locking_point(Model model, double poisson_ratio, const KeepGoing& keep_going) {
+LockingPoint locking_point(const std::string& model, double poisson_ratio,
+                           const KeepGoing& keep_going) {
   static const geometry::OrganShape kBall = solid_ball();
   std::vector<Pose> poses{rigs::plate_pose(kBallRadius, false),
                           rigs::plate_pose(-kBallRadius, true)};
@@ -143,7 +142,7 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
                                           const std::filesystem::path& folder,
                                           const KeepGoing& keep_going) {
   std::vector<LockingPoint> points;
-  for (const Model model : {Model::kCorotational, Model::kXpbdTetrahedra, Model::kNodalPressure}) {
+  for (const std::string model : {"corotational", "xpbd_tetrahedra", "nodal_pressure"}) {
     for (const double ratio : ratios) {
       const auto file = [&](const char* what) {
         return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kVersion);
@@ -153,8 +152,8 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
                                  known.force = locking_reference(ratio, keep_going);
                                  return known;
                                }).force;
-      LockingPoint point = kept(file(scene::word_of(model)),
-                                [&] { return locking_point(model, ratio, keep_going); });
+      LockingPoint point =
+          kept(file(model.c_str()), [&] { return locking_point(model, ratio, keep_going); });
       point.model = model;
       point.poisson_ratio = ratio;
       point.reference_force = reference;
@@ -169,9 +168,9 @@ void write_locking(const std::vector<LockingPoint>& points, const std::filesyste
       file, {"model", "poisson_ratio", "force_n", "reference_force_n", "force_error", "diverged"});
   for (const LockingPoint& p : points) {
     table.write_row(std::vector<std::string>{
-        scene::word_of(p.model), fmt::format("{:.6g}", p.poisson_ratio),
-        fmt::format("{:.8g}", p.force), fmt::format("{:.8g}", p.reference_force),
-        fmt::format("{:.6g}", p.error()), p.diverged ? "1" : "0"});
+        p.model, fmt::format("{:.6g}", p.poisson_ratio), fmt::format("{:.8g}", p.force),
+        fmt::format("{:.8g}", p.reference_force), fmt::format("{:.6g}", p.error()),
+        p.diverged ? "1" : "0"});
   }
   table.finish();
 }

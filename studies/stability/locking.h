@@ -14,7 +14,7 @@ inline constexpr double kLockingCompression = 0.1;  ///< of the diameter
 inline constexpr double kLockingModulus = 5e3;      ///< E [Pa]; forces are proportional to it
 
 struct LockingPoint {
-  scene::Model model = scene::Model::kCorotational;
+  std::string model = "corotational";
   double poisson_ratio = 0;
   double force = 0, reference_force = 0;  ///< on one plate [N]
   bool diverged = false;                  ///< the guards had to put the organ back
@@ -31,7 +31,8 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going);
 /// The same by a model as the simulator runs it, at rest, 162 nodes on the surface. The reference
 /// is left open.
 /// @throws InputError as above; what `keep_going` throws
-LockingPoint locking_point(scene::Model model, double poisson_ratio, const KeepGoing& keep_going);
+LockingPoint locking_point(const std::string& model, double poisson_ratio,
+                           const KeepGoing& keep_going);
 
 /// Poisson's ratios of the map.
 std::vector<double> locking_ratios(bool quick);

@@ -1,6 +1,7 @@
 #include "studies/stability/maps.h"
 
 #include "modules/core/error.h"
+#include "modules/scene/models.h"
 #include "studies/stability/haptic_loop.h"
 
 namespace palpate::stability {

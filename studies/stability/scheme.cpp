@@ -8,33 +8,29 @@
 #include "deformation/volume/rules/penalty.h"
 #include "modules/core/error.h"
 #include "modules/geometry/primitives.h"
+#include "modules/scene/models.h"
 
 namespace palpate::stability {
 namespace {
 
 using scene::Integrator;
-using scene::Model;
 
 constexpr double kPoissonRatio = 0.45;  // of the solid ball
 constexpr int kLevels = 2;
 
 /// Whether a step is symplectic Euler of the springs, so that their frequencies end it.
 bool is_explicit(const Scheme& scheme) {
-  return scheme.model != Model::kChainMail && !scene::is_solid(scheme.model) &&
-         scheme.model != Model::kXpbdSprings && scheme.integrator == Integrator::kSymplecticEuler;
+  return scheme.model != "chainmail" && !scene::is_solid(scheme.model) &&
+         scheme.model != "xpbd_springs" && scheme.integrator == Integrator::kSymplecticEuler;
 }
 
 Contents contents_of(const Scheme& scheme, const deformation::OrganModel& model) {
-  switch (scheme.model) {
-    case Model::kMassSpring:
-      return {};
-    case Model::kPenalty:
-      return {false, deformation::kPenaltyModulus / model.rest_volume};
-    case Model::kBourguignonCani:  // on a ball, a penalty of this modulus
-      return {false, deformation::BourguignonCani::kModulus / model.rest_volume};
-    default:
-      return {true, 0};
+  if (scheme.model == "mass_spring") return {};
+  if (scheme.model == "penalty") return {false, deformation::kPenaltyModulus / model.rest_volume};
+  if (scheme.model == "bourguignon_cani") {  // on a ball, a penalty of this modulus
+    return {false, deformation::BourguignonCani::kModulus / model.rest_volume};
   }
+  return {true, 0};
 }
 
 /// Of Φ̈ + 2a Φ̇ + b² Φ = 0 alone, whatever the springs: b² h² + 4 a h = 4.
@@ -49,24 +45,24 @@ const std::vector<Scheme>& schemes() {
   constexpr auto kExplicit = Integrator::kSymplecticEuler, kImplicit = Integrator::kBackwardEuler,
                  kOwn = Integrator::kAutomatic;
   static const std::vector<Scheme> kAll{
-      {"mass_spring", Model::kMassSpring, kExplicit, true, false},
-      {"implicit_volume", Model::kImplicitVolume, kExplicit, true, true},
-      {"mass_spring_backward", Model::kMassSpring, kImplicit, false, false},
-      {"implicit_volume_backward", Model::kImplicitVolume, kImplicit, true, true},
-      {"penalty", Model::kPenalty, kExplicit, false, true},
-      {"baumgarte", Model::kBaumgarte, kExplicit, false, true},
-      {"promayon", Model::kPromayon, kExplicit, false, true},
-      {"post_stabilisation", Model::kPostStabilisation, kExplicit, false, true},
-      {"bourguignon_cani", Model::kBourguignonCani, kExplicit, false, true},
-      {"zordan", Model::kZordan, kExplicit, false, true},
-      {"element_volume", Model::kElementVolume, kExplicit, false, true},
-      {"xpbd_springs", Model::kXpbdSprings, kOwn, true, true},
-      {"xpbd_tetrahedra", Model::kXpbdTetrahedra, kOwn, false, false},
-      {"corotational", Model::kCorotational, kOwn, true, false},
-      {"nodal_pressure", Model::kNodalPressure, kOwn, false, false},
-      {"quadratic_elements", Model::kQuadraticElements, kOwn, false, false},
-      {"modal", Model::kModal, kOwn, false, false},
-      {"chainmail", Model::kChainMail, kOwn, false, false}};
+      {"mass_spring", "mass_spring", kExplicit, true, false},
+      {"implicit_volume", "implicit_volume", kExplicit, true, true},
+      {"mass_spring_backward", "mass_spring", kImplicit, false, false},
+      {"implicit_volume_backward", "implicit_volume", kImplicit, true, true},
+      {"penalty", "penalty", kExplicit, false, true},
+      {"baumgarte", "baumgarte", kExplicit, false, true},
+      {"promayon", "promayon", kExplicit, false, true},
+      {"post_stabilisation", "post_stabilisation", kExplicit, false, true},
+      {"bourguignon_cani", "bourguignon_cani", kExplicit, false, true},
+      {"zordan", "zordan", kExplicit, false, true},
+      {"element_volume", "element_volume", kExplicit, false, true},
+      {"xpbd_springs", "xpbd_springs", kOwn, true, true},
+      {"xpbd_tetrahedra", "xpbd_tetrahedra", kOwn, false, false},
+      {"corotational", "corotational", kOwn, true, false},
+      {"nodal_pressure", "nodal_pressure", kOwn, false, false},
+      {"quadratic_elements", "quadratic_elements", kOwn, false, false},
+      {"modal", "modal", kOwn, false, false},
+      {"chainmail", "chainmail", kOwn, false, false}};
   return kAll;
 }
 
@@ -91,10 +87,10 @@ scene::Organ organ_of(const Scheme& scheme, double youngs_modulus) {
 
 const geometry::OrganShape& Shapes::shape_for(const Scheme& scheme) {
   const bool solid = scene::is_solid(scheme.model);
-  auto& shape = scheme.model == Model::kModal               ? modal_
-                : scheme.model == Model::kQuadraticElements ? quadratic_
-                : solid                                     ? solid_
-                                                            : surface_;
+  auto& shape = scheme.model == "modal"                ? modal_
+                : scheme.model == "quadratic_elements" ? quadratic_
+                : solid                                ? solid_
+                                                       : surface_;
   if (shape) return *shape;
   if (!solid) return shape.emplace(geometry::make_ball(kBallRadius, kLevels));
   shape = rigs::filled_ball(&shape == &modal_ ? 1 : &shape == &quadratic_ ? 0 : kLevels);
@@ -124,11 +120,11 @@ geometry::OrganShape ball_with_sliver(double ratio) {
 Prediction predict(const Scheme& scheme, TestBody& body) {
   Prediction prediction;
   prediction.given = body.dynamics().largest_step();
-  const bool pyramids = scheme.model == Model::kZordan || scheme.model == Model::kElementVolume;
+  const bool pyramids = scheme.model == "zordan" || scheme.model == "element_volume";
   if (!is_explicit(scheme) || pyramids) return prediction;
   prediction.value =
       predicted_step(body.model(), body.state().positions, contents_of(scheme, body.model()));
-  if (scheme.model == Model::kBaumgarte) {
+  if (scheme.model == "baumgarte") {
     prediction.value = std::min(prediction.value, baumgarte_step());
   }
   prediction.exact = true;

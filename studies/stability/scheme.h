@@ -19,7 +19,7 @@ inline constexpr double kYoungsModulus = 10e3;  // where it is not what varies [
 
 struct Scheme {
   const char* name;
-  scene::Model model;
+  std::string model;
   scene::Integrator integrator;
   bool quick;         ///< part of --quick
   bool keeps_volume;  ///< to some per mille, if all is well

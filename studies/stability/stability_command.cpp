@@ -197,8 +197,8 @@ void print_surprises(const std::vector<Column>& columns, std::ostream& out) {
 void print_locking(const std::vector<LockingPoint>& points, std::ostream& out) {
   out << "locking: error of the force at 10 % compression\n";
   for (const LockingPoint& p : points) {
-    out << fmt::format("  nu {:<7g} {:<17} {:+8.1f} %{}\n", p.poisson_ratio,
-                       scene::word_of(p.model), 100 * p.error(), p.diverged ? "  diverged" : "");
+    out << fmt::format("  nu {:<7g} {:<17} {:+8.1f} %{}\n", p.poisson_ratio, p.model,
+                       100 * p.error(), p.diverged ? "  diverged" : "");
   }
 }
 

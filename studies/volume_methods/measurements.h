@@ -12,7 +12,7 @@ namespace palpate::volume_methods {
 /// One row of the table.
 struct Method {
   std::string name;
-  scene::Model model = scene::Model::kImplicitVolume;
+  std::string model = "implicit_volume";
   std::size_t corrections = 0;
 };
 

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "deformation/model/organ_model.h"
+#include "deformation/steppers/symplectic_euler.h"
+#include "deformation/volume/implicit_volume.h"
 #include "deformation/world.h"
 #include "modules/geometry/primitives.h"
 #include "studies/rigs/squeezed_ball.h"
@@ -17,6 +19,16 @@ using rigs::plate_contacts;
 inline OrganModel ball_model(int levels, const scene::Organ& organ = ball_organ(),
                              const Vec3& gravity = Vec3::Zero()) {
   return build_organ_model(organ, gravity, geometry::make_ball(kBallRadius, levels));
+}
+
+/// Symplectic Euler with the implicit volume constraint.
+inline SymplecticEuler constrained(const OrganModel& model, int corrections = 0) {
+  return {model, std::make_unique<ImplicitVolume>(model, corrections)};
+}
+
+/// Symplectic Euler of the springs alone.
+inline SymplecticEuler springs_alone(const OrganModel& model) {
+  return {model, std::make_unique<NoVolume>(model)};
 }
 
 inline scene::Scene ball_scene(std::size_t probes, const scene::Organ& organ = ball_organ()) {

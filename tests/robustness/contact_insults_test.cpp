@@ -38,7 +38,7 @@ TEST_CASE("contact insults: two plates squeeze a ball to a twentieth and it come
 TEST_CASE("contact insults: plain springs lose their volume between plates, and their inside") {
   // Oracle: nothing keeps it; the walls meet and pass each other.
   auto organ = ball_organ();
-  organ.model = scene::Model::kMassSpring;
+  organ.model = "mass_spring";
   DeformationWorld world(ball_scene(2, organ), {geometry::make_ball(kBallRadius, 2)});
   const auto witness = squeeze_and_release(world, 0.95);
   CHECK(witness.finite);
@@ -230,15 +230,15 @@ TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor
 
 TEST_CASE("contact insults: a needle through a solid neither blows it up nor shakes the hand") {
   // Oracle: limits; the shape 8 s after it was pulled out, as above.
-  const auto model = GENERATE(scene::Model::kCorotational, scene::Model::kNodalPressure,
-                              scene::Model::kXpbdTetrahedra, scene::Model::kQuadraticElements);
+  const auto model = GENERATE(as<std::string>{}, "corotational", "nodal_pressure",
+                              "xpbd_tetrahedra", "quadratic_elements");
   const double speed = GENERATE(0.1, 0.5);
   const auto scene = needle_scene(1e-3, speed, testing::organ_of({model}));
   session::InProcess pipeline(scene,
                               {{testing::compact_shape(model)}, {geometry::TriangleSurface{}}});
   const auto [finite, largest, farthest] = prick(pipeline, speed);
-  INFO(scene::word_of(model) << ", speed " << speed << ": at most " << largest << " N, " << farthest
-                             << " m from rest");
+  INFO(model << ", speed " << speed << ": at most " << largest << " N, " << farthest
+             << " m from rest");
   CHECK(finite);
   CHECK(largest <= scene.haptics.max_force * (1 + 1e-12));
   CHECK(farthest < 0.5e-3);

@@ -11,7 +11,8 @@ namespace palpate::deformation::testing {
 /// Symplectic Euler that calls a multiple of its stable step its largest.
 class OverstatedStep : public OrganDynamics {
  public:
-  OverstatedStep(const OrganModel& model, double factor) : inner_(model), factor_(factor) {}
+  OverstatedStep(const OrganModel& model, double factor)
+      : inner_(constrained(model)), factor_(factor) {}
   double largest_step() const override { return factor_ * inner_.largest_step(); }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override {
     return inner_.step(h, rows, state);
@@ -27,7 +28,7 @@ class OverstatedStep : public OrganDynamics {
 /// its largest step is half of kPeriod.
 inline SimulatedOrgan ball_with_overstated_step(double factor) {
   auto organ = ball_organ();
-  const double h = SymplecticEuler::largest_step(ball_model(3, organ));
+  const double h = ImplicitVolume(ball_model(3, organ)).largest_step();
   organ.tissue.youngs_modulus *= std::pow(factor * h / (kPeriod / 2), 2);
   auto model = std::make_unique<const OrganModel>(ball_model(3, organ));
   auto dynamics = std::make_unique<OverstatedStep>(*model, (1 + 1e-9) * factor);

@@ -4,6 +4,7 @@
 
 #include "deformation/steppers/backward_euler.h"
 #include "deformation/steppers/symplectic_euler.h"
+#include "modules/scene/models.h"
 #include "tests/robustness/models_under_test.h"
 
 namespace palpate::deformation {
@@ -52,7 +53,7 @@ void check_first_order(const std::vector<double>& found, const std::string& name
 }
 
 struct Settling {
-  scene::Model model;
+  std::string model;
   scene::Integrator integrator;
   std::size_t iterations;  ///< so many that the system of a step is solved to the end
   int coarsest;            ///< number of steps in kTime
@@ -61,7 +62,9 @@ struct Settling {
 std::unique_ptr<OrganDynamics> solved_to_the_end(scene::Organ organ, const OrganModel& model,
                                                  std::size_t iterations) {
   if (organ.integrator == scene::Integrator::kBackwardEuler) {
-    return std::make_unique<BackwardEuler>(model, static_cast<int>(iterations));
+    return std::make_unique<BackwardEuler>(model,
+                                           KeptVolume{.is_kept = organ.model == "implicit_volume"},
+                                           static_cast<int>(iterations));
   }
   organ.iterations = iterations;
   return make_dynamics(organ, model, testing::kPeriod);
@@ -71,17 +74,15 @@ TEST_CASE("step halving: the error of every method halves with its step") {
   // Oracle: the order of the method. Solids are soft, so that these steps are short for their
   // swings.
   using scene::Integrator;
-  using scene::Model;
-  for (const Settling& kind :
-       {Settling{Model::kImplicitVolume, Integrator::kSymplecticEuler, 0, 200},
-        {Model::kImplicitVolume, Integrator::kBackwardEuler, 100, 200},
-        {Model::kXpbdSprings, Integrator::kAutomatic, 1, 200},
-        {Model::kXpbdSprings, Integrator::kAutomatic, 20, 200},
-        {Model::kXpbdTetrahedra, Integrator::kAutomatic, 1, 200},
-        {Model::kXpbdTetrahedra, Integrator::kAutomatic, 20, 200},
-        {Model::kCorotational, Integrator::kAutomatic, 200, 200},
-        {Model::kNodalPressure, Integrator::kAutomatic, 200, 200},
-        {Model::kQuadraticElements, Integrator::kAutomatic, 0, 200}}) {
+  for (const Settling& kind : {Settling{"implicit_volume", Integrator::kSymplecticEuler, 0, 200},
+                               {"implicit_volume", Integrator::kBackwardEuler, 100, 200},
+                               {"xpbd_springs", Integrator::kAutomatic, 1, 200},
+                               {"xpbd_springs", Integrator::kAutomatic, 20, 200},
+                               {"xpbd_tetrahedra", Integrator::kAutomatic, 1, 200},
+                               {"xpbd_tetrahedra", Integrator::kAutomatic, 20, 200},
+                               {"corotational", Integrator::kAutomatic, 200, 200},
+                               {"nodal_pressure", Integrator::kAutomatic, 200, 200},
+                               {"quadratic_elements", Integrator::kAutomatic, 0, 200}}) {
     auto organ = testing::organ_of({kind.model, kind.integrator});
     if (scene::is_solid(kind.model)) organ.tissue.youngs_modulus = 1e3;
     const auto model = build_organ_model(organ, Vec3::Zero(), testing::compact_shape(kind.model));
@@ -93,7 +94,7 @@ TEST_CASE("step halving: the error of every method halves with its step") {
 
 TEST_CASE("step halving: modes move exactly while nothing touches, so there is nothing to halve") {
   // Oracle: a damped oscillator's solution has no step. 1e-12: rounding of up to 1600 steps.
-  const auto organ = testing::organ_of({scene::Model::kModal});
+  const auto organ = testing::organ_of({"modal"});
   const auto model = build_organ_model(organ, Vec3::Zero(), testing::compact_shape(organ.model));
   const auto dynamics = make_dynamics(organ, model, testing::kPeriod);
   for (const double difference : differences(let_go, *dynamics, model, 10))
@@ -127,7 +128,7 @@ std::vector<Vec3> press(OrganDynamics& dynamics, const OrganModel& model, int st
 
 TEST_CASE("step halving: modes under a plate are of first order") {
   // Oracle: the order of backward Euler, which they step by while something presses.
-  auto organ = testing::organ_of({scene::Model::kModal});
+  auto organ = testing::organ_of({"modal"});
   organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.049)});
   const auto model = build_organ_model(organ, Vec3::Zero(), testing::compact_shape(organ.model));
   const auto dynamics = make_dynamics(organ, model, testing::kPeriod);
@@ -138,12 +139,12 @@ TEST_CASE("step halving: symplectic Euler's energy swings with the step but does
   // Oracle: a symplectic method keeps a Hamiltonian near by: half the step, half the swing; no
   // trend over 500 swings. Undamped springs, no volume constraint.
   auto organ = testing::ball_organ();
-  organ.model = scene::Model::kMassSpring;
+  organ.model = "mass_spring";
   organ.tissue.drag = organ.tissue.damping_ratio = 0;
   const auto model = testing::ball_model(1, organ);
   double last_swing = 0;
   for (const double fraction : {0.4, 0.2, 0.1}) {
-    SymplecticEuler dynamics(model);
+    auto dynamics = testing::springs_alone(model);
     const double h = fraction * dynamics.largest_step();
     OrganState state = rest_state(model);
     for (Vec3& p : state.positions) p = Vec3(1.02 * p.x(), p.y(), p.z() / 1.02);

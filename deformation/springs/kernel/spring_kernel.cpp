@@ -31,12 +31,12 @@ double* coordinates(std::vector<Vec3>& nodes) { return reinterpret_cast<double*>
 constexpr std::size_t kForces = 3 * kernel::kLanes;
 
 /// Floats are taken from a point amid the organ: the mean of some nodes spread over it.
-Vec3 packing_origin(const OrganModel& model, const std::vector<Vec3>& positions) {
+Vec3 packing_origin(const Body& body, const std::vector<Vec3>& positions) {
   constexpr std::size_t kSamples = 16;
-  const std::size_t stride = model.surface_node_count / kSamples + 1;
+  const std::size_t stride = body.surface_node_count / kSamples + 1;
   Vec3 sum = Vec3::Zero();
   double count = 0;
-  for (std::size_t i = 0; i < model.surface_node_count; i += stride, ++count) {
+  for (std::size_t i = 0; i < body.surface_node_count; i += stride, ++count) {
     sum += positions[i];
   }
   return sum / count;
@@ -70,12 +70,17 @@ std::vector<InstructionSet> available_instruction_sets() {
   return sets;
 }
 
-SpringKernel::SpringKernel(const OrganModel& model, ChunkRunner* runner, InstructionSet set)
-    : model_(model), runner_(runner), functions_(functions_of(set)), layout_(model) {
+SpringKernel::SpringKernel(const Body& body, const SpringNetwork& network, bool with_volume,
+                           ChunkRunner* runner, InstructionSet set)
+    : body_(body),
+      with_volume_(with_volume),
+      runner_(runner),
+      functions_(functions_of(set)),
+      layout_(body, network, with_volume) {
   const kernel::Layout layout = layout_.view();
   virtual_forces_.resize(kForces * layout.virtual_node_count * layout.chunk_count);
   sums_.resize(layout.chunk_count);
-  nodes_.resize(kernel::kNodeFloats * model.node_count());
+  nodes_.resize(kernel::kNodeFloats * body.node_count());
 }
 
 void SpringKernel::run(std::size_t count, ChunkBody body) {
@@ -84,12 +89,12 @@ void SpringKernel::run(std::size_t count, ChunkBody body) {
 }
 
 void SpringKernel::pack(const std::vector<Vec3>& positions, const std::vector<Vec3>* velocities) {
-  const std::size_t count = model_.node_count();
+  const std::size_t count = body_.node_count();
   PALPATE_DEMAND(positions.size() == count);
   kernel::Packing packing;
   packing.positions = coordinates(positions);
   packing.velocities = velocities == nullptr ? nullptr : coordinates(*velocities);
-  Eigen::Map<Vec3>(packing.origin) = packing_origin(model_, positions);
+  Eigen::Map<Vec3>(packing.origin) = packing_origin(body_, positions);
   packing.nodes = nodes_.data();
   const std::size_t chunks = sums_.size(), share = (count + chunks - 1) / chunks;
   run(chunks, [&](std::size_t chunk) {
@@ -100,7 +105,7 @@ void SpringKernel::pack(const std::vector<Vec3>& positions, const std::vector<Ve
 /// The kernel reads nodes four doubles at a time. Virtual nodes follow the surface nodes in memory;
 /// without any, a copy has one more node behind it.
 const double* SpringKernel::readable_beyond(const std::vector<Vec3>& positions) {
-  if (positions.size() > model_.surface_node_count) return coordinates(positions);
+  if (positions.size() > body_.surface_node_count) return coordinates(positions);
   padded_positions_ = positions;
   padded_positions_.push_back(Vec3::Zero());
   return coordinates(padded_positions_);
@@ -108,14 +113,14 @@ const double* SpringKernel::readable_beyond(const std::vector<Vec3>& positions) 
 
 kernel::Step SpringKernel::make_step(double h, const std::vector<Vec3>& positions,
                                      const std::vector<Vec3>& velocities, FreeStep& out) {
-  out.velocities.resize(model_.node_count());
-  if (out.volume.gradient.size() != model_.surface_node_count) {
-    out.volume.gradient.assign(model_.surface_node_count, Vec3::Zero());
+  out.velocities.resize(body_.node_count());
+  if (out.volume.gradient.size() != body_.surface_node_count) {
+    out.volume.gradient.assign(body_.surface_node_count, Vec3::Zero());
   }
   kernel::Step step;
   step.h = h;
-  step.drag = model_.drag;
-  repeat(model_.gravity, step.gravity);
+  step.drag = body_.drag;
+  repeat(body_.gravity, step.gravity);
   repeat(positions[0], step.origin);
   step.positions = readable_beyond(positions);
   step.velocities = coordinates(velocities);
@@ -132,17 +137,17 @@ void SpringKernel::free_step(double h, const OrganState& state, FreeStep& out) {
   pack(state.positions, &state.velocities);
   const kernel::Step step = make_step(h, state.positions, state.velocities, out);
   const auto step_chunk =
-      model_.preserve_volume ? functions_.step_chunk : functions_.step_chunk_without_volume;
+      with_volume_ ? functions_.step_chunk : functions_.step_chunk_without_volume;
   run(layout.chunk_count, [&](std::size_t chunk) { step_chunk(layout, step, chunk); });
   sum_chunks(out);
   finish_virtual_nodes(h, state, out);
 }
 
 void SpringKernel::evaluate_volume(const std::vector<Vec3>& positions, FreeStep& out) {
-  PALPATE_DEMAND(positions.size() == model_.node_count() &&
+  PALPATE_DEMAND(positions.size() == body_.node_count() &&
                  out.velocities.size() == positions.size());
   const kernel::Step step = make_step(0, positions, out.velocities, out);
-  if (!model_.preserve_volume) return;
+  if (!with_volume_) return;
   const kernel::Layout layout = layout_.view();
   run(layout.chunk_count, [&](std::size_t chunk) { functions_.volume_chunk(layout, step, chunk); });
   sum_chunks(out);
@@ -161,8 +166,8 @@ void SpringKernel::sum_chunks(FreeStep& out) const {
 }
 
 void SpringKernel::finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const {
-  const std::size_t surface_count = model_.surface_node_count;
-  const std::size_t virtual_count = model_.node_count() - surface_count;
+  const std::size_t surface_count = body_.surface_node_count;
+  const std::size_t virtual_count = body_.node_count() - surface_count;
   for (std::size_t k = 0; k < virtual_count; ++k) {
     std::array<double, kForces> lanes{};
     for (std::size_t chunk = 0; chunk < sums_.size(); ++chunk) {
@@ -176,7 +181,7 @@ void SpringKernel::finish_virtual_nodes(double h, const OrganState& state, FreeS
     const std::size_t node = surface_count + k;
     const Vec3& v = state.velocities[node];
     out.velocities[node] =
-        v + h * (model_.inverse_masses[node] * force + model_.gravity - model_.drag * v);
+        v + h * (body_.inverse_masses[node] * force + body_.gravity - body_.drag * v);
   }
 }
 
@@ -195,7 +200,7 @@ void SpringKernel::finish_step(double h, double volume_impulse, FreeStep& step, 
   run(layout.chunk_count, [&](std::size_t chunk) {
     functions_.move(move, chunk * stride, std::min((chunk + 1) * stride, count));
   });
-  for (std::size_t i = layout.surface_node_count; i < model_.node_count(); ++i) {
+  for (std::size_t i = layout.surface_node_count; i < body_.node_count(); ++i) {
     state.positions[i] += h * state.velocities[i];
   }
 }

@@ -1,6 +1,6 @@
 // The forces of all springs and the volume constraint's gradient in one pass over the nodes, fast.
 //
-// The plain code is spring_forces.h and volume_constraint.h. Each node gathers its springs from its
+// The plain code is spring_forces.h and volume_gradient.h. Each node gathers its springs from its
 // neighbours in float, sixteen nodes side by side (spring_kernel_arrays.h): forces agree with the
 // plain ones to some 1e-7 of stiffness times position, both ends of a spring to the bit. The volume
 // gradient needs but a cross product more per neighbour in the one-ring, with d_j = x_j − x_i
@@ -13,9 +13,9 @@
 
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "deformation/model/free_step.h"
+#include "deformation/model/organ_state.h"
 #include "deformation/springs/kernel/spring_kernel_layout.h"
-#include "deformation/volume/volume_constraint.h"
 #include "modules/core/aligned_vector.h"
 #include "modules/core/parallel.h"
 
@@ -27,26 +27,21 @@ const char* name_of(InstructionSet set);
 /// Those this CPU has, from the slowest on.
 std::vector<InstructionSet> available_instruction_sets();
 
-/// What the volume constraint's division needs of a step.
-struct FreeStep {
-  VolumeGradient volume;         ///< V, g and gᵀM⁻¹g at the step's start
-  double volume_velocity = 0;    ///< g·v̂ [m³/s]
-  std::vector<Vec3> velocities;  ///< v̂ = v + h (M⁻¹F + gravity − drag v), 0 where fixed [m/s]
-};
-
 class SpringKernel {
  public:
-  /// @param model   outlives the kernel
-  /// @param runner  outlives the kernel; none: the calling thread alone
-  explicit SpringKernel(const OrganModel& model, ChunkRunner* runner = nullptr,
-                        InstructionSet set = available_instruction_sets().back());
+  /// @param body         outlives the kernel
+  /// @param with_volume  whether V and its gradient are wanted, which cost a little
+  /// @param runner       outlives the kernel; none: the calling thread alone
+  SpringKernel(const Body& body, const SpringNetwork& network, bool with_volume,
+               ChunkRunner* runner = nullptr,
+               InstructionSet set = available_instruction_sets().back());
 
   /// The step of h [s] without the volume's multiplier, and what the multiplier needs. Allocates
   /// at the first call only.
   void free_step(double h, const OrganState& state, FreeStep& out);
 
   /// Of such a step the volume alone: V, g and gᵀM⁻¹g at other positions, and g·v̂ with the v̂ in
-  /// `out`  (node_count), all in double. Zeros if the model keeps no volume.
+  /// `out`  (node_count), all in double. Zeros unless with_volume.
   void evaluate_volume(const std::vector<Vec3>& positions, FreeStep& out);
 
   /// v⁺ = v̂ − M⁻¹g σ and x⁺ = x + h v⁺, taking v̂ out of `step`.
@@ -64,7 +59,8 @@ class SpringKernel {
   void sum_chunks(FreeStep& out) const;
   void finish_virtual_nodes(double h, const OrganState& state, FreeStep& out) const;
 
-  const OrganModel& model_;
+  const Body& body_;
+  bool with_volume_;
   ChunkRunner* runner_;
   const kernel::Functions& functions_;
   SpringKernelLayout layout_;

@@ -19,13 +19,13 @@ struct Alike {
   double stiffness = 0, damping_time = 0;
 };
 
-Alike common_values(const OrganModel& model, std::size_t first, std::size_t count) {
+Alike common_values(const SpringNetwork& network, std::size_t first, std::size_t count) {
   if (count == 0) return {};
-  const double stiffness = model.network().springs[first].stiffness;
-  const double damping = model.network().damping[first];
+  const double stiffness = network.springs[first].stiffness;
+  const double damping = network.damping[first];
   for (std::size_t s = first; s < first + count; ++s) {
-    PALPATE_DEMAND(model.network().springs[s].stiffness == stiffness);
-    PALPATE_DEMAND(model.network().damping[s] == damping);
+    PALPATE_DEMAND(network.springs[s].stiffness == stiffness);
+    PALPATE_DEMAND(network.damping[s] == damping);
   }
   return {stiffness, damping / stiffness};
 }
@@ -36,11 +36,11 @@ std::uint32_t packed_offset(std::size_t node) {
 
 }  // namespace
 
-SpringKernelLayout::Rows SpringKernelLayout::rows_of(const OrganModel& model, std::size_t first,
-                                                     std::size_t count) {
-  Rows rows(model.surface_node_count);
+SpringKernelLayout::Rows SpringKernelLayout::rows_of(const Body& body, const SpringNetwork& network,
+                                                     std::size_t first, std::size_t count) {
+  Rows rows(body.surface_node_count);
   for (std::size_t s = first; s < first + count; ++s) {
-    const Spring& spring = model.network().springs[s];
+    const Spring& spring = network.springs[s];
     rows[spring.node_a].push_back({spring.node_b, spring.rest_length});
     rows[spring.node_b].push_back({spring.node_a, spring.rest_length});
   }
@@ -61,45 +61,45 @@ void SpringKernelLayout::put_in_order(const std::vector<std::vector<std::uint32_
   }
 }
 
-SpringKernelLayout::SpringKernelLayout(const OrganModel& model) {
-  const std::size_t node_count = model.surface_node_count;
+SpringKernelLayout::SpringKernelLayout(const Body& body, const SpringNetwork& network,
+                                       bool with_volume) {
+  const std::size_t node_count = body.surface_node_count;
   scalars_.surface_node_count = node_count;
-  scalars_.virtual_node_count = model.node_count() - node_count;
+  scalars_.virtual_node_count = body.node_count() - node_count;
   scalars_.slice_count = (node_count + kernel::kLanes - 1) / kernel::kLanes;
   scalars_.slices_per_chunk =
       std::max(kLeastSlicesPerChunk, (scalars_.slice_count + kMostChunks - 1) / kMostChunks);
   scalars_.chunk_count =
       (scalars_.slice_count + scalars_.slices_per_chunk - 1) / scalars_.slices_per_chunk;
 
-  const auto& network = model.network();
-  const Alike structural = common_values(model, 0, network.structural_count);
-  const Alike bending = common_values(model, network.structural_count, network.bending_count);
+  const Alike structural = common_values(network, 0, network.structural_count);
+  const Alike bending = common_values(network, network.structural_count, network.bending_count);
   scalars_.structural_stiffness = static_cast<float>(structural.stiffness);
   scalars_.structural_damping_time = static_cast<float>(structural.damping_time);
   scalars_.bending_stiffness = static_cast<float>(bending.stiffness);
   scalars_.bending_damping_time = static_cast<float>(bending.damping_time);
 
-  add_rows(model);
-  Rows first = rows_of(model, 0, network.structural_count);
-  if (model.preserve_volume) {
-    const auto rings = geometry::ordered_one_rings(model.triangles, node_count);
+  add_rows(body);
+  Rows first = rows_of(body, network, 0, network.structural_count);
+  if (with_volume) {
+    const auto rings = geometry::ordered_one_rings(body.triangles, node_count);
     put_in_order(rings, first);
     add_rings(rings);
     add_cover(rings);
   }
-  const Rows second = rows_of(model, network.structural_count, network.bending_count);
+  const Rows second = rows_of(body, network, network.structural_count, network.bending_count);
   for (std::size_t slice = 0; slice < scalars_.slice_count; ++slice) {
     add_slice(slice * kernel::kLanes, first, second);
   }
-  if (scalars_.virtual_node_count > 0) add_inner_springs(model);
+  if (scalars_.virtual_node_count > 0) add_inner_springs(network);
 }
 
-void SpringKernelLayout::add_rows(const OrganModel& model) {
+void SpringKernelLayout::add_rows(const Body& body) {
   const std::size_t node_count = scalars_.surface_node_count;
   for (std::size_t row = 0; row < scalars_.slice_count * kernel::kLanes; ++row) {
     row_nodes_.push_back(packed_offset(std::min(row, node_count - 1)));
     inverse_masses_.insert(inverse_masses_.end(), 3,
-                           row < node_count ? model.inverse_masses[row] : 0);
+                           row < node_count ? body.inverse_masses[row] : 0);
   }
 }
 
@@ -187,23 +187,23 @@ void SpringKernelLayout::add_cover(const std::vector<std::vector<std::uint32_t>>
   first_fans_.push_back(static_cast<std::uint32_t>(cover_.fans.size()));
 }
 
-void SpringKernelLayout::add_inner_springs(const OrganModel& model) {
+void SpringKernelLayout::add_inner_springs(const SpringNetwork& network) {
   const std::size_t rows = row_nodes_.size();
   inner_nodes_.assign(rows, packed_offset(scalars_.surface_node_count));
   inner_rest_lengths_.assign(rows, 0);
   inner_stiffnesses_.assign(rows, 0);
   inner_dampings_.assign(rows, 0);
-  const auto& network = model.network();
   for (std::size_t s = network.springs.size() - network.inner_count; s < network.springs.size();
        ++s) {
     const Spring& spring = network.springs[s];
     const std::size_t row = spring.node_a;
-    PALPATE_DEMAND(row < model.surface_node_count && spring.node_b >= model.surface_node_count);
+    PALPATE_DEMAND(row < scalars_.surface_node_count &&
+                   spring.node_b >= scalars_.surface_node_count);
     PALPATE_DEMAND(inner_stiffnesses_[row] == 0);  // one per node
     inner_nodes_[row] = packed_offset(spring.node_b);
     inner_rest_lengths_[row] = static_cast<float>(spring.rest_length);
     inner_stiffnesses_[row] = static_cast<float>(spring.stiffness);
-    inner_dampings_[row] = static_cast<float>(model.network().damping[s]);
+    inner_dampings_[row] = static_cast<float>(network.damping[s]);
   }
   for (std::size_t slice = 0; slice < slices_.size(); ++slice) add_links(slice);
 }

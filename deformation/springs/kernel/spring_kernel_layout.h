@@ -1,10 +1,11 @@
-// Builds the arrays of spring_kernel_arrays.h from an organ model.
+// Builds the arrays of spring_kernel_arrays.h from a body and its springs.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "deformation/model/body.h"
+#include "deformation/model/spring_network.h"
 #include "deformation/springs/kernel/spring_kernel_arrays.h"
 #include "modules/core/aligned_vector.h"
 #include "modules/geometry/triangle_fans.h"
@@ -13,7 +14,8 @@ namespace palpate::deformation {
 
 class SpringKernelLayout {
  public:
-  explicit SpringKernelLayout(const OrganModel& model);
+  /// @param with_volume  whether the triangles around each node are wanted, too
+  SpringKernelLayout(const Body& body, const SpringNetwork& network, bool with_volume);
 
   /// Valid as long as this lives and stays where it is.
   kernel::Layout view() const;
@@ -34,14 +36,15 @@ class SpringKernelLayout {
   };
 
   /// Neighbours by springs [first, first + count), seen from both ends.
-  static Rows rows_of(const OrganModel& model, std::size_t first, std::size_t count);
+  static Rows rows_of(const Body& body, const SpringNetwork& network, std::size_t first,
+                      std::size_t count);
   /// Each row's neighbours in the order of its ring.
   static void put_in_order(const std::vector<std::vector<std::uint32_t>>& rings, Rows& rows);
-  void add_rows(const OrganModel& model);
+  void add_rows(const Body& body);
   void add_slice(std::size_t first_row, const Rows& structural, const Rows& bending);
   void add_rings(const std::vector<std::vector<std::uint32_t>>& rings);
   void add_cover(const std::vector<std::vector<std::uint32_t>>& rings);
-  void add_inner_springs(const OrganModel& model);
+  void add_inner_springs(const SpringNetwork& network);
   void add_links(std::size_t slice);
 
   kernel::Layout scalars_;

@@ -23,12 +23,12 @@ Eigen::Map<Vec3> place(AlignedVector<double>& nodes, std::size_t node) {
 }
 
 /// Springs still to visit, from the first node on.
-std::vector<std::size_t> from_node_to_node(const OrganModel& model) {
-  const auto& springs = model.network().springs;
+std::vector<std::size_t> from_node_to_node(const Body& body, const SpringNetwork& network) {
+  const auto& springs = network.springs;
   std::vector<std::size_t> order;
   for (std::size_t s = 0; s < springs.size(); ++s) {
     const bool moves =
-        model.inverse_masses[springs[s].node_a] + model.inverse_masses[springs[s].node_b] > 0;
+        body.inverse_masses[springs[s].node_a] + body.inverse_masses[springs[s].node_b] > 0;
     if (moves && springs[s].stiffness > 0) order.push_back(s);
   }
   std::ranges::stable_sort(
@@ -39,10 +39,10 @@ std::vector<std::size_t> from_node_to_node(const OrganModel& model) {
 /// Takes springs out of an order such that four have no node in common.
 class Chooser {
  public:
-  explicit Chooser(const OrganModel& model)
-      : springs_(model.network().springs),
-        order_(from_node_to_node(model)),
-        last_batch_(model.node_count(), -2) {}
+  Chooser(const Body& body, const SpringNetwork& network)
+      : springs_(network.springs),
+        order_(from_node_to_node(body, network)),
+        last_batch_(body.node_count(), -2) {}
 
   bool is_done() const { return next_ == order_.size() && waiting_.empty(); }
 
@@ -83,31 +83,32 @@ class Chooser {
 
 }  // namespace
 
-SpringVisits::SpringVisits(const OrganModel& model, InstructionSet set) : visit_(visits_by(set)) {
-  add_batches(model);
-  const std::size_t nodes = model.node_count() + 1;  // and the one of lanes left over
+SpringVisits::SpringVisits(const Body& body, const SpringNetwork& network, InstructionSet set)
+    : visit_(visits_by(set)) {
+  add_batches(body, network);
+  const std::size_t nodes = body.node_count() + 1;  // and the one of lanes left over
   start_.assign(kernel::kVisitedDoubles * nodes, 0);
   nodes_ = start_;
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    nodes_[offset(i) + 3] = model.inverse_masses[i];
+  for (std::size_t i = 0; i < body.node_count(); ++i) {
+    nodes_[offset(i) + 3] = body.inverse_masses[i];
   }
 }
 
-void SpringVisits::add_batches(const OrganModel& model) {
-  Chooser chooser(model);
+void SpringVisits::add_batches(const Body& body, const SpringNetwork& network) {
+  Chooser chooser(body, network);
   while (!chooser.is_done()) {
     kernel::VisitBatch batch;
-    std::ranges::fill(batch.nodes_a, offset(model.node_count()));
-    std::ranges::fill(batch.nodes_b, offset(model.node_count()));
+    std::ranges::fill(batch.nodes_a, offset(body.node_count()));
+    std::ranges::fill(batch.nodes_b, offset(body.node_count()));
     std::ranges::fill(batch.flexibilities, 1.0);
     std::size_t lane = 0;
     for (const std::size_t s : chooser.next_batch()) {
-      const Spring& spring = model.network().springs[s];
+      const Spring& spring = network.springs[s];
       batch.nodes_a[lane] = offset(spring.node_a);
       batch.nodes_b[lane] = offset(spring.node_b);
       batch.rest_lengths[lane] = spring.rest_length;
       batch.flexibilities[lane] = 1 / spring.stiffness;
-      batch.damping_times[lane] = model.network().damping[s] / spring.stiffness;
+      batch.damping_times[lane] = network.damping[s] / spring.stiffness;
       ++lane;
     }
     batches_.push_back(batch);

@@ -10,7 +10,8 @@
 
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "deformation/model/body.h"
+#include "deformation/model/spring_network.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/springs/kernel/spring_visits_arrays.h"
 
@@ -19,8 +20,8 @@ namespace palpate::deformation {
 class SpringVisits {
  public:
   /// Springs of no stiffness and those between fixed nodes are left out.
-  explicit SpringVisits(const OrganModel& model,
-                        InstructionSet set = available_instruction_sets().back());
+  SpringVisits(const Body& body, const SpringNetwork& network,
+               InstructionSet set = available_instruction_sets().back());
 
   /// Passes over all springs.
   /// @param h           of the step [s]
@@ -34,7 +35,7 @@ class SpringVisits {
   const std::vector<kernel::VisitBatch>& batches() const { return batches_; }
 
  private:
-  void add_batches(const OrganModel& model);
+  void add_batches(const Body& body, const SpringNetwork& network);
 
   kernel::VisitSprings visit_;
   std::vector<kernel::VisitBatch> batches_;

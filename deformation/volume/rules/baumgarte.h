@@ -18,13 +18,12 @@
 // they are soft: h < 2 (√(a² + b²) − a)/b², 16.6 ms.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
-class Baumgarte : public OrganDynamics {
+class Baumgarte : public VolumeRule {
  public:
   static constexpr double kA = 50, kB = 50;  ///< a, b [1/s]
 
@@ -33,16 +32,12 @@ class Baumgarte : public OrganDynamics {
 
   explicit Baumgarte(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
+  bool reads_gradient() const override { return true; }
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
 
  private:
   const OrganModel& model_;
   double largest_step_;
-  SpringKernel kernel_;
-  FreeStep free_;
 };
 
 }  // namespace palpate::deformation

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "deformation/volume/rules/explicit_step.h"
 namespace palpate::deformation {
 
-BourguignonCani::BourguignonCani(const OrganModel& model) : model_(model), kernel_(model) {
+BourguignonCani::BourguignonCani(const OrganModel& model) : model_(model) {
   const auto& areas = model.network().node_areas;
   rest_area_ = std::accumulate(areas.begin(), areas.end(), 0.0);
   for (const double area : areas) shares_.push_back(area / rest_area_);
@@ -58,20 +59,11 @@ double BourguignonCani::stored_energy(const OrganState& state) const {
   return 0.5 * stiffness_ * error * error;
 }
 
-StepReport BourguignonCani::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. springs, damping, drag, gravity
-  kernel_.free_step(h, state, free_);
-
-  // 2. barycentre forces
+VolumeAction BourguignonCani::before_contacts(double h, const OrganState& state, FreeStep& step) {
   const double distance = evaluate(state.positions);
   const double force = stiffness_ * (target_distance(state) - distance);
-  add_along_gradient(model_, directions_, h * force, free_.velocities);
-  state.pressure = force / rest_area_;
-
-  // 3. contacts; 4. positions
-  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
-  kernel_.finish_step(h, 0, free_, state);
-  return {};
+  add_along_gradient(model_, directions_, h * force, step.velocities);
+  return {.pressure = force / rest_area_};
 }
 
 }  // namespace palpate::deformation

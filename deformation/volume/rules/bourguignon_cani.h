@@ -20,24 +20,20 @@
 // What it keeps is a mean radius, not a volume: the two agree to first order for a ball only.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
-class BourguignonCani : public OrganDynamics {
+class BourguignonCani : public VolumeRule {
  public:
   static constexpr double kModulus = 10e3;  ///< K [Pa]
 
   explicit BourguignonCani(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
 
-  double stored_energy(const OrganState& state) const;  ///< ½ k (L − L*)² [J]
+  double stored_energy(const OrganState& state) const override;  ///< ½ k (L − L*)² [J]
   /// L of these positions [m].
   double mean_distance(const std::vector<Vec3>& positions) const;
 
@@ -53,8 +49,6 @@ class BourguignonCani : public OrganDynamics {
   double stiffness_ = 0;        ///< k [N/m]
   double rest_area_ = 0;        ///< A [m²]
   double largest_step_ = 0;
-  SpringKernel kernel_;
-  FreeStep free_;
   std::vector<Vec3> directions_;  ///< u_j
 };
 

@@ -1,13 +1,13 @@
 #include "deformation/volume/rules/element_volume.h"
 
+#include "deformation/volume/rules/explicit_step.h"
 namespace palpate::deformation {
 
 ElementVolume::ElementVolume(const OrganModel& model)
     : model_(model),
       pyramids_(build_pyramids(model)),
       largest_step_(largest_explicit_step(model, 0)),
-      constraints_(pyramids_.size()),
-      kernel_(model) {
+      constraints_(pyramids_.size()) {
   for (const Pyramid& pyramid : pyramids_) {
     mean_denominator_ +=
         inverse_mass_along(pyramid, evaluate_pyramid(pyramid, model.rest_positions));
@@ -52,26 +52,18 @@ void ElementVolume::relax(std::size_t t, std::vector<Vec3>& velocities) {
   }
 }
 
-StepReport ElementVolume::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. springs, damping, drag, gravity
-  kernel_.free_step(h, state, free_);
-
-  // 2. one element after the other, forwards and backwards
+VolumeAction ElementVolume::before_contacts(double h, const OrganState& state, FreeStep& step) {
   const bool all = prepare(h, state);
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {  // forwards and backwards
     for (std::size_t t = 0; t < pyramids_.size(); ++t) {
-      relax(sweep % 2 == 0 ? t : pyramids_.size() - 1 - t, free_.velocities);
+      relax(sweep % 2 == 0 ? t : pyramids_.size() - 1 - t, step.velocities);
     }
   }
-
-  // 3. contacts; 4. positions
-  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
-  kernel_.finish_step(h, 0, free_, state);
-  state.pressure = 0;
+  double pressure = 0;
   for (std::size_t t = 0; t < pyramids_.size(); ++t) {
-    state.pressure -= pyramids_[t].area_share * constraints_[t].impulse / h;
+    pressure -= pyramids_[t].area_share * constraints_[t].impulse / h;
   }
-  return {.volume_skipped = !all};
+  return {.pressure = pressure, .skipped = !all};
 }
 
 }  // namespace palpate::deformation

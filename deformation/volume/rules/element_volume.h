@@ -17,24 +17,20 @@
 // and answers a squeeze several times stiffer than a shell filled with fluid.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
 #include "deformation/volume/rules/pyramids.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
-class ElementVolume : public OrganDynamics {
+class ElementVolume : public VolumeRule {
  public:
   static constexpr int kSweeps = 4;
 
   /// @param model  has virtual nodes
   explicit ElementVolume(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
 
  private:
   struct Constraint {
@@ -53,8 +49,6 @@ class ElementVolume : public OrganDynamics {
   double mean_denominator_ = 0;  ///< of g_tᵀM⁻¹g_t at rest [m⁴/kg]
   double largest_step_;
   std::vector<Constraint> constraints_;
-  SpringKernel kernel_;
-  FreeStep free_;
 };
 
 }  // namespace palpate::deformation

@@ -13,15 +13,15 @@ double largest_explicit_step(const OrganModel& model, double added_squared_frequ
   return kExplicitStepSafety * (std::sqrt(d * d + 4 * sum) - d) / sum;
 }
 
-void add_along_gradient(const OrganModel& model, const std::vector<Vec3>& gradient, double scale,
+void add_along_gradient(const Body& body, const std::vector<Vec3>& gradient, double scale,
                         std::vector<Vec3>& out) {
   for (std::size_t i = 0; i < gradient.size(); ++i) {
-    out[i] += (scale * model.inverse_masses[i]) * gradient[i];
+    out[i] += (scale * body.inverse_masses[i]) * gradient[i];
   }
 }
 
-bool has_vanished(const OrganModel& model, const VolumeGradient& volume) {
-  return !(volume.denominator > kVanishedDenominator * model.rest_denominator);
+bool has_vanished(const Body& body, const VolumeGradient& volume) {
+  return !(volume.denominator > kVanishedDenominator * body.rest_denominator);
 }
 
 }  // namespace palpate::deformation

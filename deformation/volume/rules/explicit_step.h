@@ -20,10 +20,10 @@ inline constexpr double kExplicitStepSafety = 0.9;
 double largest_explicit_step(const OrganModel& model, double added_squared_frequency);
 
 /// out_i += scale M⁻¹ g_i over the surface nodes; fixed nodes keep what they have.
-void add_along_gradient(const OrganModel& model, const std::vector<Vec3>& gradient, double scale,
+void add_along_gradient(const Body& body, const std::vector<Vec3>& gradient, double scale,
                         std::vector<Vec3>& out);
 
 /// gᵀM⁻¹g is too small for a multiplier to change the volume.
-bool has_vanished(const OrganModel& model, const VolumeGradient& volume);
+bool has_vanished(const Body& body, const VolumeGradient& volume);
 
 }  // namespace palpate::deformation

@@ -1,13 +1,13 @@
 #include "deformation/volume/rules/penalty.h"
 
+#include "deformation/volume/rules/explicit_step.h"
 namespace palpate::deformation {
 
 Penalty::Penalty(const OrganModel& model, double modulus)
     : model_(model),
       modulus_(modulus),
       largest_step_(
-          largest_explicit_step(model, modulus * model.rest_denominator / model.rest_volume)),
-      kernel_(model) {}
+          largest_explicit_step(model, modulus * model.rest_denominator / model.rest_volume)) {}
 
 double Penalty::stored_energy(const OrganState& state) const {
   const double error =
@@ -15,18 +15,11 @@ double Penalty::stored_energy(const OrganState& state) const {
   return 0.5 * modulus_ * error * error / state.target_volume;
 }
 
-StepReport Penalty::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. springs, damping, drag, gravity; the volume
-  kernel_.free_step(h, state, free_);
-
-  // 2. pressure of the volume lost
-  state.pressure = modulus_ * (state.target_volume - free_.volume.volume) / state.target_volume;
-  add_along_gradient(model_, free_.volume.gradient, h * state.pressure, free_.velocities);
-
-  // 3. contacts; 4. positions
-  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
-  kernel_.finish_step(h, 0, free_, state);
-  return {};
+VolumeAction Penalty::before_contacts(double h, const OrganState& state, FreeStep& step) {
+  const double pressure =
+      modulus_ * (state.target_volume - step.volume.volume) / state.target_volume;
+  add_along_gradient(model_, step.volume.gradient, h * pressure, step.velocities);
+  return {.pressure = pressure};
 }
 
 }  // namespace palpate::deformation

@@ -11,31 +11,26 @@
 // largest step once K is large.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
 /// K of a scene's `model: penalty` [Pa].
 inline constexpr double kPenaltyModulus = 10e3;
 
-class Penalty : public OrganDynamics {
+class Penalty : public VolumeRule {
  public:
   /// @param modulus  K [Pa], > 0
   explicit Penalty(const OrganModel& model, double modulus = kPenaltyModulus);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
-  double stored_energy(const OrganState& state) const;  ///< ½ K (V − V*)²/V* [J]
+  bool reads_gradient() const override { return true; }
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
+  double stored_energy(const OrganState& state) const override;  ///< ½ K (V − V*)²/V* [J]
 
  private:
   const OrganModel& model_;
   double modulus_, largest_step_;
-  SpringKernel kernel_;
-  FreeStep free_;
 };
 
 }  // namespace palpate::deformation

@@ -1,28 +1,20 @@
 #include "deformation/volume/rules/post_stabilisation.h"
 
+#include "deformation/volume/rules/explicit_step.h"
 namespace palpate::deformation {
 
 PostStabilisation::PostStabilisation(const OrganModel& model)
-    : model_(model), largest_step_(largest_explicit_step(model, 0)), kernel_(model) {}
+    : model_(model), largest_step_(largest_explicit_step(model, 0)) {}
 
-StepReport PostStabilisation::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. springs, damping, drag, gravity
-  kernel_.free_step(h, state, free_);
+VolumeAction PostStabilisation::before_contacts(double, const OrganState&, FreeStep&) {
+  return {.rate = 0};  // g·v⁺ = 0
+}
 
-  // 2. contacts and g·v⁺ = 0; 3. positions
-  const VolumeRow row{free_.volume, 0};
-  const auto report =
-      solve_contacts(model_, &row, free_.volume_velocity, h, rows, free_.velocities);
-  kernel_.finish_step(h, report.volume_impulse, free_, state);
-  state.pressure = -report.volume_impulse / h;
-
-  // 4. back to V*
-  kernel_.evaluate_volume(state.positions, free_);
-  const VolumeGradient& end = free_.volume;
-  if (has_vanished(model_, end)) return {.volume_skipped = true};
+bool PostStabilisation::after_step(double, const VolumeGradient& end, OrganState& state) {
+  if (has_vanished(model_, end)) return false;
   const double error = end.volume - state.target_volume;
   add_along_gradient(model_, end.gradient, -error / end.denominator, state.positions);
-  return {report.volume_skipped};
+  return true;
 }
 
 }  // namespace palpate::deformation

@@ -13,26 +13,23 @@
 // contacts undo that. A moving V* is followed by the projection alone.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
-class PostStabilisation : public OrganDynamics {
+class PostStabilisation : public VolumeRule {
  public:
   explicit PostStabilisation(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
+  bool reads_gradient() const override { return true; }
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
+  bool reads_end_gradient() const override { return true; }
+  bool after_step(double h, const VolumeGradient& end, OrganState& state) override;
 
  private:
   const OrganModel& model_;
   double largest_step_;
-  SpringKernel kernel_;
-  FreeStep free_;
 };
 
 }  // namespace palpate::deformation

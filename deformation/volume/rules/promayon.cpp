@@ -1,19 +1,17 @@
 #include "deformation/volume/rules/promayon.h"
 
+#include "deformation/volume/rules/explicit_step.h"
 #include "deformation/volume/rules/volume_along_line.h"
 
 namespace palpate::deformation {
 
 Promayon::Promayon(const OrganModel& model)
-    : model_(model), largest_step_(largest_explicit_step(model, 0)), kernel_(model) {}
+    : model_(model), largest_step_(largest_explicit_step(model, 0)) {}
 
-StepReport Promayon::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. forces: the step without volume, contacts included
-  kernel_.free_step(h, state, free_);
-  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
-  kernel_.finish_step(h, 0, free_, state);
+VolumeAction Promayon::before_contacts(double, const OrganState&, FreeStep&) { return {}; }
 
-  // 2. constraint: along d = M⁻¹g(x̂), as far as V* asks
+bool Promayon::after_step(double h, const VolumeGradient&, OrganState& state) {
+  // Along d = M⁻¹g(x̂), as far as V* asks.
   evaluate_volume(model_, state.positions, end_);
   directions_.assign(model_.surface_node_count, Vec3::Zero());
   add_along_gradient(model_, end_.gradient, 1, directions_);
@@ -25,7 +23,7 @@ StepReport Promayon::step(double h, std::span<ContactRow> rows, OrganState& stat
     state.velocities[i] += (*alpha / h) * directions_[i];
   }
   state.pressure = alpha.value_or(0) / (h * h);
-  return {.volume_skipped = !alpha};
+  return alpha.has_value();
 }
 
 }  // namespace palpate::deformation

@@ -16,26 +16,21 @@
 // h² p g/m (micrometres), which the next step's contacts undo and feel as force.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
-class Promayon : public OrganDynamics {
+class Promayon : public VolumeRule {
  public:
   explicit Promayon(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
+  bool after_step(double h, const VolumeGradient& end, OrganState& state) override;
 
  private:
   const OrganModel& model_;
   double largest_step_;
-  SpringKernel kernel_;
-  FreeStep free_;
   VolumeGradient end_;            ///< at x̂
   std::vector<Vec3> directions_;  ///< M⁻¹ g(x̂)
 };

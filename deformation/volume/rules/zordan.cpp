@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "deformation/volume/rules/explicit_step.h"
 namespace palpate::deformation {
 
-Zordan::Zordan(const OrganModel& model)
-    : model_(model), pyramids_(build_pyramids(model)), kernel_(model) {
+Zordan::Zordan(const OrganModel& model) : model_(model), pyramids_(build_pyramids(model)) {
   largest_step_ = largest_explicit_step(model, squared_frequency_bound());
 }
 
@@ -42,27 +42,19 @@ double Zordan::stored_energy(const OrganState& state) const {
   return energy;
 }
 
-StepReport Zordan::step(double h, std::span<ContactRow> rows, OrganState& state) {
-  // 1. springs, damping, drag, gravity
-  kernel_.free_step(h, state, free_);
-
-  // 2. pressures of the pyramids
+VolumeAction Zordan::before_contacts(double h, const OrganState& state, FreeStep& step) {
   const double filling = state.target_volume / model_.rest_volume;
-  state.pressure = 0;
+  double mean_pressure = 0;
   for (const Pyramid& pyramid : pyramids_) {
     const auto at = evaluate_pyramid(pyramid, state.positions);
     const double pressure = stiffness(pyramid) * (filling * pyramid.rest_volume - at.volume);
     for (std::size_t k = 0; k < 4; ++k) {
       const std::uint32_t node = pyramid.nodes[k];
-      free_.velocities[node] += (h * pressure * model_.inverse_masses[node]) * at.gradient[k];
+      step.velocities[node] += (h * pressure * model_.inverse_masses[node]) * at.gradient[k];
     }
-    state.pressure += pyramid.area_share * pressure;
+    mean_pressure += pyramid.area_share * pressure;
   }
-
-  // 3. contacts; 4. positions
-  solve_contacts(model_, nullptr, 0, h, rows, free_.velocities);
-  kernel_.finish_step(h, 0, free_, state);
-  return {};
+  return {.pressure = mean_pressure};
 }
 
 }  // namespace palpate::deformation

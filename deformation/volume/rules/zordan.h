@@ -21,25 +21,21 @@
 // its height, 0.6 of it at 0.1. Not counted: no organ is meant to be pressed so far by this method.
 #pragma once
 
-#include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/steppers/organ_dynamics.h"
-#include "deformation/volume/rules/explicit_step.h"
+#include "deformation/model/organ_model.h"
 #include "deformation/volume/rules/pyramids.h"
+#include "deformation/volume/volume_rule.h"
 
 namespace palpate::deformation {
 
-class Zordan : public OrganDynamics {
+class Zordan : public VolumeRule {
  public:
   static constexpr double kModulus = 10e3;  ///< K [Pa]
 
   /// @param model  has virtual nodes
   explicit Zordan(const OrganModel& model);
   double largest_step() const override { return largest_step_; }
-  StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  double elastic_energy(const OrganState& state) override {
-    return kernel_.elastic_energy(state.positions);
-  }
-  double stored_energy(const OrganState& state) const;  ///< Σ ½ p_t (V_t* − V_t) [J]
+  VolumeAction before_contacts(double h, const OrganState& state, FreeStep& step) override;
+  double stored_energy(const OrganState& state) const override;  ///< Σ ½ p_t (V_t* − V_t) [J]
 
  private:
   double stiffness(const Pyramid& pyramid) const;  ///< dp_t/dV_t = K/(s_t V₀) [Pa/m³]
@@ -49,8 +45,6 @@ class Zordan : public OrganDynamics {
   const OrganModel& model_;
   std::vector<Pyramid> pyramids_;
   double largest_step_ = 0;
-  SpringKernel kernel_;
-  FreeStep free_;
 };
 
 }  // namespace palpate::deformation

@@ -25,7 +25,7 @@ struct Tetrahedron {
 
   Tetrahedron() {
     auto organ = undamped_organ();
-    organ.model = scene::Model::kMassSpring;
+    organ.model = "mass_spring";
     organ.springs.inner_ratio = organ.springs.bending_ratio = 0;
     model = build_organ_model(organ, Vec3::Zero(), geometry::make_tetrahedron(0.05));
     frequency = std::sqrt(4 * model.network().springs[0].stiffness / model.masses[0]);
@@ -48,7 +48,7 @@ TEST_CASE("free vibration: backward Euler takes 1/√(1 + h²ω²) of the amplit
   // Oracle: the scheme's eigenvalues 1/(1 ∓ ihω). A swing of 1e-5 m on springs of 8 cm is linear
   // to 1e-4 or so; floats know the nodes to 5e-9 m.
   const Tetrahedron tetrahedron;
-  BackwardEuler dynamics(tetrahedron.model);
+  BackwardEuler dynamics(tetrahedron.model, {.is_kept = false});
   for (const double h_omega : {0.1, 0.5, 2.0, 10.0}) {
     const int steps = h_omega < 1 ? 20 : 3;
     const double expected = std::pow(1 + h_omega * h_omega, -0.5 * steps);
@@ -61,7 +61,7 @@ TEST_CASE("free vibration: symplectic Euler keeps the amplitude") {
   // Oracle: the scheme's eigenvalues lie on the unit circle; the orbit is an ellipse with axes in
   // ratio 1 ± hω/2.
   const Tetrahedron tetrahedron;
-  SymplecticEuler dynamics(tetrahedron.model);
+  auto dynamics = testing::springs_alone(tetrahedron.model);
   for (const double h_omega : {0.05, 0.1}) {
     const int steps = 10'000;
     CHECK(tetrahedron.remaining_amplitude(dynamics, h_omega / tetrahedron.frequency, steps) ==
@@ -116,7 +116,7 @@ TEST_CASE("free vibration: the swing of a ball decays by backward Euler's formul
   // the swing loses to other modes from its decay. 15 % of the formula, or 0.02: peaks lie between
   // samples, the push is not quite one mode, and iterations end early.
   const auto model = testing::ball_model(3, undamped_organ());
-  SymplecticEuler symplectic(model);
+  auto symplectic = testing::constrained(model);
   const auto undamped = peaks(swing(symplectic, model, 0.5e-3, 1));
   const double omega = M_PI * static_cast<double>(undamped.size());
   const double lost = decay(undamped);

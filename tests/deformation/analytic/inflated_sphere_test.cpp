@@ -41,7 +41,7 @@ double laplace_pressure(const OrganModel& model, double stretch) {
 
 double inflated_pressure(int levels, double stretch) {
   const auto model = testing::ball_model(levels, membrane());
-  SymplecticEuler dynamics(model);
+  auto dynamics = testing::constrained(model);
   auto state = rest_state(model);
   inflate(model, std::pow(stretch, 3), dynamics, state);
   return state.pressure;
@@ -51,7 +51,7 @@ TEST_CASE("pressure: an inflated spring sphere holds Laplace's p = 2 T / r") {
   // Oracle: analytic. 1 %: an icosphere's triangles are not all equilateral, which leaves 0.3 %
   // however fine it is; the rest is the mesh.
   const auto model = testing::ball_model(3, membrane());
-  SymplecticEuler dynamics(model);
+  auto dynamics = testing::constrained(model);
   auto state = rest_state(model);
   inflate(model, std::pow(1.05, 3), dynamics, state);
   CHECK(state.pressure == Approx(laplace_pressure(model, 1.05)).epsilon(0.01));
@@ -71,7 +71,7 @@ TEST_CASE("pressure: inflated spheres converge with the second order of the mesh
 TEST_CASE("pressure: a balloon passes its limit point and the pressure falls beyond it") {
   // Oracle: analytic curve of springs, held at each volume; its largest pressure is at L = 2.
   const auto model = testing::ball_model(3, membrane());
-  SymplecticEuler dynamics(model);
+  auto dynamics = testing::constrained(model);
   auto state = rest_state(model);
   double last = 0;
   for (const double stretch : {1.2, 1.5, 1.8, 2.0, 2.3, 2.6}) {
@@ -87,7 +87,7 @@ TEST_CASE("pressure: a balloon passes its limit point and the pressure falls bey
 /// volume (so that the membrane is taut all over and carries no load of its own).
 double plate_gap(int levels) {
   const auto model = testing::ball_model(levels, membrane());
-  SymplecticEuler dynamics(model);
+  auto dynamics = testing::constrained(model);
   auto state = rest_state(model);
   inflate(model, 1.5, dynamics, state);
   testing::Plates plates(model, testing::kBallRadius * std::cbrt(1.5));

@@ -8,8 +8,7 @@ namespace {
 
 /// A cube with a barycentric row on its triangle 0, pressed in and off its stuck place.
 struct Pressed {
-  OrganModel model =
-      testing::block_model(testing::reference_ball(scene::Model::kQuadraticElements), 1);
+  OrganModel model = testing::block_model(testing::reference_ball("quadratic_elements"), 1);
   deformation::TaylorHoodElements solid = quadratic_solid(model);
   TaylorHoodContact contact{model, solid};
   deformation::SolidState state = solid.rest_state();

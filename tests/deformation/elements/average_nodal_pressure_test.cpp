@@ -12,7 +12,7 @@ using namespace palpate::deformation::testing;
 namespace {
 
 OrganModel small_cube(double poisson_ratio) {
-  return cube_model(solid_organ(scene::Model::kNodalPressure, poisson_ratio), Vec3::Zero(), 2);
+  return cube_model(solid_organ("nodal_pressure", poisson_ratio), Vec3::Zero(), 2);
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ TEST_CASE("average nodal pressure: the matrix is no smaller than the forces' der
 TEST_CASE("average nodal pressure: stretched without changing volume it is neo-Hookean tissue") {
   // Oracle: analytic, F = μ A (λ − 1/λ²) with free sides; every J is 1, so that forces across are
   // those of one pressure on all of the surface, taken from the free sides.
-  const auto model = cube_model(solid_organ(scene::Model::kNodalPressure, 0.5));
+  const auto model = cube_model(solid_organ("nodal_pressure", 0.5));
   auto elements = elements_of<AverageNodalPressure>(model);
   const double stretch = 0.7, side = 1 / std::sqrt(stretch), mu = 5e3 / 3, area = 0.06 * 0.06;
   auto positions = model.rest_positions;

@@ -9,14 +9,14 @@ using namespace palpate::deformation::testing;
 TEST_CASE("corotational: forces are minus the energy's gradient") {
   // Oracle: finite differences, over 1e-6 of cells of 15 mm; nodes are off by up to 3 mm. The
   // turning of R leaves P = ∂ψ/∂F, so the forces are exact.
-  const auto model = cube_model(solid_organ(scene::Model::kCorotational, 0.4), Vec3::Zero(), 2);
+  const auto model = cube_model(solid_organ("corotational", 0.4), Vec3::Zero(), 2);
   auto elements = elements_of<Corotational>(model);
   CHECK(force_error(elements, shaken(model, 3e-3), 1e-7) < 1e-5);
 }
 
 TEST_CASE("corotational: the matrix is the forces' derivative at rest, turned or not") {
   // Oracle: finite differences; without strain the turning of R makes no difference. Floats.
-  const auto model = cube_model(solid_organ(scene::Model::kCorotational, 0.4), Vec3::Zero(), 2);
+  const auto model = cube_model(solid_organ("corotational", 0.4), Vec3::Zero(), 2);
   auto elements = elements_of<Corotational>(model);
   auto positions = model.rest_positions;
   CHECK(matrix_error(elements, model, positions, 0.01, 1e-7) < 1e-5);
@@ -29,7 +29,7 @@ TEST_CASE("corotational: the matrix is the forces' derivative at rest, turned or
 TEST_CASE("corotational: a block in uniaxial stretch has the force of linear elasticity") {
   // Oracle: analytic, F = E A ε for sides contracted by ν ε, exact for stretches without turning.
   const double strain = 0.1;
-  const auto model = cube_model(solid_organ(scene::Model::kCorotational, 0.3));
+  const auto model = cube_model(solid_organ("corotational", 0.3));
   auto elements = elements_of<Corotational>(model);
   auto positions = model.rest_positions;
   for (Vec3& x : positions) {

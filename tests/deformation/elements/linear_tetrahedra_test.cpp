@@ -8,7 +8,7 @@ using namespace palpate::deformation::testing;
 
 TEST_CASE("linear tetrahedra: an affine map has its matrix as deformation gradient everywhere") {
   // Oracle: analytic. Coordinates of 1 m, edges of 1.5 cm: rounding 1e-16 / 0.015.
-  const auto model = cube_model(solid_organ(scene::Model::kCorotational, 0.3));
+  const auto model = cube_model(solid_organ("corotational", 0.3));
   const LinearTetrahedra tetrahedra(model.rest_positions, model.mesh().tetrahedra);
   Mat3 A;
   A << 1.2, 0.3, -0.1, 0, 0.7, 0.2, 0.4, -0.5, -0.9;

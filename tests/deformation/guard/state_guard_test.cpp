@@ -34,9 +34,9 @@ std::vector<ContactRow> plate_rows(const OrganModel& model, const OrganState& st
 TEST_CASE("state guard: the ledger bounds what a press puts in, and closely") {
   // Oracle: energy of an undamped ball. 1.5: first contact of a node is an impact, whose loss the
   // bound does not see.
-  const auto organ = testing::undamped_ball_with(scene::Model::kImplicitVolume);
+  const auto organ = testing::undamped_ball_with("implicit_volume");
   const auto model = testing::ball_model(3, organ);
-  SymplecticEuler dynamics(model);
+  auto dynamics = testing::constrained(model);
   StateGuard guard(model, true);
   OrganState state = rest_state(model);
   guard.begin(state, 0);
@@ -63,10 +63,10 @@ TEST_CASE("state guard: the ledger bounds what a press puts in, and closely") {
 TEST_CASE("state guard: a probe at rest may push tissue out of itself once, not on and on") {
   // Oracle: a plate at rest does no work. Standing 5 mm deep it drives the cap out once; found
   // as deep in it in every step, now on this side, now on that, it would do so forever.
-  const auto organ = testing::undamped_ball_with(scene::Model::kMassSpring);
+  const auto organ = testing::undamped_ball_with("mass_spring");
   const auto model = testing::ball_model(3, organ);
   for (const bool again : {false, true}) {
-    SymplecticEuler dynamics(model);
+    auto dynamics = testing::constrained(model);
     StateGuard guard(model, true);
     OrganState state = rest_state(model);
     guard.begin(state, 0);
@@ -100,10 +100,10 @@ TEST_CASE("state guard: a pressure that moves the volume does work") {
 
 TEST_CASE("state guard: falling is not gaining") {
   // Oracle: m g s; the same speed without gravity is too much energy.
-  const auto organ = testing::undamped_ball_with(scene::Model::kImplicitVolume);
+  const auto organ = testing::undamped_ball_with("implicit_volume");
   for (const double g : {9.81, 0.0}) {
     const auto model = testing::ball_model(1, organ, Vec3(0, 0, -g));
-    SymplecticEuler dynamics(model);
+    auto dynamics = testing::constrained(model);
     StateGuard guard(model, true);
     OrganState state = rest_state(model);
     guard.begin(state, 0);
@@ -120,7 +120,7 @@ TEST_CASE("state guard: falling is not gaining") {
 TEST_CASE("state guard: each kind of nonsense is told from the others") {
   // Oracle: definitions of Disbelief.
   const auto model = testing::ball_model(2);
-  SymplecticEuler dynamics(model);
+  auto dynamics = testing::constrained(model);
   StateGuard guard(model, true);
   const OrganState rest = rest_state(model);
   guard.begin(rest, 0);
@@ -166,7 +166,7 @@ TEST_CASE("state guard: each kind of nonsense is told from the others") {
 TEST_CASE("state guard: models that do not know their energy are not judged by it") {
   // Oracle: definition; speed and size still count.
   const auto model = testing::ball_model(1);
-  StateGuard guard(model, knows_energy(scene::Model::kChainMail));
+  StateGuard guard(model, row_of("chainmail").knows_energy);
   OrganState state = rest_state(model);
   guard.begin(state, 0);
   for (auto& v : state.velocities) v = Vec3(50, 0, 0);

@@ -11,7 +11,7 @@
 namespace palpate {
 namespace {
 
-scene::Organ ball(scene::Model model) {
+scene::Organ ball(const std::string& model) {
   scene::Organ organ;
   organ.name = "ball";
   organ.model = model;
@@ -24,9 +24,9 @@ scene::Organ ball(scene::Model model) {
 TEST_CASE("solid assets: a surface is filled where its model is a solid, and placed") {
   // Oracle: the surface of the same organ; the pose.
   if (geometry::testing::without_gmsh()) return;
-  const auto surface = scene::load_organ(ball(scene::Model::kImplicitVolume));
-  const auto solid = scene::load_organ(ball(scene::Model::kCorotational));
-  const auto quadratic = scene::load_organ(ball(scene::Model::kQuadraticElements));
+  const auto surface = scene::load_organ(ball("implicit_volume"));
+  const auto solid = scene::load_organ(ball("corotational"));
+  const auto quadratic = scene::load_organ(ball("quadratic_elements"));
   CHECK_FALSE(surface.is_solid());
   REQUIRE(solid.is_solid());
   CHECK(solid.surface.nodes == surface.surface.nodes);
@@ -37,7 +37,7 @@ TEST_CASE("solid assets: a surface is filled where its model is a solid, and pla
 TEST_CASE("solid assets: masses of a solid add up to density times volume") {
   // Oracle: the volume of its tetrahedra, linear and quadratic.
   if (geometry::testing::without_gmsh()) return;
-  for (const auto model : {scene::Model::kCorotational, scene::Model::kQuadraticElements}) {
+  for (const std::string model : {"corotational", "quadratic_elements"}) {
     const auto organ = ball(model);
     const auto shape = scene::load_organ(organ);
     const auto built = deformation::build_organ_model(organ, Vec3::Zero(), shape);
@@ -54,7 +54,7 @@ TEST_CASE("solid assets: masses of a solid add up to density times volume") {
 TEST_CASE("solid assets: what does not go with a solid is refused") {
   // Oracle: the messages.
   if (geometry::testing::without_gmsh()) return;
-  auto organ = ball(scene::Model::kCorotational);
+  auto organ = ball("corotational");
   organ.solid.poisson_ratio = 0.5;
   const auto shape = scene::load_organ(organ);
   CHECK_THROWS_WITH(deformation::build_organ_model(organ, Vec3::Zero(), shape),

@@ -25,15 +25,15 @@ TEST_CASE("spring forces: are minus the gradient of the elastic energy") {
   const auto model = testing::ball_model(1, organ);
   auto state = disturbed(model, 1, 2e-3);
   std::vector<Vec3> forces(model.node_count(), Vec3::Zero());
-  add_spring_forces(model, state, forces);
+  add_spring_forces(model.network(), state, forces);
   const double step = 1e-7;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       auto x = state.positions;
       x[i][axis] += step;
-      const double up = elastic_energy(model, x);
+      const double up = elastic_energy(model.network(), x);
       x[i][axis] -= 2 * step;
-      const double down = elastic_energy(model, x);
+      const double down = elastic_energy(model.network(), x);
       CHECK(forces[i][axis] == Approx(-(up - down) / (2 * step)).epsilon(1e-5).margin(1e-8));
     }
   }
@@ -44,7 +44,7 @@ TEST_CASE("spring forces: keep momentum and angular momentum, damping included")
   const auto model = testing::ball_model(2);
   const auto state = disturbed(model, 2, 5e-3);
   std::vector<Vec3> forces(model.node_count(), Vec3::Zero());
-  add_spring_forces(model, state, forces);
+  add_spring_forces(model.network(), state, forces);
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
   double size = 0;
   for (std::size_t i = 0; i < forces.size(); ++i) {
@@ -65,8 +65,8 @@ TEST_CASE("spring forces: damping takes energy out and nothing else") {
   auto state = disturbed(damped, 3, 0);
   const auto damping_force = [&](const OrganState& s) {
     std::vector<Vec3> with(damped.node_count(), Vec3::Zero()), without = with;
-    add_spring_forces(damped, s, with);
-    add_spring_forces(elastic, s, without);
+    add_spring_forces(damped.network(), s, with);
+    add_spring_forces(elastic.network(), s, without);
     for (std::size_t i = 0; i < with.size(); ++i) with[i] -= without[i];
     return with;
   };
@@ -87,7 +87,7 @@ TEST_CASE("spring forces: a collapsed spring gives no force and no NaN") {
   auto state = rest_state(model);
   for (auto& p : state.positions) p = Vec3(0.1, 0.2, 0.3);
   std::vector<Vec3> forces(model.node_count(), Vec3::Zero());
-  add_spring_forces(model, state, forces);
+  add_spring_forces(model.network(), state, forces);
   for (const Vec3& f : forces) CHECK(f == Vec3::Zero());
 }
 

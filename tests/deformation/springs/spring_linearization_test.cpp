@@ -62,7 +62,7 @@ TEST_CASE("spring linearization: in tension A p is the finite difference of M p 
   const auto model = testing::ball_model(2);
   auto state = stretched_state(model);
   for (Vec3& v : state.velocities) v.setZero();
-  SpringLinearization springs(model);
+  SpringLinearization springs(model, model.network());
   springs.linearise(state.positions, kStep);
   const auto p = random_vectors(model.node_count(), 1, 3);
   const auto found = product(springs, p);
@@ -76,7 +76,7 @@ TEST_CASE("spring linearization: in tension A p is the finite difference of M p 
       moved.velocities[i] += side * epsilon * p[i];
     }
     std::vector<Vec3> forces(model.node_count(), Vec3::Zero());
-    add_spring_forces(model, moved, forces);
+    add_spring_forces(model.network(), moved, forces);
     for (std::size_t i = 0; i < p.size(); ++i) difference[i] += side * forces[i] / (2 * epsilon);
   }
   const double size = std::sqrt(dot(found, found) / static_cast<double>(p.size()));
@@ -90,7 +90,7 @@ TEST_CASE("spring linearization: A is symmetric, above M and below 2 D, also com
   // Oracle: invariants.
   const auto model = testing::ball_model(2);
   const auto state = compressed_state(model);
-  SpringLinearization springs(model);
+  SpringLinearization springs(model, model.network());
   springs.linearise(state.positions, kStep);
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto p = random_vectors(model.node_count(), 1, seed);
@@ -111,7 +111,7 @@ TEST_CASE("spring linearization: D holds the diagonal blocks of A") {
   // Oracle: A applied to unit vectors.
   const auto model = testing::ball_model(1);
   const auto state = stretched_state(model);
-  SpringLinearization springs(model);
+  SpringLinearization springs(model, model.network());
   springs.linearise(state.positions, kStep);
   for (const std::size_t node : {std::size_t{0}, std::size_t{17}, model.node_count() - 1}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -127,7 +127,7 @@ TEST_CASE("spring linearization: a common velocity strains nothing") {
   // Oracle: A 1 = (1 + h·drag) M 1.
   const auto model = testing::ball_model(2);
   const auto state = compressed_state(model);
-  SpringLinearization springs(model);
+  SpringLinearization springs(model, model.network());
   springs.linearise(state.positions, kStep);
   const auto found = product(springs, std::vector<Vec3>(model.node_count(), Vec3(1, 2, 3)));
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -141,7 +141,7 @@ TEST_CASE("spring linearization: a spring without length gives nothing and no Na
   const auto model = testing::ball_model(1);
   auto state = rest_state(model);
   for (Vec3& x : state.positions) x.setZero();
-  SpringLinearization springs(model);
+  SpringLinearization springs(model, model.network());
   springs.linearise(state.positions, kStep);
   const auto p = random_vectors(model.node_count(), 1, 5);
   const auto found = product(springs, p);

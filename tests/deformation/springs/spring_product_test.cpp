@@ -44,13 +44,13 @@ double apply(SpringProduct& product, const std::vector<Vec4f>& p, std::vector<Ve
 void check_agrees(const OrganModel& model) {
   const auto positions = disturbed(model, 3e-3);
   const auto p = directions(model);
-  SpringLinearization plain(model);
+  SpringLinearization plain(model, model.network());
   plain.linearise(positions, kStep);
   std::vector<Vec4f> expected(p.size()), found(p.size());
   plain.apply(p, expected);
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
-    SpringProduct fast(model, nullptr, set);
+    SpringProduct fast(model, model.network(), true, nullptr, set);
     fast.linearise(positions, kStep);
     const double found_dot = apply(fast, p, found);
     CHECK(found_dot == Approx(dot(p, found)).epsilon(1e-5));
@@ -85,7 +85,7 @@ TEST_CASE("spring product: springs without length give nothing and no NaN") {
   const std::vector<Vec3> positions(model.node_count(), Vec3(0.1, 0.2, 0.3));
   const auto p = directions(model);
   for (const InstructionSet set : available_instruction_sets()) {
-    SpringProduct product(model, nullptr, set);
+    SpringProduct product(model, model.network(), true, nullptr, set);
     product.linearise(positions, kStep);
     std::vector<Vec4f> out(p.size());
     apply(product, p, out);
@@ -105,7 +105,7 @@ TEST_CASE("spring product: rounded couplings leave the matrix symmetric, and its
   std::reverse(b.begin(), b.end());
   std::vector<Vec4f> image_a(a.size()), image_b(a.size());
   for (const InstructionSet set : available_instruction_sets()) {
-    SpringProduct product(model, nullptr, set);
+    SpringProduct product(model, model.network(), true, nullptr, set);
     product.linearise(disturbed(model, 3e-3), kStep);
     const double a_a = apply(product, a, image_a), b_b = apply(product, b, image_b);
     CHECK(a_a > 0);
@@ -150,7 +150,8 @@ TEST_CASE("spring product: the same bits for all instruction sets with fused mul
   const auto model = ball_model(3);
   const auto p = directions(model);
   std::vector<Vec4f> first(p.size()), second(p.size());
-  SpringProduct narrow(model, nullptr, sets[1]), wide(model, nullptr, sets[2]);
+  SpringProduct narrow(model, model.network(), true, nullptr, sets[1]),
+      wide(model, model.network(), true, nullptr, sets[2]);
   narrow.linearise(disturbed(model, 3e-3), kStep);
   wide.linearise(disturbed(model, 3e-3), kStep);
   CHECK(apply(narrow, p, first) == apply(wide, p, second));
@@ -165,12 +166,12 @@ TEST_CASE("spring product: the same bits for any number of threads") {
   const auto p = directions(model);
   for (const InstructionSet set : available_instruction_sets()) {
     std::vector<Vec4f> expected(p.size()), found(p.size());
-    SpringProduct serial(model, nullptr, set);
+    SpringProduct serial(model, model.network(), true, nullptr, set);
     serial.linearise(positions, kStep);
     apply(serial, p, expected);
     for (std::size_t threads = 2; threads <= 3; ++threads) {
       Threads runner(threads);
-      SpringProduct product(model, &runner, set);
+      SpringProduct product(model, model.network(), true, &runner, set);
       product.linearise(positions, kStep);
       apply(product, p, found);
       CHECK(found == expected);

@@ -70,11 +70,11 @@ TEST_CASE("ChainMail: a push within the slack of the links moves nothing else in
 TEST_CASE("ChainMail: within its bounds it settles to the springs' shape and their force") {
   // Oracle: plain mass-spring between the same plates, which has the same equilibrium; 1 % is what
   // is left of the relaxation.
-  auto organ = testing::ball_organ_with(scene::Model::kMassSpring);
+  auto organ = testing::ball_organ_with("mass_spring");
   organ.tissue.drag = 10;
   const auto model = testing::ball_model(1, organ);
   ChainMail chain(model);
-  SymplecticEuler springs(model);
+  auto springs = testing::springs_alone(model);
   double forces[2];
   OrganDynamics* const both[] = {&chain, &springs};
   for (int k = 0; k < 2; ++k) {

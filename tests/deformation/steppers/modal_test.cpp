@@ -10,7 +10,7 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 scene::Organ modal_organ(double drag = 0) {
-  auto organ = testing::reference_ball(scene::Model::kModal);
+  auto organ = testing::reference_ball("modal");
   organ.tissue.drag = drag;
   return organ;
 }

@@ -10,7 +10,7 @@ namespace palpate::deformation {
 namespace {
 
 scene::Organ organ_with(double poisson_ratio, double drag) {
-  auto organ = testing::reference_ball(scene::Model::kQuadraticElements);
+  auto organ = testing::reference_ball("quadratic_elements");
   organ.solid.poisson_ratio = poisson_ratio;
   organ.tissue.drag = drag;
   return organ;

@@ -1,4 +1,4 @@
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -50,7 +50,7 @@ TEST_CASE("organ dynamics: the scene's word for the integrator counts") {
 TEST_CASE("organ dynamics: the scene's number of iterations counts, 0 is the model's own") {
   // Oracle: the same model made by hand.
   auto organ = testing::ball_organ();
-  organ.model = scene::Model::kXpbdSprings;
+  organ.model = "xpbd_springs";
   const auto model = testing::ball_model(2, organ);
   const auto after = [&](OrganDynamics& dynamics) {
     OrganState state = rest_state(model);

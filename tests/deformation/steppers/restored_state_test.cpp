@@ -1,5 +1,5 @@
 // All that influences the steps to come is in the state.
-#include "modules/scene/schema.h"
+#include "modules/scene/models.h"
 #include "squeeze.h"
 
 namespace palpate::deformation {
@@ -49,11 +49,10 @@ void check_same_bits(const OrganState& a, const OrganState& b) {
 TEST_CASE("restored state: continues as if it had never been left") {
   // Oracle: the steps that follow without a pause, bit by bit; by the stepper that went elsewhere
   // meanwhile, and by one that never saw the organ.
-  for (std::size_t m = 0; m < scene::Words<scene::Model>::texts.size(); ++m) {
-    const auto kind = static_cast<scene::Model>(m);
-    if (!scene::is_solid(kind)) continue;
-    CAPTURE(scene::word_of(kind));
-    const auto organ = testing::reference_ball(kind);
+  for (const scene::ModelFormat& format : scene::model_formats()) {
+    if (!format.is_solid()) continue;
+    CAPTURE(format.word);
+    const auto organ = testing::reference_ball(format.word);
     const auto model = testing::block_model(organ, 2);
     const auto dynamics = make_dynamics(organ, model, kStep);
     Moment straight = start(model);

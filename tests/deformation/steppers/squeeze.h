@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "deformation/model/organ_model.h"
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/scene/models.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
 namespace palpate::deformation::testing {
 
 /// Ball of reference A: R 5 cm, E 5 kPa, ν 0.499.
-inline scene::Organ reference_ball(scene::Model model) {
+inline scene::Organ reference_ball(const std::string& model) {
   scene::Organ organ;
   organ.name = "ball";
   organ.model = model;
@@ -27,7 +28,7 @@ inline scene::Organ reference_ball(scene::Model model) {
 
 /// Meshed by Gmsh; the middles of a quadratic one's outer edges lie on the sphere, too.
 /// @param size  wanted edge length [m]
-inline geometry::OrganShape ball_shape(scene::Model model, double radius, double size) {
+inline geometry::OrganShape ball_shape(const std::string& model, double radius, double size) {
   auto shape = geometry::shape_of(
       geometry::mesh_ball(radius, geometry::BallPart::kWhole, std::to_string(size)));
   if (!scene::is_quadratic(model)) return shape;

@@ -4,13 +4,13 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
 namespace palpate::deformation::testing {
 
 /// E 5 kPa, 1060 kg/m³, neither drag nor damping.
-inline scene::Organ solid_organ(scene::Model model, double poisson_ratio) {
+inline scene::Organ solid_organ(const std::string& model, double poisson_ratio) {
   scene::Organ organ;
   organ.name = "solid";
   organ.model = model;

@@ -11,7 +11,7 @@ namespace {
 
 scene::Organ spring_ball(double drag) {
   auto organ = testing::ball_organ();
-  organ.model = scene::Model::kXpbdSprings;
+  organ.model = "xpbd_springs";
   organ.tissue.drag = drag;
   return organ;
 }
@@ -30,7 +30,6 @@ OrganModel model_of_springs(const std::vector<double>& masses, std::vector<Sprin
   model.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
   model.network().damping.assign(springs.size(), 0);
   model.network().springs = std::move(springs);
-  model.preserve_volume = false;
   return model;
 }
 
@@ -38,7 +37,7 @@ TEST_CASE("XPBD springs: alone, a damped spring is stepped by backward Euler exa
   // Oracle: analytic. L⁺ (1 + h²kw + hcw) = L + hL' + hcw L, L the stretch, w = 1/m_a + 1/m_b.
   OrganModel model = model_of_springs({0.002, 0.003}, {{0, 1, 0.01, 400}});
   model.network().damping = {0.05};
-  XpbdSprings xpbd(model);
+  XpbdSprings xpbd(model, 1, {.is_kept = false});
   OrganState state = rest_state(model);
   state.positions[1].x() += 2e-3;
   const double h = 1e-3, w = 500 + 1 / 0.003, k = 400, c = 0.05;
@@ -64,7 +63,7 @@ TEST_CASE("XPBD springs: many passes make backward Euler's step of springs in a 
   matrix << 0.002 / (h * h) + 700, -300, -300, 0.003 / (h * h) + 300;
   const Eigen::Vector2d moved = matrix.inverse() * Eigen::Vector2d(0.002, 0.003) * 9.81;
   const auto error = [&](int passes) {
-    XpbdSprings xpbd(model, passes);
+    XpbdSprings xpbd(model, passes, {.is_kept = false});
     OrganState state = rest_state(model);
     xpbd.step(h, {}, state);
     return std::hypot(state.positions[1].x() - 0.01 - moved[0],
@@ -131,7 +130,7 @@ TEST_CASE("XPBD springs: squeezed, softer than the springs are, less so for shor
     CHECK(squeeze.deepest() < 1e-6);
     return force;
   };
-  SymplecticEuler symplectic(model);
+  auto symplectic = testing::constrained(model);
   XpbdSprings xpbd(model);
   const double wanted = squeezed(symplectic, 2e-4);
   const double error = squeezed(xpbd, XpbdSprings::kStep) / wanted - 1;

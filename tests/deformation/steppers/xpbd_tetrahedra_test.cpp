@@ -7,7 +7,7 @@ namespace palpate::deformation {
 namespace {
 
 scene::Organ tetrahedra_organ(double poisson_ratio, double drag) {
-  auto organ = testing::reference_ball(scene::Model::kXpbdTetrahedra);
+  auto organ = testing::reference_ball("xpbd_tetrahedra");
   organ.solid.poisson_ratio = poisson_ratio;
   organ.tissue.drag = drag;
   return organ;

@@ -107,7 +107,7 @@ organs:
       bending_ratio: 0.4
       inner_ratio: 0.7
       virtual_nodes: 5
-    model: mass_spring
+    model: implicit_volume
     volume_corrections: 2
     integrator: backward_euler
     filling:

@@ -197,7 +197,7 @@ TEST_CASE("digest: differs with every number and with every byte of every file")
   add(kFullScene);
   add(changed("20e3", "20000.000001"));
   add(changed("unit: mm", "unit: cm"));
-  add(changed("model: mass_spring", "model: penalty"));
+  add(changed("model: implicit_volume\n    volume_corrections: 2", "model: mass_spring"));
   add(changed("plane: {}", "sphere: {}"));
   add(changed("wait_s: 0.5", "wait_s: 0.51"));
   add(changed("visualizer_hz: 60", "visualizer_hz: 61"));

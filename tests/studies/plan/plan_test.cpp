@@ -6,6 +6,7 @@
 #include "haptics/device.h"
 #include "modules/core/data_folder.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/plan/solid_reference.h"
 #include "tests/modules/geometry/tetrahedra.h"
@@ -63,12 +64,11 @@ TEST_CASE("plan: a candidate is written into the scene explicitly") {
   scene.organs.push_back({});
   scene.needs.haptics_rate = 2000;
   const auto planned =
-      scene_with(scene, {scene::Model::kNodalPressure, 500, 400, scene::Integrator::kAutomatic});
-  CHECK(planned.organs[0].model == scene::Model::kNodalPressure);
+      scene_with(scene, {"nodal_pressure", 500, 400, scene::Integrator::kAutomatic});
+  CHECK(planned.organs[0].model == "nodal_pressure");
   CHECK(planned.organs[0].mesh.nodes == 500);
   CHECK(planned.organs[0].solid.poisson_ratio == 0.499);
-  CHECK(scene_with(scene, {scene::Model::kCorotational, 500, 400}).organs[0].solid.poisson_ratio ==
-        0.45);
+  CHECK(scene_with(scene, {"corotational", 500, 400}).organs[0].solid.poisson_ratio == 0.45);
   CHECK(planned.rates.deformation == 400);
   CHECK(planned.rates.collision == 400);
   CHECK(planned.rates.haptics == 2000);
@@ -93,7 +93,7 @@ TEST_CASE("plan: the reference of a solid is fine where the probe goes, and of t
   if (geometry::testing::without_gmsh()) return;
   auto scene = scene::load_scene(data_file("scenes/liver_solid.yaml"));
   const auto fine = solid_reference_shape(scene, kDuration, kReferenceEdge).surface;
-  scene.organs[0].model = scene::Model::kImplicitVolume;
+  scene.organs[0].model = "implicit_volume";
   const auto coarse = scene::load_organ(scene.organs[0]).surface;
   CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==
         Approx(geometry::enclosed_volume(coarse.nodes, coarse.triangles)).epsilon(1e-9));

@@ -35,7 +35,7 @@ Matrices by_differences(const OrganModel& model, const std::vector<Vec3>& positi
     state.positions[static_cast<std::size_t>(k / 3)][k % 3] += dx;
     state.velocities[static_cast<std::size_t>(k / 3)][k % 3] += dv;
     std::vector<Vec3> f(model.node_count(), Vec3::Zero());
-    deformation::add_spring_forces(model, state, f);
+    deformation::add_spring_forces(model.network(), state, f);
     Eigen::VectorXd flat(size);
     for (Eigen::Index i = 0; i < size; ++i) flat[i] = f[static_cast<std::size_t>(i / 3)][i % 3];
     return flat;

@@ -37,7 +37,7 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, float> half_springs(
 TEST_CASE("spring kernel layout: holds every spring of the network once from each end") {
   // Oracle: the network. 42 and 162 nodes: neither a multiple of the slice.
   const auto model = testing::ball_model(GENERATE(1, 2));
-  const SpringKernelLayout layout(model);
+  const SpringKernelLayout layout(model, model.network(), true);
   const auto found = half_springs(layout.view());
   const auto& network = model.network();
   const std::size_t surface_springs = network.structural_count + network.bending_count;
@@ -53,7 +53,7 @@ TEST_CASE("spring kernel layout: holds every spring of the network once from eac
 TEST_CASE("spring kernel layout: structural neighbours stand in the order of the one-ring") {
   // Oracle: ordered_one_rings().
   const auto model = testing::ball_model(2);  // twelve nodes with five neighbours, others six
-  const SpringKernelLayout layout(model);
+  const SpringKernelLayout layout(model, model.network(), true);
   const auto view = layout.view();
   const auto rings = geometry::ordered_one_rings(model.triangles, view.surface_node_count);
   std::size_t shorter = 0;
@@ -106,7 +106,7 @@ OrganModel some_model() {
 TEST_CASE("spring kernel layout: the cover holds each triangle once, and none besides") {
   // Oracle: the triangles.
   const auto model = some_model();
-  const SpringKernelLayout layout(model);
+  const SpringKernelLayout layout(model, model.network(), true);
   const auto view = layout.view();
   std::multiset<geometry::Triangle> expected, found;
   for (const auto& triangle : model.triangles) expected.insert(lowest_first(triangle));
@@ -122,7 +122,7 @@ TEST_CASE("spring kernel layout: the cover holds each triangle once, and none be
 TEST_CASE("spring kernel layout: the ring of a row holds the triangles around its node") {
   // Oracle: the triangles.
   const auto model = some_model();
-  const SpringKernelLayout layout(model);
+  const SpringKernelLayout layout(model, model.network(), true);
   const auto view = layout.view();
   for (std::uint32_t row = 0; row < view.surface_node_count; ++row) {
     std::set<geometry::Triangle> expected, found;
@@ -143,7 +143,7 @@ TEST_CASE("spring kernel layout: the ring of a row holds the triangles around it
 TEST_CASE("spring kernel layout: links name each row's virtual node once") {
   // Oracle: the network's inner springs.
   const auto model = testing::ball_model(2);
-  const SpringKernelLayout layout(model);
+  const SpringKernelLayout layout(model, model.network(), true);
   const auto view = layout.view();
   const auto& network = model.network();
   for (std::size_t i = 0; i < network.inner_count; ++i) {

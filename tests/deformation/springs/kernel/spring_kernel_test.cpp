@@ -59,7 +59,7 @@ struct Differences {
 };
 
 Differences from_plain(const OrganModel& model, const OrganState& state, InstructionSet set) {
-  SpringKernel kernel(model, nullptr, set);
+  SpringKernel kernel(model, model.network(), true, nullptr, set);
   FreeStep fast;
   kernel.free_step(kStep, state, fast);
   auto plain = state;
@@ -127,7 +127,7 @@ TEST_CASE("spring kernel: the volume alone is that of the plain code, for any in
   evaluate_volume(model, state.positions, plain);
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
-    SpringKernel kernel(model, nullptr, set);
+    SpringKernel kernel(model, model.network(), true, nullptr, set);
     FreeStep alone;
     alone.velocities = state.velocities;
     kernel.evaluate_volume(state.positions, alone);
@@ -177,7 +177,7 @@ TEST_CASE("spring kernel: far from the origin the volume keeps its digits") {
   // itself loses 2^-36 m of the positions at most; that is 3e-10 of the radius.
   const auto model = ball_model(2);
   auto state = disturbed(model, 3e-3);
-  SpringKernel kernel(model);
+  SpringKernel kernel(model, model.network(), true);
   FreeStep here, there;
   kernel.free_step(kStep, state, here);
   for (Vec3& p : state.positions) p += Vec3(65536, -32768, 16384);
@@ -192,7 +192,7 @@ TEST_CASE("spring kernel: springs without length give no force and no NaN") {
   auto state = rest_state(model);
   for (Vec3& p : state.positions) p = Vec3(0.1, 0.2, 0.3);
   for (const InstructionSet set : available_instruction_sets()) {
-    SpringKernel kernel(model, nullptr, set);
+    SpringKernel kernel(model, model.network(), true, nullptr, set);
     FreeStep step;
     kernel.free_step(kStep, state, step);
     for (const Vec3& v : step.velocities) CHECK(v == Vec3::Zero());
@@ -204,7 +204,7 @@ TEST_CASE("spring kernel: springs without length give no force and no NaN") {
 /// State after a few steps, and its pressure.
 OrganState stepped(const OrganModel& model, InstructionSet set, ChunkRunner* runner) {
   auto state = disturbed(model, 2e-3);
-  SpringKernel kernel(model, runner, set);
+  SpringKernel kernel(model, model.network(), true, runner, set);
   FreeStep step;
   for (int s = 0; s < 20; ++s) {
     kernel.free_step(kStep, state, step);
@@ -251,7 +251,7 @@ TEST_CASE("spring kernel: internal forces keep momentum and angular momentum") {
   organ.tissue.drag = 0;
   const auto model = ball_model(2, organ);
   const auto state = disturbed(model, 5e-3);
-  SpringKernel kernel(model);
+  SpringKernel kernel(model, model.network(), true);
   FreeStep step;
   kernel.free_step(kStep, state, step);
   Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero(), volume = Vec3::Zero();
@@ -272,19 +272,17 @@ TEST_CASE("spring kernel: without volume it is the same step") {
   // Oracle: itself with volume, which takes structural springs in the order of the rings: the sums
   // of float forces are rounded otherwise, to 3e-7 of what they give.
   auto organ = ball_organ();
-  const auto with = ball_model(2, organ);
-  organ.model = scene::Model::kMassSpring;
-  const auto without = ball_model(2, organ);
-  const auto state = disturbed(with, 3e-3);
+  const auto model = ball_model(2, organ);
+  const auto state = disturbed(model, 3e-3);
   for (const InstructionSet set : available_instruction_sets()) {
     FreeStep expected, found;
-    SpringKernel(with, nullptr, set).free_step(kStep, state, expected);
-    SpringKernel(without, nullptr, set).free_step(kStep, state, found);
+    SpringKernel(model, model.network(), true, nullptr, set).free_step(kStep, state, expected);
+    SpringKernel(model, model.network(), false, nullptr, set).free_step(kStep, state, found);
     double given = 0;
-    for (std::size_t i = 0; i < with.node_count(); ++i) {
+    for (std::size_t i = 0; i < model.node_count(); ++i) {
       given = std::max(given, (expected.velocities[i] - state.velocities[i]).norm());
     }
-    for (std::size_t i = 0; i < with.node_count(); ++i) {
+    for (std::size_t i = 0; i < model.node_count(); ++i) {
       CHECK((found.velocities[i] - expected.velocities[i]).norm() < 3e-7 * given);
     }
   }
@@ -298,8 +296,8 @@ TEST_CASE("spring kernel: elastic energy is that of the plain code") {
   const auto model = ball_model(GENERATE(0, 2), organ);
   const auto state = disturbed(model, 3e-3);
   for (const InstructionSet set : available_instruction_sets()) {
-    SpringKernel kernel(model, nullptr, set);
-    const double expected = elastic_energy(model, state.positions);
+    SpringKernel kernel(model, model.network(), true, nullptr, set);
+    const double expected = elastic_energy(model.network(), state.positions);
     CHECK(kernel.elastic_energy(state.positions) == Approx(expected).epsilon(1e-6));
     CHECK(kernel.elastic_energy(model.rest_positions) < 1e-13);
   }
@@ -309,9 +307,8 @@ TEST_CASE(
     "spring kernel: symplectic Euler takes the plain step, contacts and corrections included") {
   // Oracle: symplectic_euler_step(). One step: chaos has no time. Velocities up to 2 m/s, springs
   // that change them by 0.1 m/s: floats leave 1e-7 of that.
-  auto organ = loaded_organ();
-  organ.volume_corrections = GENERATE(0, 1);
-  const auto model = ball_model(2, organ);
+  const int corrections = GENERATE(0, 1);
+  const auto model = ball_model(2, loaded_organ());
   ContactRow row;
   row.nodes = model.triangles[40];
   row.weights = Vec3(0.2, 0.3, 0.5);
@@ -321,8 +318,8 @@ TEST_CASE(
   std::array<ContactRow, 1> fast_rows{row}, plain_rows{row};
   auto fast = disturbed(model, 2e-3), plain = fast;
   StepBuffers buffers;
-  SymplecticEuler(model).step(kStep, fast_rows, fast);
-  symplectic_euler_step(model, kStep, plain_rows, plain, buffers);
+  testing::constrained(model, corrections).step(kStep, fast_rows, fast);
+  symplectic_euler_step(model, kStep, plain_rows, plain, buffers, {.corrections = corrections});
   REQUIRE(plain_rows[0].normal_impulse > 0);
   CHECK(fast_rows[0].normal_impulse == Approx(plain_rows[0].normal_impulse).epsilon(1e-6));
   CHECK(fast.pressure == Approx(plain.pressure).epsilon(1e-6));

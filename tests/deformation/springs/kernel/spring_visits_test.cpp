@@ -11,7 +11,7 @@ namespace {
 
 OrganModel held_ball() {
   auto organ = testing::ball_organ();
-  organ.model = scene::Model::kXpbdSprings;
+  organ.model = "xpbd_springs";
   organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, 0.05), 0.03});
   return testing::ball_model(2, organ);
 }
@@ -31,7 +31,7 @@ void for_springs(const SpringVisits& visits, std::size_t node_count, Act act) {
 TEST_CASE("spring visits: every spring that can move a node once, four at a time apart") {
   // Oracle: the network.
   const OrganModel model = held_ball();
-  const SpringVisits visits(model);
+  const SpringVisits visits(model, model.network());
   std::multiset<std::pair<std::size_t, std::size_t>> visited, wanted;
   for_springs(visits, model.node_count(), [&](const auto&, std::size_t, auto a, auto b) {
     visited.insert({a, b});
@@ -92,7 +92,8 @@ TEST_CASE("spring visits: the plain formula to rounding, the same bits by every 
   for (const InstructionSet set : available_instruction_sets()) {
     for (const int passes : {1, 3}) {
       INFO(name_of(set) << ", " << passes << " passes");
-      SpringVisits visits(model, set), portable(model, InstructionSet::kPortable);
+      SpringVisits visits(model, model.network(), set),
+          portable(model, model.network(), InstructionSet::kPortable);
       auto velocities = began, plain = moved;
       std::vector<Vec3> fast, same;
       visits.relax(kStep, passes, start, velocities, fast);
@@ -125,7 +126,7 @@ TEST_CASE("spring visits: a spring without length pulls at nothing") {
   const std::vector<Vec3> together(2, Vec3(0.02, 0.01, 0));
   for (const InstructionSet set : available_instruction_sets()) {
     std::vector<Vec3> positions, velocities(2, Vec3::Zero());
-    SpringVisits(model, set).relax(1e-3, 2, together, velocities, positions);
+    SpringVisits(model, model.network(), set).relax(1e-3, 2, together, velocities, positions);
     CHECK(positions == together);
   }
 }

@@ -1,5 +1,6 @@
 #include "deformation/volume/rules/baumgarte.h"
 
+#include "deformation/volume/rules/explicit_step.h"
 #include "method_checks.h"
 
 namespace palpate::deformation {
@@ -7,8 +8,8 @@ namespace {
 
 /// Largest distance from the law, over Φ₀, in 0.1 s.
 double distance_from_law(double h) {
-  const auto model = testing::ball_model(2, testing::ball_organ_with(scene::Model::kBaumgarte));
-  Baumgarte baumgarte(model);
+  const auto model = testing::ball_model(2, testing::ball_organ_with("baumgarte"));
+  auto baumgarte = testing::stepped_by<Baumgarte>(model);
   OrganState state = testing::shaken_state(model, 1e-3, 0);
   testing::scale(state, 1.01);
   const double start = testing::volume_of(model, state) - model.rest_volume;
@@ -33,10 +34,10 @@ TEST_CASE("Baumgarte: the volume error decays like (1 + a t) e^(-a t), whatever 
 
 TEST_CASE("Baumgarte: where springs are soft, the step is that of the law alone") {
   // Oracle: analytic, the root of b² h² + 4 a h = 4: an error decays below it, and grows beyond.
-  auto organ = testing::ball_organ_with(scene::Model::kBaumgarte);
+  auto organ = testing::ball_organ_with("baumgarte");
   organ.tissue.youngs_modulus = 100;
   const auto model = testing::ball_model(1, organ);
-  Baumgarte baumgarte(model);
+  auto baumgarte = testing::stepped_by<Baumgarte>(model);
   CHECK(baumgarte.largest_step() == Approx(0.9 * Baumgarte::law_step_bound()));
   const auto left_after = [&](double h) {
     OrganState state = rest_state(model);

@@ -7,7 +7,7 @@ namespace {
 
 TEST_CASE("Bourguignon-Cani: its forces are minus the gradient of its energy") {
   const auto model = testing::ball_model(2);
-  BourguignonCani method(model);
+  auto method = testing::stepped_by<BourguignonCani>(model);
   auto state = testing::shaken_state(model, 3e-3, 0.1);
   testing::scale(state, 1.05);
   testing::check_forces_are_minus_gradient(
@@ -17,7 +17,7 @@ TEST_CASE("Bourguignon-Cani: its forces are minus the gradient of its energy") {
 TEST_CASE("Bourguignon-Cani: a uniform inflation is answered by a penalty's pressure") {
   // Oracle: analytic, p = −K ΔV/V to first order: 1e-3 is the second.
   const auto model = testing::ball_model(2);
-  BourguignonCani method(model);
+  auto method = testing::stepped_by<BourguignonCani>(model);
   OrganState state = rest_state(model);
   testing::scale(state, 1.0003);
   const double lost = 1 - testing::volume_of(model, state) / model.rest_volume;

@@ -13,7 +13,7 @@ TEST_CASE("explicit step: without forces of its own a method takes the springs' 
 
 TEST_CASE("explicit step: added stiffness shortens the step to 2/√(sum of squared frequencies)") {
   // Oracle: analytic, undamped symplectic Euler.
-  const auto model = testing::ball_model(2, testing::undamped_ball_with(scene::Model::kMassSpring));
+  const auto model = testing::ball_model(2, testing::undamped_ball_with("mass_spring"));
   const double squared = highest_squared_frequency_bound(model);
   for (const double added : {0.1 * squared, squared, 50 * squared}) {
     CHECK(largest_explicit_step(model, added) ==

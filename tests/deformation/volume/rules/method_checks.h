@@ -5,20 +5,27 @@
 #include <random>
 #include <vector>
 
-#include "deformation/steppers/organ_dynamics.h"
+#include "deformation/models.h"
 #include "deformation/steppers/symplectic_euler.h"
+#include "deformation/volume/implicit_volume.h"
 #include "tests/deformation/organs.h"
 
 namespace palpate::deformation::testing {
 
-inline scene::Organ ball_organ_with(scene::Model method) {
+/// Symplectic Euler with such a rule.
+template <class Rule, class... More>
+SymplecticEuler stepped_by(const OrganModel& model, More... more) {
+  return {model, std::make_unique<Rule>(model, more...)};
+}
+
+inline scene::Organ ball_organ_with(const std::string& method) {
   auto organ = ball_organ();
   organ.model = method;
   return organ;
 }
 
 /// Neither drag nor damping.
-inline scene::Organ undamped_ball_with(scene::Model method) {
+inline scene::Organ undamped_ball_with(const std::string& method) {
   auto organ = ball_organ_with(method);
   organ.tissue.drag = organ.tissue.damping_ratio = 0;
   return organ;

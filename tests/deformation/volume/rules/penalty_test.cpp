@@ -13,8 +13,8 @@ TEST_CASE("penalty: held between plates the volume is wrong by p/K") {
   organ.tissue.drag = 10;
   const auto model = testing::ball_model(2, organ);
   constexpr double kModulus = 1e6;
-  Penalty penalty(model, kModulus);
-  SymplecticEuler constraint(model);
+  auto penalty = testing::stepped_by<Penalty>(model, kModulus);
+  auto constraint = testing::stepped_by<ImplicitVolume>(model);
   const double h = penalty.largest_step();
   REQUIRE(h > 1e-4);
   double pressures[2], errors[2];
@@ -33,7 +33,7 @@ TEST_CASE("penalty: held between plates the volume is wrong by p/K") {
 
 TEST_CASE("penalty: its forces are minus the gradient of its energy") {
   const auto model = testing::ball_model(2);
-  Penalty penalty(model);
+  auto penalty = testing::stepped_by<Penalty>(model);
   const auto state = testing::shaken_state(model, 3e-3, 0.1);
   testing::check_forces_are_minus_gradient(
       model, penalty, state, [&](const OrganState& s) { return penalty.stored_energy(s); });
@@ -41,8 +41,8 @@ TEST_CASE("penalty: its forces are minus the gradient of its energy") {
 
 TEST_CASE("penalty: the step it takes is stable however stiff, twice that is not") {
   // Oracle: the bound. One stiff mode is all the contents are, so the bound is nearly reached.
-  const auto model = testing::ball_model(1, testing::undamped_ball_with(scene::Model::kPenalty));
-  Penalty penalty(model, 1e7);
+  const auto model = testing::ball_model(1, testing::undamped_ball_with("penalty"));
+  auto penalty = testing::stepped_by<Penalty>(model, 1e7);
   const auto final_error = [&](double h) {
     OrganState state = rest_state(model);
     testing::scale(state, 1.001);

@@ -8,7 +8,7 @@ namespace {
 /// Volume error that one step from rest with these velocities leaves.
 double error_after_step(double h) {
   const auto model = testing::ball_model(2);
-  PostStabilisation method(model);
+  auto method = testing::stepped_by<PostStabilisation>(model);
   OrganState state = testing::shaken_state(model, 0, 0);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     const Vec3& p = state.positions[i];
@@ -30,7 +30,7 @@ TEST_CASE("post-stabilisation: the projection moves positions, not velocities") 
   // Oracle: at rest, springs at their rest lengths, only V* is off: the velocity constraint
   // g·v = 0 holds already, so nothing may get a velocity (1e-7 m/s: rounding of springs).
   const auto model = testing::ball_model(2);
-  PostStabilisation method(model);
+  auto method = testing::stepped_by<PostStabilisation>(model);
   OrganState state = rest_state(model);
   state.target_volume *= 1.01;
   method.step(1e-3, {}, state);

@@ -9,7 +9,7 @@ TEST_CASE("Promayon: the volume is exact after every step, however wild") {
   // Oracle: the cubic is exact; 1e-13 is rounding of 80 triangles' volumes. Velocities are those
   // of the motion made.
   const auto model = testing::ball_model(1);
-  Promayon promayon(model);
+  auto promayon = testing::stepped_by<Promayon>(model);
   OrganState state = testing::shaken_state(model, 3e-3, 1);
   const double h = 1e-3;
   for (int s = 0; s < 200; ++s) {
@@ -26,8 +26,8 @@ TEST_CASE("Promayon: the reaction is the pressure of the contents") {
   // Oracle: the implicit constraint's pressure on the same ball inflated by 5 %, at rest; both are
   // then the springs' (p = 2 T/r in the inflated sphere's test).
   const auto model = testing::ball_model(2);
-  Promayon promayon(model);
-  SymplecticEuler constraint(model);
+  auto promayon = testing::stepped_by<Promayon>(model);
+  auto constraint = testing::stepped_by<ImplicitVolume>(model);
   OrganState state = rest_state(model);
   state.target_volume *= 1.05;
   OrganState other = state;

@@ -7,7 +7,7 @@ namespace {
 
 TEST_CASE("Zordan: its forces are minus the gradient of its energy") {
   const auto model = testing::ball_model(2);
-  Zordan method(model);
+  auto method = testing::stepped_by<Zordan>(model);
   const auto state = testing::shaken_state(model, 3e-3, 0.1);
   testing::check_forces_are_minus_gradient(
       model, method, state, [&](const OrganState& s) { return method.stored_energy(s); });
@@ -16,7 +16,7 @@ TEST_CASE("Zordan: its forces are minus the gradient of its energy") {
 TEST_CASE("Zordan: a uniform inflation is answered by a penalty's pressure") {
   // Oracle: analytic, p = −K ΔV/V: area shares add up to one, so exact for any mesh.
   const auto model = testing::ball_model(2);
-  Zordan method(model);
+  auto method = testing::stepped_by<Zordan>(model);
   OrganState state = rest_state(model);
   testing::scale(state, 1.01);
   const double lost = 1 - testing::volume_of(model, state) / model.rest_volume;
@@ -28,7 +28,7 @@ TEST_CASE("Zordan: a local dent is answered where it is, unlike by a global pres
   // Oracle: the definition. Triangles without a moved corner or apex have their volume and so no
   // pressure: nodes two rings from the dent and farther feel nothing, to the rounding of springs.
   const auto model = testing::ball_model(2);
-  Zordan method(model);
+  auto method = testing::stepped_by<Zordan>(model);
   OrganState state = rest_state(model);
   state.positions[0] *= 0.9;
   const auto forces = testing::method_forces(model, method, state);

@@ -1,0 +1,162 @@
+#include "deformation/models.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "deformation/elements/average_nodal_pressure.h"
+#include "deformation/elements/corotational.h"
+#include "deformation/steppers/backward_euler.h"
+#include "deformation/steppers/chainmail.h"
+#include "deformation/steppers/linearly_implicit_euler.h"
+#include "deformation/steppers/modal.h"
+#include "deformation/steppers/newton_backward_euler.h"
+#include "deformation/steppers/symplectic_euler.h"
+#include "deformation/steppers/xpbd_springs.h"
+#include "deformation/steppers/xpbd_tetrahedra.h"
+#include "deformation/volume/implicit_volume.h"
+#include "deformation/volume/rules/baumgarte.h"
+#include "deformation/volume/rules/bourguignon_cani.h"
+#include "deformation/volume/rules/element_volume.h"
+#include "deformation/volume/rules/penalty.h"
+#include "deformation/volume/rules/post_stabilisation.h"
+#include "deformation/volume/rules/promayon.h"
+#include "deformation/volume/rules/zordan.h"
+#include "modules/core/error.h"
+#include "modules/scene/models.h"
+
+namespace palpate::deformation {
+namespace {
+
+using Dynamics = std::unique_ptr<OrganDynamics>;
+
+/// Backward Euler damps and lags; it must save more than this factor.
+constexpr double kWorthwhile = 2;
+
+template <class Rule>
+Dynamics symplectic(const ModelParts& parts) {
+  return std::make_unique<SymplecticEuler>(parts.model, std::make_unique<Rule>(parts.model));
+}
+
+/// Of a rule on pyramids, whose apex is a virtual node.
+template <class Rule>
+Dynamics on_pyramids(const ModelParts& parts) {
+  if (parts.model.network().virtual_nodes.empty()) {
+    throw InputError("organ '" + parts.organ.name + "': model " + parts.organ.model +
+                     " needs virtual nodes as apexes of its pyramids; springs: virtual_nodes must "
+                     "be at least 1 and inner_ratio above 0");
+  }
+  return symplectic<Rule>(parts);
+}
+
+Dynamics mass_spring(const ModelParts& parts) {
+  if (parts.integrator == scene::Integrator::kBackwardEuler) {
+    return std::make_unique<BackwardEuler>(parts.model, KeptVolume{.is_kept = false});
+  }
+  return std::make_unique<SymplecticEuler>(parts.model, std::make_unique<NoVolume>(parts.model),
+                                           parts.runner);
+}
+
+Dynamics implicit_volume(const ModelParts& parts) {
+  const int corrections = static_cast<int>(parts.organ.volume_corrections);
+  if (parts.integrator == scene::Integrator::kBackwardEuler) {
+    return std::make_unique<BackwardEuler>(parts.model, KeptVolume{.corrections = corrections});
+  }
+  return std::make_unique<SymplecticEuler>(
+      parts.model, std::make_unique<ImplicitVolume>(parts.model, corrections), parts.runner);
+}
+
+template <class Elements>
+Dynamics linearly_implicit(const ModelParts& parts) {
+  const TetMesh& mesh = parts.model.mesh();
+  auto elements = std::make_unique<Elements>(
+      LinearTetrahedra(parts.model.rest_positions, mesh.tetrahedra), mesh.elastic());
+  return std::make_unique<LinearlyImplicitEuler>(parts.model, std::move(elements),
+                                                 parts.iterations);
+}
+
+Dynamics xpbd_tetrahedra(const ModelParts& parts) {
+  return std::make_unique<XpbdTetrahedra>(parts.model, parts.model.mesh(), parts.iterations);
+}
+
+Dynamics xpbd_springs(const ModelParts& parts) {
+  return std::make_unique<XpbdSprings>(parts.model, parts.iterations);
+}
+
+template <class Stepper>
+Dynamics plain(const ModelParts& parts) {
+  return std::make_unique<Stepper>(parts.model);
+}
+
+Dynamics modal(const ModelParts& parts) {
+  return std::make_unique<Modal>(parts.model, parts.organ.solid.modes,
+                                 parts.organ.tissue.damping_ratio);
+}
+
+constexpr std::array<ModelRow, 16> kRows{{
+    {.word = "implicit_volume",
+     .conserves_volume = true,
+     .has_volume_constraint = true,
+     .make = implicit_volume},
+    {.word = "mass_spring", .make = mass_spring},
+    {.word = "penalty", .knows_energy = false, .make = symplectic<Penalty>},
+    {.word = "baumgarte", .make = symplectic<Baumgarte>},
+    {.word = "promayon",
+     .conserves_volume = true,
+     .knows_energy = false,
+     .make = symplectic<Promayon>},
+    {.word = "post_stabilisation", .conserves_volume = true, .make = symplectic<PostStabilisation>},
+    {.word = "bourguignon_cani", .knows_energy = false, .make = symplectic<BourguignonCani>},
+    {.word = "zordan", .knows_energy = false, .make = on_pyramids<Zordan>},
+    {.word = "element_volume", .knows_energy = false, .make = on_pyramids<ElementVolume>},
+    {.word = "chainmail",
+     .conserves_momentum = false,
+     .knows_energy = false,
+     .make = plain<ChainMail>},
+    {.word = "xpbd_springs", .conserves_volume = true, .make = xpbd_springs},
+    {.word = "xpbd_tetrahedra", .make = xpbd_tetrahedra},
+    {.word = "corotational", .make = linearly_implicit<Corotational>},
+    {.word = "nodal_pressure", .make = linearly_implicit<AverageNodalPressure>},
+    {.word = "quadratic_elements", .make = plain<NewtonBackwardEuler>},
+    {.word = "modal", .make = modal},
+}};
+
+}  // namespace
+
+std::span<const ModelRow> model_rows() { return kRows; }
+
+const ModelRow& row_of(std::string_view model) {
+  const auto found = std::ranges::find(kRows, model, &ModelRow::word);
+  PALPATE_DEMAND(found != kRows.end());
+  return *found;
+}
+
+IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,
+                                   double period) {
+  IntegratorChoice choice;
+  if (!scene::format_of(organ.model).has_integrator) return choice;
+  choice.symplectic_passes = std::ceil(period / NoVolume(model).largest_step()) / period;
+  choice.backward_passes = std::ceil(period / BackwardEuler::kLargestStep) / period *
+                           BackwardEuler::passes(BackwardEuler::kIterations);
+  if (organ.integrator != scene::Integrator::kAutomatic) {
+    choice.integrator = organ.integrator;
+  } else if (choice.symplectic_passes > kWorthwhile * choice.backward_passes) {
+    choice.integrator = scene::Integrator::kBackwardEuler;
+  }
+  return choice;
+}
+
+std::unique_ptr<OrganDynamics> make_dynamics(const scene::Organ& organ, const OrganModel& model,
+                                             double period, ChunkRunner* runner) {
+  const scene::ModelFormat& format = scene::format_of(organ.model);
+  if (!format.has_integrator && organ.integrator == scene::Integrator::kBackwardEuler) {
+    throw InputError("organ '" + organ.name + "': model " + organ.model +
+                     " has steps of its own; integrator must be automatic or symplectic_euler");
+  }
+  const std::size_t iterations = organ.iterations > 0 ? organ.iterations : format.iterations;
+  return row_of(organ.model)
+      .make({organ, model, static_cast<int>(iterations),
+             choose_integrator(organ, model, period).integrator, runner});
+}
+
+}  // namespace palpate::deformation

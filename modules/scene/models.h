@@ -1,0 +1,59 @@
+// The deformation models a scene can name, one row each: what the format must know of them. How
+// they move is deformation's (deformation/models.h). Nothing depends on the order of the rows.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace palpate::scene {
+
+struct Organ;
+
+/// What joins an organ's nodes.
+enum class MeshKind { kSurfaceSprings, kLinearTetrahedra, kQuadraticTetrahedra };
+
+struct ModelFormat {
+  const char* word = "";     ///< value of the key `model`
+  const char* meaning = "";  ///< law and method, for tables
+  MeshKind mesh = MeshKind::kSurfaceSprings;
+  bool has_integrator = false;          ///< reads `integrator`: has no steps of its own
+  bool has_volume_corrections = false;  ///< reads `volume_corrections`
+  std::size_t iterations = 0;           ///< of `iterations` the model's own; 0: it has no such key
+  const char* iterates = "";            ///< what those are
+  bool has_modes = false;               ///< reads `solid.modes`
+  double largest_poisson_ratio = 0.5;   ///< of `solid.poisson_ratio`, of a model of solids
+
+  bool is_solid() const { return mesh != MeshKind::kSurfaceSprings; }
+  bool is_quadratic() const { return mesh == MeshKind::kQuadraticTetrahedra; }
+};
+
+std::span<const ModelFormat> model_formats();
+
+/// The row of a word. Readers refuse other words, so that one is a broken promise.
+const ModelFormat& format_of(std::string_view model);
+
+inline bool is_solid(std::string_view model) { return format_of(model).is_solid(); }
+inline bool is_quadratic(std::string_view model) { return format_of(model).is_quadratic(); }
+
+/// All words, "a, b, c".
+std::string model_words();
+
+/// What the organ asks of its model that this cannot do. Empty: nothing.
+std::string impossible_for_model(const Organ& organ);
+
+/// Which of the organ's keys its model ignores though they have other values than their defaults.
+/// Empty: none.
+std::string ignored_by_model(const Organ& organ);
+
+/// Either of these.
+inline std::string misfit_of_model(const Organ& organ) {
+  const std::string impossible = impossible_for_model(organ);
+  return impossible.empty() ? ignored_by_model(organ) : impossible;
+}
+
+/// Gives keys that the organ's model ignores their defaults.
+void drop_ignored_keys(Organ& organ);
+
+}  // namespace palpate::scene

@@ -1,0 +1,42 @@
+#include "modules/scene/models.h"
+
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "modules/scene/scene.h"
+
+namespace palpate::scene {
+namespace {
+
+TEST_CASE("scene models: each word names one row, the default among them") {
+  // Oracle: counting.
+  std::set<std::string_view> words;
+  for (const ModelFormat& format : model_formats()) {
+    CHECK(words.insert(format.word).second);
+    CHECK(&format_of(format.word) == &format);
+    CHECK(std::string(format.meaning) != "");
+  }
+  CHECK(words.count(Organ().model) == 1);
+}
+
+TEST_CASE("scene models: dropping what a model ignores leaves it nothing to refuse") {
+  // Oracle: ignored_by_model(), and idempotence.
+  for (const ModelFormat& format : model_formats()) {
+    Organ organ;
+    organ.model = format.word;
+    organ.iterations = 3;
+    organ.integrator = Integrator::kBackwardEuler;
+    organ.volume_corrections = 2;
+    organ.springs.inner_ratio = 1;
+    organ.solid = {0.3, 0.01, 12};
+    INFO(format.word);
+    CHECK(ignored_by_model(organ) != "");
+    drop_ignored_keys(organ);
+    CHECK(ignored_by_model(organ) == "");
+    CHECK((organ.iterations == 3) == (format.iterations > 0));
+    CHECK((organ.solid.modes == 12) == format.has_modes);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::scene
