@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptics/haptic_renderer.h"
+#include "haptics/local_law.h"
+#include "haptics/placed_device.h"
+#include "modules/bus/tap.h"
+#include "modules/core/error.h"
+#include "palpate/session/in_process.h"
 
 namespace palpate::stability {
 namespace {
@@ -27,42 +31,119 @@ struct Hand {
   }
 };
 
-/// What deformation sends for a probe at `z` on a wall z ≤ 0.
-LocalLaw wall_at(double z, double stiffness, bool local_model) {
-  LocalLaw model;
-  model.touching = z < 0;
-  model.anchor.z() = z;
-  model.force.z() = std::max(0.0, -stiffness * z);
-  model.stiffness(2, 2) = local_model ? stiffness : 0;
-  model.validity_radius = 0.05;
-  return model;
-}
-
-class ForceLaw {
+/// In the place of deformation: what it would say of a probe on a wall z ≤ 0.
+class WallStage final : public runtime::Stage {
  public:
-  explicit ForceLaw(const Loop& loop)
-      : passivity_(loop.passivity), renderer_(limits(), 1 / loop.rate) {}
+  WallStage(bus::Bus& bus, double stiffness, bool local_model)
+      : states_(bus.reader(bus::kProbeState)),
+        models_(bus.writer(bus::kContactModel)),
+        stiffness_(stiffness) {
+    model_.validity_radius = 0.05;
+    model_.stiffness(2, 2) = local_model ? stiffness : 0;
+  }
 
-  double force(const LocalLaw& model, const Hand& hand, double time) {
-    if (!passivity_) return haptics::evaluate(model, Vec3(0, 0, hand.z)).wrench.force.z();
-    renderer_.update_law(model, time);
-    haptics::DeviceSample sample;
-    sample.pose.position.z() = hand.z;
-    sample.twist.linear.z() = hand.velocity;
-    RenderedForce out;
-    renderer_.tick(time, sample, out);
-    return out.force.z();
+  runtime::Health cycle(const runtime::Cycle& now) override {
+    while (states_.take(state_)) {
+      const double z = state_.pose.position.z();
+      model_.touching = z < 0;
+      model_.anchor.z() = z;
+      model_.force.z() = std::max(0.0, -stiffness_ * z);
+    }
+    model_.header = now.header();
+    models_.write(model_);
+    return {};
   }
 
  private:
-  static scene::Haptics limits() {
-    scene::Haptics limits;
-    limits.device_damping = kHandDamping;
-    return limits;
+  bus::Reader<ProbeState> states_;
+  bus::Writer<ContactModel> models_;
+  ProbeState state_;
+  ContactModel model_;
+  double stiffness_;  ///< [N/m]
+};
+
+/// In the place of haptics: the newest law at the device's pose, and nothing else.
+class BareLawStage final : public runtime::Stage {
+ public:
+  BareLawStage(bus::Bus& bus, haptics::Device& device)
+      : laws_(bus.reader(bus::kContactModel)),
+        states_(bus.writer(bus::kProbeState)),
+        forces_(bus.writer(bus::kHapticForce)),
+        device_(device) {}
+
+  runtime::Health cycle(const runtime::Cycle& now) override {
+    while (laws_.take(law_)) {
+    }
+    state_.header = force_.header = now.header();
+    state_.pose = device_.read(now.time()).pose;
+    force_.force = haptics::evaluate(law_, state_.pose.position).wrench.force;
+    states_.write(state_);
+    forces_.write(force_);
+    return {};
   }
 
-  bool passivity_;
-  haptics::HapticRenderer renderer_;
+ private:
+  bus::Reader<ContactModel> laws_;
+  bus::Writer<ProbeState> states_;
+  bus::Writer<HapticForce> forces_;
+  haptics::Device& device_;
+  ContactModel law_;
+  ProbeState state_;
+  HapticForce force_;
+};
+
+scene::Scene scene_of(const Loop& loop) {
+  scene::Scene scene;
+  scene.probes.push_back({"device", scene::SphereShape{}, 0, scene::ScriptedDevice{}});
+  scene.haptics.device_damping = kHandDamping;
+  scene.rates.haptics = scene.rates.deformation = loop.rate;
+  return scene;
+}
+
+/// Haptics and a wall; contact models are `delay` periods old when haptics uses them.
+class LoopSession {
+ public:
+  LoopSession(const Loop& loop, int delay, double stiffness)
+      : session_(scene_of(loop), {{}, {geometry::TriangleSurface{}}},
+                 options(loop, delay, stiffness)) {
+    if (!loop.passivity) return;
+    auto device = std::make_unique<haptics::PlacedDevice>(Pose{});
+    device_ = device.get();
+    session_.haptics().set_device(0, std::move(device));
+  }
+
+  /// The force on the hand until the next tick [N].
+  double tick(const Hand& hand) {
+    Pose pose;
+    pose.position.z() = hand.z;
+    device_->place(pose, {hand.velocity * Vec3::UnitZ(), Vec3::Zero()});
+    session_.tick();
+    return session_.haptic_force(0).force.z();
+  }
+
+ private:
+  session::InProcessOptions options(const Loop& loop, int delay, double stiffness) {
+    session::InProcessOptions options;
+    options.tap = [delay](bus::Bus& carrier) {
+      auto tapped = std::make_unique<bus::TappedBus>(carrier);
+      tapped->set_tap(bus::kContactModel.name, bus::delay_tap(static_cast<std::size_t>(delay - 1)));
+      return tapped;
+    };
+    options.make = [=, this](std::string_view module, bus::Bus& bus,
+                             const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
+      if (module == "collision") return nullptr;
+      if (module == "deformation") {
+        return std::make_unique<WallStage>(bus, stiffness, loop.local_model);
+      }
+      if (loop.passivity) return usual(bus);
+      return std::make_unique<BareLawStage>(bus, *device_);
+    };
+    return options;
+  }
+
+  haptics::PlacedDevice bare_device_{Pose{}};
+  haptics::PlacedDevice* device_ = &bare_device_;
+  session::InProcess session_;
 };
 
 double largest(const std::vector<double>& path, double from, double to) {
@@ -92,21 +173,19 @@ Verdict verdict_of(const std::vector<double>& path, bool left) {
 Verdict close_loop(const Loop& loop, double delay, double stiffness, const KeepGoing& keep_going) {
   const double tick = 1 / loop.rate, depth = std::min(kDeepest, kPush / stiffness);
   const int delay_ticks = static_cast<int>(std::lround(delay * loop.rate));
+  PALPATE_DEMAND(delay_ticks >= 1);
   const int end = static_cast<int>(kEnd * loop.rate), kick = static_cast<int>(kKick * loop.rate);
-  ForceLaw law(loop);
+  LoopSession session(loop, delay_ticks, stiffness);
   Hand hand;
-  std::vector<double> z, path;
+  std::vector<double> path;
   bool left = false;
   for (int i = 0; i < end && !left; ++i) {
     if (i % 1000 == 0) keep_going();
     const double s = std::min(1.0, i * tick / kPress);
     const double pressed_to = -depth * s * s * s * (10 - 15 * s + 6 * s * s);
     if (i == kick) hand.velocity += kKickSpeed;
-    z.push_back(hand.z);
     if (i >= kick) path.push_back(hand.z + depth);
-    const double seen = z[static_cast<std::size_t>(std::max(0, i - delay_ticks))];
-    const double force = law.force(wall_at(seen, stiffness, loop.local_model), hand, i * tick);
-    hand.move(stiffness * pressed_to + force, tick);
+    hand.move(stiffness * pressed_to + session.tick(hand), tick);
     left = std::abs(hand.z - pressed_to) > kLeft;
   }
   return verdict_of(path, left);

@@ -85,7 +85,7 @@ Map probe_speeds(bool quick) {
   };
   map.predict = [shapes](const std::string& name, double) {  // before anything touches
     const Scheme& scheme = scheme_named(name);
-    TestBody body(poked_organ(scheme), shapes->shape_for(scheme));
+    TestBody body(poked_ball(scheme), shapes->shape_for(scheme));
     Prediction prediction = predict(scheme, body);
     prediction.exact = false;
     return prediction;
@@ -140,11 +140,11 @@ const Loop& loop_named(const std::string& name) {
 }
 
 Map haptic_loop(bool quick) {
-  Map map{"haptic_loop", "delay_s", "stiffness_n_per_m", {}, {0, 0.01, 0.04}, {}, 0, {}, {}};
+  Map map{"haptic_loop", "delay_s", "stiffness_n_per_m", {}, {0.002, 0.01, 0.04}, {}, 0, {}, {}};
   for (const NamedLoop& each : loops()) {
     if (!quick || each.loop.rate == 1000) map.series.emplace_back(each.name);
   }
-  if (!quick) map.xs = {0, 0.002, 0.004, 0.01, 0.02, 0.04};
+  if (!quick) map.xs = {0.002, 0.004, 0.01, 0.02, 0.04};
   map.ys = geometric(1, 1e4, quick ? 5 : 13);
   map.precision = precision(quick);
   map.attempt = [](const std::string& name, double x, double y, const KeepGoing& keep_going) {

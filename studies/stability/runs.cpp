@@ -178,7 +178,7 @@ Verdict squeeze(const Scheme& scheme, const geometry::OrganShape& shape, double 
   return verdict;
 }
 
-scene::Organ poked_organ(const Scheme& scheme) {
+scene::Organ poked_ball(const Scheme& scheme) {
   scene::Organ organ = squeezed_organ(scheme);
   organ.fixed.push_back(scene::BoxRegion{{-1, -1, -1}, {1, 1, -0.8 * kBallRadius}});
   return organ;
@@ -186,7 +186,7 @@ scene::Organ poked_organ(const Scheme& scheme) {
 
 Verdict poke(const Scheme& scheme, const geometry::OrganShape& shape, double speed, double h,
              const KeepGoing& keep_going) {
-  TestBody body(poked_organ(scheme), shape);
+  TestBody body(poked_ball(scheme), shape);
   Watch watch(body, driven(scheme, body, speed), Energy::kKinetic);
   rigs::Touch touch(body.model().surface_node_count);
   const double way = kDepth / speed;

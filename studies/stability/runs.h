@@ -61,6 +61,6 @@ Verdict poke(const Scheme& scheme, const geometry::OrganShape& shape, double spe
 
 /// The organs of the last two.
 scene::Organ squeezed_organ(const Scheme& scheme);
-scene::Organ poked_organ(const Scheme& scheme);
+scene::Organ poked_ball(const Scheme& scheme);
 
 }  // namespace palpate::stability
