@@ -214,7 +214,7 @@ OrganReading DeformationWorld::read(std::size_t organ_index) const {
   const OrganModel& model = organ.simulated.model();
   const OrganState& state = organ.simulated.state();
   OrganReading reading;
-  reading.positions = state.positions;
+  reading.positions = positions(organ_index);
   reading.volume = geometry::enclosed_volume(state.positions, model.triangles);
   reading.target_volume = std::max(state.target_volume, 0.0);
   reading.pressure = state.pressure;
@@ -222,6 +222,10 @@ OrganReading DeformationWorld::read(std::size_t organ_index) const {
   // A difference of large sums may come out a little below its least value, rest.
   reading.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
   return reading;
+}
+
+std::span<const Vec3> DeformationWorld::positions(std::size_t organ) const {
+  return impl_->organs.at(organ).simulated.state().positions;
 }
 
 LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {

@@ -64,6 +64,8 @@ class DeformationWorld {
 
   /// After the last advance().
   OrganReading read(std::size_t organ) const;
+  /// OrganReading::positions alone, without what the rest costs to compute.
+  std::span<const Vec3> positions(std::size_t organ) const;
   /// Mean force over the last advance() and how it varies with the probe's position.
   LocalLaw local_law(std::size_t probe) const;
 

@@ -7,6 +7,7 @@
 #include "modules/geometry/primitives.h"
 #include "modules/scene/models.h"
 #include "studies/chart/case_parts.h"
+#include "studies/report/measures.h"
 #include "studies/rigs/squeezed_ball.h"
 
 namespace palpate::chart {
@@ -38,9 +39,9 @@ scene::Scene ball_scene(const Setting& setting, double drag) {
 
 namespace {
 
-double equatorial_radius(const Stage& stage) {
-  return rigs::equatorial_radius(stage.model().triangles,
-                                 [&](std::size_t node) { return stage.position(node); });
+double equatorial_radius(const rigs::PressedOrgan& pressed) {
+  return rigs::equatorial_radius(pressed.model().triangles,
+                                 [&](std::size_t node) { return pressed.position(node); });
 }
 
 /// Amplitude of the ellipsoidal mode: Σ m (2 z u_z − x u_x − y u_y) / Σ m (4z² + x² + y²).
@@ -74,28 +75,28 @@ Measurement measure_ball(const Setting& setting, const KeepGoing& keep_going) {
   const ReferenceTable reference(data_file("reference/A_ball_plates.csv"));
   const auto shape = ball_shape(setting);
   scene::Scene scene = ball_scene(setting, kDrag);
-  std::vector<Pose> poses = rigs::add_plates(scene);
-  Stage stage(scene, shape, poses);
-  const double rest_radius = equatorial_radius(stage);
+  const auto plates = rigs::add_plates(scene);
+  rigs::PressedOrgan pressed(scene, shape, plates);
+  const double rest_radius = equatorial_radius(pressed);
   std::vector<Sample> samples;
   for (const double compression : {0.1, 0.2, 0.3, 0.4}) {
     const double height = kRadius * (1 - compression);
-    move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
+    pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
     const std::size_t row = reference.row_of("compression_d_over_2R", compression);
     Sample sample;
     sample.load = compression;
-    sample.force = (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+    sample.force = (std::abs(pressed.force(0).z()) + std::abs(pressed.force(1).z())) / 2;
     sample.reference_force = reference.at("F_N_nu0.499", row);
     // The mesh's own radius is a little less than the ball's: growth is compared.
-    sample.shape = equatorial_radius(stage) / rest_radius * kRadius - kRadius;
+    sample.shape = equatorial_radius(pressed) / rest_radius * kRadius - kRadius;
     sample.reference_shape = 1e-3 * reference.at("equatorial_radius_mm_nu0.499", row) - kRadius;
     sample.contact_radius =
-        contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
+        contact_radius(pressed, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
     sample.reference_contact_radius = 1e-3 * reference.at("contact_radius_mm_nu0.499", row);
     samples.push_back(sample);
-    if (stage.diverged()) break;
+    if (pressed.diverged()) break;
   }
-  Measurement result = summary(stage, shape);
+  Measurement result = summary(pressed, shape);
   result.samples = samples;
   return result;
 }
@@ -118,9 +119,9 @@ Measurement measure_vibration(const Setting& setting, const KeepGoing& keep_goin
   double busy = 0;
   while (static_cast<double>(swing.size()) * h < kDuration) {
     keep_going();
-    const double before = processor_time();
+    const double before = report::processor_time();
     dynamics->step(h, {}, state);
-    busy += processor_time() - before;
+    busy += report::processor_time() - before;
     swing.push_back(ellipsoid(model, state));
   }
   Measurement result;

@@ -12,14 +12,15 @@
 #include "studies/chart/equilibria.h"
 #include "studies/chart/reference_solutions.h"
 #include "studies/chart/truth_cube.h"
+#include "studies/rigs/indented_block.h"
 #include "studies/rigs/squeezed_ball.h"
 
 namespace palpate::chart {
 namespace {
 
-constexpr double kHalf = 0.04, kHeight = 0.08;  // [m]
-constexpr double kPlateSpeed = 0.01;            // [m/s]
-constexpr double kDrag = 60;                    // [1/s]
+constexpr double kHalf = rigs::kBlockHalfWidth, kHeight = rigs::kBlockHeight;  // [m]
+constexpr double kPlateSpeed = 0.01;                                           // [m/s]
+constexpr double kDrag = 60;                                                   // [1/s]
 /// No less than the largest a scene takes: the plate holds the tissue as if bonded.
 constexpr double kBondFriction = 2;
 const double kEqualRadius = std::cbrt(3 * 8 * kHalf * kHalf * kHalf / (4 * M_PI));
@@ -43,13 +44,13 @@ scene::Scene block_scene(const Setting& setting) {
   scene::Scene scene;
   scene.organs.push_back(solid_organ(setting, kEqualRadius, 1, kYoungsModulus, kDensity));
   scene.organs[0].tissue.drag = kDrag;
-  scene.organs[0].fixed.push_back(scene::BoxRegion{{-1, -1, -1}, {1, 1, 1e-6}});
+  scene.organs[0].fixed.push_back(rigs::block_base());
   scene.rates.deformation = setting.rate;
   return scene;
 }
 
 /// A sphere presses the middle of the block's top.
-constexpr double kTip = 5e-3, kTipSpeed = 4e-3;  // [m], [m/s]
+constexpr double kTip = rigs::kIndenterRadius, kTipSpeed = 4e-3;  // [m], [m/s]
 constexpr std::array kTipDepths{2e-3, 4e-3, 6e-3, 8e-3};
 
 /// A beam along x, held at x = 0.
@@ -57,10 +58,10 @@ constexpr double kLength = 0.1, kWidth = 0.02, kStiff = 200e3;  // [m], [m], [Pa
 const Vec3 kBeamLow(0, -kWidth / 2, -kWidth / 2), kBeamHigh(kLength, kWidth / 2, kWidth / 2);
 const Vec3 kWeight(0, 0, -9.81);
 
-Vec3 displacement(const Stage& stage, const NodeWeights& weights) {
+Vec3 displacement(const rigs::PressedOrgan& pressed, const NodeWeights& weights) {
   Vec3 sum = Vec3::Zero();
   for (const auto& [node, weight] : weights) {
-    sum += weight * (stage.position(node) - stage.rest_position(node));
+    sum += weight * (pressed.position(node) - pressed.rest_position(node));
   }
   return sum;
 }
@@ -68,19 +69,18 @@ Vec3 displacement(const Stage& stage, const NodeWeights& weights) {
 /// Compresses the block by each of `compressions` and asks `answer` each time it has come to rest.
 Measurement compress(const Setting& setting, const std::vector<double>& compressions,
                      const geometry::OrganShape& shape,
-                     const std::function<Sample(const Stage&, double)>& answer,
+                     const std::function<Sample(const rigs::PressedOrgan&, double)>& answer,
                      const KeepGoing& keep_going) {
   scene::Scene scene = block_scene(setting);
   scene.probes.push_back({"plate", scene::PlaneShape{}, kBondFriction, scene::ScriptedDevice{}});
-  std::vector<Pose> poses{rigs::plate_pose(kHeight, false)};
-  Stage stage(scene, shape, poses);
+  rigs::PressedOrgan pressed(scene, shape, {rigs::plate_pose(kHeight, false)});
   std::vector<Sample> samples;
   for (const double compression : compressions) {
-    move_and_settle(stage, poses, {{0, 0, kHeight * (1 - compression)}}, kPlateSpeed, keep_going);
-    samples.push_back(answer(stage, compression));
-    if (stage.diverged()) break;
+    pressed.move_and_settle({{0, 0, kHeight * (1 - compression)}}, kPlateSpeed, keep_going);
+    samples.push_back(answer(pressed, compression));
+    if (pressed.diverged()) break;
   }
-  Measurement result = summary(stage, shape);
+  Measurement result = summary(pressed, shape);
   result.samples = samples;
   return result;
 }
@@ -103,12 +103,13 @@ std::vector<GridPoint> reference_grid(const std::filesystem::path& file,
   return grid;
 }
 
-double grid_error(const Stage& stage, const std::vector<GridPoint>& grid, double compression) {
+double grid_error(const rigs::PressedOrgan& pressed, const std::vector<GridPoint>& grid,
+                  double compression) {
   double sum = 0;
   int count = 0;
   for (const GridPoint& point : grid) {
     if (std::abs(point.compression - compression) > 1e-9) continue;
-    sum += (displacement(stage, point.weights) - point.displacement).squaredNorm();
+    sum += (displacement(pressed, point.weights) - point.displacement).squaredNorm();
     ++count;
   }
   return count > 0 ? std::sqrt(sum / count) : kUnknown;
@@ -121,15 +122,15 @@ Measurement measure_block(const Setting& setting, const KeepGoing& keep_going) {
   const auto shape = block_shape(setting);
   const auto grid = reference_grid(data_file("reference/C_block_grid_5x5x5.csv"), shape);
   const auto middle = weights_at(shape, {kHalf, 0, kHeight / 2});
-  const auto answer = [&](const Stage& stage, double compression) {
+  const auto answer = [&](const rigs::PressedOrgan& pressed, double compression) {
     const std::size_t row = reference.row_of("compression", compression);
     Sample sample;
     sample.load = compression;
-    sample.force = std::abs(stage.force(0).z());
+    sample.force = std::abs(pressed.force(0).z());
     sample.reference_force = reference.at("F_N", row);
-    sample.shape = displacement(stage, middle).x();
+    sample.shape = displacement(pressed, middle).x();
     sample.reference_shape = 1e-3 * reference.at("lateral_bulge_face_centre_mm", row);
-    sample.field_error = grid_error(stage, grid, compression);
+    sample.field_error = grid_error(pressed, grid, compression);
     return sample;
   };
   return compress(setting, {0.05, 0.125, 0.1825}, shape, answer, keep_going);
@@ -142,10 +143,10 @@ Measurement measure_truth_cube(const Setting& setting, const KeepGoing& keep_goi
   const auto shape = block_shape(setting);
   std::vector<NodeWeights> beads;
   for (const Vec3& bead : cube.rest) beads.push_back(weights_at(shape, bead));
-  const auto answer = [&](const Stage& stage, double compression) {
+  const auto answer = [&](const rigs::PressedOrgan& pressed, double compression) {
     std::vector<Vec3> moved;
     for (std::size_t i = 0; i < beads.size(); ++i) {
-      moved.push_back(cube.rest[i] + displacement(stage, beads[i]));
+      moved.push_back(cube.rest[i] + displacement(pressed, beads[i]));
     }
     Sample sample;
     sample.load = compression;
@@ -169,14 +170,14 @@ Measurement measure_beam(const Setting& setting, const KeepGoing& keep_going) {
   scene.organs[0].fixed.push_back(scene::BoxRegion{{-1, -1, -1}, {1e-6, 1, 1}});
   scene.gravity = kWeight;
   scene.rates.deformation = setting.rate;
-  Stage stage(scene, shape, {});
+  rigs::PressedOrgan pressed(scene, shape, {});
   const auto tip = weights_at(shape, {kLength, 0, 0});
   keep_going();
-  stage.settle(kLongest);
-  Measurement result = summary(stage, shape);
+  pressed.settle(kLongest);
+  Measurement result = summary(pressed, shape);
   Sample sample;
   sample.load = kWeight.norm();
-  sample.shape = -displacement(stage, tip).z();
+  sample.shape = -displacement(pressed, tip).z();
   result.samples.push_back(sample);
   return result;
 }
@@ -198,40 +199,39 @@ Measurement bend_beam(int level, const KeepGoing& keep_going) {
 
 Measurement measure_indent(const Setting& setting, const KeepGoing& keep_going) {
   constexpr std::array kSizes{2e-3, 0.93e-3, 0.6e-3};  // under the tip
+  static const double kFlat = std::sqrt(3e-4);         // [m]
   const ReferenceTable reference(data_file("reference/D_indent_force_depth.csv"));
-  const double size = kSizes[static_cast<std::size_t>(setting.level)];
-  // Flat to a radius from the tip, then growing twentyfold.
-  std::ostringstream growth;
-  growth << " + " << 20 * size << "*((x*x + y*y + (z-0.08)^2)/(x*x + y*y + (z-0.08)^2 + 0.0003))^2";
+  double size = kSizes[static_cast<std::size_t>(setting.level)];
+  const double growth = 20 * size;
+  if (scene::is_quadratic(setting.model)) size *= 2;
   const auto shape =
-      block_shape(setting, {-kHalf, -kHalf, 0}, {kHalf, kHalf, kHeight}, size, growth.str());
+      shape_for(setting, geometry::shape_of(rigs::whole_block({size, growth, kFlat})));
   scene::Scene scene = block_scene(setting);
-  scene.probes.push_back({"tip", scene::SphereShape{kTip}, 0.0, scene::ScriptedDevice{}});
-  std::vector<Pose> poses(1);
-  poses[0].position = Vec3(0, 0, kHeight + kTip + 1e-4);
-  Stage stage(scene, shape, poses);
+  rigs::add_indenter(scene);
+  rigs::PressedOrgan pressed(scene, shape, {{rigs::indenter_at(-1e-4), Quat::Identity()}});
   std::vector<NodeWeights> places;
   places.reserve(kProfilePlaces.size());
   for (const double place : kProfilePlaces)
     places.push_back(weights_at(shape, {place, 0, kHeight}));
   std::vector<Sample> samples;
   for (const double depth : kTipDepths) {
-    move_and_settle(stage, poses, {{0, 0, kHeight + kTip - depth}}, kTipSpeed, keep_going);
+    pressed.move_and_settle({rigs::indenter_at(depth)}, kTipSpeed, keep_going);
     const std::size_t row = reference.row_of("depth_mm", std::round(1e3 * depth));
     Sample sample;
     sample.load = depth;
-    sample.force = stage.force(0).z();
+    sample.force = pressed.force(0).z();
     sample.reference_force = reference.at("F_block_N", row);
-    sample.contact_radius = contact_radius(
-        stage, Vec3::UnitZ(), [&](const Vec3& x) { return (x - poses[0].position).norm() - kTip; });
+    sample.contact_radius = contact_radius(pressed, Vec3::UnitZ(), [&](const Vec3& x) {
+      return (x - pressed.pose(0).position).norm() - kTip;
+    });
     sample.reference_contact_radius = 1e-3 * reference.at("contact_radius_mm", row);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      sample.profile[i] = displacement(stage, places[i]).z();
+      sample.profile[i] = displacement(pressed, places[i]).z();
     }
     samples.push_back(sample);
-    if (stage.diverged()) break;
+    if (pressed.diverged()) break;
   }
-  Measurement result = summary(stage, shape);
+  Measurement result = summary(pressed, shape);
   result.samples = samples;
   return result;
 }
@@ -239,19 +239,13 @@ Measurement measure_indent(const Setting& setting, const KeepGoing& keep_going) 
 /// A quarter of the block, as in case D of studies/elements.
 Measurement press_block(int level, const KeepGoing& keep_going) {
   constexpr std::array kSizes{0.4, 0.28};  // of the tip's radius
-  std::ostringstream size;
-  size << kSizes[static_cast<std::size_t>(level)] * kTip
-       << " + 0.012*((x*x+y*y+(z-0.08)^2)/(x*x+y*y+(z-0.08)^2+0.0004))^2";
   const deformation::TaylorHoodElements solid(
-      deformation::make_quadratic(
-          geometry::mesh_block(Vec3::Zero(), {kHalf, kHalf, kHeight}, size.str())),
+      deformation::make_quadratic(rigs::quarter_block(kSizes[static_cast<std::size_t>(level)])),
       deformation::ElasticConstants(kYoungsModulus, kPoissonRatio), kDensity);
   std::vector<char> held;
   held.reserve(solid.displacement_count());
   for (const Vec3& node : solid.mesh().nodes) {
-    for (int axis = 0; axis < 3; ++axis) {
-      held.push_back(node.z() == 0 || (axis < 2 && node[axis] == 0));
-    }
+    for (int axis = 0; axis < 3; ++axis) held.push_back(rigs::is_held_in_quarter(node, axis));
   }
   Press press{{0, 0, kHeight}, -Vec3::UnitZ(), kTip, {kTipDepths.begin(), kTipDepths.end()}, {}};
   for (const double place : kProfilePlaces) press.marks.emplace_back(place, 0, kHeight);

@@ -3,8 +3,8 @@
 
 #include "deformation/elements/taylor_hood.h"
 #include "studies/chart/cases.h"
-#include "studies/chart/stage.h"
 #include "studies/report/reference_table.h"
+#include "studies/rigs/pressed_organ.h"
 
 namespace palpate::chart {
 
@@ -12,7 +12,6 @@ inline constexpr double kYoungsModulus = 5e3;    // of the references [Pa]
 inline constexpr double kDensity = 1060;         // [kg/m³]
 inline constexpr double kPoissonRatio = 0.499;   // Solid's default
 inline constexpr std::size_t kVirtualNodes = 6;  // of what has a dominant axis
-inline constexpr double kLongestSettling = 3;    // [s]
 
 using report::ReferenceTable;
 
@@ -22,12 +21,8 @@ geometry::OrganShape ball_shape(const Setting& setting);
 /// @param drag  [1/s]
 scene::Scene ball_scene(const Setting& setting, double drag);
 
-/// Moves all probes in a straight line at `speed` [m/s] from `from` to `to`, then lets them settle.
-void move_and_settle(Stage& stage, std::vector<Pose>& poses, const std::vector<Vec3>& to,
-                     double speed, const KeepGoing& keep_going);
-
-/// Sizes, step, cost and volume error of the stage so far.
-Measurement summary(const Stage& stage, const geometry::OrganShape& shape);
+/// Sizes, step, cost and volume error of the pressed so far.
+Measurement summary(const rigs::PressedOrgan& pressed, const geometry::OrganShape& shape);
 /// Sizes of a reference.
 Measurement summary(const deformation::TaylorHoodElements& solid);
 
@@ -35,7 +30,7 @@ Measurement summary(const deformation::TaylorHoodElements& solid);
 /// of an obstacle; a node's share is a third of its triangles [m].
 /// @param outside  distance of a point from the obstacle [m]
 inline constexpr double kTouchDistance = 5e-5;
-double contact_radius(const Stage& stage, const Vec3& normal,
+double contact_radius(const rigs::PressedOrgan& pressed, const Vec3& normal,
                       const std::function<double(const Vec3&)>& outside);
 
 Measurement measure_ball(const Setting& setting, const KeepGoing& keep_going);

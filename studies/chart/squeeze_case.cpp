@@ -26,24 +26,24 @@ Measurement measure_squeeze(const Setting& setting, const KeepGoing& keep_going)
   scene::Scene scene = ball_scene(setting, kDrag);
   scene.organs[0].tissue.damping_ratio = 0;
   auto poses = rigs::add_plates(scene);
-  Stage stage(scene, shape, poses);
-  const int steps = static_cast<int>(std::lround(kWindow / stage.period()));
+  rigs::PressedOrgan pressed(scene, shape, poses);
+  const int steps = static_cast<int>(std::lround(kWindow / pressed.period()));
   std::vector<Sample> samples;
-  while (stage.time() < kDuration - kWindow / 2 && !stage.diverged()) {
+  while (pressed.time() < kDuration - kWindow / 2 && !pressed.diverged()) {
     keep_going();
     double sum = 0;
     for (int k = 0; k < steps; ++k) {
-      const double height = height_at(stage.time() + stage.period());
+      const double height = height_at(pressed.time() + pressed.period());
       poses[0].position.z() = height;
       poses[1].position.z() = -height;
-      stage.advance(poses);
-      sum += (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+      pressed.advance(poses);
+      sum += (std::abs(pressed.force(0).z()) + std::abs(pressed.force(1).z())) / 2;
     }
     Sample& sample = samples.emplace_back();
     sample.load = kWindow * static_cast<double>(samples.size());
     sample.force = sum / steps;
   }
-  Measurement result = summary(stage, shape);
+  Measurement result = summary(pressed, shape);
   result.is_course = true;
   result.samples = samples;
   return result;

@@ -10,15 +10,16 @@
 #include "studies/elements/load_path.h"
 #include "studies/report/progress.h"
 #include "studies/report/reference_table.h"
+#include "studies/rigs/indented_block.h"
 
 namespace palpate::elements_bench {
 namespace {
 
 using namespace deformation;
+using rigs::kIndenterRadius;
 
 constexpr double kYoungsModulus = 5000, kPoissonsRatio = 0.499;
 constexpr double kBallRadius = 0.05, kBallDensity = 1060;
-constexpr double kHalfWidth = 0.04, kIndenterRadius = 0.005;
 /// ε over E / length: a traction of E penetrates by 3e-5 of the length before augmentation. A
 /// hundredth of it for the small indenter.
 constexpr double kPenaltyRatio = 3e4;
@@ -111,7 +112,7 @@ constexpr double kFolding = 0.14, kFoldingSize = 0.6;
 
 /// The force is the sum of the held top's reactions.
 Run bonded_block(double size, const Setting& setting) {
-  constexpr double a = kHalfWidth;
+  constexpr double a = rigs::kBlockHalfWidth;
   // Stress is singular at the two bonded edges: elements shrink with the distance from them.
   const auto expression = text("%g*(0.05 + 0.95*(((x-%g)^2+(z-%g)^2)*((y-%g)^2+(z-%g)^2))^0.5/%g)",
                                size * a, a, a, a, a, a * a);
@@ -149,14 +150,8 @@ Run bonded_block(double size, const Setting& setting) {
 }
 
 Run indented_block(double size, const Setting& setting) {
-  constexpr double top = 2 * kHalfWidth;
-  // Fine to 1.2 radii from the tip, then growing to 12 mm.
-  const auto expression =
-      text("%g + 0.012*((x*x+y*y+(z-0.08)*(z-0.08))/(x*x+y*y+(z-0.08)*(z-0.08)+0.0004))^2",
-           size * kIndenterRadius);
-  const TaylorHoodElements solid(
-      make_quadratic(geometry::mesh_block(Vec3::Zero(), {kHalfWidth, kHalfWidth, top}, expression)),
-      tissue(), 1000);
+  constexpr double top = rigs::kBlockHeight;
+  const TaylorHoodElements solid(make_quadratic(rigs::quarter_block(size)), tissue(), 1000);
   RigidContact contact(solid,
                        faces_where(solid,
                                    [](const Vec3& p) {
@@ -164,11 +159,7 @@ Run indented_block(double size, const Setting& setting) {
                                             std::hypot(p.x(), p.y()) < 5 * kIndenterRadius;
                                    }),
                        kPenaltyRatio / 100 * kYoungsModulus / kIndenterRadius);
-  QuasiStaticNewton solver(
-      solid,
-      held_where(solid,
-                 [](const Vec3& p, int axis) { return p.z() == 0 || (axis < 2 && p[axis] == 0); }),
-      &contact);
+  QuasiStaticNewton solver(solid, held_where(solid, rigs::is_held_in_quarter), &contact);
   LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(0.0005);
   Run run = described(solid, size);
@@ -177,7 +168,7 @@ Run indented_block(double size, const Setting& setting) {
     const double depth = 1e-3 * reference.at("depth_mm", row);
     if (depth < 0.99e-3 || depth > (setting.quick ? 3.01e-3 : 8.01e-3)) continue;
     run.complete = path.advance_to(depth, [&](double at, SolidState&) {
-      contact.set_obstacles({Sphere{Vec3(0, 0, top + kIndenterRadius - at), kIndenterRadius}});
+      contact.set_obstacles({Sphere{rigs::indenter_at(at), kIndenterRadius}});
     });
     if (!run.complete) break;
     run.rows.push_back({depth, 4 * contact.outcomes(path.state())[0].force.z(),
@@ -221,7 +212,7 @@ const std::vector<std::string>& case_names() {
 }
 
 double case_length(const std::string& name) {
-  if (name == "C") return kHalfWidth;
+  if (name == "C") return rigs::kBlockHalfWidth;
   return name == "D" ? kIndenterRadius : kBallRadius;
 }
 

@@ -12,7 +12,7 @@
 #include "modules/scene/schema.h"
 #include "studies/chart/displacement_field.h"
 #include "studies/chart/fidelity.h"
-#include "studies/chart/stage.h"
+#include "studies/rigs/pressed_organ.h"
 
 namespace palpate::plan {
 namespace {
@@ -46,12 +46,13 @@ std::vector<chart::NodeWeights> find_marks(const geometry::OrganShape& shape,
 }
 
 /// The marks' displacements: surfaces of other meshes lie a little aside.
-std::vector<Vec3> marked(const chart::Stage& stage, const std::vector<chart::NodeWeights>& marks) {
+std::vector<Vec3> marked(const rigs::PressedOrgan& pressed,
+                         const std::vector<chart::NodeWeights>& marks) {
   std::vector<Vec3> displacements;
   for (const auto& weights : marks) {
     Vec3& sum = displacements.emplace_back(Vec3::Zero());
     for (const auto& [node, weight] : weights) {
-      sum += weight * (stage.position(node) - stage.rest_position(node));
+      sum += weight * (pressed.position(node) - pressed.rest_position(node));
     }
   }
   return displacements;
@@ -143,26 +144,26 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
     devices.push_back(haptics::make_device(probe.device, warnings));
     poses.push_back(devices.back()->read(0).pose);
   }
-  chart::Stage stage(scene, shape, poses);
+  rigs::PressedOrgan pressed(scene, shape, poses);
   const auto places = find_marks(shape, marks);
   Course course;
   course.node_count = shape.node_count();
   double next_sample = 0;
-  while (stage.time() < duration && !stage.diverged()) {
+  while (pressed.time() < duration && !pressed.diverged()) {
     keep_going();
-    const double time = stage.time() + stage.period();
+    const double time = pressed.time() + pressed.period();
     for (std::size_t i = 0; i < devices.size(); ++i) poses[i] = devices[i]->read(time).pose;
-    stage.advance(poses);
-    if (stage.time() + stage.period() / 2 < next_sample) continue;
+    pressed.advance(poses);
+    if (pressed.time() + pressed.period() / 2 < next_sample) continue;
     next_sample += 1 / kSampleRate;
     auto& forces = course.forces.emplace_back();
-    for (std::uint32_t i = 0; i < devices.size(); ++i) forces.push_back(stage.force(i));
-    course.surfaces.push_back(marked(stage, places));
+    for (std::uint32_t i = 0; i < devices.size(); ++i) forces.push_back(pressed.force(i));
+    course.surfaces.push_back(marked(pressed, places));
   }
-  course.volume_error = stage.volume_error();
-  course.deformation_cost = stage.busy() / stage.time();
-  course.collision_cost = stage.searching() / stage.time();
-  course.diverged = stage.diverged();
+  course.volume_error = pressed.volume_error();
+  course.deformation_cost = pressed.busy() / pressed.time();
+  course.collision_cost = pressed.searching() / pressed.time();
+  course.diverged = pressed.diverged();
   return course;
 }
 

@@ -111,8 +111,12 @@ void Plates::step(deformation::OrganDynamics& dynamics, double h, double new_hei
       {{position, velocity, 0, -Vec3::UnitZ()}, {-position, -velocity, 0, Vec3::UnitZ()}}};
   touch_.step(plates, near, h, dynamics, state);
   height_ = new_height;
-  force_ = 0;
-  for (std::size_t i = 0; i < model_.surface_node_count; ++i) force_ += touch_.impulse(0, i) / h;
+  forces_ = {};
+  for (std::size_t plate = 0; plate < 2; ++plate) {
+    for (std::size_t i = 0; i < model_.surface_node_count; ++i) {
+      forces_[plate] += touch_.impulse(plate, i) / h;
+    }
+  }
 }
 
 }  // namespace palpate::rigs

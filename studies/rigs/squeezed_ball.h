@@ -1,6 +1,7 @@
 // A ball of 5 cm radius about the origin between two frictionless plates at z = ±height.
 #pragma once
 
+#include <array>
 #include <functional>
 
 #include "deformation/world.h"
@@ -48,8 +49,8 @@ class Plates {
       : model_(model), height_(height), touch_(model.surface_node_count) {}
 
   double height() const { return height_; }
-  /// Of the upper plate, in the last step [N].
-  double force() const { return force_; }
+  /// Of a plate, in the last step [N]; 0: the upper, 1: the lower.
+  double force(std::size_t plate = 0) const { return forces_[plate]; }
   /// Σ (∂V/∂x)_z of the nodes the upper plate held in the last step: its contact area [m²].
   double contact_area(const deformation::OrganState& state) const;
 
@@ -64,7 +65,8 @@ class Plates {
 
  private:
   const deformation::OrganModel& model_;
-  double height_, force_ = 0;
+  double height_;
+  std::array<double, 2> forces_{};
   Touch touch_;
 };
 

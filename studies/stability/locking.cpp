@@ -34,16 +34,13 @@ geometry::OrganShape solid_ball() {
       geometry::fill_surface(surface, sum / static_cast<double>(edges.size())));
 }
 
-scene::Scene plates_scene(const std::string& model, double poisson_ratio) {
+scene::Scene ball_scene(const std::string& model, double poisson_ratio) {
   scene::Scene scene;
   const chart::Setting setting{model, 0, kRate};
   scene.organs.push_back(chart::solid_organ(setting, kBallRadius, 1, kLockingModulus, kDensity));
   scene.organs[0].solid.poisson_ratio = poisson_ratio;
   scene.organs[0].tissue.drag = kDrag;
   scene.rates.deformation = kRate;
-  for (const char* name : {"upper_plate", "lower_plate"}) {
-    scene.probes.push_back({name, scene::PlaneShape{}, 0.0, scene::ScriptedDevice{}});
-  }
   return scene;
 }
 
@@ -123,13 +120,13 @@ double locking_reference(double poisson_ratio, const KeepGoing& keep_going) {
 LockingPoint locking_point(const std::string& model, double poisson_ratio,
                            const KeepGoing& keep_going) {
   static const geometry::OrganShape kBall = solid_ball();
-  std::vector<Pose> poses{rigs::plate_pose(kBallRadius, false),
-                          rigs::plate_pose(-kBallRadius, true)};
-  chart::Stage stage(plates_scene(model, poisson_ratio), kBall, poses);
+  scene::Scene scene = ball_scene(model, poisson_ratio);
+  const auto plates = rigs::add_plates(scene);
+  rigs::PressedOrgan pressed(scene, kBall, plates);
   const double height = kBallRadius * (1 - kLockingCompression);
-  chart::move_and_settle(stage, poses, {{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
-  LockingPoint point{model, poisson_ratio, 0, 0, stage.diverged()};
-  point.force = (std::abs(stage.force(0).z()) + std::abs(stage.force(1).z())) / 2;
+  pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
+  LockingPoint point{model, poisson_ratio, 0, 0, pressed.diverged()};
+  point.force = (std::abs(pressed.force(0).z()) + std::abs(pressed.force(1).z())) / 2;
   return point;
 }
 

@@ -15,13 +15,13 @@ TEST_CASE("case parts: the contact's radius is that of the touching nodes' share
   // node's share is a third of its triangles, so an edge's length is not resolved.
   scene::Scene scene;
   scene.organs.push_back(solid_organ({}, kBallRadius, 1, kYoungsModulus, kDensity));
-  Stage stage(scene, geometry::OrganShape(geometry::make_ball(kBallRadius, 4)), {});
+  rigs::PressedOrgan pressed(scene, geometry::OrganShape(geometry::make_ball(kBallRadius, 4)), {});
   for (const double height : {0.03, 0.04}) {
     const double radius =
-        contact_radius(stage, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
+        contact_radius(pressed, Vec3::UnitZ(), [&](const Vec3& x) { return height - x.z(); });
     CHECK(radius == Approx(std::sqrt(kBallRadius * kBallRadius - height * height)).epsilon(0.02));
   }
-  CHECK(contact_radius(stage, Vec3::UnitZ(), [](const Vec3&) { return 1.0; }) == 0);
+  CHECK(contact_radius(pressed, Vec3::UnitZ(), [](const Vec3&) { return 1.0; }) == 0);
 }
 
 }  // namespace

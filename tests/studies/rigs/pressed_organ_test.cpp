@@ -1,11 +1,11 @@
-#include "studies/chart/stage.h"
+#include "studies/rigs/pressed_organ.h"
 
 #include <catch2/catch.hpp>
 
 #include "modules/geometry/primitives.h"
 #include "palpate/session/in_process.h"
 
-namespace palpate::chart {
+namespace palpate::rigs {
 namespace {
 
 scene::Scene plate_over_ball(std::vector<scene::ScriptedDevice::Move> moves) {
@@ -21,7 +21,7 @@ scene::Scene plate_over_ball(std::vector<scene::ScriptedDevice::Move> moves) {
   return scene;
 }
 
-TEST_CASE("stage: a pressed ball answers with the force the pipeline gives") {
+TEST_CASE("pressed organ: a ball answers with the force the pipeline gives") {
   // Oracle: the in-process pipeline, which moves the same plate by a scripted device. Poses reach
   // deformation a period earlier here; at rest that is gone.
   const auto ball = geometry::make_ball(0.05, 2);
@@ -31,35 +31,36 @@ TEST_CASE("stage: a pressed ball answers with the force the pipeline gives") {
   Pose pose;
   pose.position = Vec3(0, 0, 0.05);
   pose.rotation = Quat(0, 1, 0, 0);
-  Stage stage(scene, ball, {pose});
+  PressedOrgan pressed(scene, ball, {pose});
   for (int i = 1; i <= 100; ++i) {
     pose.position.z() = 0.05 - 0.008 * i / 100;
-    stage.advance({pose});
+    pressed.advance({pose});
   }
-  stage.settle(3);
+  pressed.settle(3);
   const double expected = pipeline.contact_model(0).force.z();
   REQUIRE(expected > 0.03);
-  CHECK(stage.force(0).z() == Approx(expected).epsilon(0.005));
-  CHECK(stage.busy() > 0);
-  CHECK(stage.searching() > 0);
-  CHECK(stage.time() > 0.4);
-  CHECK_FALSE(stage.diverged());
+  CHECK(pressed.force(0).z() == Approx(expected).epsilon(0.005));
+  CHECK(pressed.busy() > 0);
+  CHECK(pressed.searching() > 0);
+  CHECK(pressed.time() > 0.4);
+  CHECK_FALSE(pressed.diverged());
 }
 
-TEST_CASE("stage: untouched, nothing is felt and nothing moves") {
+TEST_CASE("pressed organ: untouched, nothing is felt and nothing moves") {
   // Oracle: rest.
   const scene::Scene scene = plate_over_ball({{std::nullopt, 1}});
   Pose pose;
   pose.position = Vec3(0, 0, 0.1);
   pose.rotation = Quat(0, 1, 0, 0);
-  Stage stage(scene, geometry::make_ball(0.05, 1), {pose});
-  stage.settle(0.2);
-  CHECK(stage.force(0) == Vec3::Zero());
-  CHECK(stage.volume_error() < 1e-6);  // float32 positions are not looked at, the volume is double
-  for (std::size_t i = 0; i < stage.node_count(); ++i) {
-    CHECK((stage.position(i) - stage.rest_position(i)).norm() < 1e-8);
+  PressedOrgan pressed(scene, geometry::make_ball(0.05, 1), {pose});
+  pressed.settle(0.2);
+  CHECK(pressed.force(0) == Vec3::Zero());
+  CHECK(pressed.volume_error() <
+        1e-6);  // float32 positions are not looked at, the volume is double
+  for (std::size_t i = 0; i < pressed.node_count(); ++i) {
+    CHECK((pressed.position(i) - pressed.rest_position(i)).norm() < 1e-8);
   }
 }
 
 }  // namespace
-}  // namespace palpate::chart
+}  // namespace palpate::rigs
