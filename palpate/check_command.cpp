@@ -9,8 +9,7 @@
 #include <set>
 
 #include "deformation/organ_messages.h"
-#include "deformation/world.h"
-#include "haptics/device.h"
+#include "haptics/placed_device.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/geometry/organ_shape.h"
@@ -20,6 +19,8 @@
 #include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
+#include "palpate/session/in_process.h"
+#include "palpate/session/timed_stage.h"
 
 namespace palpate::launcher {
 namespace {
@@ -85,64 +86,78 @@ void check_probe(const scene::Probe& probe, std::ostream& out) {
   for (const auto& warning : warnings) out << "warning: " << warning << '\n';
 }
 
-/// Distance of a probe's origin from what it touches in direction n, for round shapes [m].
-double reach(const scene::ProbeShape& shape, const Vec3& n) {
-  if (const auto* sphere = std::get_if<scene::SphereShape>(&shape)) return sphere->radius;
-  if (const auto* capsule = std::get_if<scene::CapsuleShape>(&shape)) {
-    return capsule->radius + 0.5 * capsule->length * std::abs(n.z());
-  }
-  return 0;
+constexpr double kTip = 5e-3;  // [m]
+
+/// The scene with a sphere for its probes, which is moved from outside.
+scene::Scene touched_by_sphere(scene::Scene scene) {
+  scene.probes = {{"tip", scene::SphereShape{kTip}, 0.1, scene::ScriptedDevice{}}};
+  return scene;
 }
 
-/// Presses the first probe into a triangle of the first organ that is free to move, `depth` [m]
-/// deep: an implicit step that has nothing to do is no measure of one that has.
-void press(deformation::DeformationWorld& world, const scene::Scene& scene, double depth) {
-  const SurfaceTopology& topology = deformation::surface_message(world, 0);
-  const std::set<std::uint32_t> fixed(topology.fixed_nodes.begin(), topology.fixed_nodes.end());
-  const auto free = std::find_if(
-      topology.triangles.begin(), topology.triangles.end(), [&](const geometry::Triangle& t) {
-        return std::none_of(t.begin(), t.end(), [&](auto node) { return fixed.contains(node); });
-      });
-  if (free == topology.triangles.end()) return;
-  std::array<Vec3, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k) {
-    corners[k] =
-        Eigen::Map<const Eigen::Vector3f>(&topology.rest_positions[std::size_t{3} * (*free)[k]])
-            .cast<double>();
-  }
-  const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  const Vec3 point = (corners[0] + corners[1] + corners[2]) / 3 - depth * n;
-  ProbeState probe;
-  probe.pose.position = point + reach(scene.probes[0].shape, n) * n;
-  Contact contact;
-  contact.triangle = static_cast<std::uint32_t>(free - topology.triangles.begin());
-  contact.barycentric = Vec3::Constant(1.0 / 3);
-  contact.point_on_probe = point;
-  contact.normal = n;
-  contact.gap = -depth;
-  Contacts contacts;
-  contacts.probe_pose = probe.pose;
-  contacts.contacts.push_back(contact);
-  world.set_contacts(contacts);
-  world.set_probe(probe.probe, probe.pose);
-}
+double wall_time() { return seconds_from_ns(runtime::monotonic_now_ns()); }
 
-/// Wall time of an advance by one period with a probe that presses the organ once a second, 1 mm
-/// deep; mean over about `measure_for` seconds [s].
-double measured_cost(deformation::DeformationWorld& world, const scene::Scene& scene, double period,
-                     double measure_for) {
-  world.advance(period);  // memory is taken, caches are warm
-  const std::int64_t begin = runtime::monotonic_now_ns();
-  const std::int64_t end = begin + ns_from_seconds(measure_for);
-  std::int64_t now = begin;
-  int advances = 0;
-  for (; now < end; ++advances) {
-    press(world, scene, 0.5e-3 * (1 - std::cos(2 * M_PI * world.time())));
-    world.advance(period);
-    now = runtime::monotonic_now_ns();
+/// A session of the scene with its deformation timed.
+class TimedSession {
+ public:
+  TimedSession(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
+               ChunkRunner& runner)
+      : session_(touched_by_sphere(scene), {std::move(shapes), {geometry::TriangleSurface{}}},
+                 options(runner)) {
+    auto device = std::make_unique<haptics::PlacedDevice>(Pose{});
+    tip_ = device.get();
+    session_.haptics().set_device(0, std::move(device));
   }
-  return advances > 0 ? seconds_from_ns(now - begin) / advances : 0;
-}
+
+  const deformation::DeformationWorld& world() const { return session_.world(); }
+
+  /// Wall time of deformation in a period, mean over about `measure_for` seconds [s]. The sphere
+  /// presses a triangle that is free to move once a second, 1 mm deep: an implicit step that has
+  /// nothing to do is no measure of one that has.
+  double cost_of_period(double period, double measure_for) {
+    place_tip();
+    session_.run_until(period);  // memory is taken, caches are warm
+    spent_ = 0;
+    const double end = wall_time() + measure_for;
+    int periods = 0;
+    for (; wall_time() < end; ++periods) {
+      place_tip();
+      session_.run_until(session_.time() + period);
+    }
+    return periods > 0 ? spent_ / periods : 0;
+  }
+
+ private:
+  session::InProcessOptions options(ChunkRunner& runner) {
+    session::InProcessOptions options;
+    options.runner = &runner;
+    options.make = [this](std::string_view module, bus::Bus& bus,
+                          const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
+      if (module != "deformation") return usual(bus);
+      return std::make_unique<session::TimedStage>(usual(bus), wall_time, spent_);
+    };
+    return options;
+  }
+
+  void place_tip() {
+    const deformation::OrganModel& organ = world().model(0);
+    const std::set<std::uint32_t> fixed(organ.fixed_nodes.begin(), organ.fixed_nodes.end());
+    const auto free = std::find_if(
+        organ.triangles.begin(), organ.triangles.end(), [&](const geometry::Triangle& t) {
+          return std::none_of(t.begin(), t.end(), [&](auto node) { return fixed.contains(node); });
+        });
+    if (free == organ.triangles.end()) return;
+    const auto corner = [&](std::size_t k) { return organ.rest_positions[(*free)[k]]; };
+    const Vec3 n = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    const double depth = 0.5e-3 * (1 - std::cos(2 * M_PI * session_.time()));
+    Pose pose;
+    pose.position = (corner(0) + corner(1) + corner(2)) / 3 + (kTip - depth) * n;
+    tip_->place(pose);
+  }
+
+  double spent_ = 0;  ///< in deformation so far [s]
+  session::InProcess session_;
+  haptics::PlacedDevice* tip_ = nullptr;
+};
 
 }  // namespace
 
@@ -153,15 +168,15 @@ int check_command(const std::filesystem::path& file, double measure_for, std::os
   for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
   for (const auto& probe : scene.probes) check_probe(probe, out);
   runtime::WorkerTeam team(scene.deformation_threads);
-  deformation::DeformationWorld world(scene, shapes, &team);
+  TimedSession session(scene, shapes, team);
   const double period = 1 / scene.rates.deformation;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    out << organ_text(scene.organs[i], shapes[i], world, i, period);
+    out << organ_text(scene.organs[i], shapes[i], session.world(), i, period);
   }
   out << fmt::format(
       "rates: haptics {:g} Hz, collision {:g} Hz, deformation {:g} Hz, visualizer {:g} Hz\n",
       scene.rates.haptics, scene.rates.collision, scene.rates.deformation, scene.rates.visualizer);
-  const double cost = measured_cost(world, scene, period, measure_for);
+  const double cost = session.cost_of_period(period, measure_for);
   out << fmt::format(
       "cost here: {:.3f} ms per period of {:.3f} ms, lightly touched: {:.0f} % of one core\n",
       1e3 * cost, 1e3 * period, 100 * cost / period);

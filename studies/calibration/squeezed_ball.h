@@ -1,8 +1,8 @@
 // A ball between two frictionless plates, brought to rest at one compression after the other.
 #pragma once
 
-#include "deformation/world.h"
-#include "modules/messages/messages.h"
+#include "studies/rigs/squeezed_ball.h"
+#include "studies/rigs/test_body.h"
 
 namespace palpate::calibration {
 
@@ -40,14 +40,11 @@ class SqueezedBall {
 
  private:
   void advance_plates_to(double height);
-  void touch(std::uint32_t plate, int side, double height);
-  double plate_force(std::uint32_t plate) const;
   double mean_equatorial_radius() const;
 
   double outer_radius_, surface_depth_;
-  deformation::DeformationWorld world_;
-  NodePositions nodes_;      ///< after the last advance
-  double height_;            ///< of the upper plate over the node surface's centre [m]
+  rigs::TestBody body_;
+  rigs::Plates plates_;
   double rest_equator_ = 0;  ///< [m]
 };
 

@@ -1,9 +1,7 @@
 #include <array>
 
-#include "deformation/organ_messages.h"
-#include "deformation/world.h"
-#include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
+#include "palpate/session/in_process.h"
 #include "studies/paper/figures.h"
 #include "studies/paper/shape_files.h"
 
@@ -41,8 +39,8 @@ Findings make_spring_figure(const FigureOptions& options, report::Progress& prog
   Findings findings;
   for (const Organ& organ : kOrgans) {
     const auto scene = scene::load_scene(options.scenes / organ.scene);
-    const deformation::DeformationWorld world(scene, {scene::load_organ(scene.organs[0])});
-    const SurfaceTopology& topology = deformation::surface_message(world, 0);
+    const auto session = session::load_session(scene);
+    const SurfaceTopology& topology = session.surface(0);
     const std::string name = std::string("figure1_") + organ.name;
     write_topology(topology, options.out, name, /*springs=*/true);
     write_nodes(topology, topology.rest_positions, options.out, name);

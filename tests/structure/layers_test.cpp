@@ -165,3 +165,26 @@ TEST_CASE("structure: each foreign library is known to its one folder only") {
   }
   CHECK(violations == "");
 }
+
+TEST_CASE("structure: a session is wired by stages and nowhere else") {
+  // Oracle: the rule of palpate/session/README.md: studies and benches run that session. Who owns a
+  // world, a finder or a renderer, or gives a world its contacts, wires one of his own.
+  const std::regex wires(
+      R"((ContactFinder|HapticRenderer)\b|\bset_contacts\(|DeformationWorld>?[ ]+\w+[;({]|<(deformation::)?DeformationWorld>)");
+  const Names owners{"collision", "deformation", "haptics"};
+  std::size_t checked = 0;
+  std::string violations;
+  for (const auto& file : code()) {
+    if (owners.count(layer_of(file)) > 0) continue;
+    ++checked;
+    std::size_t number = 0;
+    for (const auto& line : lines_of(file)) {
+      ++number;
+      const std::string code = line.substr(0, line.find("//"));
+      if (!std::regex_search(code, wires)) continue;
+      violations += file + ":" + std::to_string(number) + ": " + code + "\n";
+    }
+  }
+  CHECK(violations == "");
+  CHECK(checked > 200);
+}
