@@ -1,8 +1,11 @@
 // Every page stays true to the tree: its links lead somewhere, to what they name.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,19 +23,35 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// All pages of the tree, not of build folders or what a demo left behind.
-std::vector<fs::path> pages() {
+/// All files of the tree, not of build folders or what a demo left behind.
+std::vector<fs::path> files() {
   std::vector<fs::path> found;
   for (fs::recursive_directory_iterator it(kRoot), end; it != end; ++it) {
     const std::string name = it->path().filename().string();
     const bool skipped = name == "build" || name == "out" || (name[0] == '.' && name != ".ci");
     if (it->is_directory() && skipped) {
       it.disable_recursion_pending();
-    } else if (it->path().extension() == ".md") {
+    } else if (it->is_regular_file()) {
       found.push_back(it->path());
     }
   }
   return found;
+}
+
+std::vector<fs::path> pages() {
+  std::vector<fs::path> found = files();
+  std::erase_if(found, [](const fs::path& file) { return file.extension() != ".md"; });
+  return found;
+}
+
+void add_words(const std::string& text, std::set<std::string>& words) {
+  const auto in_word = [](unsigned char letter) { return std::isalnum(letter) || letter == '_'; };
+  for (auto begin = text.begin(); begin != text.end();) {
+    begin = std::find_if(begin, text.end(), in_word);
+    const auto end = std::find_if_not(begin, text.end(), in_word);
+    words.emplace(begin, end);
+    begin = end;
+  }
 }
 
 struct Link {
@@ -105,6 +124,32 @@ TEST_CASE("pages: source files they name exist") {
     }
   }
   CHECK(named > 30);
+}
+
+TEST_CASE("pages: functions, fields and keys they quote exist") {
+  // Oracle: the words of all files that are no pages, and their names. Quoted as `a_b`, `A::b` or
+  // `a()`.
+  static const std::regex kQuoted("`((?:[A-Za-z]\\w*::)*[A-Za-z]\\w*)(\\(\\))?`");
+  std::set<std::string> words;
+  for (const auto& file : files()) {
+    if (file.extension() != ".md") add_words(text_of(file), words);
+    words.insert(file.stem().string());
+  }
+  std::size_t quoted = 0;
+  for (const auto& page : pages()) {
+    if (page.filename() == "CHANGELOG.md") continue;  // it tells of what was
+    const std::string text = text_of(page);
+    for (std::sregex_iterator it(text.begin(), text.end(), kQuoted), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      if (name.find_first_of("_:") == std::string::npos && !(*it)[2].matched) continue;
+      INFO(fs::relative(page, kRoot).string() << ": " << name);
+      std::set<std::string> parts;
+      add_words(name, parts);
+      for (const auto& part : parts) CHECK(words.contains(part));
+      ++quoted;
+    }
+  }
+  CHECK(quoted > 300);
 }
 
 TEST_CASE("pages: every folder of sources says what lives there") {
