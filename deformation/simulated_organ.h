@@ -13,27 +13,13 @@
 #include <memory>
 #include <span>
 
+#include "deformation/guard/advance_report.h"
 #include "deformation/guard/state_guard.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/target_volume.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
-
-/// What an advance had to do beyond stepping. Never silent: the process publishes it.
-struct AdvanceReport {
-  bool diverged = false;                ///< a state was not believed and replaced
-  Disbelief reason = Disbelief::kNone;  ///< of that
-  bool back_to_rest = false;            ///< replaced by the rest state, not the last good one
-  bool step_reduced = false;            ///< steps are shorter than stability should need
-  bool pressure_capped = false;         ///< the cap was met: V* goes on from V
-  bool volume_released = false;         ///< V was far from V*: V* follows V from there
-  bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
-  bool contacts_ignored = false;        ///< of an organ put back to rest, for kQuietTime
-  bool tissue_inverted = false;         ///< some tetrahedra of a solid are turned inside out
-  bool contact_refused = false;         ///< it was too far from its tissue to be one
-  bool probe_jumped = false;            ///< a probe moved faster than believed: no contacts
-};
 
 /// Least cap of the pressure |p| of a volume constraint [Pa]: an atmosphere, five times what a
 /// cough makes. Stiff walls hold more: the cap is kPressureCapOfWall E t/R if that is larger. A

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "deformation/guard/guard_log.h"
+#include "deformation/guard_text.h"
 #include "deformation/organ_messages.h"
 #include "modules/core/units.h"
 #include "modules/runtime/silence_watch.h"
@@ -145,8 +145,8 @@ struct DeformationStage::Impl {
     report = world.advance(now.advance);
     runtime::Health health;
     health.real_time_factor = time.factor(now.time(), world.time(), period);
-    health.guard = acting_guard(guards.describe(report, world.time()), health.real_time_factor,
-                                inputs.any_silent(now.now_ns));
+    health.guard = acting_guard(words.of(guards.note(report, world.time())),
+                                health.real_time_factor, inputs.any_silent(now.now_ns));
     return health;
   }
 
@@ -156,6 +156,7 @@ struct DeformationStage::Impl {
   double period;
   SimulatedTime time;
   GuardLog guards;
+  GuardText words;
   AdvanceReport report;
 };
 

@@ -1,12 +1,39 @@
-// What the guards of a world did, in words for the status: which acts now, and how often it has.
+// Which guard of a world acts now, and how often it has.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "deformation/simulated_organ.h"
+#include "deformation/guard/advance_report.h"
 
 namespace palpate::deformation {
+
+/// What a guard did, from harsh to mild.
+enum class GuardCode : std::uint8_t {
+  kBackToRest,  ///< a state was replaced by the rest state
+  kNotFinite,   ///< this and the next five: replaced by the last good state, for this reason
+  kTooFast,
+  kTooLarge,
+  kTurnedInside,
+  kCollapsed,
+  kEnergyGrew,
+  kContactsIgnored,  ///< from here on as in AdvanceReport
+  kPressureCapped,
+  kVolumeReleased,
+  kVolumeSkipped,
+  kTissueInverted,
+  kContactRefused,
+  kProbeJumped,
+  kStepReduced,
+  kNone
+};
+inline constexpr auto kGuardCodes = static_cast<std::size_t>(GuardCode::kNone);
+
+struct GuardEvent {
+  GuardCode code = GuardCode::kNone;
+  std::uint64_t times = 0;  ///< it has acted, this time among them
+};
 
 class GuardLog {
  public:
@@ -16,19 +43,15 @@ class GuardLog {
   GuardLog() { reset(); }
   void reset();
 
-  /// The harshest guard of the advance that ended at simulated `time` [s]; empty if none acted.
-  /// Valid until the next call. Allocates nothing.
-  const char* describe(const AdvanceReport& report, double time);
-
-  static constexpr std::size_t kKinds = 15;
+  /// The harshest guard of the advance that ended at simulated `time` [s].
+  GuardEvent note(const AdvanceReport& report, double time);
 
  private:
   struct Count {
     std::uint64_t events = 0;
     double last_time = 0;  ///< [s]
   };
-  std::array<Count, kKinds> counts_;
-  std::array<char, 200> text_{};
+  std::array<Count, kGuardCodes> counts_;
 };
 
 }  // namespace palpate::deformation

@@ -17,23 +17,12 @@
 // m/s those of an organ pressed flat with 1 kN add up to as much, and it is as healthy as can be.
 #pragma once
 
-#include <cstdint>
 #include <span>
 
+#include "deformation/guard/advance_report.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
-
-/// Why a state is not believed.
-enum class Disbelief : std::uint8_t {
-  kNone,
-  kNotFinite,     ///< a position, velocity, pressure or impulse
-  kTooFast,       ///< a node beyond kMaxNodeSpeed, now or on the way since the last look
-  kEnergyGrew,    ///< beyond kEnergyGain times what it had and was given
-  kTooLarge,      ///< two nodes further apart than kMaxGrowth times any two at rest
-  kTurnedInside,  ///< it encloses less than −kTurnedVolume V₀
-  kCollapsed      ///< flattened to a line or point, or a solid folded, for kCollapsedTime
-};
 
 /// Nothing soft moves faster and means it [m/s].
 inline constexpr double kMaxNodeSpeed = 100.0;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/springs/spring_product_arrays.h"
+#include "deformation/springs/kernel/spring_product_arrays.h"
 #include "modules/core/aligned_vector.h"
 #include "modules/core/parallel.h"
 #include "modules/core/wide_vectors.h"

@@ -2,7 +2,7 @@
 #include <immintrin.h>
 
 #include "deformation/springs/kernel/spring_kernel_body.h"
-#include "deformation/springs/spring_product_body.h"
+#include "deformation/springs/kernel/spring_product_body.h"
 
 namespace palpate::deformation::kernel {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "deformation/springs/kernel/spring_kernel_body.h"
-#include "deformation/springs/spring_product_arrays.h"
+#include "deformation/springs/kernel/spring_product_arrays.h"
 
 namespace palpate::deformation::kernel {
 namespace {

@@ -1,0 +1,55 @@
+#include "deformation/guard_text.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace palpate::deformation {
+namespace {
+
+struct Text {
+  GuardCode code;
+  const char* text;
+};
+
+constexpr std::array<Text, kGuardCodes> kTexts{{
+    {GuardCode::kBackToRest,
+     "an organ diverged again and again: it was put back to its rest state"},
+    {GuardCode::kNotFinite,
+     "an organ diverged (a number not finite): its last good state was restored, at rest"},
+    {GuardCode::kTooFast,
+     "an organ diverged (a node above 100 m/s): its last good state was restored, at rest"},
+    {GuardCode::kTooLarge,
+     "an organ diverged (grown to 5 times its size): its last good state was restored, at rest"},
+    {GuardCode::kTurnedInside,
+     "an organ was turned inside out: its last good state was restored, at rest"},
+    {GuardCode::kCollapsed,
+     "an organ collapsed or folded and did not unfold: its last good state was restored, at rest"},
+    {GuardCode::kEnergyGrew,
+     "an organ diverged (more energy than it was given): its last good state was restored, at "
+     "rest"},
+    {GuardCode::kContactsIgnored,
+     "an organ put back to its rest state takes no contacts for a second"},
+    {GuardCode::kPressureCapped, "an organ's pressure met its cap: its target volume gives way"},
+    {GuardCode::kVolumeReleased,
+     "an organ's volume was off by more than 5 %: it is brought back slowly"},
+    {GuardCode::kVolumeSkipped, "an organ is too flat for its volume to be corrected"},
+    {GuardCode::kTissueInverted,
+     "tissue is squeezed inside out in places: forces there are not to be believed"},
+    {GuardCode::kContactRefused, "a contact metres away from its tissue was not believed"},
+    {GuardCode::kProbeJumped, "a probe jumped: its contacts were dropped"},
+    {GuardCode::kStepReduced,
+     "an organ held more energy than it was given: its steps are shortened"},
+}};
+
+}  // namespace
+
+const char* GuardText::of(const GuardEvent& event) {
+  const auto found = std::ranges::find(kTexts, event.code, &Text::code);
+  if (found == kTexts.end()) return "";
+  if (event.times <= 1) return found->text;
+  std::snprintf(text_.data(), text_.size(), "%s (%llu times)", found->text,
+                static_cast<unsigned long long>(event.times));
+  return text_.data();
+}
+
+}  // namespace palpate::deformation
