@@ -93,32 +93,86 @@ Dynamics modal(const ModelParts& parts) {
                                  parts.organ.tissue.damping_ratio);
 }
 
+using enum VolumeKeeping;
+
 constexpr std::array<ModelRow, 16> kRows{{
+    {.word = "mass_spring",
+     .stands_for_fluid = true,
+     .stands_for_solid = true,
+     .make = mass_spring},
     {.word = "implicit_volume",
-     .conserves_volume = true,
+     .volume = kExactly,
      .has_volume_constraint = true,
+     .stands_for_fluid = true,
+     .stands_for_solid = true,
      .make = implicit_volume},
-    {.word = "mass_spring", .make = mass_spring},
-    {.word = "penalty", .knows_energy = false, .make = symplectic<Penalty>},
-    {.word = "baumgarte", .make = symplectic<Baumgarte>},
+    {.word = "penalty",
+     .volume = kAbout,
+     .knows_energy = false,
+     .stands_for_fluid = true,
+     .make = symplectic<Penalty>},
+    {.word = "baumgarte", .volume = kAbout, .is_charted = false, .make = symplectic<Baumgarte>},
     {.word = "promayon",
-     .conserves_volume = true,
+     .volume = kExactly,
+     .conserves_angular_momentum = false,
      .knows_energy = false,
      .make = symplectic<Promayon>},
-    {.word = "post_stabilisation", .conserves_volume = true, .make = symplectic<PostStabilisation>},
-    {.word = "bourguignon_cani", .knows_energy = false, .make = symplectic<BourguignonCani>},
-    {.word = "zordan", .knows_energy = false, .make = on_pyramids<Zordan>},
-    {.word = "element_volume", .knows_energy = false, .make = on_pyramids<ElementVolume>},
+    {.word = "post_stabilisation",
+     .volume = kExactly,
+     .conserves_angular_momentum = false,
+     .is_charted = false,
+     .make = symplectic<PostStabilisation>},
+    {.word = "bourguignon_cani",
+     .volume = kAbout,
+     .knows_energy = false,
+     .is_charted = false,
+     .make = symplectic<BourguignonCani>},
+    {.word = "zordan",
+     .volume = kAbout,
+     .knows_energy = false,
+     .is_charted = false,
+     .make = on_pyramids<Zordan>},
+    {.word = "element_volume",
+     .volume = kAbout,
+     .knows_energy = false,
+     .step_cost = 5,
+     .make = on_pyramids<ElementVolume>},
     {.word = "chainmail",
      .conserves_momentum = false,
+     .conserves_angular_momentum = false,
      .knows_energy = false,
+     .is_charted = false,
      .make = plain<ChainMail>},
-    {.word = "xpbd_springs", .conserves_volume = true, .make = xpbd_springs},
-    {.word = "xpbd_tetrahedra", .make = xpbd_tetrahedra},
-    {.word = "corotational", .make = linearly_implicit<Corotational>},
-    {.word = "nodal_pressure", .make = linearly_implicit<AverageNodalPressure>},
-    {.word = "quadratic_elements", .make = plain<NewtonBackwardEuler>},
-    {.word = "modal", .make = modal},
+    {.word = "xpbd_springs",
+     .volume = kExactly,
+     .conserves_angular_momentum = false,
+     .stands_for_fluid = true,
+     .make = xpbd_springs},
+    {.word = "xpbd_tetrahedra",
+     .conserves_angular_momentum = false,
+     .step_cost = 10,
+     .stands_for_solid = true,
+     .make = xpbd_tetrahedra},
+    {.word = "corotational",
+     .conserves_angular_momentum = false,
+     .step_cost = 100,
+     .stands_for_solid = true,
+     .make = linearly_implicit<Corotational>},
+    {.word = "nodal_pressure",
+     .conserves_angular_momentum = false,
+     .step_cost = 100,
+     .largest_bulk_over_shear = AverageNodalPressureSettings{}.largest_bulk_modulus,
+     .stands_for_solid = true,
+     .make = linearly_implicit<AverageNodalPressure>},
+    {.word = "modal",
+     .conserves_angular_momentum = false,
+     .step_cost = 100,
+     .stands_for_solid = true,
+     .make = modal},
+    {.word = "quadratic_elements",
+     .conserves_angular_momentum = false,
+     .step_cost = 3000,
+     .make = plain<NewtonBackwardEuler>},
 }};
 
 }  // namespace
@@ -129,6 +183,13 @@ const ModelRow& row_of(std::string_view model) {
   const auto found = std::ranges::find(kRows, model, &ModelRow::word);
   PALPATE_DEMAND(found != kRows.end());
   return *found;
+}
+
+double computed_poisson_ratio(const scene::Organ& organ) {
+  const ElasticConstants asked(organ.tissue.youngs_modulus, organ.solid.poisson_ratio);
+  const double most = row_of(organ.model).largest_bulk_over_shear;
+  if (asked.bulk_over_shear() <= most) return asked.poisson_ratio();
+  return (3 * most - 2) / (2 * (3 * most + 1));
 }
 
 IntegratorChoice choose_integrator(const scene::Organ& organ, const OrganModel& model,

@@ -1,8 +1,9 @@
 // All deformation models, one row each: the only place that knows how a scene's word becomes a
-// stepper. What a scene may say of a model is in modules/scene/models.h. Nothing depends on the
-// order of the rows.
+// stepper. What a scene may say of a model is in modules/scene/models.h, in the same order.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -23,19 +24,36 @@ struct ModelParts {
   ChunkRunner* runner = nullptr;
 };
 
+/// How well a model keeps V at V* beside what its material does for it.
+enum class VolumeKeeping : std::uint8_t {
+  kNone,
+  kAbout,   ///< by forces, or late
+  kExactly  ///< in every step, to its linearisation at least
+};
+
 struct ModelRow {
-  const char* word = "";               ///< as in scene::model_formats()
-  bool conserves_volume = false;       ///< V = V* of every step, to its linearisation at least
-  bool conserves_momentum = true;      ///< linear, where nothing holds or touches it
+  const char* word = "";  ///< as in scene::model_formats()
+  VolumeKeeping volume = VolumeKeeping::kNone;
   bool has_volume_constraint = false;  ///< answers an error of the volume with any impulse it takes
+  /// Where nothing holds or touches it; of backward Euler the linear alone.
+  bool conserves_momentum = true, conserves_angular_momentum = true;
   /// elastic_energy() is all it stores and its contacts' impulses all it is given. Not so where the
   /// contents store energy, or nodes are moved by no force.
   bool knows_energy = true;
+  double step_cost = 1;  ///< of a node's step, over one of springs; measured, to one digit
+  /// κ/μ it computes with at most, whatever Poisson's ratio it is asked for.
+  double largest_bulk_over_shear = std::numeric_limits<double>::infinity();
+  bool is_charted = true;  ///< in `palpate chart`; else compared in `palpate volume-methods` alone
+  /// Whether `palpate plan` tries it for such contents.
+  bool stands_for_fluid = false, stands_for_solid = false;
   std::unique_ptr<OrganDynamics> (*make)(const ModelParts&) = nullptr;
 };
 
 std::span<const ModelRow> model_rows();
 const ModelRow& row_of(std::string_view model);
+
+/// Poisson's ratio that a solid computes with; that of the scene, unless its model caps it.
+double computed_poisson_ratio(const scene::Organ& organ);
 
 /// How an organ's springs are stepped, and what that was decided by.
 struct IntegratorChoice {

@@ -48,6 +48,14 @@ std::string calibration_text(const scene::Organ& organ) {
       ratio, fitted, kFittedSolid);
 }
 
+/// Of a solid: what the scene asks for, and what its model makes of that.
+std::string poisson_text(const scene::Organ& organ) {
+  const double asked = organ.solid.poisson_ratio;
+  const double computed = deformation::computed_poisson_ratio(organ);
+  return computed == asked ? fmt::format("{:g}", asked)
+                           : fmt::format("{:g}, computed with {:.3f}", asked, computed);
+}
+
 std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& shape,
                        const deformation::DeformationWorld& world, std::size_t index,
                        double period) {
@@ -62,9 +70,8 @@ std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& sh
                   topology.surface_node_count, inner, shape.is_solid() ? "inner" : "virtual",
                   topology.fixed_nodes.size(), topology.triangles.size());
   text += shape.is_solid()
-              ? fmt::format("  {} {} tetrahedra, Poisson's ratio {:g}\n", shape.tetrahedra.size(),
-                            shape.edge_nodes.empty() ? "linear" : "quadratic",
-                            organ.solid.poisson_ratio)
+              ? fmt::format("  {} {} tetrahedra, Poisson's ratio {}\n", shape.tetrahedra.size(),
+                            shape.edge_nodes.empty() ? "linear" : "quadratic", poisson_text(organ))
               : fmt::format("  springs: {} structural, {} bending, {} inner\n", springs[0],
                             springs[1], springs[2]);
   text += fmt::format("  volume {:.1f} cm3, mass {:.3f} kg, model {}\n", 1e6 * volume,

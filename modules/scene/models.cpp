@@ -16,11 +16,11 @@ constexpr const char* kPasses = "passes over the constraints";
 constexpr const char* kGradients = "conjugate gradients at most";
 
 constexpr std::array<ModelFormat, 16> kFormats{{
+    {.word = "mass_spring", .meaning = "springs alone", .has_integrator = true},
     {.word = "implicit_volume",
      .meaning = "springs and one implicit volume constraint",
      .has_integrator = true,
      .has_volume_corrections = true},
-    {.word = "mass_spring", .meaning = "springs alone", .has_integrator = true},
     {.word = "penalty", .meaning = "pressure proportional to the volume lost"},
     {.word = "baumgarte", .meaning = "volume constraint on accelerations, stabilised"},
     {.word = "promayon", .meaning = "projection along the volume's gradient after the step"},
@@ -51,13 +51,13 @@ constexpr std::array<ModelFormat, 16> kFormats{{
      .mesh = kLinear,
      .iterations = 40,
      .iterates = kGradients},
-    {.word = "quadratic_elements",
-     .meaning = "neo-Hookean Taylor–Hood tetrahedra, implicit, solved to the end",
-     .mesh = kQuadratic},
     {.word = "modal",
      .meaning = "lowest eigenmodes of quadratic_elements",
      .mesh = kQuadratic,
      .has_modes = true},
+    {.word = "quadratic_elements",
+     .meaning = "neo-Hookean Taylor–Hood tetrahedra, implicit, solved to the end",
+     .mesh = kQuadratic},
 }};
 
 bool has_filling(const Organ& organ) {

@@ -1,5 +1,6 @@
 // The deformation models a scene can name, one row each: what the format must know of them. How
-// they move is deformation's (deformation/models.h). Nothing depends on the order of the rows.
+// they move is deformation's (deformation/models.h). Charts and tables list them in this order,
+// plain springs first, the most accurate last; nothing else depends on it.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +28,8 @@ struct ModelFormat {
 
   bool is_solid() const { return mesh != MeshKind::kSurfaceSprings; }
   bool is_quadratic() const { return mesh == MeshKind::kQuadraticTetrahedra; }
+  /// Becomes too stiff as Poisson's ratio goes to ½, where it has to stay below it, too.
+  bool locks() const { return is_solid() && largest_poisson_ratio < 0.5; }
 };
 
 std::span<const ModelFormat> model_formats();

@@ -23,22 +23,21 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 from accuracy_tables import ERRORS, TITLES, known, nodes_of, put_into_docs, rows_of, write_tables  # noqa: E402
 
-COLORS = {
-    "mass_spring": "#9a9a9a",
-    "implicit_volume": "#1f6fb2",
-    "penalty": "#c0392b",
-    "promayon": "#d98c1f",
-    "element_volume": "#8e5a2b",
-    "xpbd_springs": "#e377c2",
-    "xpbd_tetrahedra": "#a23bb0",
-    "corotational": "#2a8f5b",
-    "nodal_pressure": "#0f9d9d",
-    "modal": "#7f8c1f",
-    "quadratic_elements": "#111111",
-}
+PALETTE = ["#9a9a9a", "#1f6fb2", "#c0392b", "#d98c1f", "#8e5a2b", "#e377c2", "#a23bb0", "#2a8f5b", "#0f9d9d", "#7f8c1f",
+           "#111111"]
+# By model, from models.csv.
+COLORS = {}
+OWN_ITERATIONS = {}  # per step, where the scene asks for none of its own
 MARKERS = "ovsD^"  # by mesh level
-# Iterations per step where the scene asks for none of its own.
-OWN_ITERATIONS = {"xpbd_springs": 1, "xpbd_tetrahedra": 1, "corotational": 20, "nodal_pressure": 40}
+
+
+def take_models(folder):
+    rows = rows_of(folder / "models.csv")
+    if not rows:
+        sys.exit(f"error: {folder / 'models.csv'} holds no models; palpate chart writes it")
+    for k, row in enumerate(rows):
+        COLORS[row["model"]] = PALETTE[k % len(PALETTE)]
+        OWN_ITERATIONS[row["model"]] = row["iterations"]
 
 
 def pareto(points, error):
@@ -285,6 +284,7 @@ def main():
     parser.add_argument("--docs", type=Path)
     arguments = parser.parse_args()
     folder = arguments.folder
+    take_models(folder)
     points, samples = rows_of(folder / "points.csv"), rows_of(folder / "samples.csv")
     if not points:
         sys.exit(f"error: {folder / 'points.csv'} holds no points")

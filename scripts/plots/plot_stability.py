@@ -115,8 +115,10 @@ def draw_map(folder, name, cells, frontiers):
     plt.close(figure)
 
 
-# nodal_pressure takes no bulk modulus above 100 shear moduli, whatever ratio it is asked for.
-COMPUTED_WITH = {"nodal_pressure": "nodal_pressure (computed with at most 0.495)"}
+def locking_label(model, rows):
+    """Names the largest Poisson's ratio it computes with, where that is not what it was asked for."""
+    capped = [row for row in rows if row["model"] == model and row["computed_poisson_ratio"] != row["poisson_ratio"]]
+    return f"{model} (computed with at most {number(capped[0]['computed_poisson_ratio']):.3f})" if capped else model
 
 
 def draw_locking(folder, rows):
@@ -125,7 +127,7 @@ def draw_locking(folder, rows):
         line = [(0.5 - number(row["poisson_ratio"]), 100 * number(row["force_error"]))
                 for row in rows if row["model"] == model and row["diverged"] == "0"]
         axis.semilogx(*zip(*line), marker="o", markersize=4,
-                      label=COMPUTED_WITH.get(model, model))
+                      label=locking_label(model, rows))
     axis.invert_xaxis()
     axis.axhline(0, color="#999", linewidth=0.8)
     axis.set_xlabel("½ − Poisson's ratio")

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <ostream>
 
-#include "modules/scene/schema.h"
+#include "modules/scene/models.h"
+#include "studies/chart/fidelity.h"
 #include "studies/report/table_file.h"
 
 namespace palpate::chart {
@@ -42,6 +43,16 @@ void write_points(const std::vector<Point>& points, const std::filesystem::path&
         row_of(p, {double(m.surface_nodes), double(m.inner_nodes), double(m.tetrahedra), m.step,
                    m.cost, force_error(m), shape_error(m), field_error(m), contact_radius_error(m),
                    profile_error(m), m.volume_error, double(m.diverged)}));
+  }
+  table.finish();
+}
+
+/// In the order of charts, with the iterations a step has where the scene asks for none.
+void write_models(const std::filesystem::path& file) {
+  report::TableFile table(file, {"model", "iterations"});
+  for (const std::string& model : model_hierarchy()) {
+    table.write_row(
+        std::vector<std::string>{model, std::to_string(scene::format_of(model).iterations)});
   }
   table.finish();
 }
@@ -118,6 +129,7 @@ void print_reference(const ReferenceSolution& reference, std::ostream& out) {
 }  // namespace
 
 void write_tables(const SweepResult& result, const std::filesystem::path& folder) {
+  write_models(folder / "models.csv");
   write_points(result.points, folder / "points.csv");
   write_samples(result.points, folder / "samples.csv");
   write_profiles(result.points, folder / "profiles.csv");

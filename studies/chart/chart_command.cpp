@@ -111,7 +111,8 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
     out << "on " << report::machine_name() << '\n';
     report::draw_figures(data_file("plots/plot_accuracy.py"), options.out);
     out << "in " << options.out.string()
-        << ": the charts, points.csv, samples.csv, profiles.csv, reference_solutions.csv"
+        << ": the charts, models.csv, points.csv, samples.csv, profiles.csv, "
+           "reference_solutions.csv"
         << (std::filesystem::exists(options.out / "bullet.csv") ? ", bullet.csv" : "")
         << "; points/ is what a next run starts from\n";
     return kExitDone;

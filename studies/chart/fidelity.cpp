@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "deformation/models.h"
 #include "modules/scene/models.h"
-#include "modules/scene/schema.h"
 
 namespace palpate::chart {
 namespace {
@@ -16,8 +16,7 @@ constexpr double kSolidWall = 0.16, kSolidInnerRatio = 10;  // docs/calibration.
 
 double unlocked_poisson_ratio(const std::string& model, double wanted) {
   constexpr double kUnlocked = 0.45;
-  const bool locks = model == "corotational" || model == "xpbd_tetrahedra";
-  return locks ? std::min(wanted, kUnlocked) : wanted;
+  return scene::format_of(model).locks() ? std::min(wanted, kUnlocked) : wanted;
 }
 
 std::string Setting::name() const {
@@ -31,9 +30,11 @@ std::string Setting::key() const {
 }
 
 std::vector<std::string> model_hierarchy() {
-  return {"mass_spring",    "implicit_volume", "penalty",           "promayon",
-          "element_volume", "xpbd_springs",    "xpbd_tetrahedra",   "corotational",
-          "nodal_pressure", "modal",           "quadratic_elements"};
+  std::vector<std::string> charted;
+  for (const deformation::ModelRow& row : deformation::model_rows()) {
+    if (row.is_charted) charted.emplace_back(row.word);
+  }
+  return charted;
 }
 
 scene::Organ solid_organ(const Setting& setting, double radius, std::size_t virtual_nodes,

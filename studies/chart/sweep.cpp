@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "deformation/models.h"
 #include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/reference_solutions.h"
@@ -13,7 +14,7 @@
 namespace palpate::chart {
 namespace {
 
-bool is_slow(const std::string& model) { return model == "quadratic_elements"; }
+bool is_slow(const std::string& model) { return deformation::row_of(model).step_cost >= 1000; }
 
 bool wanted(const Case& of, const Setting& setting, Extent extent) {
   const int finest = extent == Extent::kQuick ? 0 : extent == Extent::kUsual ? 1 : 2;
@@ -33,9 +34,9 @@ std::vector<double> rates_of(Extent extent) {
 
 /// Beside the model's own count: fewer and more.
 std::vector<std::size_t> iterations_of(const std::string& model) {
-  if (scene::format_of(model).iterations == 0) return {};
-  const bool xpbd = model == "xpbd_springs" || model == "xpbd_tetrahedra";
-  return xpbd ? std::vector<std::size_t>{2, 4, 8} : std::vector<std::size_t>{5, 10, 80};
+  const std::size_t own = scene::format_of(model).iterations;
+  if (own == 0) return {};
+  return own == 1 ? std::vector<std::size_t>{2, 4, 8} : std::vector<std::size_t>{5, 10, 80};
 }
 
 /// Usually on one mesh of one case, where all else is the model's own.
@@ -101,9 +102,9 @@ void run(std::vector<Job>& jobs, const PointStore& store,
 // Steps per second grow with the rate, and cost per step with nodes: eight times per level, more
 // for direct solvers; fitted to the usual chart, good to a factor of two or three.
 double weight_of(const Setting& setting) {
-  const bool springs = !scene::is_solid(setting.model) && setting.model != "xpbd_springs";
-  const bool implicit = setting.model == "corotational" || setting.model == "nodal_pressure" ||
-                        is_slow(setting.model);
+  const scene::ModelFormat& format = scene::format_of(setting.model);
+  const bool springs = !format.is_solid() && format.iterations == 0;
+  const bool implicit = format.iterations > 1 || is_slow(setting.model);
   const double model = is_slow(setting.model) ? 12 : springs ? 0.3 : 1;
   const double growth = is_slow(setting.model) ? 20 : 7;
   return model * std::pow(growth, setting.level) * (implicit ? setting.rate / 100 : 1);

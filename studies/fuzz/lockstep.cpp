@@ -2,9 +2,9 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "deformation/models.h"
 #include "modules/bus/tap.h"
 #include "modules/core/error.h"
-#include "modules/scene/models.h"
 #include "palpate/session/in_process.h"
 #include "studies/fuzz/faults.h"
 #include "studies/fuzz/organ_watch.h"
@@ -14,14 +14,6 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr double kNodeSteps = 4e5;  // that a scene may cost
-
-/// Of a node's step, over one of springs; measured, to one digit.
-double cost_of(const std::string& model) {
-  if (model == "quadratic_elements") return 3000;
-  if (model == "xpbd_tetrahedra") return 10;
-  if (scene::is_solid(model)) return 100;
-  return model == "element_volume" ? 5 : 1;
-}
 
 class Lockstep {
  public:
@@ -105,7 +97,7 @@ class Lockstep {
       const NodePositions& nodes = session_.node_positions(i);
       organs_[i].look(nodes, report.diverged);
       cost_ += double(session_.world().substeps(i, period())) * double(nodes.positions.size() / 3) *
-               cost_of(scene_.scene.organs[i].model);
+               deformation::row_of(scene_.scene.organs[i].model).step_cost;
     }
   }
 

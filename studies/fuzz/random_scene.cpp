@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "deformation/models.h"
 #include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
@@ -78,8 +79,8 @@ scene::Filling random_filling(RandomStream& random) {
 }
 
 PlacedShape random_shape(RandomStream& random, const std::string& model) {
-  const bool tiny = scene::is_solid(model) && model != "xpbd_tetrahedra",
-             tiniest = model == "quadratic_elements";
+  const double cost = deformation::row_of(model).step_cost;
+  const bool tiny = cost >= 100, tiniest = cost >= 1000;
   PlacedShape placed;
   placed.shape = static_cast<Shape>(random.below(tiniest ? 1
                                                  : tiny  ? kTinyShapeCount

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "deformation/models.h"
 #include "haptics/device.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/models.h"
@@ -22,11 +23,12 @@ constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
 constexpr double kReferenceRateOfFluid = 500, kReferenceRateOfSolid = 200;  // [Hz]
 
 std::vector<std::string> models_for(scene::Needs::Contents contents) {
-  if (contents == scene::Needs::Contents::kFluid) {
-    return {"mass_spring", "penalty", "implicit_volume", "xpbd_springs"};
+  const bool fluid = contents == scene::Needs::Contents::kFluid;
+  std::vector<std::string> models;
+  for (const deformation::ModelRow& row : deformation::model_rows()) {
+    if (fluid ? row.stands_for_fluid : row.stands_for_solid) models.emplace_back(row.word);
   }
-  return {"mass_spring",  "implicit_volume", "xpbd_tetrahedra",
-          "corotational", "nodal_pressure",  "modal"};
+  return models;
 }
 
 std::size_t nodes_of(const scene::Scene& scene) {

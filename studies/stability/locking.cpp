@@ -6,8 +6,10 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "deformation/models.h"
 #include "modules/geometry/primitives.h"
 #include "modules/geometry/tools/gmsh_tool.h"
+#include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/case_parts.h"
 #include "studies/elements/load_path.h"
@@ -125,7 +127,8 @@ LockingPoint locking_point(const std::string& model, double poisson_ratio,
   rigs::PressedOrgan pressed(scene, kBall, plates);
   const double height = kBallRadius * (1 - kLockingCompression);
   pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
-  LockingPoint point{model, poisson_ratio, 0, 0, pressed.diverged()};
+  LockingPoint point;
+  point.diverged = pressed.diverged();
   point.force = (std::abs(pressed.force(0).z()) + std::abs(pressed.force(1).z())) / 2;
   return point;
 }
@@ -139,7 +142,9 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
                                           const std::filesystem::path& folder,
                                           const KeepGoing& keep_going) {
   std::vector<LockingPoint> points;
-  for (const std::string model : {"corotational", "xpbd_tetrahedra", "nodal_pressure"}) {
+  for (const scene::ModelFormat& format : scene::model_formats()) {
+    if (format.mesh != scene::MeshKind::kLinearTetrahedra) continue;
+    const std::string model = format.word;
     for (const double ratio : ratios) {
       const auto file = [&](const char* what) {
         return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kVersion);
@@ -153,6 +158,8 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
           kept(file(model.c_str()), [&] { return locking_point(model, ratio, keep_going); });
       point.model = model;
       point.poisson_ratio = ratio;
+      point.computed_poisson_ratio =
+          deformation::computed_poisson_ratio(ball_scene(model, ratio).organs[0]);
       point.reference_force = reference;
       points.push_back(point);
     }
@@ -161,11 +168,12 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
 }
 
 void write_locking(const std::vector<LockingPoint>& points, const std::filesystem::path& file) {
-  report::TableFile table(
-      file, {"model", "poisson_ratio", "force_n", "reference_force_n", "force_error", "diverged"});
+  report::TableFile table(file, {"model", "poisson_ratio", "computed_poisson_ratio", "force_n",
+                                 "reference_force_n", "force_error", "diverged"});
   for (const LockingPoint& p : points) {
     table.write_row(std::vector<std::string>{
-        p.model, fmt::format("{:.6g}", p.poisson_ratio), fmt::format("{:.8g}", p.force),
+        p.model, fmt::format("{:.6g}", p.poisson_ratio),
+        fmt::format("{:.6g}", p.computed_poisson_ratio), fmt::format("{:.8g}", p.force),
         fmt::format("{:.8g}", p.reference_force), fmt::format("{:.6g}", p.error()),
         p.diverged ? "1" : "0"});
   }

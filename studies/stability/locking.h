@@ -15,9 +15,9 @@ inline constexpr double kLockingModulus = 5e3;      ///< E [Pa]; forces are prop
 
 struct LockingPoint {
   std::string model = "corotational";
-  double poisson_ratio = 0;
-  double force = 0, reference_force = 0;  ///< on one plate [N]
-  bool diverged = false;                  ///< the guards had to put the organ back
+  double poisson_ratio = 0, computed_poisson_ratio = 0;  ///< asked for; deformation/models.h
+  double force = 0, reference_force = 0;                 ///< on one plate [N]
+  bool diverged = false;                                 ///< the guards had to put the organ back
   double error() const { return force / reference_force - 1; }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "deformation/volume/rules/baumgarte.h"
 #include "deformation/volume/rules/bourguignon_cani.h"
@@ -42,27 +43,23 @@ double baumgarte_step() {
 }  // namespace
 
 const std::vector<Scheme>& schemes() {
-  constexpr auto kExplicit = Integrator::kSymplecticEuler, kImplicit = Integrator::kBackwardEuler,
-                 kOwn = Integrator::kAutomatic;
-  static const std::vector<Scheme> kAll{
-      {"mass_spring", "mass_spring", kExplicit, true, false},
-      {"implicit_volume", "implicit_volume", kExplicit, true, true},
-      {"mass_spring_backward", "mass_spring", kImplicit, false, false},
-      {"implicit_volume_backward", "implicit_volume", kImplicit, true, true},
-      {"penalty", "penalty", kExplicit, false, true},
-      {"baumgarte", "baumgarte", kExplicit, false, true},
-      {"promayon", "promayon", kExplicit, false, true},
-      {"post_stabilisation", "post_stabilisation", kExplicit, false, true},
-      {"bourguignon_cani", "bourguignon_cani", kExplicit, false, true},
-      {"zordan", "zordan", kExplicit, false, true},
-      {"element_volume", "element_volume", kExplicit, false, true},
-      {"xpbd_springs", "xpbd_springs", kOwn, true, true},
-      {"xpbd_tetrahedra", "xpbd_tetrahedra", kOwn, false, false},
-      {"corotational", "corotational", kOwn, true, false},
-      {"nodal_pressure", "nodal_pressure", kOwn, false, false},
-      {"quadratic_elements", "quadratic_elements", kOwn, false, false},
-      {"modal", "modal", kOwn, false, false},
-      {"chainmail", "chainmail", kOwn, false, false}};
+  static const std::vector<Scheme> kAll = [] {
+    const std::set<std::string> quick{"mass_spring", "implicit_volume", "implicit_volume_backward",
+                                      "xpbd_springs", "corotational"};
+    std::vector<Scheme> all;
+    const auto add = [&](const deformation::ModelRow& row, const char* suffix, Integrator by) {
+      const std::string name = std::string(row.word) + suffix;
+      all.push_back({name, row.word, by, quick.count(name) > 0,
+                     row.volume != deformation::VolumeKeeping::kNone});
+    };
+    for (const deformation::ModelRow& row : deformation::model_rows()) {
+      const scene::ModelFormat& format = scene::format_of(row.word);
+      const bool iterates = format.iterations > 0 || format.is_solid();
+      add(row, "", iterates ? Integrator::kAutomatic : Integrator::kSymplecticEuler);
+      if (format.has_integrator) add(row, "_backward", Integrator::kBackwardEuler);
+    }
+    return all;
+  }();
   return kAll;
 }
 

@@ -18,14 +18,14 @@ using rigs::TestBody;
 inline constexpr double kYoungsModulus = 10e3;  // where it is not what varies [Pa]
 
 struct Scheme {
-  const char* name;
+  std::string name;
   std::string model;
   scene::Integrator integrator;
   bool quick;         ///< part of --quick
   bool keeps_volume;  ///< to some per mille, if all is well
 };
 
-/// Every model, and both integrators of those that have a choice.
+/// Every model, and both integrators of those that have a choice: "_backward" follows the word.
 const std::vector<Scheme>& schemes();
 /// @pre there is one of that name
 const Scheme& scheme_named(const std::string& name);

@@ -197,8 +197,11 @@ void print_surprises(const std::vector<Column>& columns, std::ostream& out) {
 void print_locking(const std::vector<LockingPoint>& points, std::ostream& out) {
   out << "locking: error of the force at 10 % compression\n";
   for (const LockingPoint& p : points) {
-    out << fmt::format("  nu {:<7g} {:<17} {:+8.1f} %{}\n", p.poisson_ratio, p.model,
-                       100 * p.error(), p.diverged ? "  diverged" : "");
+    const bool capped = p.computed_poisson_ratio != p.poisson_ratio;
+    out << fmt::format(
+        "  nu {:<7g} {:<17} {:+8.1f} %{}{}\n", p.poisson_ratio, p.model, 100 * p.error(),
+        p.diverged ? "  diverged" : "",
+        capped ? fmt::format("  computed with {:.4g}", p.computed_poisson_ratio) : "");
   }
 }
 

@@ -9,6 +9,7 @@
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/scene/scene_reader.h"
+#include "tests/modules/geometry/tetrahedra.h"
 #include "tests/palpate/ball_scene.h"
 
 using namespace palpate;
@@ -75,6 +76,23 @@ TEST_CASE("check: springs that are not the fitted ones are named") {
   std::ofstream(scene.file()) << text;
   launcher::check_command(scene.file(), 0.05, fitted);
   CHECK_THAT(fitted.str(), !Contains("calibrated"));
+}
+
+TEST_CASE("check: tells Poisson's ratio computed with, where it is not the one asked for") {
+  // Oracle: analytic, κ = 100 μ is 298/602; asked for are the default 0.499, and 0.45.
+  if (geometry::testing::without_gmsh()) return;
+  const BallScene scene;
+  std::ifstream file(scene.file());
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  text.replace(text.find("springs: {inner_ratio: 0.5}"), 27, "model: nodal_pressure");
+  const auto check_with = [&](const std::string& more) {
+    std::ofstream(scene.file()) << std::string(text).insert(text.find("    tissue"), more);
+    std::ostringstream out;
+    launcher::check_command(scene.file(), 0.01, out);
+    return out.str();
+  };
+  CHECK_THAT(check_with(""), Contains("Poisson's ratio 0.499, computed with 0.495\n"));
+  CHECK_THAT(check_with("    solid: {poisson_ratio: 0.45}\n"), Contains("Poisson's ratio 0.45\n"));
 }
 
 TEST_CASE("check: a bad scene is refused with its place") {

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 #include "modules/scene/models.h"
 #include "tests/modules/geometry/tetrahedra.h"
@@ -20,19 +21,23 @@ TEST_CASE("fidelity: each is there once, and settings have names of their own") 
   CHECK(Setting{"corotational", 1, 250, 5}.key() == "corotational-1-250-5");
 }
 
-TEST_CASE("fidelity: the plots know every model charted, and its own number of iterations") {
+TEST_CASE("fidelity: the page's table of models names every model charted, once") {
   // Oracle: the table of models.
-  std::ifstream file(PALPATE_SOURCE_DIR "/scripts/plots/plot_accuracy.py");
+  std::ifstream file(PALPATE_SOURCE_DIR "/docs/accuracy.md");
   REQUIRE(file);
-  const std::string script(std::istreambuf_iterator<char>(file), {});
-  std::string iterations;
-  for (const std::string& model : model_hierarchy()) {
-    CHECK(script.find("\n    \"" + model + "\": \"#") != std::string::npos);
-    const std::size_t own = scene::format_of(model).iterations;
-    if (own == 0) continue;
-    iterations += (iterations.empty() ? "" : ", ") + ('"' + model + "\": " + std::to_string(own));
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  const std::size_t begin = page.find("## Models"), end = page.find("## Cases");
+  REQUIRE(begin < end);
+  std::multiset<std::string> named;
+  std::istringstream rows(page.substr(begin, end - begin));
+  for (std::string row; std::getline(rows, row);) {
+    if (!row.starts_with("| ")) continue;
+    std::istringstream words(row.substr(2, row.find(" |") - 2));
+    for (std::string word; words >> word;) named.insert(word.substr(0, word.find(',')));
   }
-  CHECK(script.find("OWN_ITERATIONS = {" + iterations + "}") != std::string::npos);
+  named.erase("`model:`");
+  const auto models = model_hierarchy();
+  CHECK(named == std::multiset<std::string>(models.begin(), models.end()));
 }
 
 TEST_CASE("fidelity: a mesh becomes what the model wants") {

@@ -33,6 +33,7 @@ TEST_CASE("locking: what was measured is not measured again, and stands in the t
   for (std::size_t i = 0; i < first.size(); ++i) {
     CHECK(again[i].error() == Approx(first[i].error()).margin(1e-8));
   }
+  for (const LockingPoint& point : again) CHECK(point.computed_poisson_ratio == 0.45);
   write_locking(again, folder.path / "locking.csv");
   CHECK(std::filesystem::file_size(folder.path / "locking.csv") > 0);
 }
