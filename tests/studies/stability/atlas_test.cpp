@@ -47,7 +47,7 @@ TEST_CASE("atlas: the frontier is bisected to the precision asked for, from belo
   }
 }
 
-TEST_CASE("atlas: frontiers outside the map are said to be so; what stands again is not trusted") {
+TEST_CASE("atlas: frontiers outside the map are said to be so, what stands again is not trusted") {
   // Oracle: the definition.
   const auto all = frontier_of({cell(1, State::kStable), cell(2, State::kDrifting)});
   CHECK(all.edge == Edge::kAllHold);

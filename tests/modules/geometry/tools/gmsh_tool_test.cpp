@@ -40,7 +40,7 @@ TEST_CASE("gmsh tool: a filled surface keeps its nodes and triangles, first and 
   CHECK(volume_of(mesh) == Approx(enclosed_volume(ball.nodes, ball.triangles)));
 }
 
-TEST_CASE("gmsh tool: an octant of a ball lies on its planes and its sphere; a block is a block") {
+TEST_CASE("gmsh tool: an octant of a ball lies on its planes and its sphere, a block is a block") {
   // Oracle: geometry. Chords of 15 mm cut 4 % off the octant's π R³/6.
   if (testing::without_gmsh()) return;
   const auto octant = mesh_ball(0.05, BallPart::kOctant, "0.015");
