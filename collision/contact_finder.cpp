@@ -58,7 +58,7 @@ class ProbeSearch {
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
-    reduce_contacts(found_, relative, at_most, result);
+    reduce_contacts(found_, at_most, result);
   }
 
  private:

@@ -10,12 +10,12 @@ constexpr double kSamePlace = 1e-9;  // [m]
 constexpr double kSameDirection = 1e-9;
 
 auto order_within(const FoundContact& c) {
-  return std::tuple(c.gap, c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1]);
+  return std::tuple(c.gap, c.point_P[0], c.point_P[1], c.point_P[2], c.normal_P[0], c.normal_P[1]);
 }
 
 bool same(const FoundContact& a, const FoundContact& b) {
-  return (a.point - b.point).cwiseAbs().maxCoeff() < kSamePlace &&
-         (a.normal - b.normal).cwiseAbs().maxCoeff() < kSameDirection;
+  return (a.point_P - b.point_P).cwiseAbs().maxCoeff() < kSamePlace &&
+         (a.normal_P - b.normal_P).cwiseAbs().maxCoeff() < kSameDirection;
 }
 
 void merge_duplicates(std::vector<FoundContact>& found) {
@@ -41,7 +41,7 @@ void merge_duplicates(std::vector<FoundContact>& found) {
 
 void append_contact(FoundContact contact, const geometry::Triangle& nodes,
                     std::vector<FoundContact>& found) {
-  for (int k = 0; k < 3; ++k) contact.feature[k] = contact.weights[k] > 0 ? nodes[k] : kNoNode;
+  for (int k = 0; k < 3; ++k) contact.feature[k] = contact.barycentric[k] > 0 ? nodes[k] : kNoNode;
   std::sort(contact.feature.begin(), contact.feature.end());
   found.push_back(contact);
 }
@@ -52,12 +52,11 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
   contact.triangle = step.organ.triangles_of_node(node).front();
   const geometry::Triangle& nodes = step.organ.triangles()[contact.triangle];
   const auto corner = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
-  contact.weights = Vec3::Unit(corner);
+  contact.barycentric = Vec3::Unit(corner);
   append_contact(contact, nodes, found);
 }
 
-void reduce_contacts(std::vector<FoundContact>& found, const RelativeMotion& motion,
-                     std::size_t at_most, ContactSet& result) {
+void reduce_contacts(std::vector<FoundContact>& found, std::size_t at_most, ContactSet& result) {
   merge_duplicates(found);
   const auto deeper = [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(order_within(a), std::tie(a.organ, a.triangle, a.feature)) <
@@ -75,9 +74,8 @@ void reduce_contacts(std::vector<FoundContact>& found, const RelativeMotion& mot
   });
   result.contacts.clear();
   for (const FoundContact& c : found) {
-    result.contacts.push_back({c.organ, c.triangle, c.weights, motion.point_to_world(c.point),
-                               motion.direction_to_world(c.normal).normalized(), c.gap,
-                               c.time_of_impact});
+    result.contacts.push_back(c);
+    result.contacts.back().normal_P.normalize();
   }
 }
 

@@ -31,7 +31,7 @@ struct Candidate {
     FoundContact result;
     result.organ = step.organ_index;
     result.triangle = triangle.index;
-    result.weights = pair.on_triangle.weights;
+    result.barycentric = pair.on_triangle.weights;
     const bool may_touch = gap(core) < triangle.travel + core.radius * 1e-6;
     result.time_of_impact = may_touch ? time_of_touch(core, triangle) : 1;
     return result;
@@ -67,11 +67,11 @@ void append_front(const OrganStep& step, const Core& core, const Candidate& cand
                   std::vector<FoundContact>& found) {
   FoundContact contact = candidate.contact(step, core);
   const geometry::SegmentAndTriangle& pair = candidate.pair;
-  contact.normal = pair.distance > kDirectionless
-                       ? Vec3((pair.on_segment - pair.on_triangle.point) / pair.distance)
-                       : candidate.triangle.normal_end;
-  contact.point = pair.on_segment - core.radius * contact.normal;
-  contact.gap = contact.normal.dot(contact.point - pair.on_triangle.point);
+  contact.normal_P = pair.distance > kDirectionless
+                         ? Vec3((pair.on_segment - pair.on_triangle.point) / pair.distance)
+                         : candidate.triangle.normal_end;
+  contact.point_P = pair.on_segment - core.radius * contact.normal_P;
+  contact.gap = contact.normal_P.dot(contact.point_P - pair.on_triangle.point);
   append_contact(contact, candidate.triangle.nodes, found);
 }
 
@@ -88,11 +88,11 @@ void append_graze(const OrganStep& step, const Core& core, const Candidate& cand
   const Vec3 apart = nearest.pair.on_segment - nearest.pair.on_triangle.point;
   if (apart.dot(geometry::unit_normal(triangle.at(nearest.time))) <= 0) return;
   FoundContact contact = candidate.contact(step, core);
-  contact.normal = apart / nearest.pair.distance;
-  contact.weights = nearest.pair.on_triangle.weights;
-  contact.point = nearest.pair.on_segment - core.radius * contact.normal;
-  const Vec3 tissue = at_weights(triangle.end, contact.weights);
-  contact.gap = contact.normal.dot(contact.point - tissue);
+  contact.normal_P = apart / nearest.pair.distance;
+  contact.barycentric = nearest.pair.on_triangle.weights;
+  contact.point_P = nearest.pair.on_segment - core.radius * contact.normal_P;
+  const Vec3 tissue = at_weights(triangle.end, contact.barycentric);
+  contact.gap = contact.normal_P.dot(contact.point_P - tissue);
   if (contact.gap <= step.margin) append_contact(contact, triangle.nodes, found);
 }
 
@@ -113,16 +113,16 @@ bool append_behind(const OrganStep& step, const Core& core, const Candidate& can
   const SweptTriangle& triangle = candidate.triangle;
   const geometry::SegmentAndTriangle& pair = candidate.pair;
   FoundContact contact = candidate.contact(step, core);
-  contact.normal = triangle.normal_end;
-  contact.gap = reach_below(core, pair.on_segment, pair.on_triangle.point, contact.normal);
+  contact.normal_P = triangle.normal_end;
+  contact.gap = reach_below(core, pair.on_segment, pair.on_triangle.point, contact.normal_P);
   if (contact.gap > 0 && nearest_of_wall) {
     const Vec3 outward = pair.on_triangle.point - pair.on_segment;
-    if (outward.dot(contact.normal) > kSameWall * pair.distance)
-      contact.normal = outward.normalized();
+    if (outward.dot(contact.normal_P) > kSameWall * pair.distance)
+      contact.normal_P = outward.normalized();
     contact.gap = -pair.distance - core.radius;
   }
   if (contact.gap > 0 || -contact.gap > depth_limit) return false;
-  contact.point = pair.on_triangle.point + contact.gap * contact.normal;
+  contact.point_P = pair.on_triangle.point + contact.gap * contact.normal_P;
   append_contact(contact, triangle.nodes, found);
   return true;
 }
@@ -131,11 +131,11 @@ bool append_behind(const OrganStep& step, const Core& core, const Candidate& can
 void append_crossed(const OrganStep& step, const Core& core, const Candidate& candidate,
                     std::vector<FoundContact>& found) {
   FoundContact contact = candidate.contact(step, core);
-  contact.weights = candidate.crossing->weights;
-  contact.normal = candidate.triangle.normal_end;
-  contact.point = candidate.crossing->on_core - core.radius * contact.normal;
-  const Vec3 tissue = at_weights(candidate.triangle.end, contact.weights);
-  contact.gap = contact.normal.dot(contact.point - tissue);
+  contact.barycentric = candidate.crossing->weights;
+  contact.normal_P = candidate.triangle.normal_end;
+  contact.point_P = candidate.crossing->on_core - core.radius * contact.normal_P;
+  const Vec3 tissue = at_weights(candidate.triangle.end, contact.barycentric);
+  contact.gap = contact.normal_P.dot(contact.point_P - tissue);
   append_contact(contact, candidate.triangle.nodes, found);
 }
 

@@ -90,9 +90,9 @@ void append_edge_contact(const OrganStep& step, std::uint32_t edge_index, double
   contact.organ = step.organ_index;
   contact.triangle = edge.triangles[0];
   const geometry::Triangle& nodes = step.organ.triangles()[contact.triangle];
-  contact.weights = Vec3::Zero();
-  contact.weights[std::find(nodes.begin(), nodes.end(), edge.nodes[0]) - nodes.begin()] = 1 - t;
-  contact.weights[std::find(nodes.begin(), nodes.end(), edge.nodes[1]) - nodes.begin()] = t;
+  contact.barycentric = Vec3::Zero();
+  contact.barycentric[std::find(nodes.begin(), nodes.end(), edge.nodes[0]) - nodes.begin()] = 1 - t;
+  contact.barycentric[std::find(nodes.begin(), nodes.end(), edge.nodes[1]) - nodes.begin()] = t;
   append_contact(contact, nodes, found);
 }
 
@@ -147,26 +147,26 @@ void EdgeContacts::find_pair(const OrganStep& step, const SharpMesh& probe, cons
   const auto impact = may_cross ? impact_of(start, end, separation) : std::nullopt;
   FoundContact contact;
   contact.time_of_impact = impact ? impact->time : 1;
-  contact.normal = end.perpendicular();
-  const bool is_behind = end.height() <= 0 && opposes(sharp, contact.normal);
+  contact.normal_P = end.perpendicular();
+  const bool is_behind = end.height() <= 0 && opposes(sharp, contact.normal_P);
   if (is_behind && (crossed != nullptr || (impact && start.height() > 0))) {
     const double limit = crossed != nullptr ? crossed->depth_limit : step.depth_limit;
     if (is_inside(at) && -end.height() <= limit) {
-      contact.point = at.on_first;
+      contact.point_P = at.on_first;
       contact.gap = end.height();
       append_edge_contact(step, pair.second, at.t, contact, found);
       now_.push_back({step.organ_index, pair, limit});
     } else if (impact) {
       // The edges have slid off each other: the contact of the crossing is carried to the end.
-      contact.point = end.a0 + impact->u * (end.a1 - end.a0);
+      contact.point_P = end.a0 + impact->u * (end.a1 - end.a0);
       contact.gap = end.height();
       append_edge_contact(step, pair.second, impact->v, contact, found);
     }
     return;
   }
   if (distance > step.margin || !is_inside(at) || !in_front(step, sharp, pair, end, at)) return;
-  contact.point = at.on_first;
-  contact.normal = (at.on_first - at.on_second) / distance;
+  contact.point_P = at.on_first;
+  contact.normal_P = (at.on_first - at.on_second) / distance;
   contact.gap = distance;
   append_edge_contact(step, pair.second, at.t, contact, found);
 }

@@ -90,8 +90,8 @@ void NodeContacts::find_node(const OrganStep& step, const ProbeSolid& solid, std
   }
   if (!face) return;
   FoundContact contact;
-  contact.point = face->point;
-  contact.normal = -face->outward;
+  contact.point_P = face->point;
+  contact.normal_P = -face->outward;
   contact.gap = face->height(node.end);
   contact.time_of_impact = node.entry ? node.entry->time : contact.gap <= 0 ? 0 : 1;
   append_node_contact(step, index, contact, found);

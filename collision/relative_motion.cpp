@@ -20,16 +20,12 @@ Vec3 sum_of_area_vectors(const OrganSurface& organ, const std::vector<Vec3>& pos
 }  // namespace
 
 RelativeMotion::RelativeMotion(const ProbeMotion& motion, double reach, bool round)
-    : to_start_(Mat3::Identity()),
-      to_end_(Mat3::Identity()),
-      position_start_(motion.pose_t0.position),
-      position_end_(motion.pose_t1.position) {
-  if (round) return;
-  const Quat start = motion.pose_t0.rotation.normalized(),
-             end = motion.pose_t1.rotation.normalized();
+    : position_start_(motion.pose_t0.position), position_end_(motion.pose_t1.position) {
+  const Quat end = motion.pose_t1.rotation.normalized();
+  const Quat start = round ? end : motion.pose_t0.rotation.normalized();
   to_start_ = start.conjugate().toRotationMatrix();
   to_end_ = end.conjugate().toRotationMatrix();
-  const double angle = start.angularDistance(end);
+  const double angle = round ? 0 : start.angularDistance(end);
   chord_error_ = (angle * angle * reach + 2 * angle * travel()) / 8;
 }
 

@@ -14,13 +14,11 @@ namespace palpate::collision {
 class RelativeMotion {
  public:
   /// @param reach  largest distance of the probe's surface from its origin [m]
-  /// @param round  the shape looks the same whatever its rotation, which is then left out
+  /// @param round  the shape looks the same whatever its rotation, which is then held at the end's
   RelativeMotion(const ProbeMotion& motion, double reach, bool round);
 
   Vec3 start(const Vec3& p_W) const { return to_start_ * (p_W - position_start_); }
   Vec3 end(const Vec3& p_W) const { return to_end_ * (p_W - position_end_); }
-  Vec3 point_to_world(const Vec3& p_P) const { return position_end_ + to_end_.transpose() * p_P; }
-  Vec3 direction_to_world(const Vec3& v_P) const { return to_end_.transpose() * v_P; }
   Vec3 direction_at_start(const Vec3& v_W) const { return to_start_ * v_W; }
   Vec3 direction_at_end(const Vec3& v_W) const { return to_end_ * v_W; }
 

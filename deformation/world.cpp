@@ -51,7 +51,7 @@ WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double per
 struct DeformationWorld::Impl {
   std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
-  ContactSet accepted;  ///< buffer of set_contacts()
+  std::vector<Contact> accepted;  ///< buffer of set_contacts()
   double time = 0;
   bool contact_refused = false;  ///< since the last advance
 
@@ -67,8 +67,8 @@ struct DeformationWorld::Impl {
     for (int k = 0; k < 3; ++k) {
       tissue += contact.barycentric[k] * organ.state().positions[nodes[k]];
     }
-    return (contact.point_on_probe - tissue).stableNorm() <= kFarthestContact &&
-           (contact.point_on_probe - probe.position).stableNorm() <= kFarthestContact;
+    return contact.point_P.stableNorm() <= kFarthestContact &&
+           (probe.to_world(contact.point_P) - tissue).stableNorm() <= kFarthestContact;
   }
 
   bool believes(const Contact& contact, const Pose& probe) {
@@ -119,7 +119,8 @@ struct DeformationWorld::Impl {
       if (contact.normal_impulse <= 0) continue;
       const OrganModel& model = organs[contact.organ].simulated.model();
       for (int k = 0; k < 3; ++k) {
-        limit += contact.weights[k] * model.node_stiffness[model.triangles[contact.triangle][k]];
+        limit +=
+            contact.barycentric[k] * model.node_stiffness[model.triangles[contact.triangle][k]];
       }
     }
     return limit;
@@ -162,11 +163,10 @@ void DeformationWorld::set_probe(std::size_t probe, const Pose& pose) {
 
 void DeformationWorld::set_contacts(const ContactSet& contacts) {
   if (contacts.probe >= impl_->probes.size()) return;
-  ContactSet& accepted = impl_->accepted;
-  accepted.probe_pose = contacts.probe_pose;
-  accepted.contacts.clear();
+  std::vector<Contact>& accepted = impl_->accepted;
+  accepted.clear();
   for (const Contact& contact : contacts.contacts) {
-    if (impl_->believes(contact, contacts.probe_pose)) accepted.contacts.push_back(contact);
+    if (impl_->believes(contact, contacts.probe_pose)) accepted.push_back(contact);
   }
   impl_->probes[contacts.probe].set_contacts(accepted);
 }

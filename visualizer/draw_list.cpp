@@ -48,9 +48,10 @@ void add_organ(const OrganView& organ, std::size_t index, const SceneView& view,
 void add_contacts(const ProbeView& probe, double normal_length, DrawList& list) {
   for (const Contact& contact : probe.contacts.contacts) {
     if (contact.gap > 0 && contact.time_of_impact >= 1) continue;  // near, but apart
-    const Vec3& p = contact.point_on_probe;
+    const Vec3 p = probe.pose.to_world(contact.point_P);
+    const Vec3 normal = probe.pose.rotation * contact.normal_P;
     list.points.push_back({p, kContactColor, 5});
-    list.lines.push_back({p, p + normal_length * contact.normal, kContactColor});
+    list.lines.push_back({p, p + normal_length * normal, kContactColor});
   }
 }
 

@@ -39,17 +39,12 @@ void ProbeContacts::set_pose(const Pose& pose) {
   placed_ = true;
 }
 
-void ProbeContacts::set_contacts(const ContactSet& newest) {
+void ProbeContacts::set_contacts(std::span<const Contact> newest) {
   std::swap(previous_contacts_, contacts_);
   contacts_.clear();
   auto previous = previous_contacts_.begin();
-  for (const Contact& contact : newest.contacts) {
-    CarriedContact carried;
-    carried.organ = contact.organ;
-    carried.triangle = contact.triangle;
-    carried.weights = contact.barycentric;
-    carried.point_P = newest.probe_pose.to_body(contact.point_on_probe);
-    carried.normal_P = newest.probe_pose.rotation.conjugate() * contact.normal;
+  for (const Contact& contact : newest) {
+    CarriedContact carried{contact};
     // Both lists are sorted by (organ, triangle).
     while (previous != previous_contacts_.end() && std::pair(previous->organ, previous->triangle) <
                                                        std::pair(carried.organ, carried.triangle)) {
@@ -95,7 +90,7 @@ void ProbeContacts::measure_again(const Body& body, const OrganState& state, con
   const Vec3 last = pose.rotation * contact.normal_P;
   // A core driven through the wall still belongs to the side it came from.
   const Vec3 normal = away.dot(last) >= 0 ? away : -away;
-  contact.weights = closest.on_triangle.weights;
+  contact.barycentric = closest.on_triangle.weights;
   contact.normal_P = pose.rotation.conjugate() * normal;
   contact.point_P = pose.to_body(closest.on_segment - core_->radius * normal);
 }
@@ -108,7 +103,7 @@ void ProbeContacts::append_rows(std::uint32_t organ, const Body& body, const Org
     if (core_) measure_again(body, state, before, contact);
     ContactRow row;
     row.nodes = body.triangles[contact.triangle];
-    row.weights = contact.weights;
+    row.weights = contact.barycentric;
     row.normal = after.rotation * contact.normal_P;
     Vec3 tissue = Vec3::Zero();
     for (int k = 0; k < 3; ++k) tissue += row.weights[k] * state.positions[row.nodes[k]];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "deformation/contact/contact_response.h"
@@ -19,12 +20,7 @@ inline constexpr double kMaxProbeSpeed = 3.0;
 /// move with the probe. Round ones (sphere, capsule) are measured anew in every sub-step against
 /// their core: a plane frozen for a period would tilt late as the tissue slides under a fingertip,
 /// which feeds energy into the sideways swing of the patch.
-struct CarriedContact {
-  std::uint32_t organ = 0;
-  std::uint32_t triangle = 0;
-  Vec3 weights = Vec3::Zero();             ///< of the triangle's nodes
-  Vec3 point_P = Vec3::Zero();             ///< on the probe's surface, in the probe's frame [m]
-  Vec3 normal_P = Vec3::UnitZ();           ///< in the probe's frame
+struct CarriedContact : Contact {
   double normal_impulse = 0;               ///< of the last sub-step, for its next start [N·s]
   Vec3 tangential_impulse = Vec3::Zero();  ///< likewise
 };
@@ -42,7 +38,7 @@ class ProbeContacts {
   void reset();
   void set_pose(const Pose& pose);
   /// Replaces the contacts; a contact on a triangle that had one starts from its impulses.
-  void set_contacts(const ContactSet& contacts);
+  void set_contacts(std::span<const Contact> contacts);
 
   /// Begins an advance of `period` [s], in which the probe moves from where it was to the newest
   /// pose. @returns false if it jumped: its contacts are dropped

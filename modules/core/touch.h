@@ -1,5 +1,6 @@
 // What the physics libraries hand each other about a touch: contacts, the tissue's local law, the
-// rendered force. SI units, frame W unless said.
+// rendered force. SI units, frame W unless said. A contact lives in the frame P of its probe from
+// the search to the solver; a name says so by its end.
 //
 // Sign conventions: a contact normal points from tissue to probe; a gap is positive when apart; a
 // force acts on the probe, the tissue receives its negative.
@@ -14,16 +15,16 @@ namespace palpate {
 
 /// One place where a probe touches, or within this step may touch, an organ.
 struct Contact {
-  std::uint32_t organ = 0;             ///< index in the scene's list
-  std::uint32_t triangle = 0;          ///< index in the organ's surface
-  Vec3 barycentric = Vec3::Zero();     ///< weights of the triangle's nodes, ≥ 0, sum 1
-  Vec3 point_on_probe = Vec3::Zero();  ///< nearest point of the probe's surface, in W [m]
-  Vec3 normal = Vec3::UnitZ();         ///< unit, from tissue to probe, in W
-  double gap = 0;                      ///< along the normal; negative = penetration [m]
+  std::uint32_t organ = 0;          ///< index in the scene's list
+  std::uint32_t triangle = 0;       ///< index in the organ's surface
+  Vec3 barycentric = Vec3::Zero();  ///< weights of the triangle's nodes, ≥ 0, sum 1
+  Vec3 point_P = Vec3::Zero();      ///< nearest point of the probe's surface, in P [m]
+  Vec3 normal_P = Vec3::UnitZ();    ///< unit, from tissue to probe, in P
+  double gap = 0;                   ///< along the normal; negative = penetration [m]
   double time_of_impact = 1;  ///< fraction of the swept step at first touch, 1 = no touch within
 };
 
-/// Contacts of one probe, found with the probe at `probe_pose`.
+/// Contacts of one probe. Gaps and weights hold for the probe at `probe_pose`.
 struct ContactSet {
   std::uint32_t probe = 0;        ///< index in the scene's list
   Pose probe_pose;                ///< X_WP

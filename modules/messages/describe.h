@@ -124,8 +124,8 @@ void describe(V& v, C& c) {
   v.field("contacts.organ", c.organ, Rule::kPlain);
   v.field("contacts.triangle", c.triangle, Rule::kPlain);
   v.field("contacts.barycentric", c.barycentric, Rule::kWeights);
-  v.field("contacts.point_on_probe_m", c.point_on_probe, Rule::kPlain);
-  v.field("contacts.normal", c.normal, Rule::kUnit);
+  v.field("contacts.point_P_m", c.point_P, Rule::kPlain);
+  v.field("contacts.normal_P", c.normal_P, Rule::kUnit);
   v.field("contacts.gap_m", c.gap, Rule::kPlain);
   v.field("contacts.time_of_impact", c.time_of_impact, Rule::kFraction);
 }

@@ -28,16 +28,16 @@ void corrupt_contact(Fault fault, Contact& contact) {
       contact.gap = kNaN;
       break;
     case Fault::kNormalNotANumber:
-      contact.normal = Vec3::Constant(kNaN);
+      contact.normal_P = Vec3::Constant(kNaN);
       break;
     case Fault::kNormalDenormal:
-      contact.normal = Vec3(kDenormal, 0, 1);
+      contact.normal_P = Vec3(kDenormal, 0, 1);
       break;
     case Fault::kPointInfinite:
-      contact.point_on_probe.x() = kInfinity;
+      contact.point_P.x() = kInfinity;
       break;
     case Fault::kPointHuge:
-      contact.point_on_probe = Vec3(kHuge, -kHuge, 1);
+      contact.point_P = Vec3(kHuge, -kHuge, 1);
       break;
     case Fault::kGapHuge:
       contact.gap = -kHuge;

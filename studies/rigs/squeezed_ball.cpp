@@ -86,8 +86,8 @@ ContactSet plate_contacts(const deformation::DeformationWorld& world, std::uint3
     if (contact.gap > margin) continue;
     contact.triangle = corners[node].first;
     contact.barycentric = Vec3::Unit(corners[node].second);
-    contact.point_on_probe = Vec3(p[0], p[1], height);
-    contact.normal = Vec3(0, 0, side);
+    contact.point_P = Vec3(p[0], p[1], 0);
+    contact.normal_P = Vec3(0, 0, side);
     contacts.contacts.push_back(contact);
   }
   return contacts;

@@ -27,9 +27,9 @@ TEST_CASE("core contacts: in front of a wall, one contact per triangle within th
   double gap = 1;
   for (const FoundContact& c : found) {
     gap = std::min(gap, c.gap);
-    CHECK(c.normal[2] > 0);
+    CHECK(c.normal_P[2] > 0);
     CHECK(c.time_of_impact == 1);
-    CHECK((c.point - (-0.5 * c.normal)).norm() < 1e-12);
+    CHECK((c.point_P - (-0.5 * c.normal_P)).norm() < 1e-12);
   }
   CHECK(gap == Approx(0.05).margin(1e-12));
 }
@@ -50,7 +50,7 @@ TEST_CASE("core contacts: a wall crossed in the step pushes out the way the core
   double gap = 0;
   for (const FoundContact& c : found) {
     gap = std::min(gap, c.gap);
-    CHECK((c.normal - Vec3::UnitZ()).norm() < 1e-12);
+    CHECK((c.normal_P - Vec3::UnitZ()).norm() < 1e-12);
     CHECK(c.time_of_impact == Approx((3 - 0.7 - 0.5) / 3).margin(1e-6));
   }
   CHECK(gap == Approx(-1.2).margin(1e-12));
@@ -139,12 +139,12 @@ TEST_CASE("core contacts: the point of a sharp probe has no radius") {
       find(cores, StepScene(box_at({0.1, 0.6, -1.05}, {2, 2, 2}), Vec3::Zero()), corner);
   REQUIRE(above.size() == 1);
   CHECK(above[0].gap == Approx(0.05).margin(1e-12));
-  CHECK(above[0].point == Vec3::Zero());
+  CHECK(above[0].point_P == Vec3::Zero());
   const auto pierced =
       find(cores, StepScene(box_at({0.1, 0.6, -0.9}, {2, 2, 2}), {0, 0, 0.15}), corner);
   REQUIRE(pierced.size() == 1);
   CHECK(pierced[0].gap == Approx(-0.1).margin(1e-12));
-  CHECK((pierced[0].normal - Vec3::UnitZ()).norm() < 1e-12);
+  CHECK((pierced[0].normal_P - Vec3::UnitZ()).norm() < 1e-12);
 }
 
 }  // namespace palpate::collision

@@ -44,8 +44,8 @@ TEST_CASE("edge contacts: two crossed edges have one contact, where they are clo
   const auto found = find(edges, StepScene(ridge(-0.05), Vec3::Zero()), probe);
   REQUIRE(found.size() == 1);
   CHECK(found[0].gap == Approx(0.05).margin(1e-12));
-  CHECK((found[0].normal - Vec3::UnitZ()).norm() < 1e-9);
-  CHECK((found[0].point - Vec3(0.1, 0, 0)).norm() < 1e-9);
+  CHECK((found[0].normal_P - Vec3::UnitZ()).norm() < 1e-9);
+  CHECK((found[0].point_P - Vec3(0.1, 0, 0)).norm() < 1e-9);
   CHECK(found[0].time_of_impact == 1);
   CHECK(find(edges, StepScene(ridge(-0.15), Vec3::Zero()), probe).empty());
 }
@@ -57,7 +57,7 @@ TEST_CASE("edge contacts: edges that passed through each other keep their sides"
   const auto crossed = find(edges, StepScene(ridge(0.2), {0, 0, 0.5}), probe);
   REQUIRE(crossed.size() == 1);
   CHECK(crossed[0].gap == Approx(-0.2).margin(1e-12));
-  CHECK((crossed[0].normal - Vec3::UnitZ()).norm() < 1e-9);
+  CHECK((crossed[0].normal_P - Vec3::UnitZ()).norm() < 1e-9);
   CHECK(crossed[0].time_of_impact == Approx(0.6).margin(1e-6));
   const auto held = find(edges, StepScene(ridge(0.25), {0, 0, 0.05}), probe);
   REQUIRE(held.size() == 1);
@@ -75,7 +75,7 @@ TEST_CASE("edge contacts: edges that crossed and slid off each other are found b
   const auto found = find(edges, StepScene(organ, {0, 3, 0.5}), probe);
   REQUIRE_FALSE(found.empty());
   CHECK(found[0].gap == Approx(-0.2).margin(1e-6));
-  CHECK(found[0].normal[2] > 0.99);
+  CHECK(found[0].normal_P[2] > 0.99);
 }
 
 TEST_CASE("edge contacts: a flat diagonal is no ridge, a far edge seen from inside no contact") {
@@ -85,7 +85,7 @@ TEST_CASE("edge contacts: a flat diagonal is no ridge, a far edge seen from insi
   EdgeContacts edges;
   for (const FoundContact& c :
        find(edges, StepScene(box_at({0, 0, -1.05}, {8, 8, 2}, 2), Vec3::Zero()), probe)) {
-    CHECK((c.normal - Vec3::UnitZ()).norm() < 1e-9);
+    CHECK((c.normal_P - Vec3::UnitZ()).norm() < 1e-9);
     CHECK(c.gap == Approx(0.05).margin(1e-12));
   }
   CHECK(

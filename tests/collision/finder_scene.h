@@ -19,6 +19,13 @@ inline ProbeMotion resting(const Vec3& position, const Quat& rotation = Quat::Id
 }
 inline ProbeGeometry probe_of(const scene::ProbeShape& shape) { return {shape, {}}; }
 
+inline Vec3 point_W(const ContactSet& found, const Contact& c) {
+  return found.probe_pose.to_world(c.point_P);
+}
+inline Vec3 normal_W(const ContactSet& found, const Contact& c) {
+  return found.probe_pose.rotation * c.normal_P;
+}
+
 struct FinderScene {
   std::vector<geometry::TriangleSurface> organs;
   ContactFinder finder;
@@ -52,10 +59,10 @@ struct FinderScene {
     CHECK(result.contacts.size() <= kMostContacts);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
       const Contact& c = result.contacts[i];
-      const double gap = c.normal.dot(c.point_on_probe - tissue_point(c));
+      const double gap = normal_W(result, c).dot(point_W(result, c) - tissue_point(c));
       const bool is_sound = c.barycentric.minCoeff() >= 0 &&
                             std::abs(c.barycentric.sum() - 1) < 1e-12 &&
-                            std::abs(c.normal.norm() - 1) < 1e-12 && c.point_on_probe.allFinite() &&
+                            std::abs(c.normal_P.norm() - 1) < 1e-12 && c.point_P.allFinite() &&
                             std::abs(gap - c.gap) < 1e-12 && c.gap <= margin + 1e-12 &&
                             c.time_of_impact >= 0 && c.time_of_impact <= 1;
       if (!is_sound)

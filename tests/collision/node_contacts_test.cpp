@@ -27,8 +27,8 @@ TEST_CASE(
   CHECK(found.size() == 9);  // a grid of 0.5 under a face of 1
   for (const FoundContact& c : found) {
     CHECK(c.gap == Approx(0.05).margin(1e-12));
-    CHECK((c.normal - Vec3::UnitZ()).norm() < 1e-12);
-    CHECK(c.weights.maxCoeff() == 1);
+    CHECK((c.normal_P - Vec3::UnitZ()).norm() < 1e-12);
+    CHECK(c.barycentric.maxCoeff() == 1);
     CHECK(c.triangle == scene.organ.triangles_of_node(c.feature[0])[0]);
   }
 }
@@ -54,7 +54,7 @@ TEST_CASE(
     REQUIRE(found.size() == 9);
     for (const FoundContact& c : found) {
       CHECK(c.gap == Approx(-0.2 - top).margin(1e-12));
-      CHECK((c.normal - Vec3::UnitZ()).norm() < 1e-12);
+      CHECK((c.normal_P - Vec3::UnitZ()).norm() < 1e-12);
     }
     last = top;
   }
@@ -88,7 +88,7 @@ TEST_CASE("node contacts: inside a half-space every facing node counts, whatever
   const auto found = find(nodes, StepScene(organ, Vec3::Zero()), *solid);
   CHECK(found.size() == 4);
   for (const FoundContact& c : found) {
-    CHECK(c.normal == -Vec3::UnitZ());
+    CHECK(c.normal_P == -Vec3::UnitZ());
     CHECK(c.gap == Approx(-3.5));
     CHECK(c.time_of_impact == 0);
   }

@@ -6,7 +6,7 @@
 
 namespace palpate::collision {
 
-TEST_CASE("relative motion: takes world points into the probe's frame and back") {
+TEST_CASE("relative motion: takes world points into the probe's frame") {
   // Oracle: Pose's own transformations.
   RandomShapes random(41);
   for (int trial = 0; trial < 50; ++trial) {
@@ -16,10 +16,10 @@ TEST_CASE("relative motion: takes world points into the probe's frame and back")
     const Vec3 p = random.point(1);
     CHECK((relative.start(p) - motion.pose_t0.to_body(p)).norm() < 1e-14);
     CHECK((relative.end(p) - motion.pose_t1.to_body(p)).norm() < 1e-14);
-    CHECK((relative.point_to_world(relative.end(p)) - p).norm() < 1e-14);
-    CHECK((relative.direction_to_world(relative.direction_at_end(p)) - p).norm() < 1e-14);
     const RelativeMotion round(motion, 0.1, true);
-    CHECK((round.end(p) - (p - motion.pose_t1.position)).norm() == 0);
+    CHECK(round.end(p) == relative.end(p));
+    const Pose held{motion.pose_t0.position, motion.pose_t1.rotation};
+    CHECK((round.start(p) - held.to_body(p)).norm() < 1e-14);
     CHECK(round.chord_error() == 0);
   }
 }

@@ -39,7 +39,7 @@ void pass_through(FinderScene& scene, const Vec3& direction, const Vec3& aim, co
     next.rotation = turn * next.rotation;
     const ContactSet found = scene.find({pose, next}, 0.0005);
     for (const Contact& c : found.contacts) {
-      touched = touched || (c.gap < 0 && c.normal.dot(direction) < 0);
+      touched = touched || (c.gap < 0 && normal_W(found, c).dot(direction) < 0);
     }
     pose = next;
   }
@@ -129,7 +129,7 @@ TEST_CASE("tunnelling: a wall once passed keeps its side until the probe is back
     const ContactSet found = scene.find({pose, next}, 0.002);
     REQUIRE_FALSE(found.contacts.empty());
     CHECK(deepest_gap(found) == Approx(z - 0.006 - 0.05).margin(1e-9));
-    for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0);
+    for (const Contact& c : found.contacts) CHECK(normal_W(found, c)[2] > 0);
     inside += z < 0.05;
     pose = next;
   }
@@ -145,7 +145,7 @@ TEST_CASE("tunnelling: below the skin, a sliding probe keeps pushing out through
     const ContactSet found = scene.find({pose, next}, 0.001);
     REQUIRE_FALSE(found.contacts.empty());
     CHECK(deepest_gap(found) == Approx(-0.006).margin(1e-3));
-    for (const Contact& c : found.contacts) CHECK(c.normal[2] > 0.5);
+    for (const Contact& c : found.contacts) CHECK(normal_W(found, c)[2] > 0.5);
     pose = next;
   }
 }

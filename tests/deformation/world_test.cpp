@@ -96,7 +96,7 @@ TEST_CASE(
     world.set_probe(0, Pose{Vec3(0, 0, 0.049), Quat::Identity()});
     ContactSet contacts = plate_contacts(world, 0, 0.049, 1, 2e-3);
     REQUIRE(contacts.contacts.size() > 1);
-    contacts.contacts.back().point_on_probe = Vec3(1e300, 0, 0.049);
+    contacts.contacts.back().point_P = Vec3(1e300, 0, 0);
     if (far_probe) contacts.probe_pose.position = Vec3(0, 1e308, 0);
     world.set_contacts(contacts);
     CHECK(world.advance(kPeriod).contact_refused);
@@ -134,7 +134,7 @@ TEST_CASE("deformation world: a not finite contact restores the last good state 
   world.set_probe(0, Pose{Vec3(0, 0, kBallRadius), Quat::Identity()});
   auto contacts = plate_contacts(world, 0, kBallRadius, 1, 2e-3);
   REQUIRE(!contacts.contacts.empty());
-  contacts.contacts[0].normal = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  contacts.contacts[0].normal_P = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
   world.set_contacts(contacts);
   CHECK(world.advance(kPeriod).diverged);
   NodePositions nodes;

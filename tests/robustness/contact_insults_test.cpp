@@ -73,10 +73,10 @@ Contacts shell_contacts(const DeformationWorld& world, double shrunk) {
       Contact contact;
       contact.triangle = t;
       contact.barycentric[static_cast<int>(corner)] = 1;
-      contact.normal = Eigen::Map<const Eigen::Vector3f>(&topology.rest_positions[3 * node])
-                           .cast<double>()
-                           .normalized();
-      contact.point_on_probe = (1 - shrunk) * kBallRadius * contact.normal;
+      contact.normal_P = Eigen::Map<const Eigen::Vector3f>(&topology.rest_positions[3 * node])
+                             .cast<double>()
+                             .normalized();
+      contact.point_P = (1 - shrunk) * kBallRadius * contact.normal_P;
       contacts.contacts.push_back(contact);
     }
   }

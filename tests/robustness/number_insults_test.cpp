@@ -112,8 +112,8 @@ std::vector<Place> places() {
           [](ProbeState&, ContactSet& c) -> double& { return c.probe_pose.position.z(); },
           [](ProbeState&, ContactSet& c) -> double& { return c.probe_pose.rotation.w(); },
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].barycentric.x(); },
-          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].point_on_probe.z(); },
-          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].normal.z(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].point_P.z(); },
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].normal_P.z(); },
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].gap; },
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].time_of_impact; }};
 }
@@ -186,9 +186,9 @@ TEST_CASE("number insults: messages of random nonsense, thousands of them") {
         plate_contacts(world, 0, 0.03 + 1e-3 * double(hostile.below(30)), 1, 2e-3);
     for (Contact& contact : contacts.contacts) {
       if (hostile.below(20) > 0) continue;
-      contact.normal = hostile.vector();
+      contact.normal_P = hostile.vector();
       contact.barycentric = hostile.vector();
-      contact.point_on_probe = hostile.vector();
+      contact.point_P = hostile.vector();
       contact.triangle = static_cast<std::uint32_t>(hostile.below(200));
     }
     world.set_contacts(contacts);

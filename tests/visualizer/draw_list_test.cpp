@@ -69,6 +69,26 @@ TEST_CASE("draw list: one surface, the probes seen, the contacts that touch, one
   CHECK(list.springs.empty());
 }
 
+TEST_CASE("draw list: a contact is drawn where its probe is drawn", "[visualizer]") {
+  // Oracle: Pose's own transformation, for a probe that has moved on since its contacts were found.
+  SceneView view = pressed_ball();
+  ProbeState moved;
+  moved.pose = {Vec3(0.1, -0.2, 0.3), Quat(Eigen::AngleAxisd(0.7, Vec3::UnitX()))};
+  view.receive(moved);
+  Contacts contacts;
+  contacts.contacts.resize(1);
+  contacts.contacts[0].gap = -1e-3;
+  contacts.contacts[0].point_P = Vec3(0.001, 0.002, -0.005);
+  contacts.contacts[0].normal_P = Vec3::UnitZ();
+  view.receive(contacts);
+  const DrawList list = make_draw_list(view, {});
+  REQUIRE(list.points.size() == 1);
+  CHECK((list.points[0].position - moved.pose.to_world(contacts.contacts[0].point_P)).norm() == 0);
+  REQUIRE(list.lines.size() == 1);
+  const Vec3 along = (list.lines[0].to - list.lines[0].from).normalized();
+  CHECK((along - moved.pose.rotation * Vec3::UnitZ()).norm() < 1e-12);
+}
+
 TEST_CASE("draw list: each spring family follows its switch", "[visualizer]") {
   // Oracle: counts: 480 edges, no bending springs in the made-up organ, 162 inner springs, and one
   // virtual node, shown with the inner springs only.

@@ -13,18 +13,17 @@ Pose pose_at(const Vec3& position, double turn_about_z = 0) {
   return {position, Quat(Eigen::AngleAxisd(turn_about_z, Vec3::UnitZ()))};
 }
 
-/// One contact per named triangle, all at p with normal n, found at `pose`.
-ContactSet contacts_on(std::vector<std::uint32_t> triangles, const Pose& pose, const Vec3& p,
-                       const Vec3& n) {
-  ContactSet contacts;
-  contacts.probe_pose = pose;
+/// One contact per named triangle, all at p with normal n, in P.
+std::vector<Contact> contacts_on(std::vector<std::uint32_t> triangles, const Vec3& p,
+                                 const Vec3& n) {
+  std::vector<Contact> contacts;
   for (const auto triangle : triangles) {
     Contact contact;
     contact.triangle = triangle;
     contact.barycentric = Vec3(0.2, 0.3, 0.5);
-    contact.point_on_probe = p;
-    contact.normal = n;
-    contacts.contacts.push_back(contact);
+    contact.point_P = p;
+    contact.normal_P = n;
+    contacts.push_back(contact);
   }
   return contacts;
 }
@@ -45,7 +44,7 @@ TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
   probe.end(1e9);
-  probe.set_contacts(contacts_on({4}, pose_at(Vec3::Zero()), Vec3(0.01, 0, 0), Vec3::UnitX()));
+  probe.set_contacts(contacts_on({4}, Vec3(0.01, 0, 0), Vec3::UnitX()));
   probe.set_pose(pose_at(Vec3(0, 0, 0.002), M_PI / 2));
   REQUIRE(probe.begin(kPeriod));
   std::vector<ContactRow> rows;
@@ -69,7 +68,7 @@ TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
   probe.end(1e9);
-  probe.set_contacts(contacts_on({0}, pose_at(Vec3::Zero()), Vec3::Zero(), Vec3::UnitZ()));
+  probe.set_contacts(contacts_on({0}, Vec3::Zero(), Vec3::UnitZ()));
   probe.set_pose(pose_at(Vec3(0.001, 0, 0)));
   probe.begin(kPeriod);
   Vec3 way = Vec3::Zero();
@@ -86,7 +85,7 @@ TEST_CASE("probe contacts: a triangle touched again starts from its last impulse
   const Ball ball;
   ProbeContacts probe(plate(0.1));
   probe.set_pose(pose_at(Vec3::Zero()));
-  probe.set_contacts(contacts_on({2, 5, 7}, Pose(), Vec3::Zero(), Vec3::UnitZ()));
+  probe.set_contacts(contacts_on({2, 5, 7}, Vec3::Zero(), Vec3::UnitZ()));
   probe.begin(kPeriod);
   std::vector<ContactRow> rows;
   probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
@@ -95,7 +94,7 @@ TEST_CASE("probe contacts: a triangle touched again starts from its last impulse
   probe.end(1e9);
   CHECK(probe.touches(0));
   CHECK_FALSE(probe.touches(1));
-  probe.set_contacts(contacts_on({2, 3, 5}, Pose(), Vec3::Zero(), Vec3::UnitZ()));
+  probe.set_contacts(contacts_on({2, 3, 5}, Vec3::Zero(), Vec3::UnitZ()));
   REQUIRE(probe.contacts().size() == 3);
   CHECK(probe.contacts()[0].normal_impulse == 1);
   CHECK(probe.contacts()[1].normal_impulse == 0);
@@ -107,7 +106,7 @@ TEST_CASE("probe contacts: force and torque are impulses over the period") {
   const Ball ball;
   ProbeContacts probe(plate(0.5));
   probe.set_pose(pose_at(Vec3::Zero()));
-  probe.set_contacts(contacts_on({0}, Pose(), Vec3(0.01, 0, 0), Vec3::UnitZ()));
+  probe.set_contacts(contacts_on({0}, Vec3(0.01, 0, 0), Vec3::UnitZ()));
   probe.begin(kPeriod);
   std::vector<ContactRow> rows;
   probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);

@@ -85,8 +85,8 @@ inline void check_same(const idl::Contact& w, const Contact& m) {
   REQUIRE(w.organ() == m.organ);
   REQUIRE(w.triangle() == m.triangle);
   REQUIRE(w.barycentric() == xyz(m.barycentric));
-  REQUIRE(w.point_on_probe_m() == xyz(m.point_on_probe));
-  REQUIRE(w.normal() == xyz(m.normal));
+  REQUIRE(w.point_P_m() == xyz(m.point_P));
+  REQUIRE(w.normal_P() == xyz(m.normal_P));
   REQUIRE(w.gap_m() == m.gap);
   REQUIRE(w.time_of_impact() == m.time_of_impact);
 }

@@ -135,11 +135,11 @@ TEST_CASE("message checks: Contacts", "[messages]") {
   CHECK(named<M>([](M& m) { m.contacts.resize(kMaxContactsPerProbe + 1, m.contacts[0]); }) ==
         "contacts");
   CHECK(named<M>([](M& m) { m.contacts.resize(kMaxContactsPerProbe, m.contacts[0]); }).empty());
-  check_finite<M>("contacts.point_on_probe_m",
-                  [](M& m) -> double& { return m.contacts.back().point_on_probe.y(); });
+  check_finite<M>("contacts.point_P_m",
+                  [](M& m) -> double& { return m.contacts.back().point_P.y(); });
   check_finite<M>("contacts.gap_m", [](M& m) -> double& { return m.contacts.back().gap; });
   check_unit<M>(
-      "contacts.normal", [](M & m) -> auto& { return m.contacts.back().normal; });
+      "contacts.normal_P", [](M & m) -> auto& { return m.contacts.back().normal_P; });
   for (const double bad : {-1e-9, 1 + 1e-9, kNan}) {
     CHECK(named<M>([&](M& m) { m.contacts.back().time_of_impact = bad; }) ==
           "contacts.time_of_impact");
