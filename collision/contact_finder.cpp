@@ -9,14 +9,10 @@
 #include "collision/node_contacts.h"
 #include "collision/probe_model.h"
 #include "modules/core/error.h"
+#include "modules/core/tolerances.h"
 
 namespace palpate::collision {
 namespace {
-
-bool is_usable(const Pose& pose) {
-  return pose.position.allFinite() && pose.rotation.coeffs().allFinite() &&
-         pose.rotation.norm() > 0.5;
-}
 
 template <typename T>
 void sort_unique(std::vector<T>& items) {
@@ -196,7 +192,7 @@ void ContactFinder::find(std::size_t probe, const ProbeMotion& motion, double ma
   result.probe_pose = motion.pose_t1;
   result.truncated = false;
   result.contacts.clear();
-  if (!is_usable(motion.pose_t0) || !is_usable(motion.pose_t1)) return;
+  if (!is_believable(motion.pose_t0) || !is_believable(motion.pose_t1)) return;
   impl_->probes[probe].find(motion, margin, impl_->organs, at_most, result);
 }
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <tuple>
 
+#include "modules/core/tolerances.h"
+
 namespace palpate::collision {
 namespace {
 
-constexpr double kSamePlace = 1e-9;  // [m]
 constexpr double kSameDirection = 1e-9;
 
 auto order_within(const FoundContact& c) {
@@ -14,7 +15,7 @@ auto order_within(const FoundContact& c) {
 }
 
 bool same(const FoundContact& a, const FoundContact& b) {
-  return (a.point_P - b.point_P).cwiseAbs().maxCoeff() < kSamePlace &&
+  return (a.point_P - b.point_P).cwiseAbs().maxCoeff() < kDirectionless &&
          (a.normal_P - b.normal_P).cwiseAbs().maxCoeff() < kSameDirection;
 }
 

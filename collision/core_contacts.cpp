@@ -5,12 +5,11 @@
 #include <limits>
 #include <tuple>
 
+#include "modules/core/tolerances.h"
+
 namespace palpate::collision {
 namespace {
 
-/// Below this distance the direction between closest points is noise [m]; the triangle's normal
-/// takes over.
-constexpr double kDirectionless = 1e-9;
 /// A triangle belongs to the wall a core is behind if its normal is within 78° of the wall's.
 constexpr double kSameWall = 0.2;
 

@@ -5,14 +5,14 @@
 #include <tuple>
 
 #include "collision/continuous_collision.h"
+#include "modules/core/tolerances.h"
 
 namespace palpate::collision {
 namespace {
 
-constexpr double kParallel = 1e-6;       // sine between edges
-constexpr double kInside = 1e-9;         // of the edge's length
-constexpr double kConeSlack = 0.02;      // sine
-constexpr double kDirectionless = 1e-9;  // [m]
+constexpr double kParallel = 1e-6;   // sine between edges
+constexpr double kInside = 1e-9;     // of the edge's length
+constexpr double kConeSlack = 0.02;  // sine
 
 /// Both edges at one time, and, for those near enough to need it, which way the organ's faces.
 struct Edges {

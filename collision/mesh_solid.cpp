@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "collision/continuous_collision.h"
+#include "modules/core/tolerances.h"
 #include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
 namespace {
 
 constexpr std::uint32_t kFlatEdge = 0xffffffff;
-constexpr double kFlat = 0.9999;      // cosine between faces: below 0.8°
-constexpr double kOnSurface = 1e-12;  // [m]
+constexpr double kFlat = 0.9999;  // cosine between faces: below 0.8°
 
 geometry::TriangleCorners corners_of(const geometry::TriangleSurface& mesh,
                                      std::uint32_t triangle) {
@@ -55,7 +55,7 @@ class MeshSolid final : public ProbeSolid {
       const Vec3 normal = mesh_.pseudonormal(t, closest.weights);
       const double sign = normal.dot(x - closest.point) < 0 ? -1 : 1;
       best = SolidPoint{closest.point, mesh_.face_normal(t), sign * distance, false};
-      if (distance > kOnSurface) best->outward = sign * (x - closest.point) / distance;
+      if (distance > kDirectionless) best->outward = sign * (x - closest.point) / distance;
     }
     return best;
   }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/core/tolerances.h"
+
 namespace palpate::collision {
 namespace {
-
-constexpr double kOnSurface = 1e-12;  // [m]; closer, the direction to the nearest point is noise
 
 class HalfSpace final : public ProbeSolid {
  public:
@@ -31,7 +31,7 @@ class BoxSolid final : public ProbeSolid {
   std::optional<SolidPoint> nearest(const Vec3& x, double within) const override {
     const Vec3 inside = x.cwiseMax(-half_).cwiseMin(half_);
     SolidPoint result{inside, Vec3::Zero(), (x - inside).norm(), false};
-    if (result.distance > kOnSurface) {
+    if (result.distance > kDirectionless) {
       result.outward = (x - inside) / result.distance;
     } else {
       int axis = 0;

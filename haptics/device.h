@@ -43,8 +43,7 @@ class TopicDevice : public Device {
   static constexpr double kRampDelay = 0.02;    ///< how far behind a steady motion it is [s]
 
   explicit TopicDevice(const scene::TopicDevice& config);
-  /// New commanded pose. Its quaternion is normalised. Ignored if not finite, beyond 1000 m, or
-  /// without a rotation.
+  /// New commanded pose; ignored if it is not believable (is_believable()).
   void command(const Pose& commanded, std::uint32_t buttons);
   DeviceSample read(double time) override;
 

@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "haptics/vector_checks.h"
+#include "modules/core/tolerances.h"
 
 namespace palpate::haptics {
 
 bool is_usable(const LocalLaw& law) {
-  constexpr double kUnitTolerance = 1e-3;
   return law.anchor.allFinite() && law.force.allFinite() && law.torque.allFinite() &&
-         law.stiffness.allFinite() && law.normal.allFinite() &&
-         std::abs(law.normal.stableNorm() - 1) <= kUnitTolerance &&
+         law.stiffness.allFinite() && is_unit(law.normal) &&
          std::isfinite(law.friction_coefficient) && law.friction_coefficient >= 0 &&
          std::isfinite(law.validity_radius) && law.validity_radius >= 0;
 }

@@ -19,7 +19,7 @@ struct Wrench {
   bool is_finite() const { return force.allFinite() && torque.allFinite(); }
 };
 
-/// Every number finite, normal of length 1 within 1e-3, friction and radius ≥ 0.
+/// Every number finite, normal of length 1 within kUnitTolerance, friction and radius ≥ 0.
 bool is_usable(const LocalLaw& law);
 
 struct LawForce {

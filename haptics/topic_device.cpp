@@ -10,6 +10,7 @@
 #include "haptics/device.h"
 #include "haptics/rotation_vector.h"
 #include "haptics/vector_checks.h"
+#include "modules/core/tolerances.h"
 
 namespace palpate::haptics {
 namespace {
@@ -33,9 +34,8 @@ TopicDevice::TopicDevice(const scene::TopicDevice& config) {
 }
 
 void TopicDevice::command(const Pose& commanded, std::uint32_t buttons) {
-  const std::optional<Pose> pose = usable_pose(commanded);
-  if (!pose) return;
-  target_ = *pose;
+  if (!is_believable(commanded)) return;
+  target_ = {commanded.position, commanded.rotation.normalized()};
   current_.buttons = buttons;
 }
 

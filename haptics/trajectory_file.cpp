@@ -9,8 +9,8 @@
 #include <optional>
 #include <string_view>
 
-#include "haptics/vector_checks.h"
 #include "modules/core/error.h"
+#include "modules/core/tolerances.h"
 
 namespace palpate::haptics {
 namespace {
@@ -18,9 +18,8 @@ namespace {
 constexpr std::string_view kPoseHeader = "t,x,y,z,qx,qy,qz,qw";
 constexpr std::string_view kPoseAndForceHeader = "t,x,y,z,qx,qy,qz,qw,fx,fy,fz";
 constexpr std::size_t kPoseColumns = 8, kMaxColumns = 11;
-constexpr double kShortestStep = 1e-6;   ///< [s]
-constexpr double kUnitTolerance = 1e-3;  ///< of a quaternion's length: three written digits
-constexpr double kLongestStep = 0.1;     ///< more is a gap [s]
+constexpr double kShortestStep = 1e-6;  ///< [s]
+constexpr double kLongestStep = 0.1;    ///< more is a gap [s]
 constexpr double kGapOverMedian = 5;
 constexpr std::size_t kReportedInFull = 20;
 
@@ -79,12 +78,13 @@ std::string check_row(const Row& row, const TimedPose* previous, TimedPose& samp
     return "t = " + text(sample.time) + " s is not at least 1e-6 s after the previous " +
            text(previous->time) + " s";
   }
-  if (sample.pose.position.cwiseAbs().maxCoeff() > kWorldReach) {
+  if (!(sample.pose.position.stableNorm() <= kWorldReach)) {
     return "position is beyond " + text(kWorldReach) + " m (metres expected)";
   }
   const double length = sample.pose.rotation.coeffs().stableNorm();
-  if (!(std::abs(length - 1) <= kUnitTolerance)) {
-    return "quaternion has length " + text(length) + ", must be 1 within 1e-3";
+  if (!(std::abs(length - 1) <= kWrittenUnitTolerance)) {
+    return "quaternion has length " + text(length) + ", must be 1 within " +
+           text(kWrittenUnitTolerance);
   }
   sample.pose.rotation.normalize();
   return {};

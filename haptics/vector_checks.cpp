@@ -17,14 +17,4 @@ Vec3 clamp_length(const Vec3& v, double limit) {
   return scaled * (limit / scaled.norm());
 }
 
-std::optional<Pose> usable_pose(const Pose& pose) {
-  constexpr double kShortestQuaternion = 1e-3, kLongestQuaternion = 1e3;
-  if (!pose.position.allFinite() || !pose.rotation.coeffs().allFinite()) return std::nullopt;
-  if (is_longer_than(pose.position, kWorldReach)) return std::nullopt;
-  if (pose.rotation.coeffs().cwiseAbs().maxCoeff() > kLongestQuaternion) return std::nullopt;
-  const double length = pose.rotation.norm();
-  if (length < kShortestQuaternion || length > kLongestQuaternion) return std::nullopt;
-  return Pose{pose.position, pose.rotation.normalized()};
-}
-
 }  // namespace palpate::haptics

@@ -11,7 +11,6 @@ namespace {
 /// At least this part of a contact's inverse mass is kept when the volume removes mobility from
 /// it: a contact that holds the whole organ could otherwise not be moved at all.
 constexpr double kLeastMobility = 1e-3;
-constexpr double kVelocityTolerance = 1e-9;  // [m/s]
 constexpr int kMaxSweeps = 60;
 constexpr int kNewtonSweeps = 10;
 constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly all of the surface
@@ -198,7 +197,7 @@ ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, doub
     return report;
   }
   Solver solver(mobility, volume, volume_velocity, h, rows, velocities, start);
-  while (solver.sweep() > kVelocityTolerance && solver.sweeps() < kMaxSweeps) {
+  while (solver.sweep() > kContactVelocityTolerance && solver.sweeps() < kMaxSweeps) {
   }
   report.sweeps = solver.sweeps();
   report.volume_impulse = solver.volume_impulse();

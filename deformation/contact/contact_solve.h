@@ -51,6 +51,9 @@ struct ContactSolveReport {
 /// tissue away; the remaining depth follows in the next steps.
 inline constexpr double kMaxSeparationSpeed = 1.0;
 
+/// Contacts are solved when no sweep changes the velocity of one by more than this [m/s].
+inline constexpr double kContactVelocityTolerance = 1e-9;
+
 /// How fast tissue may come nearer to the probe in a step of h [s] [m/s].
 inline double allowed_approach(const ContactRow& row, double h) {
   return std::max(row.gap / h, -kMaxSeparationSpeed);

@@ -56,7 +56,8 @@ class IndependentContacts {
       const double exact = (total - taken) / denominator;
       const double change =
           denominator * (exact - sigma_) / std::max(slope, kLeastSlope * denominator);
-      if (std::abs(change) * largest_coupling <= kTolerance || steps_ == kMaxSteps) return exact;
+      if (std::abs(change) * largest_coupling <= kContactVelocityTolerance || steps_ == kMaxSteps)
+        return exact;
       sigma_ += change;
     }
   }
@@ -79,7 +80,6 @@ class IndependentContacts {
   int steps() const { return steps_; }
 
  private:
-  static constexpr double kTolerance = 1e-9;  ///< of a contact's velocity [m/s]
   static constexpr int kMaxSteps = 60, kNewtonSteps = 10;
   static constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly all of it
 

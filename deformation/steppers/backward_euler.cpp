@@ -6,9 +6,6 @@
 namespace palpate::deformation {
 namespace {
 
-/// Iterations end when what they could still change is below this [m/s], as a mean weighted by D.
-constexpr double kVelocityTolerance = 1e-7;
-
 /// a += scale · b
 void add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += scale * b[i];
@@ -168,7 +165,7 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
 }
 
 void BackwardEuler::conjugate_gradients() {
-  const double negligible = total_mass_ * kVelocityTolerance * kVelocityTolerance;
+  const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
   auto& nodes = springs_.nodes();  // their vectors are the direction
   double descent = projection_.project(inner_residual_, projected_);
   for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].vector = projected_[i];

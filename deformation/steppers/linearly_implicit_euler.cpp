@@ -6,8 +6,6 @@
 namespace palpate::deformation {
 namespace {
 
-/// Iterations end when what they could still change is below this [m/s], as a mean weighted by D.
-constexpr double kVelocityTolerance = 1e-7;
 /// Rounds of conjugate gradients, at most; the contacts are revised between them.
 constexpr int kMaxRounds = 6;
 
@@ -61,7 +59,7 @@ void LinearlyImplicitEuler::solve(double h, std::span<ContactRow> rows, const Or
   velocities_ = state.velocities;
   contacts_.begin(inverse_diagonal_, rows, h, velocities_);
   iterations_used_ = 0;
-  const double negligible = total_mass_ * kVelocityTolerance * kVelocityTolerance;
+  const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
   // Short rounds until the contacts are found, then the rest of the iterations.
   const int share = (max_iterations_ + kMaxRounds - 1) / kMaxRounds;
   bool found = rows.empty();

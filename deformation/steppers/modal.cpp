@@ -11,7 +11,6 @@ namespace {
 
 /// What of ω² is lost in the iterations that find the modes, as part of the highest.
 constexpr double kFrequencyNoise = 1e-7;
-constexpr double kVelocityTolerance = 1e-9;  // [m/s]
 constexpr int kMaxSweeps = 200;
 
 using ConstCoordinates = Eigen::Map<const Eigen::VectorXd>;
@@ -156,7 +155,7 @@ void Modal::move_in_touch(double h, std::span<ContactRow> contacts, InternalStat
     add_impulse(rows_[r], -contacts[r].normal_impulse * contacts[r].normal, rates);
   }
   double change = 1;
-  for (int sweep = 0; sweep < kMaxSweeps && change > kVelocityTolerance; ++sweep) {
+  for (int sweep = 0; sweep < kMaxSweeps && change > kContactVelocityTolerance; ++sweep) {
     change = 0;
     for (std::size_t r = 0; r < contacts.size(); ++r) {
       if (rows_[r].along > 0) change = std::max(change, relax(r, contacts[r], rates));

@@ -8,6 +8,10 @@
 
 namespace palpate::deformation {
 
+/// Conjugate gradients of a step end when what they could still change is below this [m/s], as a
+/// mean weighted by mass.
+inline constexpr double kNegligibleVelocity = 1e-7;
+
 /// What one step did beyond stepping.
 struct StepReport {
   bool volume_skipped = false;   ///< gᵀM⁻¹g vanished: the volume was not corrected

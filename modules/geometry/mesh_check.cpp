@@ -11,8 +11,6 @@
 namespace palpate::geometry {
 namespace {
 
-constexpr double kDegenerateArea = 1e-12;  // of the extent squared
-
 double extent_of(const MeshReport& report) {
   return (report.max_corner - report.min_corner).norm();
 }

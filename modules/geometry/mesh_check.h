@@ -8,6 +8,9 @@
 
 namespace palpate::geometry {
 
+/// A triangle with no more area than this part of the surface's extent squared is degenerate.
+inline constexpr double kDegenerateArea = 1e-12;
+
 struct MeshReport {
   std::size_t node_count = 0, triangle_count = 0;
   std::size_t component_count = 0;
@@ -22,7 +25,7 @@ struct MeshReport {
   std::vector<std::array<std::uint32_t, 2>> non_manifold_edges;  ///< in more than two triangles
   std::vector<std::uint32_t> non_manifold_nodes;                 ///< with more than one fan
   std::vector<std::uint32_t> unused_nodes;
-  std::vector<std::uint32_t> degenerate_triangles;  ///< area below 1e-12 of the extent squared
+  std::vector<std::uint32_t> degenerate_triangles;  ///< see kDegenerateArea
   std::vector<std::uint32_t> duplicate_triangles;
   std::vector<std::array<std::uint32_t, 2>> inconsistent_edges;  ///< same direction used twice
   std::vector<std::array<std::uint32_t, 2>> self_intersections;  ///< pairs of triangles

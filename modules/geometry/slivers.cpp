@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "modules/geometry/edge_uses.h"
+#include "modules/geometry/mesh_check.h"
 
 namespace palpate::geometry {
 namespace {
 
-constexpr double kDegenerateArea = 1e-12;  // of the extent squared, as in check_surface
-constexpr int kMostPasses = 8;             // a flipped sliver may leave another one next to it
+constexpr int kMostPasses = 8;  // a flipped sliver may leave another one next to it
 
 double squared_extent(std::span<const Vec3> nodes) {
   Eigen::AlignedBox3d box;

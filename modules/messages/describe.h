@@ -22,9 +22,6 @@
 
 namespace palpate::messages {
 
-/// Allowed deviation of a quaternion's or normal's length and of a barycentric sum from 1, and of a
-/// barycentric weight below 0. Generous to senders that normalise in single precision.
-inline constexpr double kUnitTolerance = 1e-6;
 /// Allowed asymmetry and negative eigenvalue of a stiffness, relative to its largest entry.
 inline constexpr double kStiffnessTolerance = 1e-6;
 inline constexpr std::size_t kMaxNameBytes = 64;  ///< of a module and a topic
@@ -38,8 +35,8 @@ enum class Rule {
   kSinceSetUp,    ///< ≥ −1: what is said before the first lockstep cycle has −1
   kAge,           ///< ≥ 0; infinity: nothing came yet
   kFraction,      ///< in [0, 1]
-  kUnit,          ///< length 1
-  kWeights,       ///< ≥ 0, sum 1
+  kUnit,          ///< length 1 within kUnitTolerance
+  kWeights,       ///< ≥ 0, sum 1, both within kUnitTolerance
   kSemidefinite,  ///< symmetric, no negative eigenvalue
   kForceLimits,   ///< only bits of ForceLimit
   kName,          ///< 1 to kMaxNameBytes bytes

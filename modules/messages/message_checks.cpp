@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "modules/core/tolerances.h"
 #include "modules/messages/describe.h"
 
 namespace palpate::messages {
@@ -33,11 +34,11 @@ bool holds(Rule rule, double x) {
 }
 bool holds(Rule rule, const Vec3& v) {
   if (!v.allFinite()) return false;
-  if (rule == Rule::kUnit) return std::abs(v.norm() - 1) <= kUnitTolerance;
+  if (rule == Rule::kUnit) return is_unit(v);
   if (rule != Rule::kWeights) return true;
   return v.minCoeff() >= -kUnitTolerance && std::abs(v.sum() - 1) <= kUnitTolerance;
 }
-bool holds(Rule, const Quat& q) { return std::abs(q.norm() - 1) <= kUnitTolerance; }
+bool holds(Rule, const Quat& q) { return is_unit(q); }
 bool holds(Rule, const Mat3& k) { return k.allFinite() && positive_semidefinite(k); }
 bool holds(Rule, bool) { return true; }
 bool holds(Rule rule, std::uint64_t x) { return rule != Rule::kFromOne || x >= 1; }

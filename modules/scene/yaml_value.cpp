@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "modules/core/error.h"
+#include "modules/core/tolerances.h"
 #include "modules/core/units.h"
 #include "modules/scene/value_text.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::size_t kLongestShown = 60;    // bytes of a value repeated in a message
 constexpr std::size_t kLongestText = 255;    // bytes of a name
-constexpr double kUnitTolerance = 1e-3;      // of a quaternion's length: three digits typed
 constexpr double kNormalisedWithin = 1e-14;  // of its square: more is left by one normalisation
 
 std::string shown(const YAML::Node& node) {
@@ -172,7 +172,7 @@ Quat rotation_from(const YamlValue& value) {
   }
   Quat result;
   for (int i = 0; i < 4; ++i) result.coeffs()[i] = parse_number(value, value.node[i], kType);
-  if (!(std::abs(result.norm() - 1) <= kUnitTolerance)) {
+  if (!(std::abs(result.norm() - 1) <= kWrittenUnitTolerance)) {
     value.refuse("must be a unit quaternion [x, y, z, w] (length 1 within 0.001, here " +
                  number_text(result.norm()) + ")");
   }

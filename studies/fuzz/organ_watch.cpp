@@ -7,12 +7,12 @@
 
 #include "deformation/contact/probe_contacts.h"
 #include "deformation/guard/state_guard.h"
+#include "modules/core/tolerances.h"
 #include "studies/fuzz/outcome.h"
 
 namespace palpate::fuzz {
 namespace {
 
-constexpr double kFarthest = 1000;  // [m]
 /// Root mean square of the nodes' speeds beside their mean's: what moves them is no faster.
 constexpr double kShaking = deformation::kMaxProbeSpeed;  // [m/s]
 
@@ -48,7 +48,7 @@ void OrganWatch::look(const NodePositions& nodes, bool replaced) {
     if (!before_.empty()) fastest = std::max(fastest, (seen_[n] - before_[n]).norm());
   }
   const double way = deformation::kMaxNodeSpeed * period_ + 0.1 * size_;
-  if (farthest > kFarthest) throw Failure{fmt::format("node far away: {} m", farthest)};
+  if (farthest > kWorldReach) throw Failure{fmt::format("node far away: {} m", farthest)};
   if (!replaced && fastest > way) {
     throw Failure{fmt::format("node too fast: {} m in a period of {} s", fastest, period_)};
   }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "modules/core/tolerances.h"
+
 using namespace palpate;
 using namespace palpate::haptics;
 
@@ -119,7 +121,7 @@ TEST_CASE("local contact model: only complete, finite models are usable") {
   CHECK(refused([&](LocalLaw& m) { m.torque.z() = nan; }));
   CHECK(refused([&](LocalLaw& m) { m.stiffness(1, 2) = nan; }));
   CHECK(refused([&](LocalLaw& m) { m.normal.x() = nan; }));
-  CHECK(refused([&](LocalLaw& m) { m.normal *= 1.01; }));
+  CHECK(refused([&](LocalLaw& m) { m.normal *= 1 + 2 * kUnitTolerance; }));
   CHECK(refused([&](LocalLaw& m) { m.normal.setZero(); }));
   CHECK(refused([&](LocalLaw& m) { m.friction_coefficient = -0.1; }));
   CHECK(refused([&](LocalLaw& m) { m.friction_coefficient = nan; }));

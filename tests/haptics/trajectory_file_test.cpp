@@ -88,8 +88,8 @@ TEST_CASE("trajectory file: a bad row is skipped and reported with line and reas
       {"0,0,0,0,0,0,0,1", "t = 0 s is not at least 1e-6 s after the previous 0 s"},
       {"-1,0,0,0,0,0,0,1", "t = -1 s is not at least 1e-6 s after the previous 0 s"},
       {"0.01,0,0,2000,0,0,0,1", "position is beyond 1000 m (metres expected)"},
-      {"0.01,0,0,0,0,0,0,1.01", "quaternion has length 1.01, must be 1 within 1e-3"},
-      {"0.01,0,0,0,0,0,0,0", "quaternion has length 0, must be 1 within 1e-3"},
+      {"0.01,0,0,0,0,0,0,1.01", "quaternion has length 1.01, must be 1 within 0.001"},
+      {"0.01,0,0,0,0,0,0,0", "quaternion has length 0, must be 1 within 0.001"},
   }));
   const Outcome outcome =
       read(kHeader + "0,0,0,0,0,0,0,1\n" + row + "\n0.02,1,0,0,0,0,0,1\n0.04,1,0,0,0,0,0,1\n");

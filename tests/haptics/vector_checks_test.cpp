@@ -27,21 +27,3 @@ TEST_CASE("clamp_length: numbers whose squares overflow or vanish are still clam
   CHECK(is_longer_than(Vec3(1e-200, 0, 0), 1e-201));
   CHECK_FALSE(is_longer_than(Vec3(1e-200, 0, 0), 1e-199));
 }
-
-TEST_CASE("usable_pose: normalises what can be normalised and refuses the rest") {
-  // Oracle: the stated rules.
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  Pose pose{Vec3(1, 2, 3), Quat(2, 0, 0, 0)};
-  REQUIRE(usable_pose(pose));
-  CHECK(usable_pose(pose)->rotation.w() == 1);
-  CHECK(usable_pose(pose)->position == pose.position);
-
-  const Quat identity = Quat::Identity();
-  CHECK_FALSE(usable_pose({Vec3(nan, 0, 0), identity}));
-  CHECK_FALSE(usable_pose({Vec3(0, HUGE_VAL, 0), identity}));
-  CHECK_FALSE(usable_pose({Vec3(0, 1001, 0), identity}));
-  CHECK_FALSE(usable_pose({Vec3::Zero(), Quat(nan, 0, 0, 0)}));
-  CHECK_FALSE(usable_pose({Vec3::Zero(), Quat(0, 0, 0, 0)}));
-  CHECK_FALSE(usable_pose({Vec3::Zero(), Quat(1e200, 1e200, 0, 0)}));
-  CHECK_FALSE(usable_pose({Vec3::Zero(), Quat(800, 800, 0, 0)}));
-}

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "modules/core/tolerances.h"
 #include "tests/modules/messages/random_messages.h"
 
 namespace palpate::messages {
