@@ -2,7 +2,7 @@
 //
 // describe(visitor, message) names each field together with the member that holds it. Visitors walk
 // it: CdrWriter and CdrReader (cdr.cpp), Checker (message_checks.cpp), the columns of CSV files
-// (fields.cpp), random messages (tests). A visitor offers
+// (csv.cpp), random messages (tests). A visitor offers
 //   header(h)                               walks describe(visitor, h), or leaves it out
 //   key(name, field)                        the key: a number or a text, right after the header
 //   field(name, field, rule)                a number, vector, rotation, matrix, text, word or flag
