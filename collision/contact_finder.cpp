@@ -26,7 +26,7 @@ using VertexPair = std::pair<std::uint32_t, std::size_t>;
 /// One probe and what it remembers of its last step.
 class ProbeSearch {
  public:
-  explicit ProbeSearch(ProbeGeometry geometry) : model_(std::move(geometry)) {}
+  explicit ProbeSearch(geometry::ProbeForm form) : model_(std::move(form)) {}
 
   void reset() {
     cores_.reset();
@@ -167,10 +167,10 @@ struct ContactFinder::Impl {
 };
 
 ContactFinder::ContactFinder(std::vector<std::vector<geometry::Triangle>> organ_triangles,
-                             std::vector<ProbeGeometry> probes)
+                             std::vector<geometry::ProbeForm> probes)
     : impl_(std::make_unique<Impl>()) {
   for (auto& triangles : organ_triangles) impl_->organs.emplace_back(std::move(triangles));
-  for (ProbeGeometry& probe : probes) impl_->probes.emplace_back(std::move(probe));
+  for (geometry::ProbeForm& probe : probes) impl_->probes.emplace_back(std::move(probe));
 }
 
 ContactFinder::~ContactFinder() = default;

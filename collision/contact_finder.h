@@ -6,16 +6,9 @@
 #include <vector>
 
 #include "modules/core/touch.h"
-#include "modules/geometry/triangle_surface.h"
-#include "modules/scene/scene.h"
+#include "modules/geometry/probe_form.h"
 
 namespace palpate::collision {
-
-/// Probe shape with its meshes loaded; the collision library reads no files.
-struct ProbeGeometry {
-  scene::ProbeShape shape;
-  geometry::TriangleSurface mesh;  ///< only for MeshShape: closed, in the probe's frame [m]
-};
 
 /// Motion of a probe over the step: linear in position, constant rotation rate.
 struct ProbeMotion {
@@ -31,7 +24,7 @@ class ContactFinder {
  public:
   /// @param triangles  of each organ; node indices refer to the positions given to update_organ()
   ContactFinder(std::vector<std::vector<geometry::Triangle>> organ_triangles,
-                std::vector<ProbeGeometry> probes);
+                std::vector<geometry::ProbeForm> probes);
   ~ContactFinder();
 
   /// New node positions of an organ [m]; at least as many as its triangles name.

@@ -11,53 +11,46 @@ namespace {
 
 struct Builder {
   ProbeModel& model;
-  geometry::TriangleSurface& mesh;
 
-  void operator()(const scene::SphereShape& sphere) const {
-    model.cores = {Core{0, Vec3::Zero(), Vec3::Zero(), sphere.radius}};
-    model.is_round = true;
-    set_bounds(Vec3::Constant(sphere.radius));
-    model.reach = sphere.radius;
-  }
-  void operator()(const scene::CapsuleShape& capsule) const {
-    const Vec3 end = 0.5 * capsule.length * Vec3::UnitZ();
+  void operator()(const geometry::RoundedSegment& core) const {
+    model.cores = {Core{0, core.a, core.b, core.radius}};
     // The ends are cores of their own: an axis lying on a flat place gives one of many closest
     // points.
-    model.cores = {Core{0, -end, end, capsule.radius}, Core{1, -end, -end, capsule.radius},
-                   Core{2, end, end, capsule.radius}};
-    set_bounds(Vec3::Constant(capsule.radius) + end);
-    model.reach = capsule.radius + end.norm();
+    if (!core.is_ball()) {
+      model.cores.push_back(Core{1, core.a, core.a, core.radius});
+      model.cores.push_back(Core{2, core.b, core.b, core.radius});
+    }
+    model.is_round = core.is_ball() && core.a.isZero(0);
+    const Vec3 radius = Vec3::Constant(core.radius);
+    set_bounds({core.a.cwiseMin(core.b) - radius, core.a.cwiseMax(core.b) + radius});
+    model.reach = core.radius + std::max(core.a.norm(), core.b.norm());
   }
-  void operator()(const scene::BoxShape& box) const {
+  void operator()(const geometry::Box& box) const {
     model.sharp = std::make_unique<SharpMesh>(geometry::make_box(box.size));
     model.solid = make_box_solid(box.size);
-    set_bounds(0.5 * box.size);
+    set_bounds({-0.5 * box.size, 0.5 * box.size});
     model.reach = 0.5 * box.size.norm();
   }
-  void operator()(const scene::PlaneShape&) const {
+  void operator()(const geometry::HalfSpace&) const {
     model.solid = make_half_space();
     model.is_bounded = false;
     model.depth_believed = std::numeric_limits<double>::infinity();
   }
-  void operator()(const scene::MeshShape&) const {
-    model.sharp = std::make_unique<SharpMesh>(std::move(mesh));
+  void operator()(geometry::TriangleSurface& surface) const {
+    model.sharp = std::make_unique<SharpMesh>(std::move(surface));
     model.solid = make_mesh_solid(*model.sharp);
-    model.bounds = model.sharp->bounds();
     for (const Vec3& x : model.sharp->vertices()) model.reach = std::max(model.reach, x.norm());
-    set_depth();
+    set_bounds(model.sharp->bounds());
   }
 
-  void set_bounds(const Vec3& half) const {
-    model.bounds = {-half, half};
-    set_depth();
-  }
-  void set_depth() const {
-    model.depth_believed = (model.bounds.upper - model.bounds.lower).maxCoeff();
+  void set_bounds(const Bounds& bounds) const {
+    model.bounds = bounds;
+    model.depth_believed = (bounds.upper - bounds.lower).maxCoeff();
   }
 };
 
 }  // namespace
 
-ProbeModel::ProbeModel(ProbeGeometry probe) { std::visit(Builder{*this, probe.mesh}, probe.shape); }
+ProbeModel::ProbeModel(geometry::ProbeForm form) { std::visit(Builder{*this}, form); }
 
 }  // namespace palpate::collision

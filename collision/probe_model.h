@@ -1,4 +1,4 @@
-// What the searches need of a probe's shape.
+// What the searches need of a probe's form.
 #pragma once
 
 #include <memory>
@@ -12,16 +12,16 @@
 namespace palpate::collision {
 
 struct ProbeModel {
-  explicit ProbeModel(ProbeGeometry probe);
+  explicit ProbeModel(geometry::ProbeForm form);
 
-  std::vector<Core> cores;            ///< sphere; capsule: its axis and both ends
-  std::unique_ptr<SharpMesh> sharp;   ///< box, mesh: corners and edges
-  std::unique_ptr<ProbeSolid> solid;  ///< box, plane, mesh
-  bool is_bounded = true;             ///< all but the plane
-  bool is_round = false;              ///< sphere: rotation changes nothing
+  std::vector<Core> cores;            ///< ball; rounded segment: it and both its ends
+  std::unique_ptr<SharpMesh> sharp;   ///< box, surface: corners and edges
+  std::unique_ptr<ProbeSolid> solid;  ///< all that are not round
+  bool is_bounded = true;             ///< all but the half-space
+  bool is_round = false;              ///< a ball about P's origin: rotation changes nothing
   Bounds bounds;                      ///< in P [m], if bounded
   double reach = 0;                   ///< largest distance of the surface from P's origin [m]
-  double depth_believed = 0;          ///< twice the largest half extent; the plane's is unlimited
+  double depth_believed = 0;  ///< twice the largest half extent; the half-space's is unlimited
 };
 
 }  // namespace palpate::collision

@@ -14,7 +14,7 @@ namespace {
 /// The organs' surfaces as deformation tells them, kept in a finder.
 class OrganInputs {
  public:
-  OrganInputs(bus::Bus& bus, std::vector<ProbeGeometry> probes, std::size_t organs)
+  OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes, std::size_t organs)
       : surfaces_(bus.reader(bus::kSurface)),
         positions_(bus.reader(bus::kNodePositions)),
         probes_(std::move(probes)),
@@ -90,7 +90,7 @@ class OrganInputs {
 
   bus::Reader<SurfaceTopology> surfaces_;
   bus::Reader<NodePositions> positions_;
-  std::vector<ProbeGeometry> probes_;
+  std::vector<geometry::ProbeForm> probes_;
   std::vector<OrganInput> organs_;
   std::optional<ContactFinder> finder_;
   SurfaceTopology surface_;
@@ -164,9 +164,9 @@ const char* acting_guard(bool silent, bool truncated) {
 }  // namespace
 
 struct CollisionStage::Impl {
-  Impl(const scene::Scene& scene, std::vector<ProbeGeometry> geometry, bus::Bus& bus)
+  Impl(const scene::Scene& scene, std::vector<geometry::ProbeForm> forms, bus::Bus& bus)
       : rates(scene.rates),
-        organs(bus, std::move(geometry), scene.organs.size()),
+        organs(bus, std::move(forms), scene.organs.size()),
         probes(bus, scene.probes.size()),
         writer(bus.writer(bus::kContacts)) {}
 
@@ -190,23 +190,23 @@ struct CollisionStage::Impl {
   Contacts contacts;
 };
 
-std::vector<ProbeGeometry> probes_of(const scene::Scene& scene,
-                                     std::vector<geometry::TriangleSurface> meshes) {
+std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
+                                           std::vector<geometry::TriangleSurface> meshes) {
   PALPATE_DEMAND(meshes.size() == scene.probes.size());
-  std::vector<ProbeGeometry> probes;
+  std::vector<geometry::ProbeForm> probes;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    probes.push_back({scene.probes[i].shape, std::move(meshes[i])});
+    probes.push_back(scene::form_of(scene.probes[i].shape, std::move(meshes[i])));
   }
   return probes;
 }
 
-std::vector<ProbeGeometry> load_probes(const scene::Scene& scene) {
+std::vector<geometry::ProbeForm> load_probes(const scene::Scene& scene) {
   std::vector<geometry::TriangleSurface> meshes;
   for (const auto& probe : scene.probes) meshes.push_back(scene::load_probe_mesh(probe));
   return probes_of(scene, std::move(meshes));
 }
 
-CollisionStage::CollisionStage(const scene::Scene& scene, std::vector<ProbeGeometry> probes,
+CollisionStage::CollisionStage(const scene::Scene& scene, std::vector<geometry::ProbeForm> probes,
                                bus::Bus& bus)
     : impl_(std::make_unique<Impl>(scene, std::move(probes), bus)) {}
 

@@ -5,15 +5,16 @@
 #include "modules/bus/bus.h"
 #include "modules/runtime/silence_watch.h"
 #include "modules/runtime/stage.h"
+#include "modules/scene/scene.h"
 
 namespace palpate::collision {
 
-/// The probes of a scene with their meshes, those of MeshShapes; others are empty.
-std::vector<ProbeGeometry> probes_of(const scene::Scene& scene,
-                                     std::vector<geometry::TriangleSurface> meshes);
+/// The probes of a scene with their meshes, see scene::load_probe_mesh().
+std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
+                                           std::vector<geometry::TriangleSurface> meshes);
 /// The same with the meshes loaded.
 /// @throws InputError for a mesh that cannot be used
-std::vector<ProbeGeometry> load_probes(const scene::Scene& scene);
+std::vector<geometry::ProbeForm> load_probes(const scene::Scene& scene);
 
 /// Each cycle: take the newest organs and probe poses, search each probe's way since the last
 /// search, publish its contacts, none included. A probe not heard of for kInputStaleAfter touches
@@ -22,7 +23,7 @@ class CollisionStage : public runtime::Stage {
  public:
   /// @param scene   outlives the stage
   /// @param probes  one per probe of the scene
-  CollisionStage(const scene::Scene& scene, std::vector<ProbeGeometry> probes, bus::Bus& bus);
+  CollisionStage(const scene::Scene& scene, std::vector<geometry::ProbeForm> probes, bus::Bus& bus);
   ~CollisionStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
 

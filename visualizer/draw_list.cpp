@@ -56,7 +56,8 @@ void add_contacts(const ProbeView& probe, double normal_length, DrawList& list) 
 }
 
 void add_probe(const ProbeView& probe, std::size_t index, const SceneView& view, DrawList& list) {
-  const bool plane = std::holds_alternative<scene::PlaneShape>(probe.description.shape);
+  const bool plane =
+      std::holds_alternative<geometry::HalfSpace>(scene::form_of(probe.description.shape));
   BodyItem body;
   body.probe = index;
   body.pose = probe.pose;

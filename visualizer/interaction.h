@@ -33,7 +33,7 @@ struct Requests {
 
 class Interaction {
  public:
-  /// @param reaches  of each probe's surface from its origin, see reach() [m]
+  /// @param reaches  of each probe's surface from its origin, at most [m]
   explicit Interaction(std::vector<double> reaches) : reaches_(std::move(reaches)) {}
 
   /// Carries out what concerns the picture; returns the rest.

@@ -22,8 +22,8 @@ struct RendererOptions {
 
 class Renderer {
  public:
-  /// @param probe_surfaces  one per probe of the scene, in its own frame, see probe_surface()
-  /// Needs an X display (DISPLAY), see OffscreenDisplay.
+  /// @param probe_surfaces  one per probe of the scene, in its own frame, see
+  /// geometry::surface_of() Needs an X display (DISPLAY), see OffscreenDisplay.
   Renderer(const RendererOptions& options, std::vector<geometry::TriangleSurface> probe_surfaces);
   ~Renderer();
 

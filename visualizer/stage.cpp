@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "modules/core/error.h"
@@ -10,7 +11,6 @@
 #include "modules/scene/scene_reader.h"
 #include "visualizer/frame_schedule.h"
 #include "visualizer/offscreen_display.h"
-#include "visualizer/probe_shape.h"
 #include "visualizer/renderer.h"
 
 namespace palpate::visualizer {
@@ -55,14 +55,19 @@ struct Inputs {
 std::vector<geometry::TriangleSurface> probe_surfaces(const scene::Scene& scene) {
   std::vector<geometry::TriangleSurface> surfaces;
   for (const scene::Probe& probe : scene.probes) {
-    surfaces.push_back(probe_surface(probe.shape, 1.0, scene::load_probe_mesh(probe)));
+    const auto form = scene::form_of(probe.shape, scene::load_probe_mesh(probe));
+    surfaces.push_back(geometry::surface_of(form, 1.0));
   }
   return surfaces;
 }
 
 std::vector<double> reaches_of(const std::vector<geometry::TriangleSurface>& surfaces) {
   std::vector<double> reaches;
-  for (const auto& surface : surfaces) reaches.push_back(reach(surface));
+  for (const auto& surface : surfaces) {
+    double furthest = 0;
+    for (const Vec3& node : surface.nodes) furthest = std::max(furthest, node.norm());
+    reaches.push_back(furthest);
+  }
   return reaches;
 }
 

@@ -11,21 +11,12 @@ bool same_place(const CarriedContact& a, const CarriedContact& b) {
   return a.organ == b.organ && a.triangle == b.triangle;
 }
 
-std::optional<RoundCore> core_of(const scene::ProbeShape& shape) {
-  if (const auto* sphere = std::get_if<scene::SphereShape>(&shape)) {
-    return RoundCore{Vec3::Zero(), Vec3::Zero(), sphere->radius};
-  }
-  if (const auto* capsule = std::get_if<scene::CapsuleShape>(&shape)) {
-    const Vec3 half(0, 0, capsule->length / 2);
-    return RoundCore{-half, half, capsule->radius};
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
-ProbeContacts::ProbeContacts(const scene::Probe& probe)
-    : friction_(probe.friction), core_(core_of(probe.shape)) {}
+ProbeContacts::ProbeContacts(const scene::Probe& probe) : friction_(probe.friction) {
+  const geometry::ProbeForm form = scene::form_of(probe.shape);
+  if (const auto* core = std::get_if<geometry::RoundedSegment>(&form)) core_ = *core;
+}
 
 void ProbeContacts::reset() {
   placed_ = false;
@@ -82,7 +73,7 @@ void ProbeContacts::measure_again(const Body& body, const OrganState& state, con
                                   CarriedContact& contact) const {
   const auto& nodes = body.triangles[contact.triangle];
   const auto closest = geometry::closest_of_segment_and_triangle(
-      pose.to_world(core_->end_a), pose.to_world(core_->end_b),
+      pose.to_world(core_->a), pose.to_world(core_->b),
       {state.positions[nodes[0]], state.positions[nodes[1]], state.positions[nodes[2]]});
   // A core that touches the triangle has no direction to it: the last one stays.
   if (!(closest.distance > 1e-3 * core_->radius)) return;

@@ -17,18 +17,12 @@ namespace palpate::deformation {
 inline constexpr double kMaxProbeSpeed = 3.0;
 
 /// A contact between two messages from collision. Flat probe surfaces stay the planes they are and
-/// move with the probe. Round ones (sphere, capsule) are measured anew in every sub-step against
+/// move with the probe. Round ones (RoundedSegment) are measured anew in every sub-step against
 /// their core: a plane frozen for a period would tilt late as the tissue slides under a fingertip,
 /// which feeds energy into the sideways swing of the patch.
 struct CarriedContact : Contact {
   double normal_impulse = 0;               ///< of the last sub-step, for its next start [N·s]
   Vec3 tangential_impulse = Vec3::Zero();  ///< likewise
-};
-
-/// The line at whose distance `radius` a round shape has its surface, in the probe's frame [m].
-struct RoundCore {
-  Vec3 end_a = Vec3::Zero(), end_b = Vec3::Zero();  ///< equal for a sphere
-  double radius = 0;
 };
 
 class ProbeContacts {
@@ -65,7 +59,7 @@ class ProbeContacts {
                      CarriedContact& contact) const;
 
   double friction_;
-  std::optional<RoundCore> core_;
+  std::optional<geometry::RoundedSegment> core_;
   bool placed_ = false;
   Pose start_, target_;
   double period_ = 0;

@@ -1,7 +1,5 @@
 #include "modules/scene/assets.h"
 
-#include <variant>
-
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/geometry/mesh_prepare.h"
@@ -70,9 +68,9 @@ geometry::OrganShape load_organ(const Organ& organ) {
 }
 
 geometry::TriangleSurface load_probe_mesh(const Probe& probe) {
-  const auto* shape = std::get_if<MeshShape>(&probe.shape);
-  if (shape == nullptr) return {};
-  return load(shape->mesh, "probe '" + probe.name + "'");
+  const Mesh* mesh = mesh_of(probe.shape);
+  if (mesh == nullptr) return {};
+  return load(*mesh, "probe '" + probe.name + "'");
 }
 
 }  // namespace palpate::scene

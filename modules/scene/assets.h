@@ -13,7 +13,7 @@ namespace palpate::scene {
 /// @throws InputError naming organ, file and problem
 geometry::OrganShape load_organ(const Organ& organ);
 
-/// Surface of a MeshShape probe in its own frame [m]; empty for every other shape.
+/// Surface of a probe whose shape names a mesh, in its own frame [m]; empty for every other.
 /// @throws InputError naming probe, file and problem
 geometry::TriangleSurface load_probe_mesh(const Probe& probe);
 

@@ -11,14 +11,10 @@
 #include <vector>
 
 #include "modules/core/types.h"
+#include "modules/scene/mesh.h"
+#include "modules/scene/probe_shape.h"
 
 namespace palpate::scene {
-
-struct Mesh {
-  std::filesystem::path file;  ///< key `file`; relative to the scene file. Absolute after loading
-  std::string unit = "m";      ///< key `unit`: m, dm, cm, mm, um, in
-  std::size_t nodes = 0;       ///< key `nodes`: resample to this count, 0 = as it is [0 … 200000]
-};
 
 struct Tissue {
   double youngs_modulus = 10e3;  ///< `youngs_modulus_pa` [100 … 1e7]
@@ -84,23 +80,6 @@ struct Organ {
   Filling filling;                                 ///< `filling`
   std::vector<Region> fixed;                       ///< `fixed`
 };
-
-struct SphereShape {
-  double radius = 0.006;  ///< `radius_m` [1e-4 … 0.5]
-};
-struct CapsuleShape {
-  double radius = 0.005;  ///< `radius_m` [1e-4 … 0.5]
-  double length = 0.05;   ///< `length_m`, between the end centres, along z [1e-4 … 2]
-};
-struct BoxShape {
-  Vec3 size = Vec3::Constant(0.02);  ///< `size_m`, about the origin [1e-4 … 2 each]
-};
-struct PlaneShape {};  ///< solid half-space z ≤ 0
-struct MeshShape {
-  Mesh mesh;  ///< closed surface in the probe's frame; the keys of Mesh
-};
-using ProbeShape = std::variant<SphereShape, CapsuleShape, BoxShape, PlaneShape, MeshShape>;
-///< keys `sphere`, `capsule`, `box`, `plane`, `mesh`
 
 /// A recorded pose over time, CSV columns t, x, y, z, qx, qy, qz, qw [, fx, fy, fz] (s, m, N).
 struct TrajectoryDevice {

@@ -9,27 +9,6 @@ namespace {
 
 constexpr double kPeakOfMean = 1.875;  // speeds of a minimum-jerk move
 
-scene::ProbeShape random_shape(RandomStream& random, double size) {
-  switch (random.below(8)) {
-    case 0:
-    case 1:
-      return scene::SphereShape{size * random.log_uniform(0.01, 0.8)};
-    case 2:
-      return scene::CapsuleShape{1e-4, size * random.uniform(0.5, 2)};  // a needle
-    case 3:
-      return scene::CapsuleShape{size * random.log_uniform(0.01, 0.3),
-                                 size * random.uniform(0.1, 2)};
-    case 4:
-      return scene::BoxShape{Vec3(2 * size, 2 * size, 0.02 * size + 1e-4)};  // a plate
-    case 5:
-      return scene::BoxShape{Vec3::Constant(size * random.log_uniform(0.02, 1))};
-    case 6:
-      return scene::PlaneShape{};
-    default:
-      return scene::MeshShape{};
-  }
-}
-
 scene::ScriptedDevice::Move move_to(RandomStream& random, const Vec3& from, const Vec3& to) {
   const double speed = random.log_uniform(0.01, 5);
   const double duration = kPeakOfMean * (to - from).norm() / speed;
@@ -77,7 +56,7 @@ void add_probes(RandomStream& random, RandomScene& scene) {
   auto& probes = scene.scene.probes;
   if (random.chance(0.1)) add_plates(random, center, size, scene);
   for (std::size_t i = probes.empty() ? 1 + random.below(3) : random.below(2); i > 0; --i) {
-    const auto shape = random_shape(random, size);
+    const auto shape = scene::random_shape(random, size);
     probes.push_back({"", shape, 0.1, random_way(random, center, size)});
   }
   for (std::size_t i = 0; i < probes.size(); ++i) {
@@ -85,8 +64,8 @@ void add_probes(RandomStream& random, RandomScene& scene) {
     probes[i].friction = random.chance(0.2) ? 0 : random.uniform(0, 2);
     PlacedShape mesh{static_cast<Shape>(random.below(kShapeCount)),
                      Vec3::Constant(size * random.log_uniform(0.05, 0.5))};
-    if (auto* shape = std::get_if<scene::MeshShape>(&probes[i].shape)) {
-      shape->mesh.file = fmt::format("probe_{}_{}.ply", i, name_of(mesh.shape));
+    if (scene::Mesh* named = mesh_of(probes[i].shape)) {
+      named->file = fmt::format("probe_{}_{}.ply", i, name_of(mesh.shape));
     }
     scene.probe_shapes.push_back(mesh);
   }

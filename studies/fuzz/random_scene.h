@@ -46,7 +46,7 @@ struct TimedFault {
 struct RandomScene {
   scene::Scene scene;
   std::vector<PlacedShape> organ_shapes;  ///< one per organ
-  std::vector<PlacedShape> probe_shapes;  ///< one per probe; used by MeshShape alone
+  std::vector<PlacedShape> probe_shapes;  ///< one per probe; used where its shape names a mesh
   std::vector<TimedFault> faults;
 };
 

@@ -25,8 +25,8 @@ std::filesystem::path write_scene(RandomScene scene, const ShapeStore& shapes,
     write_mesh(scene.scene.organs[i].mesh, scene.organ_shapes[i], shapes, folder);
   }
   for (std::size_t i = 0; i < scene.scene.probes.size(); ++i) {
-    auto* shape = std::get_if<scene::MeshShape>(&scene.scene.probes[i].shape);
-    if (shape != nullptr) write_mesh(shape->mesh, scene.probe_shapes[i], shapes, folder);
+    scene::Mesh* mesh = mesh_of(scene.scene.probes[i].shape);
+    if (mesh != nullptr) write_mesh(*mesh, scene.probe_shapes[i], shapes, folder);
   }
   const auto file = folder / "scene.yaml";
   std::ofstream(file) << text_of(scene);

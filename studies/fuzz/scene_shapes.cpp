@@ -20,7 +20,7 @@ session::Assets assets_of(const RandomScene& scene, const ShapeStore& store) {
     assets.organs.push_back(shape_in_world(scene.scene.organs[i], scene.organ_shapes[i], store));
   }
   for (std::size_t i = 0; i < scene.scene.probes.size(); ++i) {
-    const bool is_mesh = std::holds_alternative<scene::MeshShape>(scene.scene.probes[i].shape);
+    const bool is_mesh = mesh_of(scene.scene.probes[i].shape) != nullptr;
     assets.probe_meshes.push_back(is_mesh
                                       ? store.shape(scene.probe_shapes[i], "mass_spring").surface
                                       : geometry::TriangleSurface{});

@@ -13,7 +13,6 @@
 #include "studies/report/measures.h"
 #include "studies/report/table_file.h"
 #include "visualizer/offscreen_display.h"
-#include "visualizer/probe_shape.h"
 #include "visualizer/renderer.h"
 
 namespace palpate::paper {
@@ -59,7 +58,8 @@ class OneCore {
 std::vector<geometry::TriangleSurface> probe_surfaces(const scene::Scene& scene) {
   std::vector<geometry::TriangleSurface> surfaces;
   for (const auto& probe : scene.probes) {
-    surfaces.push_back(visualizer::probe_surface(probe.shape, 1.0, scene::load_probe_mesh(probe)));
+    const auto form = scene::form_of(probe.shape, scene::load_probe_mesh(probe));
+    surfaces.push_back(geometry::surface_of(form, 1.0));
   }
   return surfaces;
 }

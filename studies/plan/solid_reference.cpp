@@ -15,14 +15,6 @@ namespace {
 constexpr double kGrowth = 0.4;
 constexpr double kPathRate = 50;  // [Hz]
 
-/// What a probe touches with; nothing for what is not small.
-double radius_of(const scene::ProbeShape& shape) {
-  if (const auto* sphere = std::get_if<scene::SphereShape>(&shape)) return sphere->radius;
-  if (const auto* capsule = std::get_if<scene::CapsuleShape>(&shape)) return capsule->radius;
-  if (const auto* box = std::get_if<scene::BoxShape>(&shape)) return box->size.minCoeff() / 2;
-  return 0;
-}
-
 Vec3 nearest_point(const geometry::TriangleSurface& surface, const Vec3& to) {
   Vec3 nearest = Vec3::Zero();
   double least = std::numeric_limits<double>::infinity();
@@ -46,7 +38,7 @@ geometry::OrganShape solid_reference_shape(const scene::Scene& scene, double dur
   const auto coarse = scene::load_organ(hull).surface;
   auto surface = coarse;
   for (const auto& probe : scene.probes) {
-    const double radius = radius_of(probe.shape);
+    const double radius = geometry::tip_radius(scene::form_of(probe.shape));
     std::vector<std::string> warnings;
     const auto device = haptics::make_device(probe.device, warnings);
     Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());

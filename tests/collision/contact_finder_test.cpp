@@ -142,7 +142,7 @@ TEST_CASE("contact finder: a mesh probe agrees with the box it is made like") {
     const Quat rotation = random.rotation();
     const Vec3 position = random.direction() * random.number(0.058, 0.066);
     FinderScene as_box(ball, scene::BoxShape{size});
-    FinderScene as_mesh({ball}, {{scene::MeshShape{}, geometry::make_box(size)}});
+    FinderScene as_mesh({ball}, {scene::form_of(scene::MeshShape{}, geometry::make_box(size))});
     const ContactSet one = as_box.find(resting(position, rotation), 0.002);
     const ContactSet other = as_mesh.find(resting(position, rotation), 0.002);
     REQUIRE(one.contacts.size() == other.contacts.size());

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/contact_finder.h"
+#include "modules/scene/probe_shape.h"
 #include "tests/collision/random_shapes.h"
 
 namespace palpate::collision {
@@ -17,7 +18,9 @@ inline Pose at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
 inline ProbeMotion resting(const Vec3& position, const Quat& rotation = Quat::Identity()) {
   return {at(position, rotation), at(position, rotation)};
 }
-inline ProbeGeometry probe_of(const scene::ProbeShape& shape) { return {shape, {}}; }
+inline geometry::ProbeForm probe_of(const scene::ProbeShape& shape) {
+  return scene::form_of(shape);
+}
 
 inline Vec3 point_W(const ContactSet& found, const Contact& c) {
   return found.probe_pose.to_world(c.point_P);
@@ -30,7 +33,8 @@ struct FinderScene {
   std::vector<geometry::TriangleSurface> organs;
   ContactFinder finder;
 
-  FinderScene(std::vector<geometry::TriangleSurface> surfaces, std::vector<ProbeGeometry> probes)
+  FinderScene(std::vector<geometry::TriangleSurface> surfaces,
+              std::vector<geometry::ProbeForm> probes)
       : organs(std::move(surfaces)), finder(triangles_of(organs), std::move(probes)) {
     update();
   }

@@ -6,9 +6,9 @@
 
 namespace palpate::collision {
 
-TEST_CASE("probe model: every shape has what its searches need, and its bounds") {
+TEST_CASE("probe model: every form has what its searches need, and its bounds") {
   // Oracle: analytic.
-  const ProbeModel sphere({scene::SphereShape{0.5}, {}});
+  const ProbeModel sphere(geometry::RoundedSegment{Vec3::Zero(), Vec3::Zero(), 0.5});
   CHECK(sphere.is_round);
   CHECK(sphere.cores.size() == 1);
   CHECK(sphere.cores[0].is_point());
@@ -16,7 +16,7 @@ TEST_CASE("probe model: every shape has what its searches need, and its bounds")
   CHECK(sphere.depth_believed == 1);
   CHECK_FALSE(sphere.solid);
 
-  const ProbeModel capsule({scene::CapsuleShape{0.5, 2}, {}});
+  const ProbeModel capsule(geometry::RoundedSegment{-Vec3::UnitZ(), Vec3::UnitZ(), 0.5});
   CHECK_FALSE(capsule.is_round);
   REQUIRE(capsule.cores.size() == 3);
   CHECK(capsule.cores[0].b == Vec3(0, 0, 1));
@@ -24,7 +24,7 @@ TEST_CASE("probe model: every shape has what its searches need, and its bounds")
   CHECK(capsule.reach == 1.5);
   CHECK(capsule.depth_believed == 3);
 
-  const ProbeModel box({scene::BoxShape{Vec3(2, 4, 4)}, {}});
+  const ProbeModel box(geometry::Box{Vec3(2, 4, 4)});
   CHECK(box.cores.empty());
   REQUIRE(box.sharp);
   CHECK(box.sharp->vertices().size() == 8);
@@ -32,14 +32,21 @@ TEST_CASE("probe model: every shape has what its searches need, and its bounds")
   CHECK(box.bounds.lower == Vec3(-1, -2, -2));
   CHECK(box.reach == 3);
 
-  const ProbeModel plane({scene::PlaneShape{}, {}});
+  const ProbeModel plane(geometry::HalfSpace{});
   CHECK_FALSE(plane.is_bounded);
   CHECK(plane.solid);
   CHECK_FALSE(plane.sharp);
 
+  const Vec3 aside(0.5, 0, 0);
+  const ProbeModel beside(geometry::RoundedSegment{aside, aside, 0.5});
+  CHECK_FALSE(beside.is_round);
+  CHECK(beside.cores.size() == 1);
+  CHECK(beside.bounds.lower == Vec3(0, -0.5, -0.5));
+  CHECK(beside.reach == 1);
+
   auto off_center = geometry::make_box({2, 2, 2});
   for (Vec3& x : off_center.nodes) x[0] += 5;
-  const ProbeModel mesh({scene::MeshShape{}, off_center});
+  const ProbeModel mesh(off_center);
   CHECK(mesh.solid);
   CHECK(mesh.bounds.lower == Vec3(4, -1, -1));
   CHECK(mesh.reach == Approx(std::sqrt(38.0)));

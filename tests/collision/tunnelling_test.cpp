@@ -20,9 +20,8 @@ scene::ProbeShape shape_of(int kind) {
   }
 }
 
-ProbeGeometry probe(int kind) {
-  return {shape_of(kind),
-          kind == 3 ? geometry::make_capsule(0.004, 0.01, 8) : geometry::TriangleSurface{}};
+geometry::ProbeForm probe(int kind) {
+  return scene::form_of(shape_of(kind), geometry::make_capsule(0.004, 0.01, 8));
 }
 
 /// Moves the probe along a line through the organ; did it ever touch, and did the first contacts

@@ -6,7 +6,6 @@
 #include "modules/geometry/primitives.h"
 #include "tests/visualizer/fake_session.h"
 #include "visualizer/offscreen_display.h"
-#include "visualizer/probe_shape.h"
 #include "visualizer/renderer.h"
 
 namespace palpate::visualizer::testing {
@@ -38,9 +37,9 @@ struct Studio {
   SurfaceTopology topology = topology_of(geometry::make_ball(0.05, 3));
   Interaction interaction{{0.01, 0.036}};
   Layout layout = make_layout(kWidth, kHeight);
-  Renderer renderer{
-      {kWidth, kHeight, false, "test"},
-      {probe_surface(scene.probes[0].shape, 1, {}), probe_surface(scene.probes[1].shape, 1, {})}};
+  Renderer renderer{{kWidth, kHeight, false, "test"},
+                    {geometry::surface_of(scene::form_of(scene.probes[0].shape), 1),
+                     geometry::surface_of(scene::form_of(scene.probes[1].shape), 1)}};
 
   Studio() {
     interaction.camera =
