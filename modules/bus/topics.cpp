@@ -6,11 +6,8 @@
 namespace palpate::bus {
 
 std::span<const TopicInfo> all_topics() {
-  static const std::array topics{info_of(kScene),         info_of(kSurface),
-                                 info_of(kNodePositions), info_of(kProbeState),
-                                 info_of(kProbeInput),    info_of(kContacts),
-                                 info_of(kContactModel),  info_of(kHapticForce),
-                                 info_of(kModuleStatus),  info_of(kSessionControl)};
+  static const auto topics =
+      std::apply([](const auto&... topic) { return std::array{info_of(topic)...}; }, kTopics);
   return topics;
 }
 

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string_view>
+#include <tuple>
 
 #include "modules/messages/message_types.h"
 
@@ -30,6 +31,11 @@ inline constexpr TopicOf<HapticForce> kHapticForce{"haptic_force", Delivery::kSt
 inline constexpr TopicOf<ModuleStatus> kModuleStatus{"module_status", Delivery::kState};
 inline constexpr TopicOf<SessionControl> kSessionControl{"session_control", Delivery::kState};
 
+/// All of them.
+inline constexpr auto kTopics =
+    std::tuple(kScene, kSurface, kNodePositions, kProbeState, kProbeInput, kContacts, kContactModel,
+               kHapticForce, kModuleStatus, kSessionControl);
+
 /// A topic without its C++ type.
 struct TopicInfo {
   std::string_view name;
@@ -42,7 +48,7 @@ TopicInfo info_of(const TopicOf<Message>& topic) {
   return {topic.name, topic.delivery, &messages::type_of<Message>()};
 }
 
-/// Every topic, in the order of the list above.
+/// Every topic, in the order of kTopics.
 std::span<const TopicInfo> all_topics();
 
 /// nullptr if there is none of that name.

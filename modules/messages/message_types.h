@@ -11,22 +11,16 @@
 
 #include "modules/messages/messages.h"
 
-// A new message is added here, in AnyMessage, in idl/ and in describe.h.
-#define PALPATE_MESSAGES(X) \
-  X(ProbeState)             \
-  X(Contacts)               \
-  X(ContactModel)           \
-  X(NodePositions)          \
-  X(SurfaceTopology)        \
-  X(HapticForce)            \
-  X(ModuleStatus)           \
-  X(SceneDescription)       \
-  X(SessionControl)
-
 namespace palpate::messages {
 
-using AnyMessage = std::variant<ProbeState, Contacts, ContactModel, NodePositions, SurfaceTopology,
-                                HapticForce, ModuleStatus, SceneDescription, SessionControl>;
+template <class, class... Messages>
+struct OneOf {
+  using type = std::variant<Messages...>;
+};
+#define PALPATE_NEXT(Message) , Message
+/// Any of PALPATE_MESSAGES.
+using AnyMessage = OneOf<void PALPATE_MESSAGES(PALPATE_NEXT)>::type;
+#undef PALPATE_NEXT
 
 /// A message as it travels: CDR after its 4 bytes of encapsulation header.
 using Payload = std::span<const std::uint8_t>;

@@ -148,3 +148,15 @@ struct SessionControl {
 };
 
 }  // namespace palpate
+
+// All of them.
+#define PALPATE_MESSAGES(X) \
+  X(ProbeState)             \
+  X(Contacts)               \
+  X(ContactModel)           \
+  X(NodePositions)          \
+  X(SurfaceTopology)        \
+  X(HapticForce)            \
+  X(ModuleStatus)           \
+  X(SceneDescription)       \
+  X(SessionControl)
