@@ -66,10 +66,10 @@ class SimulatedTime {
   std::optional<double> begin_;
 };
 
-/// The smallest advance that is a whole sub-step of some organ [s].
-double least_advance(const DeformationWorld& world) {
-  double least = world.stable_step(0);
-  for (std::size_t i = 1; i < world.organ_count(); ++i) {
+/// The smallest advance that is a whole sub-step of some organ, at most the period [s].
+double least_advance(const DeformationWorld& world, double period) {
+  double least = period;
+  for (std::size_t i = 0; i < world.organ_count(); ++i) {
     least = std::min(least, world.stable_step(i));
   }
   return least;
@@ -179,7 +179,7 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   runtime::Health health;
   if (now.running) health = impl_->advance(now);
   impl_->outputs.publish(impl_->time.on_session_clock(impl_->world.time()), impl_->world);
-  health.least_advance = least_advance(impl_->world);
+  health.least_advance = least_advance(impl_->world, impl_->period);
   return health;
 }
 
