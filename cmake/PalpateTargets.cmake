@@ -154,5 +154,6 @@ function(palpate_tests name)
   if(ARG_SERIAL)
     list(APPEND properties RUN_SERIAL TRUE)
   endif()
-  catch_discover_tests(${name}_tests TEST_PREFIX "${name}: " PROPERTIES ${properties})
+  # NoTests: a name that ctest cannot hand over (it splits at ';') fails instead of matching nothing.
+  catch_discover_tests(${name}_tests TEST_PREFIX "${name}: " EXTRA_ARGS -w NoTests PROPERTIES ${properties})
 endfunction()

@@ -48,7 +48,7 @@ TEST_CASE("deformation stage: says its organs' surfaces when built, and again af
 
 TEST_CASE(
     "deformation stage: advances by what the cycle may take on, and only while the session "
-    "runs; both times it speaks") {
+    "runs, and speaks both times") {
   // Oracle: the world's own time.
   Session session;
   session.cycle(false);
