@@ -5,12 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
 #include "modules/core/error.h"
+#include "modules/core/organ_limits.h"
 #include "modules/geometry/gmsh_file.h"
 
 namespace palpate::geometry {
@@ -126,6 +128,20 @@ bool is_msh_2(const std::filesystem::path& file) {
   return section == "$MeshFormat" && version == "2.2" && kind == "0";
 }
 
+/// Gmsh would go on for hours. Tetrahedra with edges h have about √2/h³ nodes; so many are refused
+/// that half of them would still be too many.
+void refuse_too_many_nodes(const TriangleSurface& surface, double size) {
+  const double volume = std::abs(enclosed_volume(surface.nodes, surface.triangles));
+  const double nodes = std::sqrt(2.0) * volume / (size * size * size);
+  if (nodes <= 2.0 * kMaxNodes) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "elements of " << size << " m would need some " << nodes << " nodes, at most "
+       << double{kMaxNodes} << " are allowed: choose "
+       << std::cbrt(std::sqrt(2.0) * volume / kMaxNodes) << " m or more";
+  throw InputError(text.str());
+}
+
 }  // namespace
 
 TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(WorkFolder(), script); }
@@ -143,6 +159,7 @@ TetMesh read_tetrahedra(const std::filesystem::path& file) {
 }
 
 TetMesh fill_surface(const TriangleSurface& surface, double size) {
+  refuse_too_many_nodes(surface, size);
   const WorkFolder folder;
   const auto file = folder / "surface.msh";
   write_gmsh(surface, file);

@@ -68,6 +68,11 @@ TEST_CASE("gmsh tool: what it cannot do is said") {
   CHECK_THROWS_AS(fill_surface(open, 0.02), InputError);
 }
 
+TEST_CASE("gmsh tool: what would need far too many nodes is refused at once") {
+  // Oracle: the message; a ball of 0.52 l holds some 7e8 nodes 0.1 mm apart.
+  CHECK_THROWS_WITH(fill_surface(make_ball(0.05, 3), 1e-4), Catch::Contains("choose 0.0015 m"));
+}
+
 TEST_CASE("gmsh tool: a file without tetrahedra is refused by its own name") {
   // Oracle: the message. One triangle, as VTK's legacy format has it.
   if (testing::without_gmsh()) return;
