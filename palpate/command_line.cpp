@@ -48,10 +48,13 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   auto* lockstep = command.add_flag(
       "--lockstep", options.lockstep,
       "Data-driven, without a wall clock, as fast as the machine allows: same bits every time");
-  command.add_flag("--in-process", options.in_process, "The same bits in one process")
-      ->excludes(lockstep);
+  auto* in_process =
+      command.add_flag("--in-process", options.in_process, "The same bits in one process");
+  in_process->excludes(lockstep)->excludes(command.get_option("--frames"));
   command.add_option("--only", options.only, "Start only these modules, joining a running session")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->excludes(lockstep)
+      ->excludes(in_process);
   command.add_flag_callback(
       "--no-visualizer", [&] { options.visualizer = false; }, "Do not start the visualizer");
   command.add_flag_callback(

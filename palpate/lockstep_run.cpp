@@ -212,8 +212,12 @@ session::InProcessOptions options_of(ChunkRunner& runner) {
 
 }  // namespace
 
+/// Two lockstep runs of one session would take each other's samples for their own, and no stranger
+/// can follow one: each has a name that nobody else has.
 int run_lockstep(const RunOptions& options, std::ostream& out, std::ostream& log) {
-  return LockstepRun(options, out, log).perform();
+  RunOptions own = options;
+  own.bus.session += "-" + random_session_name();
+  return LockstepRun(own, out, log).perform();
 }
 
 int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& log) {

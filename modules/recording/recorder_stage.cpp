@@ -1,6 +1,7 @@
 #include "modules/recording/recorder_stage.h"
 
 #include <algorithm>
+#include <exception>
 
 #include "modules/runtime/wiring.h"
 
@@ -10,6 +11,13 @@ RecorderStage::RecorderStage(bus::Bus& bus, const std::filesystem::path& file) :
   for (const bus::TopicInfo& topic : bus::all_topics()) {
     if (runtime::find_wire(topic.name) == nullptr) continue;
     inputs_.push_back(std::make_unique<bus::Input>(bus, topic));
+  }
+}
+
+RecorderStage::~RecorderStage() {
+  try {
+    file_.close();
+  } catch (const std::exception&) {  // the disk is full: the file is whole up to its last record
   }
 }
 

@@ -18,6 +18,7 @@ class RecorderStage : public runtime::Stage {
  public:
   /// @throws std::runtime_error naming the file if it cannot be written
   RecorderStage(bus::Bus& bus, const std::filesystem::path& file);
+  ~RecorderStage() override;  ///< ends the file, if finish() did not: by a signal, or a failure
   runtime::Health cycle(const runtime::Cycle& now) override;
   void finish(const runtime::Cycle& now) override;
 

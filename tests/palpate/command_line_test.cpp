@@ -51,16 +51,23 @@ TEST_CASE("command line: --help lists every command and is no error") {
 
 TEST_CASE("command line: what is not a command or option is bad input") {
   // Oracle: the exit codes of core/error.h.
-  const std::vector<std::vector<std::string>> wrong{{},
-                                                    {"rum"},
-                                                    {"run"},
-                                                    {"run", "a.yaml", "--domain", "300"},
-                                                    {"run", "a.yaml", "--duration", "-1"},
-                                                    {"check"},
-                                                    {"mesh"}};
+  const std::vector<std::vector<std::string>> wrong{
+      {},
+      {"rum"},
+      {"run"},
+      {"run", "a.yaml", "--domain", "300"},
+      {"run", "a.yaml", "--duration", "-1"},
+      {"run", "a.yaml", "--duration", "nan"},
+      {"run", "a.yaml", "--in-process", "--only", "haptics"},
+      {"run", "a.yaml", "--lockstep", "--only", "haptics"},
+      {"run", "a.yaml", "--in-process", "--frames", "f"},
+      {"check"},
+      {"mesh"}};
   for (const auto& arguments : wrong) CHECK(type("palpate", arguments).code == kExitBadInput);
   CHECK_THAT(type("palpate", {"rum"}).said, Contains("no command 'rum'; there are run replay"));
   CHECK_THAT(type("palpate", {"mesh", "a.ply", "--nodes", "-5"}).said, Contains("-5 not in range"));
+  CHECK_THAT(type("palpate", {"run", "a.yaml", "--duration", "nan"}).said,
+             Contains("--duration: nan is not a number"));
 }
 
 TEST_CASE("command line: a bad scene is refused by every program with file and line") {

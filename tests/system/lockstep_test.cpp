@@ -4,8 +4,10 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <random>
 
+#include "modules/recording/inspect.h"
 #include "palpate/child_process.h"
 #include "tests/modules/runtime/waiting.h"
 #include "tests/palpate/ball_scene.h"
@@ -21,8 +23,8 @@ constexpr double kDeadline = 100;  // [s]; a run takes about one
 
 /// `palpate run` to its end. @param meddle  called again and again while it runs
 int run(const BallScene& scene, std::vector<std::string> more,
-        const std::function<void(pid_t)>& meddle = {}) {
-  const bus::BusOptions options = own_bus_options();
+        const std::function<void(pid_t)>& meddle = {},
+        const bus::BusOptions& options = own_bus_options()) {
   std::vector<std::string> arguments{
       "run",      scene.file().string(),         "--headless", "--session", options.session,
       "--domain", std::to_string(options.domain)};
@@ -80,6 +82,41 @@ TEST_CASE(
           0);
   CHECK(stops > 3);
   CHECK(bytes(four) == expected);
+}
+
+TEST_CASE("lockstep: two runs that were given one session's name do not hear each other") {
+  // Oracle: the same session in one process. Each launcher runs beside the other's processes.
+  const BallScene scene(kPress, "rates: {collision_hz: 300, deformation_hz: 100}\n");
+  const auto one = scene.folder() / "one.mcap", a = scene.folder() / "a.mcap",
+             b = scene.folder() / "b.mcap";
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.5", "--record", one.string()}) == 0);
+  const bus::BusOptions same = own_bus_options();
+  const auto run_to = [&](const std::filesystem::path& file,
+                          const std::function<void(pid_t)>& meddle) {
+    return run(scene, {"--lockstep", "--duration", "0.5", "--record", file.string()}, meddle, same);
+  };
+  std::optional<int> second;
+  const auto beside = [&](pid_t) {
+    if (!second) second = run_to(b, {});
+  };
+  REQUIRE(run_to(a, beside) == 0);
+  CHECK(second == 0);
+  CHECK(bytes(a) == bytes(one));
+  CHECK(bytes(b) == bytes(one));
+}
+
+TEST_CASE("lockstep: a run that is interrupted leaves a whole recording") {
+  // Oracle: the reader, which tells torn files.
+  const BallScene scene(kPress, "rates: {collision_hz: 300, deformation_hz: 100}\n");
+  const auto file = scene.folder() / "cut.mcap";
+  const auto interrupt = [&](pid_t launcher) {
+    std::error_code none;
+    if (std::filesystem::file_size(file, none) > 100'000 && !none) kill(launcher, SIGINT);
+  };
+  run(scene, {"--lockstep", "--duration", "1000", "--record", file.string()}, interrupt);
+  const recording::RecordingSummary summary = recording::summarize(file);
+  CHECK_FALSE(summary.torn);
+  CHECK(summary.torn_warning == "");
 }
 
 TEST_CASE("lockstep: without an end there is nothing to run") {
