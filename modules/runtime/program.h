@@ -17,8 +17,8 @@ std::string version_text();
 /// Adds --version, which prints version_text() and ends the program with kExitDone.
 void add_version(CLI::App& app);
 
-/// Parses the command line into what `app` was given, refuses NaN for a number, and runs `body`. What is thrown on the way
-/// becomes one line on stderr, led by the app's name.
+/// Parses the command line into what `app` was given, refuses NaN for a number, and runs `body`.
+/// What is thrown on the way becomes one line on stderr, led by the app's name.
 /// @return what `body` returns; kExitDone after --help or --version; kExitBadInput for an
 /// InputError or a wrong command line, kExitFailed for any other exception
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
