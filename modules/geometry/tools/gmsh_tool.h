@@ -11,8 +11,7 @@ namespace palpate::geometry {
 /// Fills a closed surface with tetrahedra. Its nodes and triangles stay as they are and come first;
 /// nodes inside are appended.
 /// @param size  wanted edge length inside, > 0 [m]
-/// @throws InputError if gmsh is not installed, or cannot fill the surface, or if that needs far
-/// more
+/// @throws InputError if gmsh is not installed or cannot fill the surface, or for far more nodes
 ///         than kMaxNodes
 TetMesh fill_surface(const TriangleSurface& surface, double size);
 
