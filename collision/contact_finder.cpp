@@ -35,8 +35,9 @@ class ProbeSearch {
     seen_versions_.clear();
   }
 
-  void find(const ProbeMotion& motion, double margin, std::vector<OrganSurface>& organs,
-            std::size_t at_most, ContactSet& result) {
+  SearchReport find(const ProbeMotion& motion, double margin, std::vector<OrganSurface>& organs,
+                    std::size_t at_most, ContactSet& result) {
+    SearchReport report;
     const RelativeMotion relative(motion, model_.reach, model_.is_round);
     cores_.begin_step();
     nodes_.begin_step();
@@ -50,14 +51,61 @@ class ProbeSearch {
       const OrganStep step{i,        organ,
                            relative, organ.positions_at(seen_versions_[i]),
                            margin,   model_.depth_believed + relative.travel() + displacement};
+      const bool first = seen_versions_[i] == 0;
+      if (first) report.begun_inside |= hold_inside(step, 1);
+      const std::size_t others = found_.size();
       find_on(step, displacement);
+      if (!first && !pushes(others)) report.was_lost |= find_lost(step);
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
     reduce_contacts(found_, at_most, result);
+    return report;
   }
 
  private:
+  /// Puts cores that are inside, and of which nothing is remembered, behind the nearest wall.
+  /// @param every  the corners of a sharp probe that are looked at
+  /// @returns whether there are any
+  bool hold_inside(const OrganStep& step, std::size_t every) {
+    bool any = false;
+    for (const Core& core : model_.cores) any |= cores_.hold_if_inside(step, core);
+    if (!model_.sharp) return any;
+    const std::size_t corners = model_.sharp->vertices().size();
+    for (std::size_t i = 0; i < corners; i += every) {
+      any |= cores_.hold_if_inside(step, core_of(static_cast<std::uint32_t>(i)));
+    }
+    return any;
+  }
+
+  /// Is any contact from found_[first] on one of a probe that is deeper than the surface?
+  bool pushes(std::size_t first) const {
+    return std::any_of(found_.begin() + static_cast<std::ptrdiff_t>(first), found_.end(),
+                       [](const FoundContact& c) { return c.gap < 0; });
+  }
+
+  /// The guard: contacts for a probe that is inside though no contact pushes it.
+  bool find_lost(const OrganStep& step) {
+    constexpr std::size_t kMostCorners = 16;
+    const std::size_t corners = model_.sharp ? model_.sharp->vertices().size() : 0;
+    if (!hold_inside(step, corners / kMostCorners + 1)) return false;
+    held_.clear();
+    cores_.append_held(step.organ_index, held_);
+    for (const std::uint32_t core : held_) {
+      triangle_list_.clear();
+      cores_.append_near_wall(step, core_of(core), triangle_list_);
+      sweep_listed(step);
+      cores_.find(step, core_of(core), triangles_, found_);
+    }
+    return true;
+  }
+
+  Core core_of(std::uint32_t index) const {
+    if (!model_.sharp) return model_.cores[index];
+    const Vec3& x = model_.sharp->vertices()[index];
+    return {index, x, x, 0};
+  }
+
   void find_on(const OrganStep& step, double displacement) {
     if (!model_.is_bounded) {
       node_list_.resize(step.organ.positions().size());
@@ -74,11 +122,17 @@ class ProbeSearch {
   void gather_triangles(const OrganStep& step, double displacement) {
     Bounds box = step.motion.swept(model_.bounds);
     triangle_list_.clear();
-    // Behind a wall, all of it within the believed depth is needed to follow it.
-    double depth_limit = 0;
-    cores_.append_remembered(step.organ_index, triangle_list_, depth_limit);
-    box.inflate(step.margin + step.motion.chord_error() + displacement + depth_limit);
+    held_.clear();
+    cores_.append_held(step.organ_index, held_);
+    for (const std::uint32_t core : held_) {
+      cores_.append_near_wall(step, core_of(core), triangle_list_);
+    }
+    box.inflate(step.margin + step.motion.chord_error() + displacement);
     step.organ.bvh().append_overlapping(box, triangle_list_);
+    sweep_listed(step);
+  }
+
+  void sweep_listed(const OrganStep& step) {
     sort_unique(triangle_list_);
     triangles_.clear();
     SweptTriangle swept;
@@ -116,9 +170,9 @@ class ProbeSearch {
         }
       }
     }
-    for (std::uint32_t vertex = 0; vertex < model_.sharp->vertices().size(); ++vertex) {
+    for (const std::uint32_t vertex : held_) {
       triangle_list_.clear();
-      cores_.append_remembered(step.organ_index, vertex, triangle_list_);
+      cores_.append_near_wall(step, core_of(vertex), triangle_list_);
       for (const std::uint32_t t : triangle_list_) {
         const auto at =
             std::lower_bound(triangles_.begin(), triangles_.end(), t,
@@ -140,8 +194,7 @@ class ProbeSearch {
       for (; first != vertex_pairs_.end() && first->first == vertex; ++first) {
         near_triangles_.push_back(triangles_[first->second]);
       }
-      const Vec3& x = model_.sharp->vertices()[vertex];
-      cores_.find(step, Core{vertex, x, x, 0}, near_triangles_, found_);
+      cores_.find(step, core_of(vertex), near_triangles_, found_);
     }
   }
 
@@ -154,7 +207,7 @@ class ProbeSearch {
   // Kept between calls for their memory only.
   std::vector<FoundContact> found_;
   std::vector<SweptTriangle> triangles_, near_triangles_;
-  std::vector<std::uint32_t> triangle_list_, node_list_, near_vertices_, near_edges_;
+  std::vector<std::uint32_t> triangle_list_, node_list_, near_vertices_, near_edges_, held_;
   std::vector<VertexPair> vertex_pairs_;
   std::vector<EdgePair> edge_pairs_;
 };
@@ -184,16 +237,21 @@ void ContactFinder::reset() {
   for (ProbeSearch& probe : impl_->probes) probe.reset();
 }
 
-void ContactFinder::find(std::size_t probe, const ProbeMotion& motion, double margin,
-                         std::size_t at_most, ContactSet& result) {
+void ContactFinder::forget(std::size_t probe) {
+  PALPATE_DEMAND(probe < impl_->probes.size());
+  impl_->probes[probe].reset();
+}
+
+SearchReport ContactFinder::find(std::size_t probe, const ProbeMotion& motion, double margin,
+                                 std::size_t at_most, ContactSet& result) {
   PALPATE_DEMAND(probe < impl_->probes.size());
   PALPATE_DEMAND(margin > 0 && std::isfinite(margin));
   result.probe = static_cast<std::uint32_t>(probe);
   result.probe_pose = motion.pose_t1;
   result.truncated = false;
   result.contacts.clear();
-  if (!is_believable(motion.pose_t0) || !is_believable(motion.pose_t1)) return;
-  impl_->probes[probe].find(motion, margin, impl_->organs, at_most, result);
+  if (!is_believable(motion.pose_t0) || !is_believable(motion.pose_t1)) return {};
+  return impl_->probes[probe].find(motion, margin, impl_->organs, at_most, result);
 }
 
 }  // namespace palpate::collision

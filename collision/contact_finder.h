@@ -15,9 +15,15 @@ struct ProbeMotion {
   Pose pose_t0, pose_t1;
 };
 
+/// What a search found out beside contacts.
+struct SearchReport {
+  bool begun_inside = false;  ///< first heard of inside an organ: the nearest wall pushes it out
+  bool was_lost = false;      ///< inside an organ and touching nothing: likewise
+};
+
 /// Finds, for each probe, the places where it touches or may touch an organ before the next
 /// search. Keeps, between calls, which side of a surface the probe came from, so that a probe
-/// that was driven through a wall is still known to be outside.
+/// that was driven through a wall is pushed out the way it came in.
 ///
 /// Deterministic: same calls, same contacts, sorted by (organ, triangle).
 class ContactFinder {
@@ -30,15 +36,17 @@ class ContactFinder {
   /// New node positions of an organ [m]; at least as many as its triangles name.
   void update_organ(std::size_t organ, std::span<const Vec3> positions);
 
-  /// Forgets what is remembered of earlier calls (reset, teleport).
+  /// Forgets what is remembered of earlier calls, of all probes or of one (reset, silence, jump):
+  /// it is heard of for the first time again.
   void reset();
+  void forget(std::size_t probe);
 
   /// Contacts of one probe that moved from pose_t0 to pose_t1 since the last call, all with
   /// gap ≤ margin at t1 or swept through in between. Weights and gap hold at pose_t1.
   /// At most `at_most`, the deepest; `result.truncated` says if there were more.
   /// @param margin  how far tissue and probe may approach until the next search [m], > 0
-  void find(std::size_t probe, const ProbeMotion& motion, double margin, std::size_t at_most,
-            ContactSet& result);
+  SearchReport find(std::size_t probe, const ProbeMotion& motion, double margin,
+                    std::size_t at_most, ContactSet& result);
 
  private:
   struct Impl;

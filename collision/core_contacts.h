@@ -1,21 +1,22 @@
 // Contacts of rounded cores with an organ's triangles, and which side of the wall a core is on.
 //
-// An organ is a hollow shell whose triangles face outward. A core is normally outside: then
+// An organ is a closed surface whose triangles face outward. A core is normally outside: then
 // triangles which it sees from their front are in contact, and triangles it sees from behind (a far
 // wall, seen from inside) are not. Once continuous collision detection finds that a core went
 // through a triangle from its front, the core is *behind* that wall: the wall keeps its side, so
-// its triangles push the core back out the way it came, until the core is in front of it again, has
-// slid off it, has left the organ elsewhere (but for the far side), or is deeper than
-// OrganStep::depth_limit (then it counts as outside again). While it is behind, only the part of
-// the surface connected with the crossed triangles and facing the same way takes part; it is
-// followed as the core slides.
+// its triangles push the core back out the way it came, for as long as the closed surface encloses
+// the core, however deep. A core that went right through, out of the far side, is dragged back the
+// same way until it is deeper than `depth_limit`. While it is behind, only the part of the surface
+// connected with the remembered triangles, near the core and facing the same way takes part; it is
+// followed as the core slides. A core inside that no sweep saw entering is put behind the wall
+// nearest to it.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "collision/contact_reduction.h"
-#include "collision/core_sweep.h"
+#include "collision/closed_surface.h"
+#include "collision/core_wall.h"
 
 namespace palpate::collision {
 
@@ -25,14 +26,18 @@ class CoreContacts {
 
   /// Begins a step: what was behind after the last one is the memory for this one.
   void begin_step();
-  /// Triangles remembered for any core, and how deep it may be behind them [m].
-  void append_remembered(std::uint32_t organ, std::vector<std::uint32_t>& triangles,
-                         double& depth_limit) const;
-  /// Triangles remembered for one core.
-  void append_remembered(std::uint32_t organ, std::uint32_t core,
-                         std::vector<std::uint32_t>& triangles) const;
+  /// Cores that are behind a wall of the organ, ascending.
+  void append_held(std::uint32_t organ, std::vector<std::uint32_t>& cores) const;
+  /// Puts a core that is inside the organ, and of which nothing is remembered, behind the wall
+  /// nearest to it. @returns whether it did
+  bool hold_if_inside(const OrganStep& step, const Core& core);
+  /// Triangles of the wall that a core is behind, as far as it may touch them.
+  void append_near_wall(const OrganStep& step, const Core& core,
+                        std::vector<std::uint32_t>& triangles);
 
-  /// @param candidates  every triangle the core may touch in the step, and all remembered ones
+  /// @param candidates  every triangle the core may touch in the step, and those of
+  /// append_near_wall(),
+  ///                    ascending
   void find(const OrganStep& step, const Core& core, std::span<const SweptTriangle> candidates,
             std::vector<FoundContact>& found);
 
@@ -40,12 +45,22 @@ class CoreContacts {
   /// `core` is behind `triangle`, which it crossed from the front.
   struct Behind {
     std::uint32_t organ = 0, core = 0, triangle = 0;
-    double depth_limit = 0;  ///< OrganStep::depth_limit of the step that crossed the wall
+    double depth_limit = 0;  ///< down to which it is dragged back through the far side [m]
   };
 
   std::span<const Behind> remembered(std::uint32_t organ, std::uint32_t core) const;
+  bool is_inside(const OrganStep& step, const Core& core);
+  bool has_left(const OrganStep& step, const Core& core, std::span<const Behind> before);
+  std::uint32_t hold_nearest(const OrganStep& step, const Core& core,
+                             std::vector<FoundContact>& found);
+  void find_behind(const OrganStep& step, const Core& core, bool inside, double depth_limit,
+                   std::vector<CoreCandidate>& near, std::vector<FoundContact>& found);
 
   std::vector<Behind> before_, now_;
+  ClosedSurface surface_;
+  // Kept between calls for their memory only.
+  std::vector<std::uint32_t> waiting_;
+  std::vector<std::uint8_t> seen_;  ///< per triangle
 };
 
 }  // namespace palpate::collision

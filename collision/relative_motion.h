@@ -19,6 +19,7 @@ class RelativeMotion {
 
   Vec3 start(const Vec3& p_W) const { return to_start_ * (p_W - position_start_); }
   Vec3 end(const Vec3& p_W) const { return to_end_ * (p_W - position_end_); }
+  Vec3 to_world_at_end(const Vec3& p_P) const { return position_end_ + to_end_.transpose() * p_P; }
   Vec3 direction_at_start(const Vec3& v_W) const { return to_start_ * v_W; }
   Vec3 direction_at_end(const Vec3& v_W) const { return to_end_ * v_W; }
 

@@ -5,6 +5,7 @@
 
 #include "collision/contact_margin.h"
 #include "modules/core/error.h"
+#include "modules/core/tolerances.h"
 #include "modules/core/units.h"
 #include "modules/scene/assets.h"
 
@@ -112,7 +113,10 @@ class ProbeInputs {
     while (states_.take(newest_)) {
       if (newest_.probe >= probes_.size()) continue;
       Way& way = probes_[newest_.probe];
-      if (!way.known) way.searched = newest_.pose;
+      if (!way.known) {
+        way.searched = newest_.pose;
+        way.searched_ns = newest_.header.source_time_ns;
+      }
       way.known = true;
       way.newest = newest_;
       heard_.heard(newest_.probe, newest_.header.source_time_ns);
@@ -124,22 +128,33 @@ class ProbeInputs {
     Way& way = probes_[probe];
     const ProbeMotion motion{way.searched, way.newest.pose};
     way.searched = way.newest.pose;
+    way.searched_ns = way.newest.header.source_time_ns;
     return motion;
   }
 
-  /// A probe that was lost begins where it is found again.
+  /// A probe that fell silent or jumped begins where it is found again.
   void lose(std::size_t probe) { probes_[probe].known = false; }
+
+  /// Has it moved faster than a hand since it was searched?
+  bool jumped(std::size_t probe) const {
+    const Way& way = probes_[probe];
+    const std::int64_t since_ns = way.newest.header.source_time_ns - way.searched_ns;
+    return way.known && (way.newest.pose.position - way.searched.position).norm() >
+                            kMaxProbeSpeed * seconds_from_ns(since_ns) + kDirectionless;
+  }
+  /// Begins where it is.
+  void begin_anew(std::size_t probe) { probes_[probe].searched = probes_[probe].newest.pose; }
 
   const ProbeState& newest(std::size_t probe) const { return probes_[probe].newest; }
   std::size_t count() const { return probes_.size(); }
   bool silent(std::size_t probe, std::int64_t now_ns) const { return heard_.silent(probe, now_ns); }
-  bool any_silent(std::int64_t now_ns) const { return heard_.any_silent(now_ns); }
 
  private:
   struct Way {
     bool known = false;
     ProbeState newest;
     Pose searched;
+    std::int64_t searched_ns = 0;  ///< source time of the state searched last
   };
   bus::Reader<ProbeState> states_;
   std::vector<Way> probes_;
@@ -156,9 +171,21 @@ scene::Rates present_rates(scene::Rates rates, double interval) {
   return rates;
 }
 
-const char* acting_guard(bool silent, bool truncated) {
-  if (silent) return "no news of a probe: it touches nothing until it is heard again";
-  return truncated ? "more contacts than a message holds: the deepest are kept" : "";
+/// What acted in a cycle, on any probe.
+struct Acted {
+  bool silent = false, truncated = false;
+  SearchReport found;
+};
+
+const char* acting_guard(const Acted& acted) {
+  if (acted.found.was_lost) {
+    return "a probe was inside an organ without contact: the nearest wall pushes it out";
+  }
+  if (acted.truncated) return "more contacts than a message holds: the deepest are kept";
+  if (acted.found.begun_inside) {
+    return "a probe was first heard of inside an organ: the nearest wall pushes it out, gently";
+  }
+  return acted.silent ? "no news of a probe: it touches nothing until it is heard again" : "";
 }
 
 }  // namespace
@@ -170,17 +197,30 @@ struct CollisionStage::Impl {
         probes(bus, scene.probes.size()),
         writer(bus.writer(bus::kContacts)) {}
 
-  /// Contacts of a probe on its way since the last search; none if it is lost.
-  void search(const runtime::Cycle& now, std::uint32_t probe) {
+  /// Contacts of a probe on its way since the last search; none if it is silent. A probe that was
+  /// silent or jumped has no way: it is heard of for the first time.
+  void search(const runtime::Cycle& now, std::uint32_t probe, Acted& acted) {
     const ProbeState& state = probes.newest(probe);
     contacts.probe = probe;
     contacts.probe_pose = state.pose;
     contacts.truncated = false;
     contacts.contacts.clear();
-    if (probes.silent(probe, now.now_ns)) return probes.lose(probe);
+    if (probes.silent(probe, now.now_ns)) {
+      acted.silent = true;
+      probes.lose(probe);
+      return organs.finder()->forget(probe);
+    }
+    if (probes.jumped(probe)) {
+      probes.begin_anew(probe);
+      organs.finder()->forget(probe);
+    }
     const double margin =
         contact_margin(present_rates(rates, organs.interval()), state.twist.linear.norm());
-    organs.finder()->find(probe, probes.motion(probe), margin, kMaxContactsPerProbe, contacts);
+    const SearchReport found =
+        organs.finder()->find(probe, probes.motion(probe), margin, kMaxContactsPerProbe, contacts);
+    acted.found.begun_inside |= found.begun_inside;
+    acted.found.was_lost |= found.was_lost;
+    acted.truncated |= contacts.truncated;
   }
 
   scene::Rates rates;
@@ -218,15 +258,14 @@ runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
   ContactFinder* finder = impl_->organs.finder();
   if (finder == nullptr) return {.ready = false};
   if (now.reset) finder->reset();
-  bool truncated = false;
+  Acted acted;
   for (std::uint32_t probe = 0; probe < impl_->probes.count(); ++probe) {
-    impl_->search(now, probe);
+    impl_->search(now, probe, acted);
     impl_->contacts.header = now.header();
     impl_->contacts.node_positions_sequence = impl_->organs.sequence();
     impl_->writer.write(impl_->contacts);
-    truncated |= impl_->contacts.truncated;
   }
-  return {.guard = acting_guard(impl_->probes.any_silent(now.now_ns), truncated)};
+  return {.guard = acting_guard(acted)};
 }
 
 }  // namespace palpate::collision

@@ -73,6 +73,15 @@ void TriangleBvh::move(const std::vector<Vec3>& nodes) {
   if (impl_->displacement > impl_->mean_edge) impl_->refit(nodes);
 }
 
+Bounds TriangleBvh::bounds() const {
+  Bounds bounds;
+  if (impl_->model.getNumBVs() == 0) return bounds;
+  const auto& root = impl_->model.getBV(0).bv;
+  bounds = {root.min_, root.max_};
+  bounds.inflate(impl_->displacement);
+  return bounds;
+}
+
 void TriangleBvh::append_overlapping(const Bounds& box,
                                      std::vector<std::uint32_t>& triangles) const {
   // FCL's own mesh–shape query runs GJK on every leaf; boxes are all that is wanted here.

@@ -42,6 +42,9 @@ class TriangleBvh {
   /// queries are widened by that distance.
   void move(const std::vector<Vec3>& nodes);
 
+  /// Of all nodes, a little wide.
+  Bounds bounds() const;
+
   /// Appends at least the triangles whose own bounds overlap `box`, in no useful order.
   void append_overlapping(const Bounds& box, std::vector<std::uint32_t>& triangles) const;
 

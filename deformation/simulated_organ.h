@@ -35,8 +35,6 @@ inline constexpr double kCollapsedTime = 0.5;
 inline constexpr int kMostHalvings = 3;
 inline constexpr int kMostFailures = 3;
 inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
-/// A state put back may be inside a probe. Pushed out of it in a hurry it would fail again [m/s].
-inline constexpr double kGentleSpeed = 0.05;
 /// Energy, volume and inversion are looked at in every such advance, and after any guard acted.
 inline constexpr int kThoroughLookEvery = 16;
 

@@ -19,11 +19,14 @@ class ProbeInputs {
       : states_(bus.reader(bus::kProbeState)),
         contacts_(bus.reader(bus::kContacts)),
         states_heard_(probes, runtime::kInputStaleAfter),
-        contacts_heard_(probes, runtime::kInputStaleAfter) {}
+        contacts_heard_(probes, runtime::kInputStaleAfter),
+        sampled_ns_(probes, 0) {}
 
   void bring(std::int64_t now_ns, DeformationWorld& world) {
     while (states_.take(state_)) {
       states_heard_.heard(state_.probe, state_.header.source_time_ns);
+      if (state_.probe < sampled_ns_.size())
+        sampled_ns_[state_.probe] = state_.header.source_time_ns;
       world.set_probe(state_.probe, state_.pose);
     }
     while (contacts_.take(newest_)) {
@@ -37,6 +40,11 @@ class ProbeInputs {
     }
   }
 
+  /// Of the newest pose of a probe [s].
+  double age(std::size_t probe, std::int64_t now_ns) const {
+    return std::max(0.0, seconds_from_ns(now_ns - sampled_ns_[probe]));
+  }
+
   bool any_silent(std::int64_t now_ns) const {
     return states_heard_.any_silent(now_ns) || contacts_heard_.any_silent(now_ns);
   }
@@ -45,6 +53,7 @@ class ProbeInputs {
   bus::Reader<ProbeState> states_;
   bus::Reader<Contacts> contacts_;
   runtime::SilenceWatch states_heard_, contacts_heard_;
+  std::vector<std::int64_t> sampled_ns_;  ///< the newest pose of each probe
   ProbeState state_;
   Contacts newest_, none_;
 };
@@ -75,7 +84,7 @@ double least_advance(const DeformationWorld& world, double period) {
   return least;
 }
 
-/// What leaves the process every cycle.
+/// What leaves the process.
 class Outputs {
  public:
   explicit Outputs(bus::Bus& bus)
@@ -90,17 +99,24 @@ class Outputs {
     }
   }
 
-  void publish(double sim_time, const DeformationWorld& world) {
-    Header header;
-    header.sim_time_ns = ns_from_seconds(sim_time);
+  void publish_positions(double sim_time, const DeformationWorld& world) {
+    const Header header{0, ns_from_seconds(sim_time), 0};
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
       write_node_positions(world, organ, node_positions_);
       node_positions_.header = header;
       positions_.write(node_positions_);
     }
+  }
+
+  void publish_laws(double sim_time, const DeformationWorld& world, const ProbeInputs& inputs,
+                    std::int64_t now_ns) {
+    const Header header{0, ns_from_seconds(sim_time), 0};
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       model_ = contact_model_message(world, probe);
       model_.header = header;
+      // The law's age counts from the cycle's beginning, where its probes were.
+      model_.header.source_time_ns = now_ns;
+      model_.anchor_age = inputs.age(probe, now_ns);
       models_.write(model_);
     }
   }
@@ -178,7 +194,9 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   impl_->inputs.bring(now.now_ns, impl_->world);
   runtime::Health health;
   if (now.running) health = impl_->advance(now);
-  impl_->outputs.publish(impl_->time.on_session_clock(impl_->world.time()), impl_->world);
+  const double sim_time = impl_->time.on_session_clock(impl_->world.time());
+  impl_->outputs.publish_positions(sim_time, impl_->world);
+  if (now.running) impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
   health.least_advance = least_advance(impl_->world, impl_->period);
   return health;
 }

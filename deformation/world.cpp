@@ -5,7 +5,8 @@
 #include <sstream>
 #include <utility>
 
-#include "deformation/contact/probe_contacts.h"
+#include "deformation/contact/contact_law.h"
+#include "deformation/springs/patch_springs.h"
 #include "deformation/springs/spring_forces.h"
 #include "modules/core/error.h"
 
@@ -16,6 +17,10 @@ constexpr double kLeastStep = 1e-6;  // [s]
 /// The contact model is believed within this part of the mean edge: the touched nodes stay the
 /// same.
 constexpr double kValidityOfEdge = 0.5;
+/// Nodes that a law's compliance is taken from. Nearly incompressible tissue reaches further.
+constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 72;
+/// Forces that change faster than this part of themselves in a period are not taken to go on so.
+constexpr double kMostGrowth = 0.5;
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
 constexpr double kFarthestContact = 10;
 
@@ -24,9 +29,36 @@ struct WorldOrgan {
   SimulatedOrgan simulated;
   IntegratorChoice integrator;
   std::uint32_t generation = 1;
-  std::vector<ContactRow> rows;
+  std::vector<ContactRow> rows = {};
   double mean_edge = 0;
-  bool replaced = false;  ///< its state, at the end of the last advance
+  bool keeps_volume = false;  ///< by springs' contents: at once, wherever it is touched
+  bool replaced = false;      ///< its state, at the end of the last advance
+  std::unique_ptr<PatchCompliance> compliance = nullptr;
+  std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
+  VolumeGradient volume = {};                       ///< buffer of answer()
+
+  /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N].
+  Eigen::MatrixXd answer(std::span<const ComplianceRow> touched, double period) {
+    const OrganState& state = simulated.state();
+    std::span<const Vec3> gradient;
+    if (keeps_volume) {
+      evaluate_volume(simulated.model(), state.positions, volume);
+      gradient = volume.gradient;
+    }
+    const PeriodSteps steps{period, simulated.substeps(period), simulated.dynamics().is_implicit()};
+    Eigen::MatrixXd own = simulated.dynamics().compliance(touched, steps);
+    if (own.size() > 0) return own;
+    return compliance->solve(state.positions, touched, steps, gradient,
+                             [&](const Patch& patch, double stiffness_share, double damping_share,
+                                 Eigen::MatrixXf& sum) {
+                               if (springs) {
+                                 springs->add(state.positions, patch, stiffness_share,
+                                              damping_share, sum);
+                               } else {
+                                 simulated.dynamics().add_stiffness(patch, stiffness_share, sum);
+                               }
+                             });
+  }
 };
 
 WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double period,
@@ -41,9 +73,23 @@ WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double per
     throw InputError(message.str());
   }
   const IntegratorChoice integrator = choose_integrator(organ, *model, period);
-  return {organ.name, SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
-          integrator, 1,
-          {},         geometry::mean_edge_length(shape.surface)};
+  WorldOrgan made{
+      .name = organ.name,
+      .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
+      .integrator = integrator,
+      .mean_edge = geometry::mean_edge_length(shape.surface),
+  };
+  const OrganModel& kept = made.simulated.model();
+  made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  if (kept.is_solid()) {
+    tetrahedra = kept.mesh().tetrahedra;
+  } else {
+    made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
+  }
+  made.compliance = std::make_unique<PatchCompliance>(
+      kept, Neighbours(kept, tetrahedra), kept.is_solid() ? kPatchOfSolid : kPatchOfSprings);
+  return made;
 }
 
 }  // namespace
@@ -52,7 +98,12 @@ struct DeformationWorld::Impl {
   std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
   std::vector<Contact> accepted;  ///< buffer of set_contacts()
-  double time = 0;
+  /// Mean force on a probe over the last advance and the one before [N].
+  struct Forces {
+    Vec3 now = Vec3::Zero(), before = Vec3::Zero();
+  };
+  std::vector<Forces> forces;
+  double time = 0, period = 0;   ///< simulated; of the last advance [s]
   bool contact_refused = false;  ///< since the last advance
 
   bool names_our_triangle(const Contact& contact) const {
@@ -79,7 +130,7 @@ struct DeformationWorld::Impl {
   }
 
   /// One organ through one advance, all probes moving along.
-  void advance_organ(std::uint32_t index, double period, AdvanceReport& report) {
+  void advance_organ(std::uint32_t index, AdvanceReport& report) {
     WorldOrgan& organ = organs[index];
     const int substeps = organ.simulated.substeps(period);
     const double h = period / substeps;
@@ -96,7 +147,7 @@ struct DeformationWorld::Impl {
       std::size_t first = 0;
       for (auto& probe : probes) {
         if (aloof) break;
-        first += probe.take_rows(index, fraction, organ.rows.data() + first);
+        first += probe.take_rows(index, organ.rows.data() + first);
       }
     }
     organ.replaced = !organ.simulated.finish(period, report);
@@ -112,18 +163,39 @@ struct DeformationWorld::Impl {
     }
   }
 
-  /// No patch of tissue answers stiffer than its touched nodes with all their neighbours held.
-  double stiffness_limit(const ProbeContacts& probe) const {
-    double limit = 0;
-    for (const CarriedContact& contact : probe.contacts()) {
-      if (contact.normal_impulse <= 0) continue;
-      const OrganModel& model = organs[contact.organ].simulated.model();
-      for (int k = 0; k < 3; ++k) {
-        limit +=
-            contact.barycentric[k] * model.node_stiffness[model.triangles[contact.triangle][k]];
+  /// W of the contacts, organ by organ; organs do not answer each other. Lower triangle.
+  std::vector<double> compliance_of(const std::vector<CondensedContact>& contacts,
+                                    std::size_t directions) {
+    const std::size_t size = directions * contacts.size();
+    std::vector<double> lower(size * (size + 1) / 2, 0.0);
+    for (std::uint32_t i = 0; i < organs.size(); ++i) {
+      std::vector<ComplianceRow> rows;
+      std::vector<std::size_t> places;
+      for (std::size_t c = 0; c < contacts.size(); ++c) {
+        if (contacts[c].organ != i) continue;
+        append_compliance_rows(contacts[c], directions, rows);
+        for (std::size_t k = 0; k < directions; ++k) places.push_back(directions * c + k);
+      }
+      if (rows.empty()) continue;
+      const Eigen::MatrixXd W = organs[i].answer(rows, period);
+      for (std::size_t a = 0; a < places.size(); ++a) {
+        for (std::size_t b = 0; b <= a; ++b) {
+          const auto [low, high] = std::minmax(places[a], places[b]);
+          lower[high * (high + 1) / 2 + low] =
+              W(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+        }
       }
     }
-    return limit;
+    return lower;
+  }
+
+  /// How fast the force on a probe grew over the last two advances [1/s].
+  double growth(std::size_t probe) const {
+    const Vec3 now = forces[probe].now, before = forces[probe].before;
+    const double strength = now.norm();
+    if (!(strength > 0) || before.isZero(0) || !(period > 0)) return 0;
+    return std::clamp((now - before).dot(now) / (strength * strength), -kMostGrowth, kMostGrowth) /
+           period;
   }
 };
 
@@ -137,6 +209,7 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
                                        rest_shapes[i], runner, guarding));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
+  impl_->forces.resize(scene.probes.size());
 }
 
 DeformationWorld::~DeformationWorld() = default;
@@ -174,13 +247,17 @@ void DeformationWorld::set_contacts(const ContactSet& contacts) {
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
   report.contact_refused = std::exchange(impl_->contact_refused, false);
+  impl_->period = period;
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
-    impl_->advance_organ(i, period, report);
+    impl_->advance_organ(i, report);
   }
-  for (auto& probe : impl_->probes) probe.end(impl_->stiffness_limit(probe));
+  for (auto& probe : impl_->probes) probe.end();
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     if (impl_->organs[i].replaced) impl_->drop_contacts(i);
+  }
+  for (std::size_t i = 0; i < impl_->probes.size(); ++i) {
+    impl_->forces[i] = {impl_->probes[i].impulse() / period, impl_->forces[i].now};
   }
   impl_->time += period;
   return report;
@@ -192,7 +269,8 @@ void DeformationWorld::reset() {
     ++organ.generation;
   }
   for (auto& probe : impl_->probes) probe.reset();
-  impl_->time = 0;
+  impl_->forces.assign(impl_->probes.size(), {});
+  impl_->time = impl_->period = 0;
 }
 
 double DeformationWorld::time() const { return impl_->time; }
@@ -228,19 +306,33 @@ std::span<const Vec3> DeformationWorld::positions(std::size_t organ) const {
   return impl_->organs.at(organ).simulated.state().positions;
 }
 
+const Vec3& DeformationWorld::force(std::size_t probe) const { return impl_->forces.at(probe).now; }
+
 LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {
   const ProbeContacts& probe = impl_->probes.at(probe_index);
-  LocalLaw out;
-  probe.response().write(out);
-  out.friction_coefficient = probe.friction();
-  out.validity_radius = 0;
-  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
-    if (probe.touches(i)) {
-      out.validity_radius =
-          std::max(out.validity_radius, kValidityOfEdge * impl_->organs[i].mean_edge);
-    }
+  LocalLaw law;
+  law.anchor = probe.pose();
+  law.period = impl_->period;
+  law.friction_coefficient = probe.friction();
+  if (!(impl_->period > 0)) return law;
+
+  std::vector<const Body*> bodies;
+  std::vector<const OrganState*> states;
+  for (const WorldOrgan& organ : impl_->organs) {
+    bodies.push_back(&organ.simulated.model());
+    states.push_back(&organ.simulated.state());
   }
-  return out;
+  const auto contacts = condense_contacts(probe, bodies, states, impl_->period);
+  for (const CondensedContact& contact : contacts) {
+    law.rows.push_back(contact.row);
+    law.validity_radius =
+        std::max(law.validity_radius,
+                 contact.row.gap + kValidityOfEdge * impl_->organs[contact.organ].mean_edge);
+  }
+  law.compliance = impl_->compliance_of(contacts, law.directions());
+  law.growth = impl_->growth(probe_index);
+  law.stiffness = stiffness_of(law);
+  return law;
 }
 
 }  // namespace palpate::deformation

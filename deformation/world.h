@@ -66,7 +66,9 @@ class DeformationWorld {
   OrganReading read(std::size_t organ) const;
   /// OrganReading::positions alone, without what the rest costs to compute.
   std::span<const Vec3> positions(std::size_t organ) const;
-  /// Mean force over the last advance() and how it varies with the probe's position.
+  /// Mean force on a probe over the last advance() [N].
+  const Vec3& force(std::size_t probe) const;
+  /// That force row by row and how it varies with the probe's pose. Costs a small factorisation.
   LocalLaw local_law(std::size_t probe) const;
 
  private:

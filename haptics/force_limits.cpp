@@ -1,7 +1,7 @@
 #include "haptics/force_limits.h"
 
-#include "haptics/vector_checks.h"
 #include "modules/core/touch.h"
+#include "modules/core/vector_checks.h"
 
 namespace palpate::haptics {
 

@@ -1,5 +1,6 @@
 #include "haptics/haptic_renderer.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,17 +17,11 @@ double freshness(double age, const scene::Haptics& limits) {
   return factor > 0 ? factor : 0;
 }
 
-/// |f|²/(2k), k the stiffness along the normal, at least 1 N/m; at most 1 kJ.
-double returnable_energy(const LocalLaw& law, const Vec3& p_W) {
-  constexpr double kSoftest = 1, kMost = 1e3;  // [N/m], [J]
-  const double stiffness = law.normal.dot(law.stiffness * law.normal);
-  const double energy =
-      evaluate(law, p_W).wrench.force.squaredNorm() / (2 * std::max(kSoftest, stiffness));
-  return energy < kMost ? energy : kMost;
-}
+constexpr std::size_t kMaxCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;
 
 bool is_finite(const DeviceSample& device) {
-  return device.pose.position.allFinite() && device.twist.linear.allFinite();
+  return device.pose.position.allFinite() && device.pose.rotation.coeffs().allFinite() &&
+         device.twist.linear.allFinite() && device.twist.angular.allFinite();
 }
 
 }  // namespace
@@ -38,9 +33,21 @@ HapticRenderer::HapticRenderer(const scene::Haptics& limits, double period)
       torque_limiter_(limits.max_force * kTorqueArm, limits.max_force_rate * period * kTorqueArm),
       passivity_(limits.device_damping, period) {
   PALPATE_DEMAND(period > 0);
+  for (Received* received : {&current_, &next_}) {  // so that taking a law allocates nothing
+    received->law.rows.reserve(kMaxLawRows);
+    received->law.compliance.reserve(kMaxCompliance);
+  }
 }
 
-void HapticRenderer::reset() { *this = HapticRenderer(limits_, period_); }
+void HapticRenderer::reset() {
+  current_.valid = next_.valid = false;
+  solver_.clear();
+  passivity_.clear();
+  cross_fade_left_ = 0;
+  pressed_ = 0;
+  refused_laws_ = 0;
+  refused_since_tick_ = false;
+}
 
 void HapticRenderer::update_law(const LocalLaw& law, double time) {
   if (!is_usable(law) || !std::isfinite(time)) {
@@ -48,15 +55,18 @@ void HapticRenderer::update_law(const LocalLaw& law, double time) {
     refused_since_tick_ = true;
     return;
   }
-  next_ = {law, time, true};
+  next_.law = law;
+  next_.time = time;
+  next_.valid = true;
 }
 
 void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce& out) {
-  std::uint32_t limits = refused_since_tick_ ? kForceNotFinite : kForceNotLimited;
+  std::uint32_t limits = device.limits;
+  if (refused_since_tick_) limits |= kForceNotFinite;
   refused_since_tick_ = false;
   Wrench wanted;
   if (is_finite(device)) {
-    wanted = propose(device.pose.position, time, limits);
+    wanted = propose(device, time, limits);
   } else {
     limits |= kForceNotFinite;
   }
@@ -64,13 +74,16 @@ void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce
     limits |= kForceNotFinite;
     wanted = {};
   }
-  out.force = force_limiter_.limit(passive_force(wanted.force, device, limits), limits);
-  passivity_.held(out.force);
-
+  const double present = presence(device.silence);
+  if (present < 1) limits |= kDriverSilent;
+  wanted = present * wanted;
+  const Wrench passive_wrench = passive(wanted, device, limits);
+  out.force = force_limiter_.limit(passive_wrench.force, limits);
   // What cuts the force cuts the torque it exerts.
-  const double wanted_length = wanted.force.stableNorm();
-  const double cut = wanted_length > 0 ? std::min(1.0, out.force.norm() / wanted_length) : 1;
-  out.torque = torque_limiter_.limit(cut * wanted.torque, limits);
+  const double length = passive_wrench.force.stableNorm();
+  const double cut = length > 0 ? std::min(1.0, out.force.norm() / length) : 1;
+  out.torque = torque_limiter_.limit(cut * passive_wrench.torque, limits);
+  passivity_.held({out.force, out.torque});
   out.limits = limits;
   out.passivity_energy = passivity_.energy();
   out.contact_model_age = age(next_.valid ? next_ : current_, time);
@@ -82,58 +95,99 @@ double HapticRenderer::age(const Received& received, double time) const {
   return std::abs(time - received.time);
 }
 
-Wrench HapticRenderer::propose(const Vec3& p_W, double time, std::uint32_t& limits) {
-  if (next_.valid) begin_cross_fade(p_W, time);
+Wrench HapticRenderer::propose(const DeviceSample& device, double time, std::uint32_t& limits) {
+  if (next_.valid) begin_cross_fade(device, time);
   if (cross_fade_left_ > 0) --cross_fade_left_;
-  return wrench_at(p_W, time, limits);
+  return wrench_at(device.pose, time, limits);
 }
 
-/// Model, what is left of the cross-fade, fade.
-Wrench HapticRenderer::wrench_at(const Vec3& p_W, double time, std::uint32_t& limits) const {
+/// Law, what is left of the cross-fade, fade.
+Wrench HapticRenderer::wrench_at(const Pose& pose, double time, std::uint32_t& limits) {
   if (!current_.valid) return {};
-  const LocalLaw& law = current_.law;
-  const LawForce modelled = evaluate(law, p_W);
+  const double old = age(current_, time);
+  const LawForce modelled = solver_.evaluate(pose, current_.law.anchor_age + old);
   if (modelled.beyond_validity) limits |= kForceOutOfValidity;
+  if (coupled_) limits |= kStiffnessCapped;
   Wrench wrench = modelled.wrench;
   if (cross_fade_left_ > 0) {
     const double share = static_cast<double>(cross_fade_left_) / cross_fade_ticks_;
-    wrench.force += share * cross_fade_.force;
-    wrench.torque += share * cross_fade_.torque;
-    if (law.touching) wrench.force -= std::min(0.0, wrench.force.dot(law.normal)) * law.normal;
+    wrench = wrench + share * cross_fade_;
+    const Vec3& own = modelled.wrench.force;
+    const double strength = own.norm();
+    // A hand-over never pulls.
+    if (strength > 0) {
+      const Vec3 along = own / strength;
+      wrench.force -= std::min(0.0, wrench.force.dot(along)) * along;
+    }
   }
-  const double factor = freshness(age(current_, time), limits_);
+  const double factor = freshness(old, limits_);
   if (factor < 1) limits |= kForceStaleFade;
-  return {factor * wrench.force, factor * wrench.torque};
+  return factor * wrench;
 }
 
-/// Both models are compared at the same place, so that only their difference is smoothed and
+/// Of a silent driver the force fades as that of a stale law does; it rises again as slowly.
+double HapticRenderer::presence(double silence) {
+  presence_ = std::min(freshness(silence, limits_), presence_ + period_ / limits_.fade_time);
+  return presence_;
+}
+
+/// A stiffness K on a device of damping b is stable up to b/(T/2 + t_d), T the tick and t_d the
+/// device's delay. What is stiffer is felt through a spring in series that makes it that stiff.
+/// @returns the spring's compliance [m/N]; 0: none is needed, or nobody holds the device
+double HapticRenderer::coupling_of(const LocalLaw& law, const DeviceSample& device) const {
+  if (!device.delay || !(limits_.device_damping > 0)) return 0;
+  Eigen::SelfAdjointEigenSolver<Mat3> solver;
+  solver.computeDirect(law.stiffness, Eigen::EigenvaluesOnly);
+  const double stiffness = solver.eigenvalues().maxCoeff();
+  const double stable = limits_.device_damping / (period_ / 2 + *device.delay);
+  return stiffness > stable ? 1 / stable - 1 / stiffness : 0;
+}
+
+/// Both laws are compared at the same place, so that only their difference is smoothed and
 /// never the probe's motion.
-void HapticRenderer::begin_cross_fade(const Vec3& p_W, double time) {
+void HapticRenderer::begin_cross_fade(const DeviceSample& device, double time) {
   std::uint32_t ignored = 0;
-  const Wrench before = wrench_at(p_W, time, ignored);
+  const Wrench before = wrench_at(device.pose, time, ignored);
   const double since_last = current_.valid ? std::abs(next_.time - current_.time) : kCrossFadeTime;
   cross_fade_ticks_ =
       std::max(1, static_cast<int>(std::lround(std::min(since_last, kCrossFadeTime) / period_)));
-  current_ = next_;
+  std::swap(current_, next_);
   next_.valid = false;
+  const double coupling = coupling_of(current_.law, device);
+  coupled_ = coupling > 0;
+  solver_.take(current_.law, coupling);
   cross_fade_left_ = 0;
-  const Wrench after = wrench_at(p_W, time, ignored);
-  cross_fade_ = {before.force - after.force, before.torque - after.torque};
+  const Wrench after = wrench_at(device.pose, time, ignored);
+  cross_fade_ = before - after;
   cross_fade_left_ = cross_fade_.is_finite() ? cross_fade_ticks_ : 0;
 }
 
-Vec3 HapticRenderer::passive_force(const Vec3& wanted, const DeviceSample& device,
-                                   std::uint32_t& limits) {
-  const bool apart = wanted.isZero(0) && force_limiter_.output().isZero(0);
+/// A contact that stiffens as it is pressed has taken in no more than half its force times the way
+/// against it; a part of that is in the springs of the law already at first touch.
+double HapticRenderer::returnable_energy(const Pose& pose, const Vec3& force) {
+  constexpr double kMost = 1e3;  // [J]
+  const double strength = force.stableNorm();
+  if (strength > 0) {
+    pressed_ = std::max(0.0, pressed_ - force.dot(pose.position - pressed_at_) / strength);
+  }
+  pressed_at_ = pose.position;
+  const double energy = solver_.stored_energy() + strength * pressed_ / 2;
+  return energy < kMost ? energy : kMost;
+}
+
+Wrench HapticRenderer::passive(const Wrench& wanted, const DeviceSample& device,
+                               std::uint32_t& limits) {
+  const bool apart = wanted.is_zero() && force_limiter_.output().isZero(0);
   if (apart || !is_finite(device)) {
     passivity_.clear();
+    pressed_ = 0;
+    pressed_at_ = device.pose.position;
     return wanted;
   }
-  const Vec3& p_W = device.pose.position;
-  passivity_.observe(p_W, returnable_energy(current_.law, p_W));
-  const Vec3 force = passivity_.controlled(wanted, device.twist.linear);
-  if (force != wanted) limits |= kForcePassivity;
-  return force;
+  passivity_.observe(device.pose, returnable_energy(device.pose, wanted.force));
+  const Wrench wrench = passivity_.controlled(wanted, device.twist);
+  if (wrench != wanted) limits |= kForcePassivity;
+  return wrench;
 }
 
 }  // namespace palpate::haptics

@@ -1,13 +1,14 @@
 // The force law of one probe, evaluated every haptic tick.
 //
 // read device → evaluate the local law at the current pose → cross-fade from the law before
-// → stale fade → passivity → finite check → slew limit → saturation → command. The law
-// only proposes; limits are ours. docs/haptic_safety.md says what each stage promises.
+// → stale fade → presence of the driver → passivity → finite check → slew limit → saturation →
+// command. The law only proposes; limits are ours. docs/haptic_safety.md says what each stage
+// promises.
 #pragma once
 
 #include <cstdint>
 
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "haptics/force_limits.h"
 #include "haptics/local_law.h"
 #include "haptics/passivity.h"
@@ -26,15 +27,21 @@ class HapticRenderer {
 
   HapticRenderer(const scene::Haptics& limits, double period);  ///< period of the loop [s]
 
-  /// A newer local law, received at session time `time` [s]. Not finite, or with a normal that
-  /// is not a unit vector or a negative friction or radius: refused and counted; the next tick
-  /// reports kForceNotFinite, the law before stays in force until it is stale.
+  /// A newer local law, made at session time `time` [s]. One that is not is_usable() is refused and
+  /// counted; the next tick reports kForceNotFinite, the law before stays in force until it is
+  /// stale.
   void update_law(const LocalLaw& law, double time);
 
   /// One tick at session time `time` [s]. Never allocates, locks, logs or throws.
   void tick(double time, const DeviceSample& device, RenderedForce& out);
 
-  void reset();  ///< as after construction
+  /// Forgets the law; what the hand still feels is let go within the slew limit.
+  void reset();
+
+  /// Where the probe is: the device's pose, but for the spring of a capped stiffness between them.
+  Pose probe_pose(const Pose& device) const {
+    return {device.position + solver_.coupling_offset(), device.rotation};
+  }
 
   std::uint64_t refused_laws() const { return refused_laws_; }  ///< since the last reset
 
@@ -45,10 +52,13 @@ class HapticRenderer {
     bool valid = false;  ///< there is one
   };
   double age(const Received& received, double time) const;
-  Wrench propose(const Vec3& p_W, double time, std::uint32_t& limits);
-  Wrench wrench_at(const Vec3& p_W, double time, std::uint32_t& limits) const;
-  void begin_cross_fade(const Vec3& p_W, double time);
-  Vec3 passive_force(const Vec3& wanted, const DeviceSample& device, std::uint32_t& limits);
+  double presence(double silence);
+  double coupling_of(const LocalLaw& law, const DeviceSample& device) const;
+  Wrench propose(const DeviceSample& device, double time, std::uint32_t& limits);
+  Wrench wrench_at(const Pose& pose, double time, std::uint32_t& limits);
+  void begin_cross_fade(const DeviceSample& device, double time);
+  double returnable_energy(const Pose& pose, const Vec3& force);
+  Wrench passive(const Wrench& wanted, const DeviceSample& device, std::uint32_t& limits);
 
   scene::Haptics limits_;
   double period_;
@@ -56,8 +66,13 @@ class HapticRenderer {
   Passivity passivity_;
 
   Received current_, next_;  ///< `next_` takes over at the coming tick
+  LawSolver solver_;         ///< of the current law
+  bool coupled_ = false;     ///< by a spring between device and probe
+  double presence_ = 1;      ///< of who holds the device: 0 when its driver is silent
   int cross_fade_ticks_ = 1, cross_fade_left_ = 0;
-  Wrench cross_fade_;  ///< old minus new force where the new law took over
+  Wrench cross_fade_;   ///< old minus new wrench where the new law took over
+  double pressed_ = 0;  ///< how far the device went against the force since it touched, ≥ 0 [m]
+  Vec3 pressed_at_ = Vec3::Zero();  ///< where it was last so
   std::uint64_t refused_laws_ = 0;
   bool refused_since_tick_ = false;
 };

@@ -1,36 +1,73 @@
-// The tissue's force near the pose for which deformation computed it:
-// f(x) = force + K (anchor − x), its normal part never pulling, its tangential part within the
-// friction cone. A pure function of model and position.
-//
-// Friction at tick rate: tangentially the model is a spring about the anchor, cut at μ f_n. It has
-// no memory of its own: whether the probe sticks or slides, and where the spring is anchored, is
-// decided by deformation, once per step, by the anchor and force of the next model.
+// The tissue's force on a probe at tick rate: the small contact problem that a local law poses
+// (LocalLaw, modules/core/touch.h), solved at the device's own pose by projected Gauss–Seidel on
+// its rows, from the forces of the tick before. Rows open and close, stick and slide between two
+// laws as they would in deformation; their wrench is that of the rows' own places on the probe.
 #pragma once
 
+#include <array>
+
+#include "haptics/wrench.h"
 #include "modules/core/touch.h"
 
 namespace palpate::haptics {
 
-/// Force and torque on the probe, in W [N, N·m]; torque about the probe's origin.
-struct Wrench {
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
-
-  bool is_finite() const { return force.allFinite() && torque.allFinite(); }
-};
-
-/// Every number finite, normal of length 1 within kUnitTolerance, friction and radius ≥ 0.
+/// Every number finite and within its bounds; of W each diagonal entry > 0 and no entry larger than
+/// its two diagonal ones allow, which projected Gauss–Seidel needs to be bounded.
 bool is_usable(const LocalLaw& law);
 
 struct LawForce {
   Wrench wrench;
   bool beyond_validity = false;  ///< evaluated at the validity radius instead of at the probe
+  int sweeps = 0;                ///< of Gauss–Seidel
 };
 
-/// Force of `law` with the probe's origin at `p_W`. Further than the validity radius from the
-/// anchor, the displacement is shortened to that radius. The torque keeps the lever arm of the
-/// anchor: it scales with the normal force.
-/// @pre is_usable(law), p_W finite. Numbers near the largest double may give an infinite result.
-LawForce evaluate(const LocalLaw& law, const Vec3& p_W);
+/// One law, and the forces of its rows where it was evaluated last. Never allocates.
+class LawSolver {
+ public:
+  static constexpr int kMaxSweeps = 40;
+  static constexpr double kForceTolerance = 1e-6;  ///< largest change in the last sweep [N]
+
+  /// Starts from the law's own forces.
+  /// @param law       is_usable()
+  /// @param coupling  compliance of a spring between device and probe, ≥ 0 [m/N]; 0: none
+  void take(const LocalLaw& law, double coupling = 0);
+  void clear() { directions_ = 0; }  ///< no law: no force
+
+  /// @param pose          of the device, finite
+  /// @param since_anchor  time since the anchor's pose, ≥ 0 [s]
+  LawForce evaluate(const Pose& pose, double since_anchor);
+
+  /// ½ λᵀW λ at the last evaluation: what the rows' springs could return [J].
+  double stored_energy() const;
+  /// How far the probe is from the device at the last evaluation: coupling times the force [m].
+  Vec3 coupling_offset() const { return coupling_ * force_; }
+
+ private:
+  static constexpr int kMost = 3 * static_cast<int>(kMaxLawRows);
+  using Numbers = std::array<double, kMost>;
+
+  struct Row {
+    Vec3 point_P;  ///< of the surface; of a round probe of its core
+    Vec3 tissue;   ///< at the anchor [m]
+    Vec3 velocity;
+    double radius;
+    Mat3 basis;  ///< n, t, s now
+  };
+
+  void place_rows(const Pose& pose, double time, bool& beyond_validity);
+  Vec3 axis(int direction) const;
+  double sweep();
+  double relax_friction(int first);
+  void change(int direction, double by);
+
+  Pose anchor_;
+  double longest_ = 0, growth_ = 0, half_period_ = 0, friction_ = 0, validity_radius_ = 0,
+         coupling_ = 0;
+  int directions_ = 0, per_row_ = 1;  ///< of all rows, of one
+  std::array<Row, kMaxLawRows> rows_;
+  std::array<Numbers, kMost> compliance_;       ///< W and the coupling
+  Numbers anchor_forces_, forces_, distances_;  ///< λ⁰, λ, s
+  Vec3 anchor_force_ = Vec3::Zero(), force_ = Vec3::Zero();
+};
 
 }  // namespace palpate::haptics

@@ -6,26 +6,41 @@
 namespace palpate::haptics {
 namespace {
 
+/// What a status says of a probe; made ready because a cycle allocates nothing.
+struct ProbeTexts {
+  explicit ProbeTexts(const std::string& name)
+      : silent("probe '" + name + "': its driver is silent on probe_input: no force"),
+        refused("probe '" + name + "': a sample from its driver was refused"),
+        slewed("probe '" + name + "': its driver moves too fast: the pose is slewed") {}
+  std::string silent, refused, slewed;
+};
+
 /// A device with the renderer of its force, and the messages that tell of them.
 struct RenderedProbe {
   std::unique_ptr<Device> device;
-  TopicDevice* driven_from_outside;  ///< the device if it is one, else nullptr
+  OutsideDevice* outside;  ///< the device if it is one, else nullptr
   HapticRenderer renderer;
+  ProbeTexts texts;
   ProbeState state;
   HapticForce force;
+
+  void set_device(std::unique_ptr<Device> other) {
+    device = std::move(other);
+    outside = dynamic_cast<OutsideDevice*>(device.get());
+  }
 };
 
 std::vector<RenderedProbe> make_probes(const scene::Scene& scene,
                                        std::vector<std::string>& warnings) {
   std::vector<RenderedProbe> probes;
   for (const auto& described : scene.probes) {
-    auto device = make_device(described.device, warnings);
-    auto* driven = dynamic_cast<TopicDevice*>(device.get());
-    probes.push_back({std::move(device),
-                      driven,
+    probes.push_back({nullptr,
+                      nullptr,
                       HapticRenderer(scene.haptics, 1.0 / scene.rates.haptics),
+                      ProbeTexts(described.name),
                       {},
                       {}});
+    probes.back().set_device(make_device(described.device, scene.haptics, warnings));
     probes.back().state.probe = probes.back().force.probe =
         static_cast<std::uint32_t>(probes.size() - 1);
   }
@@ -33,18 +48,25 @@ std::vector<RenderedProbe> make_probes(const scene::Scene& scene,
 }
 
 void tick(const runtime::Cycle& now, RenderedProbe& probe) {
-  const DeviceSample sample = probe.device->read(now.time());
+  const double source_time = seconds_from_ns(now.now_ns);
+  const bool by_source = probe.device->clock() == Device::Clock::kSource;
+  const DeviceSample sample = probe.device->read(by_source ? source_time : now.time());
   probe.state.header = probe.force.header = now.header();
-  probe.state.pose = sample.pose;
+  probe.renderer.tick(source_time, sample, probe.force);
+  probe.device->feel(probe.force);
+  probe.state.pose = probe.renderer.probe_pose(sample.pose);
   probe.state.twist = sample.twist;
   probe.state.buttons = sample.buttons;
-  probe.renderer.tick(seconds_from_ns(now.now_ns), sample, probe.force);
 }
 
-const char* acting_guard(std::uint32_t limits) {
+const char* acting_guard(const RenderedProbe& probe) {
+  const std::uint32_t limits = probe.force.limits;
   if (limits & kForceNotFinite) return "a force or pose was not finite: rendered as zero";
+  if (limits & kDriverSilent) return probe.texts.silent.c_str();
   if (limits & kForceStaleFade)
     return "contact model older than stale_after_s: force fades to zero";
+  if (limits & kPoseRefused) return probe.texts.refused.c_str();
+  if (limits & kPoseSlewed) return probe.texts.slewed.c_str();
   return "";
 }
 
@@ -59,14 +81,25 @@ struct HapticsStage::Impl {
         forces(bus.writer(bus::kHapticForce)) {}
 
   /// Newest of what others say; probes the scene does not have are nobody's.
-  void listen() {
+  void listen(std::int64_t now_ns) {
     while (inputs.take(input)) {
-      if (input.probe >= probes.size() || !probes[input.probe].driven_from_outside) continue;
-      probes[input.probe].driven_from_outside->command(input.pose, input.buttons);
+      if (input.probe >= probes.size() || !probes[input.probe].outside) continue;
+      const DeviceSample said{input.pose, input.twist, input.buttons};
+      probes[input.probe].outside->hear(said, input.header.source_time_ns, now_ns);
     }
+    note_rejected();
     while (laws.take(law)) {
       if (law.probe >= probes.size()) continue;
       probes[law.probe].renderer.update_law(law, seconds_from_ns(law.header.source_time_ns));
+    }
+  }
+
+  /// Whose a sample was that is no message, nobody knows: all that are driven from outside say so.
+  void note_rejected() {
+    if (inputs.statistics().rejected == rejected) return;
+    rejected = inputs.statistics().rejected;
+    for (RenderedProbe& probe : probes) {
+      if (probe.outside) probe.outside->refuse();
     }
   }
 
@@ -77,6 +110,7 @@ struct HapticsStage::Impl {
   bus::Writer<HapticForce> forces;
   ProbeState input;
   ContactModel law;
+  std::uint64_t rejected = 0;  ///< of `inputs`, as far as it was noted
 };
 
 HapticsStage::HapticsStage(const scene::Scene& scene, bus::Bus& bus,
@@ -86,24 +120,25 @@ HapticsStage::HapticsStage(const scene::Scene& scene, bus::Bus& bus,
 HapticsStage::~HapticsStage() = default;
 
 runtime::Health HapticsStage::cycle(const runtime::Cycle& now) {
-  impl_->listen();
-  std::uint32_t limits = kForceNotLimited;
+  impl_->listen(now.now_ns);
+  runtime::Health health;
   for (RenderedProbe& probe : impl_->probes) {
-    if (now.reset) probe.renderer.reset();
+    if (now.reset) {
+      probe.renderer.reset();
+      probe.device->reset();
+    }
     tick(now, probe);
     impl_->states.write(probe.state);
     impl_->forces.write(probe.force);
-    limits |= probe.force.limits;
+    if (*health.guard == '\0') health.guard = acting_guard(probe);
   }
-  return {.guard = acting_guard(limits)};
+  return health;
 }
 
 Device& HapticsStage::device(std::size_t probe) { return *impl_->probes.at(probe).device; }
 
 void HapticsStage::set_device(std::size_t probe, std::unique_ptr<Device> device) {
-  RenderedProbe& rendered = impl_->probes.at(probe);
-  rendered.driven_from_outside = dynamic_cast<TopicDevice*>(device.get());
-  rendered.device = std::move(device);
+  impl_->probes.at(probe).set_device(std::move(device));
 }
 
 }  // namespace palpate::haptics

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "modules/bus/bus.h"
 #include "modules/runtime/stage.h"
 

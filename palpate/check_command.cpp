@@ -9,7 +9,7 @@
 #include <set>
 
 #include "deformation/organ_messages.h"
-#include "haptics/placed_device.h"
+#include "haptics/devices/placed_device.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/geometry/organ_shape.h"
@@ -86,10 +86,10 @@ std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& sh
 
 /// Opens the files a probe names, as its processes would. What is wrong with a recording, but can
 /// be borne, is printed.
-void check_probe(const scene::Probe& probe, std::ostream& out) {
+void check_probe(const scene::Probe& probe, const scene::Haptics& limits, std::ostream& out) {
   scene::load_probe_mesh(probe);
   std::vector<std::string> warnings;
-  haptics::make_device(probe.device, warnings);
+  haptics::make_device(probe.device, limits, warnings);
   for (const auto& warning : warnings) out << "warning: " << warning << '\n';
 }
 
@@ -173,7 +173,7 @@ int check_command(const std::filesystem::path& file, double measure_for, std::os
   out << scene::resolved_text(scene) << '\n';
   std::vector<geometry::OrganShape> shapes;
   for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
-  for (const auto& probe : scene.probes) check_probe(probe, out);
+  for (const auto& probe : scene.probes) check_probe(probe, scene.haptics, out);
   runtime::WorkerTeam team(scene.deformation_threads);
   TimedSession session(scene, shapes, team);
   const double period = 1 / scene.rates.deformation;

@@ -51,13 +51,17 @@ std::string module_lines(const SessionTally& tally) {
 }  // namespace
 
 std::string limit_names(std::uint32_t limits) {
-  constexpr std::array<std::pair<ForceLimit, const char*>, 6> kNames{
+  constexpr std::array<std::pair<ForceLimit, const char*>, 10> kNames{
       {{kForceSaturated, "saturated"},
        {kForceSlewLimited, "slew"},
        {kForceStaleFade, "stale"},
        {kForcePassivity, "passivity"},
        {kForceNotFinite, "not finite"},
-       {kForceOutOfValidity, "out of validity"}}};
+       {kForceOutOfValidity, "out of validity"},
+       {kPoseSlewed, "pose slewed"},
+       {kPoseRefused, "pose refused"},
+       {kDriverSilent, "driver silent"},
+       {kStiffnessCapped, "stiffness capped"}}};
   std::string text;
   for (const auto& [bit, name] : kNames) {
     if ((limits & bit) != 0) text += (text.empty() ? "" : ", ") + std::string(name);

@@ -17,6 +17,7 @@ const std::vector<Study>& studies() {
       {"plan", "Find the cheapest model, mesh and step that meet a scene's needs"},
       {"stability", "Map where each method fails, measured and predicted"},
       {"fuzz", "Run random scenes, looking for one that fails without a guard noticing"},
+      {"contact-loop", "Move balls in and out of organs, looking for a contact that is lost"},
       {"volume-methods", "Compare ways to keep a volume"},
       {"paper", "Make the figures and numbers of the paper anew"},
       {"calibrate", "Fit springs to squeezed balls of finite elements"},

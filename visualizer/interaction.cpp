@@ -5,15 +5,15 @@ namespace {
 
 constexpr double kPixelsPerWheelStep = 15;
 
-bool is_topic(const ProbeView& probe) {
-  return std::holds_alternative<scene::TopicDevice>(probe.description.device);
+bool follows_mouse(const ProbeView& probe) {
+  return std::holds_alternative<scene::MouseDevice>(probe.description.device);
 }
 
 }  // namespace
 
-std::optional<std::size_t> first_topic_probe(const SceneView& view) {
+std::optional<std::size_t> first_mouse_probe(const SceneView& view) {
   for (std::size_t i = 0; i < view.probes().size(); ++i) {
-    if (is_topic(view.probes()[i])) return i;
+    if (follows_mouse(view.probes()[i])) return i;
   }
   return std::nullopt;
 }
@@ -68,8 +68,8 @@ void Interaction::press(const InputEvent& event, const SceneView& view) {
       return take_probe(*picked, view);
     }
     if (event.shift) {
-      if (const auto probe = first_topic_probe(view)) return take_probe(*probe, view);
-      notice_ = "No probe of this scene has the device 'topic': none follows the mouse.";
+      if (const auto probe = first_mouse_probe(view)) return take_probe(*probe, view);
+      notice_ = "No probe of this scene has the device 'mouse': none follows it.";
       return;
     }
   }
@@ -78,12 +78,12 @@ void Interaction::press(const InputEvent& event, const SceneView& view) {
 
 void Interaction::take_probe(std::size_t probe, const SceneView& view) {
   const ProbeView& taken = view.probes()[probe];
-  if (!is_topic(taken)) {
+  if (!follows_mouse(taken)) {
     notice_ = "Probe '" + taken.description.name +
-              "' does not follow the mouse: its device is not 'topic'.";
+              "' does not follow the mouse: its device is not 'mouse'.";
     return;
   }
-  const auto& device = std::get<scene::TopicDevice>(taken.description.device);
+  const auto& device = std::get<scene::MouseDevice>(taken.description.device);
   const Pose start{device.start, device.rotation};
   const Pose& pose = taken.seen ? taken.pose : start;
   drag_.emplace(probe, pose.position);

@@ -63,7 +63,7 @@ class Interaction {
   std::string notice_;
 };
 
-/// Index of the scene's first probe whose device is `topic`.
-std::optional<std::size_t> first_topic_probe(const SceneView& view);
+/// Index of the scene's first probe whose device is `mouse`.
+std::optional<std::size_t> first_mouse_probe(const SceneView& view);
 
 }  // namespace palpate::visualizer

@@ -50,6 +50,9 @@ struct ContactSolveReport {
 /// Penetration is undone no faster than this [m/s], so that a probe which jumps does not shoot the
 /// tissue away; the remaining depth follows in the next steps.
 inline constexpr double kMaxSeparationSpeed = 1.0;
+/// The same where tissue was put into a probe, or a probe into tissue, by no motion of either:
+/// pushed out in a hurry it would swing, or fail again [m/s].
+inline constexpr double kGentleSpeed = 0.05;
 
 /// Contacts are solved when no sweep changes the velocity of one by more than this [m/s].
 inline constexpr double kContactVelocityTolerance = 1e-9;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "modules/core/tolerances.h"
 #include "modules/geometry/closest_points.h"
 
 namespace palpate::deformation {
@@ -21,7 +22,8 @@ ProbeContacts::ProbeContacts(const scene::Probe& probe) : friction_(probe.fricti
 void ProbeContacts::reset() {
   placed_ = false;
   contacts_.clear();
-  response_.reset();
+  gentle_.clear();
+  begun_.clear();
 }
 
 void ProbeContacts::set_pose(const Pose& pose) {
@@ -48,20 +50,62 @@ void ProbeContacts::set_contacts(std::span<const Contact> newest) {
     }
     contacts_.push_back(carried);
   }
+  note_begun();
+}
+
+/// Organs that the probe was away from, until a step looks at them.
+void ProbeContacts::note_begun() {
+  const auto among = [](const std::vector<CarriedContact>& contacts, std::uint32_t organ) {
+    return std::ranges::find(contacts, organ, &CarriedContact::organ) != contacts.end();
+  };
+  std::erase_if(gentle_, [&](const GentleOrgan& g) { return !among(contacts_, g.organ); });
+  std::erase_if(begun_, [&](std::uint32_t organ) { return !among(contacts_, organ); });
+  for (const CarriedContact& contact : contacts_) {
+    const bool known = std::ranges::find(begun_, contact.organ) != begun_.end();
+    if (!known && !among(previous_contacts_, contact.organ)) begun_.push_back(contact.organ);
+  }
+}
+
+/// Bounds how fast an organ's penetration is undone if it was not seen coming: all rows together
+/// push as one motion would, along their mean normal. Velocities come to it within kGentleRise:
+/// tissue that swings is not stopped at a blow.
+/// @param rows  of the organ, at the beginning of a sub-step of h
+void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, double h,
+                              std::span<ContactRow> rows) {
+  double deepest = 0;
+  Vec3 outward = Vec3::Zero();
+  for (const ContactRow& row : rows) {
+    deepest = std::max(deepest, -row.gap);
+    outward += std::max(-row.gap, 0.0) * row.normal;
+  }
+  auto gentle = std::ranges::find(gentle_, organ, &GentleOrgan::organ);
+  if (std::erase(begun_, organ) > 0 && gentle == gentle_.end() && deepest > kSeenDepth + way()) {
+    gentle = gentle_.insert(gentle_.end(), {organ, 0});
+  }
+  if (gentle == gentle_.end()) return;
+  gentle->time += h;
+  if (deepest < kGentleDepth || gentle->time > kGentleTime) {
+    gentle_.erase(gentle);
+    return;
+  }
+  const Vec3 push = std::min(kGentleSpeed, deepest / kGentleEnd) * outward.normalized();
+  const double change = std::min(1.0, h / kGentleRise);
+  for (ContactRow& row : rows) {
+    Vec3 velocity = -row.probe_velocity;
+    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
+    const double speed = std::max(0.0, row.normal.dot(push));
+    const double approach = std::max(row.normal.dot(velocity), -speed);
+    row.gap = std::max(row.gap, h * (approach - change * (approach + speed)));
+  }
 }
 
 bool ProbeContacts::begin(double period) {
   period_ = period;
-  response_.begin(period);
-  if ((target_.position - start_.position).norm() <= kMaxProbeSpeed * period) return true;
+  for (CarriedContact& contact : contacts_) contact.pushed = contact.dragged = Vec3::Zero();
+  if (way() <= kMaxProbeSpeed * period) return true;
   start_ = target_;
   contacts_.clear();
   return false;
-}
-
-void ProbeContacts::end(double stiffness_limit) {
-  start_ = target_;
-  response_.end(target_.position, stiffness_limit);
 }
 
 Pose ProbeContacts::pose_at(double fraction) const {
@@ -89,6 +133,7 @@ void ProbeContacts::measure_again(const Body& body, const OrganState& state, con
 void ProbeContacts::append_rows(std::uint32_t organ, const Body& body, const OrganState& state,
                                 double h, double fraction, std::vector<ContactRow>& rows) {
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
+  const std::size_t first = rows.size();
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
     if (core_) measure_again(body, state, before, contact);
@@ -106,10 +151,12 @@ void ProbeContacts::append_rows(std::uint32_t organ, const Body& body, const Org
     row.tangential_impulse = contact.tangential_impulse;
     rows.push_back(row);
   }
+  if (!gentle_.empty() || !begun_.empty()) {
+    be_gentle(organ, state, h, std::span(rows).subspan(first));
+  }
 }
 
-std::size_t ProbeContacts::take_rows(std::uint32_t organ, double fraction, const ContactRow* rows) {
-  const Pose after = pose_at(fraction);
+std::size_t ProbeContacts::take_rows(std::uint32_t organ, const ContactRow* rows) {
   std::size_t taken = 0;
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
@@ -117,10 +164,16 @@ std::size_t ProbeContacts::take_rows(std::uint32_t organ, double fraction, const
     contact.normal_impulse = row.normal_impulse;
     contact.tangential_impulse = row.tangential_impulse;
     if (row.normal_impulse <= 0) continue;
-    response_.add(row.normal_impulse * row.normal - row.tangential_impulse, row.normal,
-                  after.to_world(contact.point_P), after.position);
+    contact.pushed += row.normal_impulse * row.normal;
+    contact.dragged -= row.tangential_impulse;
   }
   return taken;
+}
+
+Vec3 ProbeContacts::impulse() const {
+  Vec3 sum = Vec3::Zero();
+  for (const CarriedContact& contact : contacts_) sum += contact.pushed + contact.dragged;
+  return sum;
 }
 
 bool ProbeContacts::touches(std::uint32_t organ) const {

@@ -181,6 +181,22 @@ void AverageNodalPressure::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>
   }
 }
 
+void AverageNodalPressure::add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const {
+  matrix_.add_block(patch, share, sum);
+  for (std::size_t i = 0; i < node_volumes_.size(); ++i) {
+    for (auto k = pairs_.row_starts[i]; k < pairs_.row_starts[i + 1]; ++k) {
+      const int a = patch.place(pairs_.columns[k]);
+      if (a < 0) continue;
+      const Eigen::Vector3f row = share * volume_rows_[k].head<3>();
+      for (auto l = pairs_.row_starts[i]; l < pairs_.row_starts[i + 1]; ++l) {
+        const int b = patch.place(pairs_.columns[l]);
+        if (b < 0 || b > a) continue;
+        sum.block<3, 3>(3 * a, 3 * b) += row * volume_rows_[l].head<3>().transpose();
+      }
+    }
+  }
+}
+
 double AverageNodalPressure::energy(const std::vector<Vec3>& positions) {
   take_volumes(positions);
   double sum = 0;

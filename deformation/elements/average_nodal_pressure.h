@@ -45,6 +45,7 @@ class AverageNodalPressure : public ElasticForceElements {
   const std::vector<Vec3>& forces() const override { return forces_; }
   const std::vector<Mat3>& diagonal() const override { return diagonal_; }
   void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) override;
+  void add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const override;
   double energy(const std::vector<Vec3>& positions) override;
 
  private:

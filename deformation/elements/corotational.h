@@ -28,6 +28,9 @@ class Corotational : public ElasticForceElements {
   void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) override {
     matrix_.apply(p, out);
   }
+  void add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const override {
+    matrix_.add_block(patch, share, sum);
+  }
   double energy(const std::vector<Vec3>& positions) override;
 
  private:

@@ -1,9 +1,11 @@
 // Elements that make up a body's elastic forces, as an implicit step needs them.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 
+#include "deformation/model/patch.h"
 #include "modules/core/wide_vectors.h"
 
 namespace palpate::deformation {
@@ -26,6 +28,9 @@ class ElasticForceElements {
 
   /// out = A p. @param p, out  (node_count)
   virtual void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) = 0;
+
+  /// Adds `share` of A's block of the patch to the lower triangle of `sum`.
+  virtual void add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const = 0;
 
   virtual double energy(const std::vector<Vec3>& positions) = 0;  ///< [J]
 };

@@ -70,6 +70,20 @@ Mat3 NodeBlockMatrix::diagonal(std::size_t node) const {
   return dense;
 }
 
+void NodeBlockMatrix::add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const {
+  for (const std::uint32_t node : patch.nodes) {
+    const int i = patch.place(node);
+    for (auto k = pairs_.row_starts[node]; k < pairs_.row_starts[node + 1]; ++k) {
+      const int j = patch.place(pairs_.columns[k]);
+      if (j < 0 || j > i) continue;
+      for (int c = 0; c < 3; ++c) {
+        sum.block<3, 1>(3 * i, 3 * j + c) +=
+            share * blocks_[k][static_cast<std::size_t>(c)].head<3>();
+      }
+    }
+  }
+}
+
 void NodeBlockMatrix::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) const {
   for (std::size_t i = 0; i < pairs_.node_count(); ++i) {
     Vec4f x = Vec4f::Zero(), y = x, z = x;  // three sums: a chain of additions waits on itself

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "deformation/model/patch.h"
 #include "modules/core/wide_vectors.h"
 
 namespace palpate::deformation {
@@ -55,6 +56,9 @@ class NodeBlockMatrix {
 
   Mat3 diagonal(std::size_t node) const;
   const Block4f& block(std::uint32_t pair) const { return blocks_[pair]; }
+
+  /// Adds `share` of the blocks between the nodes of the patch to the lower triangle of `sum`.
+  void add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const;
 
   /// out = A p. @param p  (node_count)
   void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) const;

@@ -39,7 +39,19 @@ StepReport LinearlyImplicitEuler::step(double h, std::span<ContactRow> rows, Org
   return {};
 }
 
+void LinearlyImplicitEuler::add_stiffness(const Patch& patch, double share,
+                                          Eigen::MatrixXf& sum) const {
+  if (!(step_ > 0)) return;
+  const double scale = share / (step_ * step_);
+  elements_->add_block(patch, static_cast<float>(scale), sum);
+  for (const std::uint32_t node : patch.nodes) {
+    sum.diagonal().segment<3>(3 * patch.place(node)).array() -=
+        static_cast<float>(scale * shift_[node]);
+  }
+}
+
 void LinearlyImplicitEuler::linearise(double h, const OrganState& state) {
+  step_ = h;
   for (std::size_t i = 0; i < predicted_.size(); ++i) {
     predicted_[i] = state.positions[i] + h * state.velocities[i];
     shift_[i] = (1 + h * body_.drag) * body_.masses[i];

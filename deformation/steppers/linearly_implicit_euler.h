@@ -33,6 +33,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
 
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  void add_stiffness(const Patch& patch, double share, Eigen::MatrixXf& sum) const override;
   double elastic_energy(const OrganState& state) override {
     return elements_->energy(state.positions);
   }
@@ -63,7 +64,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   const Body& body_;
   std::unique_ptr<ElasticForceElements> elements_;
   int max_iterations_, iterations_used_ = 0;
-  double total_mass_ = 0;
+  double total_mass_ = 0, step_ = 0;  ///< [kg]; h of the last step [s]
   AugmentedContacts contacts_;
   std::vector<double> shift_;                         ///< (1 + h·drag) m [kg]
   std::vector<Vec3> predicted_;                       ///< x̃ [m]

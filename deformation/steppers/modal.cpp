@@ -188,6 +188,22 @@ double Modal::relax(std::size_t r, ContactRow& contact, Eigen::VectorXd& rates) 
   return std::max(change, rubbed.norm() * row.across);
 }
 
+Eigen::MatrixXd Modal::compliance(std::span<const ComplianceRow> rows,
+                                  const PeriodSteps& steps) const {
+  Eigen::MatrixXd motion =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()), modes_.cols());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (const auto& [node, weight] : rows[r].weights) {
+      motion.row(static_cast<Eigen::Index>(r)) +=
+          weight * rows[r].axis.transpose() * modes_.middleRows<3>(3 * node);
+    }
+  }
+  const double T = steps.period;
+  const Eigen::ArrayXd answers = 1 / (1 / (T * T) + steps.moving() / T * damping_.array() +
+                                      steps.displaced() * frequencies_.array().square());
+  return motion * answers.matrix().asDiagonal() * motion.transpose();
+}
+
 double Modal::elastic_energy(const OrganState& state) {
   const InternalState& internal = state.internal;
   const bool known = internal.goes_with(state.positions, state.velocities);

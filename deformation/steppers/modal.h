@@ -38,6 +38,8 @@ class Modal : public OrganDynamics {
 
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  Eigen::MatrixXd compliance(std::span<const ComplianceRow> rows,
+                             const PeriodSteps& steps) const override;
   double elastic_energy(const OrganState& state) override;
 
   const Eigen::VectorXd& angular_frequencies() const { return frequencies_; }  ///< rising [rad/s]

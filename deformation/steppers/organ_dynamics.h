@@ -1,10 +1,13 @@
 // One way to advance an organ: how its contents are modelled, and how time is stepped.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 
+#include "deformation/contact/compliance_row.h"
 #include "deformation/contact/contact_solve.h"
 #include "deformation/model/organ_state.h"
+#include "deformation/model/patch.h"
 
 namespace palpate::deformation {
 
@@ -30,6 +33,22 @@ class OrganDynamics {
   /// the step's end, and leaves the pressure of the contents. Contact rows hold their gaps at the
   /// step's start; they keep the impulses found.
   virtual StepReport step(double h, std::span<ContactRow> rows, OrganState& state) = 0;
+
+  /// Whether the elastic forces of a step are those at its end, else at its start.
+  virtual bool is_implicit() const { return true; }
+
+  /// Of a solid: adds `share` of the elastic stiffness of the patch as it was in the last step, all
+  /// other nodes held, to the lower triangle of `sum` [N/m]. A model that has none to tell adds
+  /// none.
+  virtual void add_stiffness(const Patch& /*patch*/, double /*share*/,
+                             Eigen::MatrixXf& /*sum*/) const {}
+
+  /// C A⁻¹ Cᵀ of rows on the organ (contact/patch_compliance.h) [m/N], of a model that knows it
+  /// better than from a patch of nodes; empty: it does not.
+  virtual Eigen::MatrixXd compliance(std::span<const ComplianceRow> /*rows*/,
+                                     const PeriodSteps& /*steps*/) const {
+    return {};
+  }
 
   /// Stored in springs or tissue [J].
   virtual double elastic_energy(const OrganState& state) = 0;

@@ -45,6 +45,7 @@ class SymplecticEuler : public OrganDynamics {
                   ChunkRunner* runner = nullptr);
   double largest_step() const override { return rule_->largest_step(); }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
+  bool is_implicit() const override { return false; }
   double elastic_energy(const OrganState& state) override {
     return kernel_.elastic_energy(state.positions);
   }

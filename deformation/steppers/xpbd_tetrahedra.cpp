@@ -121,6 +121,29 @@ double XpbdTetrahedra::relax(std::size_t element, double h) {
   return -(shape_lambda * size / 3 + bulk_lambda) / (h * h);
 }
 
+/// Gauss–Newton: of each tetrahedron μ V g_a·g_b I + λ/V b_a b_bᵀ, b = ∂v/∂x.
+void XpbdTetrahedra::add_stiffness(const Patch& patch, double share, Eigen::MatrixXf& sum) const {
+  for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
+    const auto& corners = tetrahedra_.corners[e];
+    std::array<int, 4> places;
+    for (std::size_t a = 0; a < 4; ++a) places[a] = patch.place(corners[a]);
+    if (*std::ranges::max_element(places) < 0) continue;
+    const double volume = tetrahedra_.volumes[e];
+    const Mat34 areas =
+        volume * cofactor(deformation_gradient(e, positions_)) * tetrahedra_.gradients[e];
+    const Eigen::Matrix4d shape = tetrahedra_.gradients[e].transpose() * tetrahedra_.gradients[e];
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        const int i = places[static_cast<std::size_t>(a)], j = places[static_cast<std::size_t>(b)];
+        if (j < 0 || j > i) continue;
+        const Mat3 block = law_.shear_modulus * volume * shape(a, b) * Mat3::Identity() +
+                           law_.volume_modulus / volume * areas.col(a) * areas.col(b).transpose();
+        sum.block<3, 3>(3 * i, 3 * j) += (share * block).cast<float>();
+      }
+    }
+  }
+}
+
 double XpbdTetrahedra::elastic_energy(const OrganState& state) {
   const double rest = law_.shear_modulus * law_.shear_modulus / law_.volume_modulus;
   double energy = 0;

@@ -20,6 +20,9 @@ inline constexpr double kDirectionless = 1e-9;
 /// Positions further than this from W's origin are not believed [m].
 inline constexpr double kWorldReach = 1000;
 
+/// Faster than any hand or surgical tool [m/s]: a probe that seems to move faster has jumped.
+inline constexpr double kMaxProbeSpeed = 3.0;
+
 inline bool is_unit(const Vec3& v) { return std::abs(v.norm() - 1) <= kUnitTolerance; }
 inline bool is_unit(const Quat& q) { return std::abs(q.norm() - 1) <= kUnitTolerance; }
 

@@ -52,6 +52,7 @@ class CdrWriter {
   void numbers(const char*, const List& list, const Bounds&) {
     const auto values = flat(list);
     put(static_cast<std::uint32_t>(values.size()));
+    if (!values.empty()) align(sizeof(values[0]));
     bytes(values.data(), values.size_bytes());
   }
   template <class List, class Parts>
@@ -80,9 +81,7 @@ class CdrWriter {
   template <class T>
   requires std::is_arithmetic_v<T>
   void put(T value) {
-    const std::size_t padding = (0 - at_) % sizeof(T);
-    if (out_ != nullptr) std::memset(out_ + at_, 0, padding);
-    at_ += padding;
+    align(sizeof(T));
     bytes(&value, sizeof value);
   }
   template <Enumeration E>
@@ -96,6 +95,11 @@ class CdrWriter {
   void put(const std::string& text) {
     put(static_cast<std::uint32_t>(text.size() + 1));
     bytes(text.c_str(), text.size() + 1);
+  }
+  void align(std::size_t size) {
+    const std::size_t padding = (0 - at_) % size;
+    if (out_ != nullptr) std::memset(out_ + at_, 0, padding);
+    at_ += padding;
   }
   void bytes(const void* from, std::size_t count) {
     if (out_ != nullptr && count > 0) std::memcpy(out_ + at_, from, count);
@@ -227,6 +231,7 @@ class CdrReader {
     std::uint32_t count = 0;
     get(name, count, Rule::kPlain);
     if (failed_ != nullptr) return 0;
+    if (count > 0) at_ += std::min(left(), (0 - at_) % bytes_each);
     const std::size_t entries = count / bounds.numbers_per_entry;
     if (count > left() / bytes_each) {
       fail("payload");

@@ -54,7 +54,7 @@ class Row {
   template <class List, class... Parts>
   void numbers(const char*, const List& list, const Bounds& bounds, const Parts&...) {
     if (bounds.count_name == nullptr) return;
-    const bool flat = std::is_same_v<typename List::value_type, float>;
+    const bool flat = std::is_floating_point_v<typename List::value_type>;
     cell(bounds.count_name, std::uint64_t{list.size() / (flat ? bounds.numbers_per_entry : 1)});
   }
   template <class List>

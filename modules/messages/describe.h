@@ -22,7 +22,7 @@
 
 namespace palpate::messages {
 
-/// Allowed asymmetry and negative eigenvalue of a stiffness, relative to its largest entry.
+/// Allowed asymmetry of a stiffness, relative to its largest entry.
 inline constexpr double kStiffnessTolerance = 1e-6;
 inline constexpr std::size_t kMaxNameBytes = 64;  ///< of a module and a topic
 
@@ -30,17 +30,17 @@ inline constexpr std::size_t kMaxNameBytes = 64;  ///< of a module and a topic
 /// (but kAge), words are listed ones and texts hold at most kMaxTextBytes and no zero byte.
 enum class Rule {
   kPlain,
-  kFromOne,       ///< ≥ 1
-  kAtLeastZero,   ///< ≥ 0
-  kSinceSetUp,    ///< ≥ −1: what is said before the first lockstep cycle has −1
-  kAge,           ///< ≥ 0; infinity: nothing came yet
-  kFraction,      ///< in [0, 1]
-  kUnit,          ///< length 1 within kUnitTolerance
-  kWeights,       ///< ≥ 0, sum 1, both within kUnitTolerance
-  kSemidefinite,  ///< symmetric, no negative eigenvalue
-  kForceLimits,   ///< only bits of ForceLimit
-  kName,          ///< 1 to kMaxNameBytes bytes
-  kDocument,      ///< a text too long for tables
+  kFromOne,      ///< ≥ 1
+  kAtLeastZero,  ///< ≥ 0
+  kSinceSetUp,   ///< ≥ −1: what is said before the first lockstep cycle has −1
+  kAge,          ///< ≥ 0; infinity: nothing came yet
+  kFraction,     ///< in [0, 1]
+  kUnit,         ///< length 1 within kUnitTolerance
+  kWeights,      ///< ≥ 0, sum 1, both within kUnitTolerance
+  kSymmetric,    ///< within kStiffnessTolerance
+  kForceLimits,  ///< only bits of ForceLimit
+  kName,         ///< 1 to kMaxNameBytes bytes
+  kDocument,     ///< a text too long for tables
 };
 
 /// Length of a list of numbers that travels flat.
@@ -143,18 +143,35 @@ void describe(V& v, M& m) {
   });
 }
 
+template <class V, Is<LawRow> R>
+void describe(V& v, R& r) {
+  v.field("rows.point_P_m", r.point_P, Rule::kPlain);
+  v.field("rows.normal", r.normal, Rule::kUnit);
+  v.field("rows.gap_m", r.gap, Rule::kAtLeastZero);
+  v.field("rows.radius_m", r.radius, Rule::kAtLeastZero);
+  v.field("rows.force_n", r.force, Rule::kPlain);
+  v.field("rows.velocity_m_per_s", r.velocity, Rule::kPlain);
+}
+
 template <class V, Is<ContactModel> M>
 void describe(V& v, M& m) {
   v.header(m.header);
   v.key("probe", m.probe);
-  v.field("touching", m.touching, Rule::kPlain);
-  v.field("anchor_m", m.anchor, Rule::kPlain);
-  v.field("force_n", m.force, Rule::kPlain);
-  v.field("torque_n_m", m.torque, Rule::kPlain);
-  v.field("stiffness_n_per_m", m.stiffness, Rule::kSemidefinite);
-  v.field("normal", m.normal, Rule::kUnit);
+  v.field("anchor_position_m", m.anchor.position, Rule::kPlain);
+  v.field("anchor_rotation_xyzw", m.anchor.rotation, Rule::kUnit);
+  v.field("anchor_age_s", m.anchor_age, Rule::kAtLeastZero);
+  v.field("period_s", m.period, Rule::kAtLeastZero);
+  v.field("growth_per_s", m.growth, Rule::kPlain);
   v.field("friction_coefficient", m.friction_coefficient, Rule::kAtLeastZero);
   v.field("validity_radius_m", m.validity_radius, Rule::kAtLeastZero);
+  v.field("stiffness_n_per_m", m.stiffness, Rule::kSymmetric);
+  v.list("rows", m.rows, kMaxLawRows, "row_count");
+  v.numbers("compliance_m_per_n", m.compliance, Bounds{1, 0, kMaxLawCompliance, nullptr});
+  v.derived("force_n", [&] { return m.force().norm(); });
+  v.require("compliance_m_per_n", [&] {
+    const std::size_t size = m.directions() * m.rows.size();
+    return m.compliance.size() == size * (size + 1) / 2;
+  });
 }
 
 template <class V, Is<NodePositions> M>

@@ -14,10 +14,11 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 3;
+inline constexpr std::uint32_t kProtocolVersion = 4;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
+inline constexpr std::size_t kMaxLawCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;
 inline constexpr std::size_t kMaxInputs = 16;
 
 /// First field of every message.

@@ -83,7 +83,8 @@ void Module::report_state() {
     status_.set_state(ModuleState::kPaused);
   } else if (*guard_ != '\0') {
     status_.set_state(ModuleState::kDegraded, guard_);
-  } else if (now_ns() - guard_since_ns_ > kGuardShownNs) {
+  } else if (status_.status().state != ModuleState::kDegraded ||
+             now_ns() - guard_since_ns_ > kGuardShownNs) {
     status_.set_state(ModuleState::kRunning);
   }
 }

@@ -97,13 +97,40 @@ struct ScriptedDevice {
   Quat rotation = Quat::Identity();  ///< `rotation_xyzw`
   std::vector<Move> moves;           ///< `moves`; ends holding the last point
 };
-/// Any outside process writes the pose on topic probe_input.
+/// The driver of a real device writes its pose on topic probe_input.
 struct TopicDevice {
   Vec3 start = Vec3::Zero();         ///< `start_m`: pose until the first sample
   Quat rotation = Quat::Identity();  ///< `rotation_xyzw`
 };
-using Device = std::variant<TrajectoryDevice, ScriptedDevice, TopicDevice>;
-///< keys `trajectory`, `scripted`, `topic`
+/// The mouse in the visualizer's window, which writes on topic probe_input, too; followed smoothly.
+struct MouseDevice {
+  Vec3 start = Vec3::Zero();         ///< `start_m`: pose until the first sample
+  Quat rotation = Quat::Identity();  ///< `rotation_xyzw`
+};
+/// A haptic device with the hand that holds it, by numbers (haptics/devices/emulated_device.h).
+struct EmulatedDevice {
+  enum class Kind { kTouch, kOmega };
+  struct Hand {
+    double mass = 0;                          ///< `mass_kg`, moved along [0 … 5]
+    double damping = 0;                       ///< `damping_n_s_per_m`, to its target [0 … 100]
+    double stiffness = 0;                     ///< `stiffness_n_per_m`, to its target [0 … 5000]
+    Vec3 push = Vec3::Zero();                 ///< `push_n`, constant, in W [-100 … 100]
+    std::vector<ScriptedDevice::Move> moves;  ///< `moves` of its target, which begins at the start
+  };
+  Kind kind = Kind::kTouch;            ///< `kind`: which sizes those below have that are absent
+  Vec3 start = Vec3::Zero();           ///< `start_m`
+  Quat rotation = Quat::Identity();    ///< `rotation_xyzw`, kept
+  std::optional<double> mass;          ///< `mass_kg` [0.01 … 10]
+  std::optional<double> damping;       ///< `damping_n_s_per_m` [0 … 100]
+  std::optional<double> max_force;     ///< `max_force_n`, of its motors [0.1 … 100]
+  std::optional<double> encoder_step;  ///< `encoder_step_m` [0 … 0.01]; 0: exact
+  double rate = 1000;                  ///< `rate_hz` of its own loop [100 … 10000]
+  double transport_delay = 0;          ///< `transport_delay_s`, each way [0 … 0.1]
+  Hand hand;
+};
+using Device =
+    std::variant<TrajectoryDevice, ScriptedDevice, TopicDevice, MouseDevice, EmulatedDevice>;
+///< keys `trajectory`, `scripted`, `topic`, `mouse`, `emulated`
 
 struct Probe {
   std::string name;  ///< unique

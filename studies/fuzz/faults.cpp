@@ -95,6 +95,7 @@ class FaultyDevice : public haptics::Device {
     }
     return sample;
   }
+  void feel(const RenderedForce& force) override { device_->feel(force); }
 
  private:
   std::unique_ptr<haptics::Device> device_;
@@ -122,12 +123,9 @@ void corrupt(Fault fault, Contacts& message) {
 }
 
 void corrupt(Fault fault, ContactModel& message) {
-  if (fault == Fault::kModelNotANumber) message.force.z() = kNaN;
-  if (fault == Fault::kModelHuge) {
-    message.force = Vec3(kHuge, kHuge, 0);
-    message.stiffness = Mat3::Identity() * kHuge;
-    message.touching = true;
-  }
+  if (fault == Fault::kModelNotANumber) message.growth = kNaN;
+  if (fault != Fault::kModelHuge) return;
+  for (LawRow& row : message.rows) row.force = kHuge * row.normal;
 }
 
 void tap_faults(const RandomScene& scene, bus::TappedBus& bus) {
@@ -143,8 +141,8 @@ std::unique_ptr<haptics::Device> faulty_device(const RandomScene& scene, std::ui
     return timed.probe != probe || timed.fault != Fault::kDeviceNotANumber;
   });
   return std::make_unique<FaultyDevice>(
-      haptics::make_device(scene.scene.probes[probe].device, warnings), std::move(faults),
-      1 / scene.scene.rates.deformation);
+      haptics::make_device(scene.scene.probes[probe].device, scene.scene.haptics, warnings),
+      std::move(faults), 1 / scene.scene.rates.deformation);
 }
 
 }  // namespace palpate::fuzz

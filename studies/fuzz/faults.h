@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "modules/bus/tap.h"
 #include "studies/fuzz/random_scene.h"
 

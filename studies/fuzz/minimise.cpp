@@ -62,6 +62,13 @@ void add_probe_changes(std::size_t i, bool several, std::vector<Change>& changes
     }
   });
   probe([](scene::Probe& p) {
+    const auto* held = std::get_if<scene::EmulatedDevice>(&p.device);
+    if (held) p.device = scene::ScriptedDevice{held->start, held->rotation, held->hand.moves};
+  });
+  probe([](scene::Probe& p) {
+    if (auto* held = std::get_if<scene::EmulatedDevice>(&p.device)) held->transport_delay = 0;
+  });
+  probe([](scene::Probe& p) {
     auto* way = std::get_if<scene::ScriptedDevice>(&p.device);
     if (way != nullptr && !way->moves.empty()) way->moves.pop_back();
   });

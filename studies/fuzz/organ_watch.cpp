@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deformation/contact/probe_contacts.h"
 #include "deformation/guard/state_guard.h"
 #include "modules/core/tolerances.h"
 #include "studies/fuzz/outcome.h"
@@ -14,7 +13,7 @@ namespace palpate::fuzz {
 namespace {
 
 /// Root mean square of the nodes' speeds beside their mean's: what moves them is no faster.
-constexpr double kShaking = deformation::kMaxProbeSpeed;  // [m/s]
+constexpr double kShaking = kMaxProbeSpeed;  // [m/s]
 
 void take_positions(const std::vector<float>& xyz, std::vector<Vec3>& out) {
   out.resize(xyz.size() / 3);

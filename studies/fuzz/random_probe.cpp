@@ -33,6 +33,27 @@ scene::ScriptedDevice random_way(RandomStream& random, const Vec3& center, doubl
   return way;
 }
 
+/// A device in a hand that follows `way`, or pushes towards the organ's middle.
+scene::EmulatedDevice held(RandomStream& random, const scene::ScriptedDevice& way,
+                           const Vec3& center) {
+  using Kind = scene::EmulatedDevice::Kind;
+  scene::EmulatedDevice device;
+  device.kind = random.chance(0.5) ? Kind::kTouch : Kind::kOmega;
+  device.start = way.start;
+  device.rotation = way.rotation;
+  device.rate = random.log_uniform(500, 4000);
+  if (random.chance(0.5)) device.transport_delay = random.uniform(0, 5e-3);
+  device.hand.mass = random.chance(0.5) ? 0 : random.uniform(0.05, 0.5);
+  if (random.chance(0.5)) {
+    device.hand.damping = random.log_uniform(0.5, 20);
+    device.hand.stiffness = random.log_uniform(10, 2000);
+    device.hand.moves = way.moves;
+  } else {
+    device.hand.push = random.log_uniform(0.05, 5) * (center - way.start).normalized();
+  }
+  return device;
+}
+
 /// Two plates meet in the organ's middle, but for a small gap.
 void add_plates(RandomStream& random, const Vec3& center, double size, RandomScene& scene) {
   const Vec3 axis = random.direction();
@@ -57,7 +78,9 @@ void add_probes(RandomStream& random, RandomScene& scene) {
   if (random.chance(0.1)) add_plates(random, center, size, scene);
   for (std::size_t i = probes.empty() ? 1 + random.below(3) : random.below(2); i > 0; --i) {
     const auto shape = scene::random_shape(random, size);
-    probes.push_back({"", shape, 0.1, random_way(random, center, size)});
+    const auto way = random_way(random, center, size);
+    probes.push_back({"", shape, 0.1, way});
+    if (random.chance(0.15)) probes.back().device = held(random, way, center);
   }
   for (std::size_t i = 0; i < probes.size(); ++i) {
     probes[i].name = fmt::format("probe_{}", i);

@@ -22,7 +22,7 @@ Sample sample_of(const session::InProcess& pipeline, const FarField& far_field, 
           nodes.volume,
           nodes.target_volume,
           nodes.pressure,
-          pipeline.contact_model(0).force.norm(),
+          pipeline.contact_model(0).force().norm(),
           far_field.displacement(nodes, pipeline.probe(0).pose.position)};
 }
 

@@ -78,9 +78,9 @@ Outcome run(const FigureOptions& options, const Case& method, report::Progress& 
     if (k > kIterations - kHeldIterations) outcome.held = std::max(outcome.held, std::abs(error));
     outcome.bulge = bulge(nodes, topology.surface_node_count);
     outcome.pressure = nodes.pressure;
-    outcome.force = pipeline.contact_model(1).force.norm();
+    outcome.force = pipeline.contact_model(1).force().norm();
     table.write_row({double(k), 1 + error, error, nodes.pressure,
-                     pipeline.contact_model(0).force.norm(), outcome.force, outcome.bulge});
+                     pipeline.contact_model(0).force().norm(), outcome.force, outcome.bulge});
     progress.at(k, kIterations, "iterations");
   }
   table.finish();

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "deformation/models.h"
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/models.h"
 #include "modules/scene/schema.h"
@@ -143,7 +143,7 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
   std::vector<Pose> poses;
   std::vector<std::string> warnings;
   for (const auto& probe : scene.probes) {
-    devices.push_back(haptics::make_device(probe.device, warnings));
+    devices.push_back(haptics::make_device(probe.device, scene.haptics, warnings));
     poses.push_back(devices.back()->read(0).pose);
   }
   rigs::PressedOrgan pressed(scene, shape, poses);

@@ -31,6 +31,13 @@ void check_plannable(const scene::Scene& scene) {
         "{}: key 'needs' asks for nothing; give force_error, surface_error_m or volume_error",
         file));
   }
+  for (std::size_t i = 0; i < scene.probes.size(); ++i) {
+    if (!std::holds_alternative<scene::EmulatedDevice>(scene.probes[i].device)) continue;
+    throw InputError(
+        fmt::format("{}: key 'probes[{}].device': a plan compares models under the same "
+                    "motion; 'emulated' yields to the force",
+                    file, i));
+  }
   const auto extension = scene.organs[0].mesh.file.extension();
   if (extension == ".msh" || extension == ".vtk") {
     throw InputError(

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/assets.h"
@@ -40,7 +40,7 @@ geometry::OrganShape solid_reference_shape(const scene::Scene& scene, double dur
   for (const auto& probe : scene.probes) {
     const double radius = geometry::tip_radius(scene::form_of(probe.shape));
     std::vector<std::string> warnings;
-    const auto device = haptics::make_device(probe.device, warnings);
+    const auto device = haptics::make_device(probe.device, scene.haptics, warnings);
     Vec3 last = Vec3::Constant(std::numeric_limits<double>::infinity());
     for (double time = 0; radius > 0 && time <= duration; time += 1 / kPathRate) {
       const Vec3 at = device->read(time).pose.position;

@@ -115,10 +115,7 @@ void PressedOrgan::settle(double longest) {
   }
 }
 
-Vec3 PressedOrgan::force(std::uint32_t probe) const {
-  const LocalLaw law = session_.world().local_law(probe);
-  return law.touching ? law.force : Vec3::Zero();
-}
+Vec3 PressedOrgan::force(std::uint32_t probe) const { return session_.world().force(probe); }
 
 Vec3 PressedOrgan::position(std::size_t node) const { return session_.world().positions(0)[node]; }
 

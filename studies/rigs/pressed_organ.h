@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "haptics/placed_device.h"
+#include "haptics/devices/placed_device.h"
 #include "palpate/session/in_process.h"
 
 namespace palpate::rigs {
@@ -38,6 +38,7 @@ class PressedOrgan {
   double period() const { return period_; }
   const Pose& pose(std::size_t probe) const { return poses_[probe]; }
   Vec3 force(std::uint32_t probe) const;  ///< on the probe in the last period [N]
+  LocalLaw law(std::uint32_t probe) const { return session_.world().local_law(probe); }
   // As deformation computes them: the wire's float32 is for others.
   Vec3 position(std::size_t node) const;       ///< now [m]
   Vec3 rest_position(std::size_t node) const;  ///< [m]

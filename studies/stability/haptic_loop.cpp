@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptics/devices/placed_device.h"
 #include "haptics/local_law.h"
-#include "haptics/placed_device.h"
 #include "modules/bus/tap.h"
 #include "modules/core/error.h"
 #include "palpate/session/in_process.h"
@@ -39,15 +39,17 @@ class WallStage final : public runtime::Stage {
         models_(bus.writer(bus::kContactModel)),
         stiffness_(stiffness) {
     model_.validity_radius = 0.05;
-    model_.stiffness(2, 2) = local_model ? stiffness : 0;
+    model_.rows.resize(1);
+    model_.compliance = {local_model ? 1 / stiffness : kSoftest};
+    model_.stiffness(2, 2) = 1 / model_.compliance[0];
   }
 
   runtime::Health cycle(const runtime::Cycle& now) override {
     while (states_.take(state_)) {
       const double z = state_.pose.position.z();
-      model_.touching = z < 0;
-      model_.anchor.z() = z;
-      model_.force.z() = std::max(0.0, -stiffness_ * z);
+      model_.anchor = state_.pose;
+      model_.rows[0].gap = std::max(0.0, z);
+      model_.rows[0].force.z() = std::max(0.0, -stiffness_ * z);
     }
     model_.header = now.header();
     models_.write(model_);
@@ -55,6 +57,7 @@ class WallStage final : public runtime::Stage {
   }
 
  private:
+  static constexpr double kSoftest = 1e6;  ///< of a bare force, which does not vary [m/N]
   bus::Reader<ProbeState> states_;
   bus::Writer<ContactModel> models_;
   ProbeState state_;
@@ -72,11 +75,10 @@ class BareLawStage final : public runtime::Stage {
         device_(device) {}
 
   runtime::Health cycle(const runtime::Cycle& now) override {
-    while (laws_.take(law_)) {
-    }
+    while (laws_.take(law_)) solver_.take(law_);
     state_.header = force_.header = now.header();
     state_.pose = device_.read(now.time()).pose;
-    force_.force = haptics::evaluate(law_, state_.pose.position).wrench.force;
+    force_.force = solver_.evaluate(state_.pose, 0).wrench.force;
     states_.write(state_);
     forces_.write(force_);
     return {};
@@ -87,6 +89,7 @@ class BareLawStage final : public runtime::Stage {
   bus::Writer<ProbeState> states_;
   bus::Writer<HapticForce> forces_;
   haptics::Device& device_;
+  haptics::LawSolver solver_;
   ContactModel law_;
   ProbeState state_;
   HapticForce force_;

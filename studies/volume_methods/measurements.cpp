@@ -200,7 +200,7 @@ VolumeErrors press_organ(const Method& method, const scene::Scene& scene, double
     const NodePositions& nodes = pipeline.node_positions(0);
     errors.held = std::abs(nodes.volume / nodes.target_volume - 1);
     errors.peak = std::max(errors.peak, errors.held);
-    errors.force = std::max(errors.force, pipeline.contact_model(0).force.norm());
+    errors.force = std::max(errors.force, pipeline.contact_model(0).force().norm());
     errors.diverged |= !std::isfinite(nodes.volume);
   }
   return errors;

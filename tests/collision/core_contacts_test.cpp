@@ -1,7 +1,9 @@
 #include "collision/core_contacts.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "collision/core_wall.h"
 #include "tests/collision/step_scene.h"
 
 namespace palpate::collision {
@@ -14,6 +16,14 @@ std::vector<FoundContact> find(CoreContacts& cores, const StepScene& scene, cons
   cores.begin_step();
   cores.find(scene.step, core, scene.triangles(), found);
   return found;
+}
+
+/// Of the last step.
+bool is_behind(CoreContacts& cores, std::uint32_t organ = 0, std::uint32_t core = 0) {
+  std::vector<std::uint32_t> held;
+  cores.begin_step();
+  cores.append_held(organ, held);
+  return std::find(held.begin(), held.end(), core) != held.end();
 }
 
 }  // namespace
@@ -34,11 +44,30 @@ TEST_CASE("core contacts: in front of a wall, one contact per triangle within th
   CHECK(gap == Approx(0.05).margin(1e-12));
 }
 
-TEST_CASE("core contacts: a core inside an organ that it was not seen entering touches nothing") {
-  // Oracle: invariant.
-  const StepScene scene(box_at({0, 0, 0}, {1, 1, 1}), Vec3::Zero());
+TEST_CASE(
+    "core contacts: a core inside an organ that it was not seen entering is held when asked") {
+  // Oracle: analytic; the nearest side of the box is 0.5 - 0.3 away, along x.
+  const StepScene scene(box_at({-0.3, 0.05, 0.1}, {1, 1, 1}), Vec3::Zero());
   CoreContacts cores;
   CHECK(find(cores, scene, kSphere).empty());
+  cores.begin_step();
+  CHECK(cores.hold_if_inside(scene.step, kSphere));
+  CHECK_FALSE(cores.hold_if_inside(scene.step, kSphere));  // it is held already
+  std::vector<std::uint32_t> wall;
+  cores.append_near_wall(scene.step, kSphere, wall);
+  CHECK_FALSE(wall.empty());
+  std::vector<FoundContact> found;
+  cores.find(scene.step, kSphere, scene.triangles(), found);
+  REQUIRE_FALSE(found.empty());
+  double gap = 0;
+  for (const FoundContact& c : found) gap = std::min(gap, c.gap);
+  CHECK(gap == Approx(-0.7).margin(1e-12));
+  CHECK(found.front().normal_P[0] == Approx(1).margin(1e-12));
+  CHECK(is_behind(cores));
+  const StepScene away(box_at({-1.3, 0, 0}, {1, 1, 1}), Vec3::Zero());
+  CoreContacts others;
+  others.begin_step();
+  CHECK_FALSE(others.hold_if_inside(away.step, kSphere));
 }
 
 TEST_CASE("core contacts: a wall crossed in the step pushes out the way the core came") {
@@ -54,26 +83,28 @@ TEST_CASE("core contacts: a wall crossed in the step pushes out the way the core
     CHECK(c.time_of_impact == Approx((3 - 0.7 - 0.5) / 3).margin(1e-6));
   }
   CHECK(gap == Approx(-1.2).margin(1e-12));
-  // Remembered at rest, with the wall's depth limit.
-  std::vector<std::uint32_t> remembered;
-  double depth_limit = 0;
+  // Remembered at rest.
   const StepScene rest(box_at({0, 0, 0.2}, {4, 4, 1}, 2), Vec3::Zero(), 0.1, 0.01);
   CHECK(find(cores, rest, kSphere).size() == found.size());
-  cores.begin_step();
-  cores.append_remembered(0, remembered, depth_limit);
-  CHECK_FALSE(remembered.empty());
-  CHECK(depth_limit == 10);
+  CHECK(is_behind(cores));
 }
 
-TEST_CASE("core contacts: deeper than believed, a wall is given up") {
-  // Oracle: analytic; 1.2 deep after a crossing believed to 1.3 or to 1.1, then at rest.
-  for (const double limit : {1.3, 1.1}) {
-    const auto box = box_at({0, 0, 0.2}, {4, 4, 1}, 2);
-    CoreContacts cores;
-    CHECK_FALSE(find(cores, StepScene(box, {0, 0, 3}, 0.1, limit), kSphere).empty());
-    const auto found = find(cores, StepScene(box, Vec3::Zero(), 0.1, limit), kSphere);
-    CHECK(found.empty() == (limit < 1.2));
+TEST_CASE("core contacts: inside, a wall is never given up, beyond the far side it is") {
+  // Oracle: the definition. Through the top of a box of height 1, deeper and deeper: 0.1 deep in
+  // each step's belief, 0.9 deep inside; then, believed to 2, out below: 1.8 deep and 3.5.
+  const auto box = [](double depth) { return box_at({0, 0, depth - 0.5}, {4, 4, 1}, 2); };
+  CoreContacts cores;
+  CHECK_FALSE(find(cores, StepScene(box(0.1), {0, 0, 0.2}, 0.1, 0.1), kSphere).empty());
+  for (const double depth : {0.3, 0.5, 0.7, 0.9}) {
+    const auto found = find(cores, StepScene(box(depth), {0, 0, 0.2}, 0.1, 0.1), kSphere);
+    REQUIRE_FALSE(found.empty());
+    double gap = 0;
+    for (const FoundContact& c : found) gap = std::min(gap, c.gap);
+    CHECK(gap == Approx(-depth - 0.5).margin(1e-12));
   }
+  CHECK_FALSE(find(cores, StepScene(box(0.95), {0, 0, 0.05}, 0.1, 2.0), kSphere).empty());
+  CHECK_FALSE(find(cores, StepScene(box(1.3), {0, 0, 0.35}, 0.1, 1.0), kSphere).empty());
+  CHECK(find(cores, StepScene(box(3), {0, 0, 1.7}, 0.1, 1.0), kSphere).empty());
 }
 
 TEST_CASE("core contacts: out again, the wall is in front and nothing is remembered") {
@@ -84,11 +115,7 @@ TEST_CASE("core contacts: out again, the wall is in front and nothing is remembe
       find(cores, StepScene(box_at({0, 0, -1.05}, {4, 4, 1}, 2), {0, 0, -1.25}), kSphere);
   REQUIRE_FALSE(found.empty());
   for (const FoundContact& c : found) CHECK(c.gap > 0);
-  std::vector<std::uint32_t> remembered;
-  double depth_limit = 0;
-  cores.begin_step();
-  cores.append_remembered(0, remembered, depth_limit);
-  CHECK(remembered.empty());
+  CHECK_FALSE(is_behind(cores));
 }
 
 TEST_CASE(
@@ -102,11 +129,7 @@ TEST_CASE(
     const auto found =
         find(cores, StepScene(box_at(Vec3(0, 0, 0.2) + way, {4, 4, 1}, 2), way), kSphere);
     CHECK(found.empty() == sideways);
-    std::vector<std::uint32_t> remembered;
-    double depth_limit = 0;
-    cores.begin_step();
-    cores.append_remembered(0, remembered, depth_limit);
-    CHECK(remembered.empty() == sideways);
+    CHECK(is_behind(cores) == !sideways);
   }
 }
 
@@ -114,21 +137,13 @@ TEST_CASE("core contacts: each core remembers for itself, and for each organ") {
   // Oracle: invariant.
   const StepScene scene(box_at({0, 0, 0.2}, {4, 4, 1}, 2), {0, 0, 3});
   CoreContacts cores;
-  find(cores, scene, kSphere);
-  cores.begin_step();
-  std::vector<std::uint32_t> own, of_other_core, of_other_organ;
-  cores.append_remembered(0, 0, own);
-  cores.append_remembered(0, 1, of_other_core);
-  cores.append_remembered(1, 0, of_other_organ);
-  CHECK_FALSE(own.empty());
-  CHECK(of_other_core.empty());
-  CHECK(of_other_organ.empty());
+  for (const auto& [organ, core] : {std::pair(0u, 0u), std::pair(0u, 1u), std::pair(1u, 0u)}) {
+    find(cores, scene, kSphere);
+    CHECK(is_behind(cores, organ, core) == (organ == 0 && core == 0));
+  }
   find(cores, scene, kSphere);
   cores.reset();
-  cores.begin_step();
-  own.clear();
-  cores.append_remembered(0, 0, own);
-  CHECK(own.empty());
+  CHECK_FALSE(is_behind(cores));
 }
 
 TEST_CASE("core contacts: the point of a sharp probe has no radius") {
@@ -145,6 +160,22 @@ TEST_CASE("core contacts: the point of a sharp probe has no radius") {
   REQUIRE(pierced.size() == 1);
   CHECK(pierced[0].gap == Approx(-0.1).margin(1e-12));
   CHECK((pierced[0].normal_P - Vec3::UnitZ()).norm() < 1e-12);
+}
+
+TEST_CASE("core contacts: the nearest wall pushes straight out") {
+  // Oracle: analytic; 0.2 below the middle of the box's top.
+  const StepScene scene(box_at({0.1, 0.2, -0.3}, {1, 1, 1}), Vec3::Zero());
+  std::vector<FoundContact> found;
+  for (const SweptTriangle& t : scene.triangles()) {
+    const CoreCandidate candidate(kSphere, t);
+    if (candidate.side < 0 && std::abs(candidate.pair.distance - 0.2) < 1e-12) {
+      append_nearest(scene.step, kSphere, candidate, found);
+    }
+  }
+  REQUIRE_FALSE(found.empty());
+  CHECK(found[0].gap == Approx(-0.7).margin(1e-12));
+  CHECK((found[0].normal_P - Vec3::UnitZ()).norm() < 1e-12);
+  CHECK((found[0].point_P - Vec3(0, 0, -0.5)).norm() < 1e-12);
 }
 
 }  // namespace palpate::collision

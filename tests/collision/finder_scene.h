@@ -32,6 +32,7 @@ inline Vec3 normal_W(const ContactSet& found, const Contact& c) {
 struct FinderScene {
   std::vector<geometry::TriangleSurface> organs;
   ContactFinder finder;
+  SearchReport report;  ///< of the last search
 
   FinderScene(std::vector<geometry::TriangleSurface> surfaces,
               std::vector<geometry::ProbeForm> probes)
@@ -46,7 +47,7 @@ struct FinderScene {
   }
   ContactSet find(const ProbeMotion& motion, double margin, std::size_t probe = 0) {
     ContactSet result;
-    finder.find(probe, motion, margin, kMostContacts, result);
+    report = finder.find(probe, motion, margin, kMostContacts, result);
     check(result, margin);
     return result;
   }

@@ -1,5 +1,6 @@
 #include "collision/stage.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "modules/bus/memory_bus.h"
@@ -101,4 +102,40 @@ TEST_CASE("collision stage: a probe that fell silent touches nothing, and its st
   runtime::Cycle now;
   now.now_ns = late;
   CHECK(std::string(stage.cycle(now).guard).find("no news of a probe") == 0);
+}
+
+TEST_CASE(
+    "collision stage: a finger first heard of inside touches at once, and its status says so") {
+  // Oracle: geometry; the finger's middle is 1 cm below the ball's top. Begun inside: at the start,
+  // after silence, after a jump of 9 cm in 4 ms. Not begun: moved in, at 2.5 m/s.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball();
+  std::int64_t now_ns = kMs;
+  const auto guard_at = [&](double height, std::int64_t after_ns) {
+    now_ns += after_ns;
+    session.move_finger(height, now_ns);
+    runtime::Cycle now;
+    now.now_ns = now_ns;
+    now.running = true;
+    const std::string guard = stage.cycle(now).guard;
+    while (session.contacts.take(session.newest)) {
+    }
+    const auto& found = session.newest.contacts;
+    const auto pushes = [](const Contact& c) { return c.gap < -0.015; };
+    CHECK(std::any_of(found.begin(), found.end(), pushes) == (height < 0.045));
+    return guard;
+  };
+  const std::string kBegun = "a probe was first heard of inside";
+  CHECK(guard_at(0.04, 0).find(kBegun) == 0);
+  CHECK(guard_at(0.04, 4 * kMs).empty());
+  CHECK(guard_at(0.04, ns_from_seconds(runtime::kInputStaleAfter) + 1).empty());
+  runtime::Cycle silent;
+  silent.now_ns = now_ns += ns_from_seconds(runtime::kInputStaleAfter) + 1;
+  CHECK(std::string(stage.cycle(silent).guard).find("no news") == 0);
+  CHECK(guard_at(0.04, 4 * kMs).find(kBegun) == 0);
+  CHECK(guard_at(0.05, 4 * kMs).empty());
+  CHECK(guard_at(0.04, 4 * kMs).empty());
+  CHECK(guard_at(0.13, 1000 * kMs / 25).empty());
+  CHECK(guard_at(0.04, 4 * kMs).find(kBegun) == 0);
 }

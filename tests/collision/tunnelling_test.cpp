@@ -161,14 +161,47 @@ TEST_CASE("tunnelling: an organ that springs over a resting probe has not swallo
   CHECK(deepest_gap(found) == Approx(0.02 - 0.004 - 0.03).margin(1e-9));
 }
 
-TEST_CASE("tunnelling: reset forgets the side") {
-  // Oracle: invariant; a probe first seen inside is not in contact.
+TEST_CASE("tunnelling: reset forgets the side: the nearest wall pushes out, and it is said") {
+  // Oracle: analytic; in through the top, the box's side at x = 0.05 is nearer.
   FinderScene scene(geometry::make_box({0.1, 0.1, 0.1}, 8), scene::SphereShape{0.006});
-  const Pose inside = at({0, 0, 0.04});
-  CHECK_FALSE(scene.find({at({0, 0, 0.06}), inside}, 0.002).contacts.empty());
-  CHECK_FALSE(scene.find({inside, inside}, 0.002).contacts.empty());
-  scene.finder.reset();
-  CHECK(scene.find({inside, inside}, 0.002).contacts.empty());
+  const Pose inside = at({0.045, 0, 0.03});
+  const auto nearest = [&](const ContactSet& found) {
+    REQUIRE_FALSE(found.contacts.empty());
+    const auto deepest =
+        std::min_element(found.contacts.begin(), found.contacts.end(),
+                         [](const Contact& a, const Contact& b) { return a.gap < b.gap; });
+    return normal_W(found, *deepest);
+  };
+  CHECK(nearest(scene.find({at({0.045, 0, 0.06}), inside}, 0.002))[2] == Approx(1));
+  CHECK(nearest(scene.find({inside, inside}, 0.002))[2] == Approx(1));
+  CHECK_FALSE(scene.report.begun_inside);
+  scene.finder.forget(0);
+  const ContactSet found = scene.find({inside, inside}, 0.002);
+  CHECK(scene.report.begun_inside);
+  CHECK(nearest(found)[0] == Approx(1));
+  CHECK(deepest_gap(found) == Approx(-0.011).margin(1e-12));
+  scene.find({inside, inside}, 0.002);
+  CHECK_FALSE(scene.report.begun_inside);
+}
+
+TEST_CASE("tunnelling: inside without contact is noticed and healed in the same search") {
+  // Oracle: by construction; an organ that vanished for a search comes back around the probe.
+  for (const auto& shape :
+       {scene::ProbeShape(scene::SphereShape{0.006}), scene::ProbeShape(scene::BoxShape{})}) {
+    FinderScene scene(geometry::make_box({0.1, 0.1, 0.1}, 8), shape);
+    const Pose above = at({0.003, 0.001, 0.07}), inside = at({0.003, 0.001, 0.03});
+    CHECK(scene.find({above, above}, 0.002).contacts.empty());
+    auto gone = scene.organs[0].nodes;
+    gone[0][0] = std::numeric_limits<double>::quiet_NaN();
+    scene.finder.update_organ(0, gone);
+    CHECK(scene.find({above, inside}, 0.002).contacts.empty());
+    scene.update();
+    const ContactSet found = scene.find({inside, inside}, 0.002);
+    CHECK(scene.report.was_lost);
+    CHECK(deepest_gap(found) < -0.01);
+    scene.find({inside, inside}, 0.002);
+    CHECK_FALSE(scene.report.was_lost);
+  }
 }
 
 TEST_CASE("tunnelling: going round a sharp corner is not going through it") {

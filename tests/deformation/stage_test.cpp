@@ -48,19 +48,32 @@ TEST_CASE("deformation stage: says its organs' surfaces when built, and again af
 
 TEST_CASE(
     "deformation stage: advances by what the cycle may take on, and only while the session "
-    "runs, and speaks both times") {
+    "runs, and speaks of the organs both times") {
   // Oracle: the world's own time.
   Session session;
   session.cycle(false);
   CHECK(session.stage.world().time() == 0);
   CHECK(session.nodes.take(session.positions));
-  CHECK(session.models.take(session.model));
   const auto health = session.cycle(true);
   CHECK(session.stage.world().time() == kPeriod);
   CHECK(session.nodes.take(session.positions));
   CHECK(session.positions.header.sim_time_ns == 4'000'000);
   CHECK(health.least_advance > 0);
   CHECK(health.least_advance <= kPeriod);
+}
+
+TEST_CASE("deformation stage: a law is given by a cycle that advances, not by one that waits") {
+  // Oracle: the stated rule, by counting.
+  Session session;
+  session.cycle(false);
+  CHECK_FALSE(session.models.take(session.model));
+  session.cycle(true);
+  CHECK(session.models.take(session.model));
+  for (int i = 0; i < 10; ++i) session.cycle(false);
+  CHECK_FALSE(session.models.take(session.model));
+  CHECK(session.nodes.take(session.positions));
+  session.cycle(true);
+  CHECK(session.models.take(session.model));
 }
 
 TEST_CASE("deformation stage: probes that nobody speaks for touch nothing, and it says so") {

@@ -71,7 +71,7 @@ TEST_CASE("dead collision: contacts are dropped, the force ends, and started aga
   session.kill("collision");
   const std::int64_t killed_ns = runtime::monotonic_now_ns();
   REQUIRE(session.wait(
-      [](const Heard& heard) { return force_is_zero(heard) && !heard.model.touching; }));
+      [](const Heard& heard) { return force_is_zero(heard) && !heard.model.touching(); }));
   CHECK(seconds_between(killed_ns, session.heard().force.header.source_time_ns) <
         0.05 + 0.1 + kSlack);
   CHECK(session.wait([](const Heard& heard) {
@@ -88,8 +88,9 @@ TEST_CASE("dead haptics: the tissue is not pushed by a finger that nobody moves"
   REQUIRE(session.start());
   REQUIRE(session.press(0.05));
   session.kill("haptics");
-  REQUIRE(session.wait(
-      [](const Heard& heard) { return !heard.model.touching && heard.contacts.contacts.empty(); }));
+  REQUIRE(session.wait([](const Heard& heard) {
+    return !heard.model.touching() && heard.contacts.contacts.empty();
+  }));
   CHECK(session.wait([](const Heard& heard) { return heard.nodes.kinetic_energy < 1e-8; }));
   session.start_module("haptics");  // begins at its start, is driven back, presses again
   CHECK(session.wait([&](const Heard& heard) {

@@ -1,10 +1,11 @@
 // The haptic loop's body allocates nothing: every operator new of its thread is counted.
 #include <catch2/catch.hpp>
 
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "haptics/haptic_renderer.h"
 #include "tests/counted_allocations.h"
 #include "tests/haptics/temporary_file.h"
+#include "tests/haptics/wall_law.h"
 
 using namespace palpate;
 using namespace palpate::haptics;
@@ -15,23 +16,29 @@ namespace {
 /// Allocations of 10,000 ticks of `device` and a renderer fed at 250 Hz, bad models among them.
 std::size_t allocations_of_ticks(Device& device) {
   HapticRenderer renderer({}, 1e-3);
-  auto* topic = dynamic_cast<TopicDevice*>(&device);
-  LocalLaw model;
-  model.touching = true;
-  model.force = Vec3(0, 0, 1);
-  model.stiffness = 200 * Mat3::Identity();
-  model.validity_radius = 0.01;
-  Pose commanded;
+  auto* outside = dynamic_cast<OutsideDevice*>(&device);
+  LocalLaw model = testing::wall_law(Vec3(0, 0, -0.005), 200);
+  model.rows.resize(kMaxLawRows, model.rows[0]);
+  model.compliance.clear();
+  for (std::size_t i = 0; i < kMaxLawRows; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) model.compliance.push_back(i == j ? 0.005 : 0.001);
+  }
+  LocalLaw few = testing::wall_law(Vec3(0, 0, -0.005), 200);
+  DeviceSample said;
   RenderedForce out;
   const std::size_t before = allocations();
   for (int i = 0; i < 10'000; ++i) {
     const double time = 1e-3 * i;
-    model.anchor = Vec3(0, 0, 1e-4 * (i % 100));
-    model.force.x() = i % 500 == 0 ? std::nan("") : 0;
-    if (i % 4 == 0 && i % 2000 < 1000) renderer.update_law(model, time);  // stale in between
-    commanded.position.z() = 1e-4 * (i % 100);
-    if (topic && i % 16 == 0) topic->command(commanded, 0);
+    model.anchor.position = Vec3(0, 0, 1e-4 * (i % 100));
+    model.rows[0].force.x() = i % 500 == 0 ? std::nan("") : 0;
+    LocalLaw& law = i % 3 == 0 ? few : model;  // of other sizes in turn
+    law.anchor = model.anchor;
+    if (i % 4 == 0 && i % 2000 < 1000) renderer.update_law(law, time);  // stale in between
+    said.pose.position.z() = 1e-4 * (i % 100);
+    const std::int64_t now_ns = std::int64_t{1'000'000} * i;
+    if (outside && i % 16 == 0 && i % 3000 < 2000) outside->hear(said, now_ns, now_ns);
     renderer.tick(time, device.read(time), out);
+    device.feel(out);
   }
   return allocations() - before;
 }
@@ -57,7 +64,9 @@ TEST_CASE("allocation: 10,000 ticks of each device allocate nothing") {
   scene::ScriptedDevice script;
   script.moves = {{Vec3(0, 0, 0.01), 2.0}, {std::nullopt, 1.0}, {Vec3(0, 0, 0), 2.0}};
   std::vector<std::string> warnings;
-  CHECK(allocations_of_ticks(*make_device(trajectory, warnings)) == 0);
-  CHECK(allocations_of_ticks(*make_device(script, warnings)) == 0);
-  CHECK(allocations_of_ticks(*make_device(scene::TopicDevice{}, warnings)) == 0);
+  CHECK(allocations_of_ticks(*make_device(trajectory, {}, warnings)) == 0);
+  CHECK(allocations_of_ticks(*make_device(script, {}, warnings)) == 0);
+  CHECK(allocations_of_ticks(*make_device(scene::TopicDevice{}, {}, warnings)) == 0);
+  CHECK(allocations_of_ticks(*make_device(scene::MouseDevice{}, {}, warnings)) == 0);
+  CHECK(allocations_of_ticks(*make_device(scene::EmulatedDevice{}, {}, warnings)) == 0);
 }

@@ -13,17 +13,31 @@ namespace {
 /// Usable now and then, else with anything anywhere.
 LocalLaw any_model(HostileNumbers& numbers) {
   LocalLaw model;
-  model.touching = numbers.below(8) != 0;
-  model.anchor = 0.01 * numbers.vector();
-  model.force = numbers.vector();
-  model.torque = numbers.vector();
-  const Vec3 a = 10 * numbers.vector();
-  model.stiffness = a * a.transpose();
-  if (numbers.below(10) == 0) model.stiffness.row(1) = numbers.vector();
-  const Vec3 direction = numbers.vector();
-  model.normal = numbers.below(10) == 0 ? direction : direction.stableNormalized();
-  model.friction_coefficient = numbers.below(10) == 0 ? numbers.number() : 0.3;
-  model.validity_radius = numbers.below(10) == 0 ? numbers.number() : 0.005;
+  const auto now_and_then = [&](double usual) {
+    return numbers.below(20) == 0 ? numbers.number() : usual;
+  };
+  model.anchor.position = 0.01 * numbers.vector();
+  model.anchor_age = now_and_then(0.001);
+  model.period = now_and_then(0.004);
+  model.growth = now_and_then(10);
+  model.friction_coefficient = now_and_then(numbers.below(2) == 0 ? 0 : 0.3);
+  model.validity_radius = now_and_then(0.005);
+  model.rows.resize(numbers.below(4));
+  for (LawRow& row : model.rows) {
+    const Vec3 direction = numbers.vector();
+    row.normal = numbers.below(20) == 0 ? direction : direction.stableNormalized();
+    row.point_P = 0.01 * numbers.vector();
+    row.gap = now_and_then(0);
+    row.radius = now_and_then(numbers.below(2) == 0 ? 0 : 0.008);
+    row.force = std::abs(numbers.number()) * row.normal;
+    row.velocity = 0.1 * numbers.vector();
+  }
+  const std::size_t size = model.directions() * model.rows.size();
+  for (std::size_t i = 0; i < size; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      model.compliance.push_back(now_and_then(i == j ? 0.005 : 0.001));
+    }
+  }
   return model;
 }
 
@@ -47,6 +61,7 @@ TEST_CASE("hostile input: force, torque and their steps stay within the limits, 
     DeviceSample device;
     device.pose.position = 0.01 * numbers.vector();
     device.twist.linear = 0.1 * numbers.vector();
+    if (numbers.below(2) == 0) device.delay = std::abs(numbers.number());
     renderer.tick(numbers.below(100) == 0 ? numbers.number() : time, device, after);
     REQUIRE(after.force.allFinite());
     REQUIRE(after.torque.allFinite());

@@ -5,21 +5,26 @@
 
 using namespace palpate;
 using haptics::Passivity;
+using haptics::Wrench;
 
 namespace {
 
 constexpr double kT = 1e-3;
 constexpr double kPlenty = 1;  ///< returnable energy that bounds nothing [J]
 
+Pose at(double z) { return {Vec3(0, 0, z), Quat::Identity()}; }
+Wrench force(double x, double y, double z) { return {Vec3(x, y, z), Vec3::Zero()}; }
+Twist moving(double x, double y, double z) { return {Vec3(x, y, z), Vec3::Zero()}; }
+
 }  // namespace
 
 TEST_CASE("passivity: the observed energy is the sum of force held times motion made") {
   // Oracle: analytic. Pressing 10 steps of 1 mm against 2 N puts in 20 mJ; b = 0.5 adds b dx²/T.
   Passivity passivity(0.5, kT);
-  passivity.observe(Vec3::Zero(), kPlenty);
+  passivity.observe(at(0), kPlenty);
   for (int i = 1; i <= 10; ++i) {
-    passivity.held(Vec3(0, 0, 2));
-    passivity.observe(Vec3(0, 0, -0.001 * i), kPlenty);
+    passivity.held(force(0, 0, 2));
+    passivity.observe(at(-0.001 * i), kPlenty);
   }
   CHECK(passivity.energy() == Approx(0.020 + 10 * 0.5 * 1e-6 / kT));
 }
@@ -27,72 +32,87 @@ TEST_CASE("passivity: the observed energy is the sum of force held times motion 
 TEST_CASE("passivity: a force that takes in energy, or returns what was put in, is left alone") {
   // Oracle: identity, bit for bit.
   Passivity passivity(0, kT);
-  const Vec3 force(0, 0, 2);
-  passivity.observe(Vec3::Zero(), kPlenty);
-  CHECK(passivity.controlled(force, Vec3(0, 0, -0.1)) == force);
-  passivity.held(force);
-  passivity.observe(Vec3(0, 0, -0.001), kPlenty);                 // 2 mJ in
-  CHECK(passivity.controlled(force, Vec3(0, 0, 0.5)) == force);   // 1 mJ out
-  CHECK(passivity.controlled(force, Vec3(0, 0, 0.99)) == force);  // 1.98 mJ out
+  const Wrench pushed = force(0, 0, 2);
+  passivity.observe(at(0), kPlenty);
+  CHECK(passivity.controlled(pushed, moving(0, 0, -0.1)) == pushed);
+  passivity.held(pushed);
+  passivity.observe(at(-0.001), kPlenty);                             // 2 mJ in
+  CHECK(passivity.controlled(pushed, moving(0, 0, 0.5)) == pushed);   // 1 mJ out
+  CHECK(passivity.controlled(pushed, moving(0, 0, 0.99)) == pushed);  // 1.98 mJ out
 }
 
 TEST_CASE("passivity: a push that would generate energy is cut to what brings E to zero") {
   // Oracle: analytic, E + T(−f v) = 0 gives f = E/(T v) = 2 mJ/(1 ms · 2 m/s) = 1 N.
   Passivity passivity(0, kT);
-  passivity.observe(Vec3::Zero(), kPlenty);
-  passivity.held(Vec3(0, 0, 2));
-  passivity.observe(Vec3(0, 0, -0.001), kPlenty);
-  const Vec3 cut = passivity.controlled(Vec3(0.5, 0, 2), Vec3(0, 0, 2));
-  CHECK((cut - Vec3(0.5, 0, 1)).norm() < 1e-12);  // across the motion nothing changes
+  passivity.observe(at(0), kPlenty);
+  passivity.held(force(0, 0, 2));
+  passivity.observe(at(-0.001), kPlenty);
+  const Wrench cut = passivity.controlled(force(0.5, 0, 2), moving(0, 0, 2));
+  CHECK((cut.force - Vec3(0.5, 0, 1)).norm() < 1e-12);  // across the motion nothing changes
 }
 
 TEST_CASE("passivity: the device's damping pays for that much generated energy") {
   // Oracle: analytic. b v = 0.2 · 0.5 = 0.1 N may be pushed for nothing.
   Passivity passivity(0.2, kT);
-  passivity.observe(Vec3::Zero(), kPlenty);
-  const Vec3 velocity(0.5, 0, 0);
-  CHECK(passivity.controlled(Vec3(0.0999, 0, 0), velocity) == Vec3(0.0999, 0, 0));
-  CHECK((passivity.controlled(Vec3(0.3, 0, 0), velocity) - Vec3(0.1, 0, 0)).norm() < 1e-12);
+  passivity.observe(at(0), kPlenty);
+  const Twist twist = moving(0.5, 0, 0);
+  CHECK(passivity.controlled(force(0.0999, 0, 0), twist) == force(0.0999, 0, 0));
+  const Wrench cut = passivity.controlled(force(0.3, 0, 0), twist);
+  CHECK((cut.force - Vec3(0.1, 0, 0)).norm() < 1e-12);
 }
 
 TEST_CASE("passivity: debt is paid back by damping of at most the stated size") {
   // Oracle: analytic. 8 mJ generated; at 0.1 m/s a full repayment in a tick would take 80 N.
   Passivity passivity(0, kT);
-  passivity.observe(Vec3::Zero(), kPlenty);
-  passivity.held(Vec3(0, 0, 2));
-  passivity.observe(Vec3(0, 0, 0.004), kPlenty);
+  passivity.observe(at(0), kPlenty);
+  passivity.held(force(0, 0, 2));
+  passivity.observe(at(0.004), kPlenty);
   REQUIRE(passivity.energy() == Approx(-0.008));
-  const Vec3 velocity(0, 0, 0.1);
+  const Twist twist = moving(0, 0, 0.1);
   const double damping = Passivity::kMaxAddedDamping * 0.1;
-  CHECK(passivity.controlled(Vec3::Zero(), velocity).z() == Approx(-damping));
-  CHECK(passivity.controlled(Vec3(0, 0, 2), velocity).z() == Approx(-damping));
+  CHECK(passivity.controlled({}, twist).force.z() == Approx(-damping));
+  CHECK(passivity.controlled(force(0, 0, 2), twist).force.z() == Approx(-damping));
   // Against the motion the force already takes energy in; damping comes on top.
-  CHECK(passivity.controlled(Vec3(0, 0, -1), velocity).z() == Approx(-1 - damping));
-  CHECK(passivity.controlled(Vec3(0, 0, 2), Vec3::Zero()) == Vec3(0, 0, 2));
+  CHECK(passivity.controlled(force(0, 0, -1), twist).force.z() == Approx(-1 - damping));
+  CHECK(passivity.controlled(force(0, 0, 2), {}) == force(0, 0, 2));
 }
 
 TEST_CASE("passivity: energy is bounded by what the contact can return, and by the largest debt") {
   // Oracle: the stated bounds.
   Passivity passivity(0, kT);
-  passivity.observe(Vec3::Zero(), kPlenty);
-  passivity.held(Vec3(0, 0, 2));
-  passivity.observe(Vec3(0, 0, -1), 0.003);
-  CHECK(passivity.energy() == 0.006);
-  passivity.observe(Vec3(0, 0, 1), 0.003);
+  passivity.observe(at(0), kPlenty);
+  passivity.held(force(0, 0, 2));
+  passivity.observe(at(-1), 0.003);
+  CHECK(passivity.energy() == 0.003);
+  passivity.observe(at(1), 0.003);
   CHECK(passivity.energy() == -Passivity::kMaxDebt);
   passivity.clear();
   CHECK(passivity.energy() == 0);
-  passivity.observe(Vec3(0, 0, 5), 0.003);  // the way since the last position is not known
+  passivity.observe(at(5), 0.003);  // the way since the last position is not known
   CHECK(passivity.energy() == 0);
+}
+
+TEST_CASE("passivity: a turn against a torque counts, and a torque that leaks is cut") {
+  // Oracle: analytic. 0.02 N·m turned back by 0.1 rad takes in 2 mJ; at 4 rad/s, that is 0.4 m/s at
+  // the arm, it may give back 2 mJ/(1 ms · 4 rad/s) = 0.5 N·m in a tick, not 0.6.
+  Passivity passivity(0, kT);
+  passivity.observe(at(0), kPlenty);
+  passivity.held({Vec3::Zero(), Vec3(0, 0.02, 0)});
+  passivity.observe({Vec3::Zero(), Quat(Eigen::AngleAxisd(-0.1, Vec3::UnitY()))}, kPlenty);
+  CHECK(passivity.energy() == Approx(0.002));
+  const Twist turning{Vec3::Zero(), Vec3(0, 4, 0)};
+  const Wrench small{Vec3::Zero(), Vec3(0, 0.5, 0)}, large{Vec3::Zero(), Vec3(0, 0.6, 0)};
+  CHECK(passivity.controlled(small, turning) == small);
+  CHECK(passivity.controlled(large, turning).torque.y() == Approx(0.5));
 }
 
 TEST_CASE("passivity: motions too large for a number leave the energy as it was") {
   // Oracle: invariant, E stays finite.
   Passivity passivity(0.2, kT);
-  passivity.held(Vec3(1, 1, 1));
-  passivity.observe(Vec3::Zero(), kPlenty);
-  passivity.observe(Vec3(1e308, 0, 0), kPlenty);
-  passivity.observe(Vec3(-1e308, 0, 0), kPlenty);
+  passivity.held(force(1, 1, 1));
+  passivity.observe(at(0), kPlenty);
+  passivity.observe({Vec3(1e308, 0, 0), Quat::Identity()}, kPlenty);
+  passivity.observe({Vec3(-1e308, 0, 0), Quat::Identity()}, kPlenty);
   CHECK(passivity.energy() == 0);
-  CHECK(passivity.controlled(Vec3(1, 0, 0), Vec3(1e308, 1e308, 1e308)).allFinite());
+  CHECK(passivity.controlled(force(1, 0, 0), moving(1e308, 1e308, 1e308)).is_finite());
 }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/memory_bus.h"
+#include "tests/haptics/wall_law.h"
 
 using namespace palpate;
 using haptics::HapticsStage;
@@ -22,7 +23,9 @@ struct Session {
   ProbeState state;
   HapticForce force;
 
-  Session() { scene.probes.push_back({"finger", scene::SphereShape{}, 0.1, scene::TopicDevice{}}); }
+  explicit Session(const scene::Device& device = scene::MouseDevice{}) {
+    scene.probes.push_back({"finger", scene::SphereShape{}, 0.1, device});
+  }
 
   runtime::Health tick(HapticsStage& stage, std::int64_t now_ns) {
     runtime::Cycle now;
@@ -34,13 +37,20 @@ struct Session {
     return health;
   }
 
+  /// The driver of the first probe speaks.
+  void drive(std::int64_t now_ns, const Vec3& position) {
+    ProbeState input;
+    input.header.source_time_ns = now_ns;
+    input.pose.position = position;
+    REQUIRE(inputs.write(input));
+  }
+
   /// A wall below the origin that pushes up with 1 N there.
   void push(std::int64_t now_ns) {
     ContactModel model;
     model.header.source_time_ns = now_ns;
-    model.touching = true;
-    model.force = Vec3(0, 0, 1);
-    model.validity_radius = 0.01;
+    static_cast<LocalLaw&>(model) = testing::wall_law(Vec3(0, 0, -0.005), 200);
+    model.anchor.position.setZero();
     REQUIRE(models.write(model));
   }
 };
@@ -94,4 +104,114 @@ TEST_CASE("haptics stage: a probe driven from outside goes where it is told, oth
   }
   CHECK(x[0] == Approx(0.01).margin(1e-6));
   CHECK(x[1] == 0.1);
+}
+
+TEST_CASE("haptics stage: a real device is where its driver said, at the same tick") {
+  // Oracle: the samples; the mouse test above is the one that is smoothed.
+  Session session{scene::TopicDevice{}};
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  for (std::int64_t t = 1; t <= 50; ++t) {
+    const Vec3 position(1e-3 * static_cast<double>(t), 0, 0);
+    session.drive(t * kMs, position);
+    session.tick(stage, t * kMs);
+    CHECK(session.state.pose.position == position);
+  }
+}
+
+TEST_CASE("haptics stage: without a driver there is no force, and the status names the probe") {
+  // Oracle: the stated rule.
+  Session session{scene::TopicDevice{}};
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  for (std::int64_t t = 1; t <= 20; ++t) {
+    session.push(t * kMs);
+    const auto health = session.tick(stage, t * kMs);
+    CHECK(session.force.force.norm() == 0);
+    CHECK((session.force.limits & kDriverSilent) != 0);
+    CHECK(std::string(health.guard).find("probe 'finger': its driver is silent") == 0);
+  }
+}
+
+TEST_CASE("haptics stage: a driver that falls silent is let go, and comes back with a ramp") {
+  // Oracle: stale_after + fade_time = 0.1 s after its last word; no step over the slew limit; back
+  // to the law's 1 N within fade_time. The law is fresh all the time; the driver's clock is its
+  // own, and after the silence another one.
+  Session session{scene::TopicDevice{}};
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  double before = 0;
+  const auto step = [&](std::int64_t t, bool speaks, std::int64_t stamp_ns) {
+    session.push(t * kMs);
+    if (speaks) session.drive(stamp_ns, Vec3::Zero());
+    const auto health = session.tick(stage, t * kMs);
+    const double now = session.force.force.norm();
+    CHECK(std::abs(now - before) <= 0.2 + 1e-12);
+    before = now;
+    return health;
+  };
+  for (std::int64_t t = 1; t <= 100; ++t) step(t, true, 77'000 * kMs + t * kMs);
+  CHECK(before == Approx(1));
+  for (std::int64_t t = 101; t <= 150; ++t) step(t, false, 0);
+  CHECK(before == Approx(1));
+  runtime::Health health;
+  for (std::int64_t t = 151; t <= 200; ++t) health = step(t, false, 0);
+  CHECK(before == Approx(0).margin(1e-12));
+  CHECK(std::string(health.guard).find("finger") != std::string::npos);
+  for (std::int64_t t = 201; t <= 300; ++t) step(t, false, 0);
+  for (std::int64_t t = 301; t <= 310; ++t) step(t, true, t * kMs - 250 * kMs);
+  CHECK(before == Approx(10 / 50.0));
+  for (std::int64_t t = 311; t <= 351; ++t) health = step(t, true, t * kMs - 250 * kMs);
+  CHECK(before == Approx(1));
+  CHECK(std::string(health.guard).empty());
+}
+
+TEST_CASE("haptics stage: a refused sample is reported by the probe that it names") {
+  // Oracle: the bit and the text; a stamp that goes back.
+  Session session{scene::TopicDevice{}};
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  session.drive(5 * kMs, Vec3::Zero());
+  session.tick(stage, 5 * kMs);
+  for (std::int64_t t = 6; t < 80; ++t) {
+    session.drive(t * kMs, Vec3::Zero());
+    session.tick(stage, t * kMs);
+  }
+  session.drive(70 * kMs, Vec3::Zero());
+  const auto health = session.tick(stage, 80 * kMs);
+  CHECK(session.force.limits == kPoseRefused);
+  CHECK(std::string(health.guard).find("probe 'finger': a sample") == 0);
+}
+
+TEST_CASE("haptics stage: a reset lets go within the slew limit") {
+  // Oracle: 1 N at 0.2 N a tick, five ticks.
+  Session session;
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  for (std::int64_t t = 1; t <= 20; ++t) {
+    session.push(t * kMs);
+    session.tick(stage, t * kMs);
+  }
+  for (std::int64_t i = 1; i <= 6; ++i) {
+    runtime::Cycle now;
+    now.now_ns = (20 + i) * kMs;
+    now.reset = i == 1;
+    stage.cycle(now);
+    REQUIRE(session.forces.take(session.force));
+    CHECK(session.force.force.z() == Approx(std::max(0.0, 1 - 0.2 * double(i))).margin(1e-12));
+  }
+}
+
+TEST_CASE("haptics stage: while the session is paused the law grows stale and the force fades") {
+  // Oracle: stale_after + fade_time by the clock of source times; session time stands still.
+  Session session;
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  for (std::int64_t t = 1; t <= 20; ++t) {
+    session.push(t * kMs);
+    session.tick(stage, t * kMs);
+  }
+  for (std::int64_t t = 21; t <= 130; ++t) {
+    runtime::Cycle now;
+    now.sim_time_ns = 20 * kMs;
+    now.now_ns = t * kMs;
+    stage.cycle(now);
+    REQUIRE(session.forces.take(session.force));
+    if (t <= 70) CHECK(session.force.force.z() == Approx(1));
+    if (t >= 120) CHECK(session.force.force.norm() < 1e-12);
+  }
 }

@@ -18,7 +18,7 @@ inline constexpr double kFingerPressing = 0.05;  // height at which it is 1 cm d
 /// Files of the scene, as long as this object lives.
 class BallScene {
  public:
-  explicit BallScene(const std::string& device = "topic: {start_m: [0, 0, 0.09]}",
+  explicit BallScene(const std::string& device = "mouse: {start_m: [0, 0, 0.09]}",
                      const std::string& more = "") {
     geometry::write_surface(geometry::make_ball(kBallRadius, 3), files_.folder() / "ball.ply");
     file_ = files_.folder() / "press.yaml";

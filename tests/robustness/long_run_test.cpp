@@ -49,7 +49,7 @@ Round press_once(session::InProcess& pipeline, int index) {
   Round round;
   pipeline.run_until(kRound * index + 2 * kPress - 1e-3);
   const NodePositions& nodes = pipeline.node_positions(0);
-  round.force = pipeline.contact_model(0).force.norm();
+  round.force = pipeline.contact_model(0).force().norm();
   round.pressed_energy = nodes.elastic_energy;
   round.pressed = nodes.positions;
   round.volume = volume_error(nodes);

@@ -50,8 +50,11 @@ struct Exit {
     deformation::write_node_positions(world, 0, nodes);
     model = deformation::contact_model_message(world, 0);
     bool finite = std::isfinite(nodes.pressure) && std::isfinite(nodes.volume) &&
-                  model.force.allFinite() && model.torque.allFinite() &&
-                  model.stiffness.allFinite() && std::abs(model.normal.norm() - 1) < 1e-9;
+                  model.force().allFinite() && model.torque().allFinite() &&
+                  model.stiffness.allFinite();
+    for (const LawRow& row : model.rows) {
+      finite &= std::abs(row.normal.norm() - 1) < 1e-9 && row.velocity.allFinite();
+    }
     for (const float x : nodes.positions) finite &= std::isfinite(x);
     REQUIRE(finite);
     renderer.update_law(model, time);

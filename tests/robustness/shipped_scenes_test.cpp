@@ -26,7 +26,7 @@ TEST_CASE("shipped scenes: no organ is put back and no step shortened") {
     double force = 0;
     while (pipeline.time() < (large ? 3.5 : 8.0)) {
       pipeline.tick();
-      force = std::max(force, pipeline.contact_model(0).force.norm());
+      force = std::max(force, pipeline.contact_model(0).force().norm());
       for (std::size_t organ = 0; organ < usual.size(); ++organ) {
         REQUIRE(pipeline.world().substeps(organ, period) == usual[organ]);
       }

@@ -27,10 +27,10 @@ struct Witness {
               nodes.target_volume >= 0;
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       model = deformation::contact_model_message(world, probe);
-      finite &= model.force.allFinite() && model.torque.allFinite() &&
-                model.stiffness.allFinite() && model.anchor.allFinite() &&
-                model.normal.allFinite() && std::isfinite(model.validity_radius);
-      largest_force = std::max(largest_force, model.force.norm());
+      finite &= model.force().allFinite() && model.torque().allFinite() &&
+                model.stiffness.allFinite() && model.anchor.position.allFinite() &&
+                std::isfinite(model.growth) && std::isfinite(model.validity_radius);
+      largest_force = std::max(largest_force, model.force().norm());
     }
     largest_pressure = std::max(largest_pressure, std::abs(nodes.pressure));
     least_volume = std::min(least_volume, nodes.volume);

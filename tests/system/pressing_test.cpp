@@ -21,7 +21,7 @@ double largest_motion(const std::vector<float>& now, const std::vector<float>& t
 
 /// Force of a contact model at a probe position, without its friction cone.
 Vec3 force_at(const ContactModel& model, const Vec3& position) {
-  return model.force + model.stiffness * (model.anchor - position);
+  return model.force() + model.stiffness * (model.anchor.position - position);
 }
 
 }  // namespace
@@ -65,18 +65,18 @@ TEST_CASE("pressing: at rest the rendered force is the tissue's, within 1 %") {
   Vec3 steady = Vec3::Zero();      // the model's force since…
   std::uint64_t steady_since = 0;  // …this sample
   const bool agreed = session.wait([&](const Heard& heard) {
-    if ((heard.model.force - steady).norm() > 1e-3 * steady.norm()) {
-      steady = heard.model.force;
+    if ((heard.model.force() - steady).norm() > 1e-3 * steady.norm()) {
+      steady = heard.model.force();
       steady_since = heard.model.header.sequence;
     }
     const bool at_rest = heard.model.header.sequence > steady_since + 100 &&
                          std::abs(heard.probe.pose.position.z() - kFingerPressing) < 1e-5;
     const Vec3 reaction = force_at(heard.model, heard.probe.pose.position);
     difference = (heard.force.force - reaction).norm() / reaction.norm();
-    return at_rest && heard.model.touching && difference < 0.01;
+    return at_rest && heard.model.touching() && difference < 0.01;
   });
   INFO("difference " << difference << ", haptic " << session.heard().force.force.transpose()
-                     << ", model " << session.heard().model.force.transpose() << ", kinetic "
+                     << ", model " << session.heard().model.force().transpose() << ", kinetic "
                      << session.heard().nodes.kinetic_energy << ", limits "
                      << session.heard().force.limits << ", nodes of "
                      << 1e-9 * double(session.heard().nodes.header.sim_time_ns) << " s, model of "

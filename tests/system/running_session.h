@@ -1,6 +1,7 @@
 // The real processes of a scene, with a test in the launcher's place.
 #pragma once
 
+#include <algorithm>
 #include <csignal>
 #include <map>
 #include <memory>
@@ -25,6 +26,19 @@ struct Heard {
   ProbeState probe;
   Contacts contacts;
   std::map<std::string, ModuleStatus> modules;
+  double largest_force_step = 0;    ///< per haptic tick, between samples that were heard [N]
+  std::int64_t last_pushed_ns = 0;  ///< source time of the last force that was not zero
+  std::int64_t last_driven_ns = 0;  ///< source time of the last pose that the test wrote
+
+  void hear(const HapticForce& next) {
+    const auto ticks = static_cast<double>(next.header.sequence - force.header.sequence);
+    if (force.header.sequence > 0 && next.header.sequence > force.header.sequence) {
+      const double step = (next.force - force.force).norm() / ticks;
+      largest_force_step = std::max(largest_force_step, step);
+    }
+    if (next.force.norm() > 0) last_pushed_ns = next.header.source_time_ns;
+    force = next;
+  }
 };
 
 class RunningSession {
@@ -62,8 +76,13 @@ class RunningSession {
     conductor_.command(session_.state(), wanted);
   }
 
-  /// Moves the finger to a height; said again until heard().
+  /// Moves the finger to a height, as a hand would; said again and again.
   void move_finger(double height) { wanted_height_ = height; }
+  /// The finger's driver says no more, until it is moved again: from that height.
+  void silence_driver(double height) {
+    wanted_height_ = 0;
+    height_ = height;
+  }
 
   /// Listens until the condition holds; false after the deadline.
   template <class Condition>
@@ -95,17 +114,13 @@ class RunningSession {
  private:
   void listen() {
     session_.poll();
-    if (wanted_height_ != 0) {
-      ProbeState input;
-      input.pose.position = Vec3(0, 0, wanted_height_);
-      inputs_.write(input);
-    }
+    if (wanted_height_ != 0) drive();
     while (nodes_.take(heard_.nodes)) {
     }
     while (models_.take(heard_.model)) {
     }
-    while (forces_.take(heard_.force)) {
-    }
+    HapticForce force;
+    while (forces_.take(force)) heard_.hear(force);
     while (probes_.take(heard_.probe)) {
     }
     while (contacts_.take(heard_.contacts)) {
@@ -114,6 +129,19 @@ class RunningSession {
     while (statuses_.take(status)) heard_.modules[status.module] = status;
   }
 
+  void drive() {
+    const std::int64_t now_ns = runtime::monotonic_now_ns();
+    const double most = kFingerSpeed * 1e-9 * double(std::min(now_ns - driven_ns_, kLongestMoveNs));
+    height_ += std::clamp(wanted_height_ - height_, -most, most);
+    driven_ns_ = now_ns;
+    ProbeState input;
+    input.header.source_time_ns = heard_.last_driven_ns = now_ns;
+    input.pose.position = Vec3(0, 0, height_);
+    inputs_.write(input);
+  }
+
+  static constexpr double kFingerSpeed = 0.3;                ///< [m/s]
+  static constexpr std::int64_t kLongestMoveNs = 5'000'000;  ///< however late the test wakes
   std::filesystem::path scene_file_;
   scene::Scene scene_;
   bus::BusOptions options_ = own_bus_options();
@@ -128,7 +156,8 @@ class RunningSession {
   bus::Reader<Contacts> contacts_ = bus_.reader(bus::kContacts);
   bus::Reader<ModuleStatus> statuses_ = bus_.reader(bus::kModuleStatus);
   Heard heard_;
-  double wanted_height_ = 0;
+  double wanted_height_ = 0, height_ = kFingerStart;  ///< wanted 0: nobody drives
+  std::int64_t driven_ns_ = 0;
   std::map<std::string, std::unique_ptr<launcher::ChildProcess>> children_;
 };
 

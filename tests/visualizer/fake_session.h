@@ -10,7 +10,7 @@
 
 namespace palpate::visualizer::testing {
 
-/// One organ, and probes in this order: sphere (device scripted), capsule (device topic).
+/// One organ, and probes in this order: sphere (device scripted), capsule (device mouse).
 inline scene::Scene two_probe_scene() {
   scene::Scene scene;
   scene.name = "made_up";
@@ -22,7 +22,7 @@ inline scene::Scene two_probe_scene() {
   scene.probes[0].device = scene::ScriptedDevice{};
   scene.probes[1].name = "rod";
   scene.probes[1].shape = scene::CapsuleShape{0.006, 0.06};
-  scene.probes[1].device = scene::TopicDevice{Vec3(0.12, 0, 0), Quat::Identity()};
+  scene.probes[1].device = scene::MouseDevice{Vec3(0.12, 0, 0), Quat::Identity()};
   return scene;
 }
 

@@ -11,7 +11,7 @@ using Kind = InputEvent::Kind;
 
 namespace {
 
-/// A scene whose probes are 6 cm left (scripted) and right (topic) of the middle.
+/// A scene whose probes are 6 cm left (scripted) and right (mouse) of the middle.
 struct Fixture {
   SceneView view{two_probe_scene()};
   Interaction interaction{{0.01, 0.036}};
@@ -51,7 +51,7 @@ struct Fixture {
 
 }  // namespace
 
-TEST_CASE("interaction: dragging a topic probe asks for its new pose", "[visualizer][analytic]") {
+TEST_CASE("interaction: dragging a mouse probe asks for its new pose", "[visualizer][analytic]") {
   // Oracle: analytic projection; the rotation is kept.
   Fixture f;
   const Pixel at = f.pixel_of(1);
@@ -93,13 +93,13 @@ TEST_CASE("interaction: a probe with another device is not dragged, and the scre
   f.send(Kind::kPress, at.x, at.y);
   CHECK_FALSE(f.interaction.held_probe());
   CHECK(f.interaction.notice() ==
-        "Probe 'finger' does not follow the mouse: its device is not 'topic'.");
+        "Probe 'finger' does not follow the mouse: its device is not 'mouse'.");
   CHECK_FALSE(f.send(Kind::kMove, at.x + 9, at.y).probe_input);
   f.send(Kind::kPress, 450, 600);  // elsewhere
   CHECK(f.interaction.notice().empty());
 }
 
-TEST_CASE("interaction: shift-drag takes the topic probe wherever it is", "[visualizer]") {
+TEST_CASE("interaction: shift-drag takes the mouse probe wherever it is", "[visualizer]") {
   // Oracle: the stated rule.
   Fixture f;
   f.send(Kind::kPress, 450, 600, true);
@@ -115,10 +115,10 @@ TEST_CASE("interaction: shift-drag takes the topic probe wherever it is", "[visu
   press.shift = true;
   other.handle({press}, without);
   CHECK_FALSE(other.held_probe());
-  CHECK(other.notice().find("device 'topic'") != std::string::npos);
+  CHECK(other.notice().find("device 'mouse'") != std::string::npos);
 }
 
-TEST_CASE("interaction: a topic probe not heard of yet starts where the scene says",
+TEST_CASE("interaction: a mouse probe not heard of yet starts where the scene says",
           "[visualizer]") {
   // Oracle: the scene's start.
   const SceneView view(two_probe_scene());

@@ -61,7 +61,7 @@ class Session {
     std::ofstream(folder / "scene.yaml")
         << "palpate_scene: 1\norgans:\n  - {name: ball, mesh: {file: ball.ply}}\n"
            "probes:\n  - name: finger\n    shape: {sphere: {radius_m: 0.01}}\n"
-           "    device: {topic: {start_m: [0, 0, 0.1]}}\n";
+           "    device: {mouse: {start_m: [0, 0, 0.1]}}\n";
     child_ = fork();
     if (child_ == 0) become_visualizer(options);
   }

@@ -48,8 +48,8 @@ Squeeze squeeze(DeformationWorld& world, double compression, double seconds, dou
   upper = deformation::contact_model_message(world, 0);
   lower = deformation::contact_model_message(world, 1);
   result.pressure = nodes.pressure;
-  result.upper_force = upper.force.z();
-  result.lower_force = lower.force.z();
+  result.upper_force = upper.force().z();
+  result.lower_force = lower.force().z();
   result.kinetic_energy = nodes.kinetic_energy;
   return result;
 }

@@ -44,7 +44,7 @@ Press press(scene::Organ organ, scene::Integrator integrator, double compression
     lower = deformation::contact_model_message(world, 1);
     result.held_volume_error = std::abs(nodes.volume / nodes.target_volume - 1);
     result.worst_volume_error = std::max(result.worst_volume_error, result.held_volume_error);
-    result.least_force = std::min({result.least_force, upper.force.z(), -lower.force.z()});
+    result.least_force = std::min({result.least_force, upper.force().z(), -lower.force().z()});
   }
   for (std::size_t i = 2; i < 3 * deformation::surface_message(world, 0).surface_node_count;
        i += 3) {
@@ -52,8 +52,8 @@ Press press(scene::Organ organ, scene::Integrator integrator, double compression
                                   std::abs(nodes.positions[i]) - kBallRadius * (1 - compression));
   }
   result.pressure = nodes.pressure;
-  result.upper_force = upper.force.z();
-  result.lower_force = lower.force.z();
+  result.upper_force = upper.force().z();
+  result.lower_force = lower.force().z();
   return result;
 }
 

@@ -105,14 +105,24 @@ inline void check_same(const idl::Contacts& w, const Contacts& m) {
 inline void check_same(const idl::ContactModel& w, const ContactModel& m) {
   check_header(w, m);
   REQUIRE(w.probe() == m.probe);
-  REQUIRE(w.touching() == m.touching);
-  REQUIRE(w.anchor_m() == xyz(m.anchor));
-  REQUIRE(w.force_n() == xyz(m.force));
-  REQUIRE(w.torque_n_m() == xyz(m.torque));
-  REQUIRE(w.stiffness_n_per_m() == rows(m.stiffness));
-  REQUIRE(w.normal() == xyz(m.normal));
+  REQUIRE(w.anchor_position_m() == xyz(m.anchor.position));
+  REQUIRE(w.anchor_rotation_xyzw() == xyzw(m.anchor.rotation));
+  REQUIRE(w.anchor_age_s() == m.anchor_age);
+  REQUIRE(w.period_s() == m.period);
+  REQUIRE(w.growth_per_s() == m.growth);
   REQUIRE(w.friction_coefficient() == m.friction_coefficient);
   REQUIRE(w.validity_radius_m() == m.validity_radius);
+  REQUIRE(w.stiffness_n_per_m() == rows(m.stiffness));
+  REQUIRE(w.rows().size() == m.rows.size());
+  for (std::size_t i = 0; i < m.rows.size(); ++i) {
+    REQUIRE(w.rows()[i].point_P_m() == xyz(m.rows[i].point_P));
+    REQUIRE(w.rows()[i].normal() == xyz(m.rows[i].normal));
+    REQUIRE(w.rows()[i].gap_m() == m.rows[i].gap);
+    REQUIRE(w.rows()[i].radius_m() == m.rows[i].radius);
+    REQUIRE(w.rows()[i].force_n() == xyz(m.rows[i].force));
+    REQUIRE(w.rows()[i].velocity_m_per_s() == xyz(m.rows[i].velocity));
+  }
+  REQUIRE(w.compliance_m_per_n() == m.compliance);
 }
 
 inline void check_same(const idl::NodePositions& w, const NodePositions& m) {

@@ -64,6 +64,7 @@ class RandomFiller {
                  std::min(bounds.max_entries, std::max(bounds.min_entries, kLongest)));
   }
   void fill_entry(float& x) { x = static_cast<float>(real(random_, -1, 1)); }
+  void fill_entry(double& x) { x = real(random_, -1, 1); }
   void fill_entry(std::uint32_t& x) { fill(x, Rule::kPlain); }
   void fill_entry(std::array<std::uint32_t, 3>& entry) {
     for (std::uint32_t& x : entry) fill(x, Rule::kPlain);
@@ -74,7 +75,8 @@ class RandomFiller {
         random_() >> (rule == Rule::kAtLeastZero || rule == Rule::kSinceSetUp ? 1 : 0));
   }
   void fill(std::uint32_t& x, Rule rule) {
-    x = static_cast<std::uint32_t>(rule == Rule::kForceLimits ? whole(random_, 0, 63) : random_());
+    x = static_cast<std::uint32_t>(rule == Rule::kForceLimits ? whole(random_, 0, kAllForceLimits)
+                                                              : random_());
   }
   void fill(bool& x, Rule) { x = whole(random_, 0, 1) == 1; }
   template <Enumeration E>
@@ -108,6 +110,14 @@ class RandomFiller {
   Random& random_;
 };
 
+/// Makes W as large as the rows want it; one row at least.
+inline void mend(Random& random, ContactModel& m) {
+  if (m.rows.empty()) m.rows.resize(1);
+  const std::size_t size = m.directions() * m.rows.size();
+  m.compliance.resize(size * (size + 1) / 2);
+  for (double& x : m.compliance) x = real(random, -1, 1);
+}
+
 /// Makes indices exist and differ.
 inline void mend(Random& random, SurfaceTopology& m) {
   const std::size_t nodes = m.rest_positions.size() / 3;
@@ -137,6 +147,7 @@ void fill(Random& random, Message& message) {
     while (message.rest_positions.size() < 9) message.rest_positions.push_back(1);
     mend(random, message);
   }
+  if constexpr (std::same_as<Message, ContactModel>) mend(random, message);
 }
 
 template <class Message>
@@ -186,9 +197,10 @@ class Spoiler {
   void field(const char* name, T& value, Rule rule) {
     spoil(name, value, rule);
   }
-  void numbers(const char* name, std::vector<float>& list, const Bounds&) {
-    for (float& x : list) {
-      if (here(name)) x = std::numeric_limits<float>::infinity();
+  template <std::floating_point T>
+  void numbers(const char* name, std::vector<T>& list, const Bounds&) {
+    for (T& x : list) {
+      if (here(name)) x = std::numeric_limits<T>::infinity();
     }
     if (here(name)) list.push_back(0);
     if (here(name)) list.clear();
@@ -229,7 +241,7 @@ class Spoiler {
     if (rule == Rule::kSinceSetUp && here(name)) x = -2;
   }
   void spoil(const char* name, std::uint32_t& x, Rule rule) {
-    if (rule == Rule::kForceLimits && here(name)) x = 64;
+    if (rule == Rule::kForceLimits && here(name)) x = kAllForceLimits + 1;
   }
   void spoil(const char*, bool&, Rule) {}
   template <Enumeration E>
@@ -248,7 +260,13 @@ class Spoiler {
       if (here(name)) x = kNan;
     });
     if (rule == Rule::kPlain) return;
-    if (here(name)) for_each_number(value, [](double& x) { x *= -1.001; });
+    if (rule == Rule::kSymmetric) {
+      if constexpr (Is<T, Mat3>) {
+        if (here(name)) value(0, 1) = value(1, 0) + value.cwiseAbs().maxCoeff();
+      }
+    } else if (here(name)) {
+      for_each_number(value, [](double& x) { x *= -1.001; });
+    }
   }
   void spoil(const char* name, std::string& text, Rule rule) {
     if (here(name)) text = std::string(1, '\0');

@@ -70,6 +70,7 @@ std::string idl_type() {
   if constexpr (std::is_same_v<T, SessionCommand>) return "SessionCommand";
   if constexpr (std::is_same_v<T, SpringFamily>) return "octet";
   if constexpr (std::is_same_v<T, Contact>) return "Contact";
+  if constexpr (std::is_same_v<T, LawRow>) return "LawRow";
   if constexpr (std::is_same_v<T, ModuleStatus::Input>) return "InputStatus";
 }
 
@@ -90,10 +91,10 @@ std::pair<std::string, std::string> words_of(Rule rule) {
       return {"length 1", "unit"};
     case Rule::kWeights:
       return {"≥ 0, sum 1", ">= 0, sum 1"};
-    case Rule::kSemidefinite:
-      return {"symmetric, no negative eigenvalue", "symmetric, positive semidefinite"};
+    case Rule::kSymmetric:
+      return {"symmetric", "symmetric"};
     case Rule::kForceLimits:
-      return {"0 … " + std::to_string(2 * kForceOutOfValidity - 1), "Bits: "};
+      return {"0 … " + std::to_string(kAllForceLimits), "Bits: "};
     case Rule::kName:
       return {"1 … " + std::to_string(kMaxNameBytes) + " bytes", ""};
     default:

@@ -84,7 +84,8 @@ TEST_CASE("session: another scene or protocol is a fault that says what to do") 
         "the session plays scene 'ball' (digest aa), this module loaded another (digest bb): "
         "start it with the same scene file and meshes");
   CHECK(scene_mismatch(description("aa", kProtocolVersion + 1), "aa") ==
-        "the session speaks protocol version 4, this module 3: use programs of one release");
+        "the session speaks protocol version " + std::to_string(kProtocolVersion + 1) +
+            ", this module " + std::to_string(kProtocolVersion) + ": use programs of one release");
 }
 
 TEST_CASE("session: with the wrong scene a module does not run") {

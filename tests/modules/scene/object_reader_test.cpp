@@ -27,7 +27,7 @@ TEST_CASE("object reader: an unknown key is refused with the nearest and all all
         "scene.yaml:5: key 'organs[0].mesh.units' is not known; did you mean 'unit'? Allowed: "
         "file, unit, nodes");
   CHECK(refusal("rates: {", "rate: {") ==
-        "scene.yaml:65: key 'rate' is not known; did you mean 'rates'? Allowed: palpate_scene, "
+        "scene.yaml:86: key 'rate' is not known; did you mean 'rates'? Allowed: palpate_scene, "
         "name, organs, probes, gravity_m_per_s2, duration_s, rates, deformation_threads, "
         "haptics, needs, camera");
   CHECK(refusal("capsule: {", "cylinder: {") ==
@@ -93,7 +93,7 @@ TEST_CASE("object reader: where keys must be, nothing else is taken") {
         "scene.yaml:61: key 'probes[4].shape.mesh' = 'tool.stl': must hold keys, out of: file, "
         "unit, nodes");
   CHECK(refusal("{position_m: [0, -1, 0], target_m: [0, 0, 0.1]}", "") ==
-        "scene.yaml:72: key 'camera' = 'null': must hold keys, out of: position_m, target_m");
+        "scene.yaml:93: key 'camera' = 'null': must hold keys, out of: position_m, target_m");
 }
 
 TEST_CASE("object reader: a choice is exactly one key") {
@@ -106,7 +106,7 @@ TEST_CASE("object reader: a choice is exactly one key") {
         "box, plane, mesh");
   CHECK(refusal("{topic: {start_m: [0, 0, 0.4]}}", "{}") ==
         "scene.yaml:62: key 'probes[4].device' = '{}': must hold exactly one of: scripted, "
-        "trajectory, topic");
+        "trajectory, topic, mouse, emulated");
   CHECK(refusal("- sphere: {center_m: [0.01, 0.02, 0.03], radius_m: 0.04}", "- {}") ==
         "scene.yaml:29: key 'organs[0].fixed[0]' = '{}': must hold exactly one of: sphere, box");
 }

@@ -92,7 +92,7 @@ TEST_CASE("scene reader: every key of a probe arrives in its field") {
   // Oracle: the numbers of the full scene's text.
   const SceneFolder folder;
   const auto probes = folder.parse(kFullScene).probes;
-  REQUIRE(probes.size() == 5);
+  REQUIRE(probes.size() == 6);
   CHECK(probes[0].name == "tip");
   CHECK(probes[0].friction == 0.3);
   CHECK(std::get<SphereShape>(probes[0].shape).radius == 0.007);
@@ -119,6 +119,17 @@ TEST_CASE("scene reader: every key of a probe arrives in its field") {
   CHECK(mesh.file == folder.path() / "tool.stl");
   CHECK(mesh.unit == "cm");
   CHECK(mesh.nodes == 100);
+  const auto& emulated = std::get<EmulatedDevice>(probes[5].device);
+  CHECK(emulated.kind == EmulatedDevice::Kind::kOmega);
+  CHECK(emulated.start == Vec3(0, 0, 0.5));
+  CHECK(emulated.mass == 0.3);
+  CHECK(emulated.encoder_step == 1e-6);
+  CHECK(emulated.rate == 4000);
+  CHECK(emulated.transport_delay == 5e-4);
+  CHECK(emulated.hand.stiffness == 150);
+  CHECK(emulated.hand.push == Vec3(0, 0, -0.15));
+  REQUIRE(emulated.hand.moves.size() == 2);
+  CHECK(emulated.hand.moves[0].duration == 2);
 }
 
 TEST_CASE("scene reader: every key of the scene itself arrives in its field") {

@@ -148,10 +148,31 @@ probes:
     device: {topic: {start_m: [0, 0, 0.3], rotation_xyzw: [0, 0, 1, 0]}}
   - name: table
     shape: {plane: {}}
-    device: {topic: {start_m: [0, 0, -0.3]}}
+    device: {mouse: {start_m: [0, 0, -0.3], rotation_xyzw: [0, 1, 0, 0]}}
   - name: tool
     shape: {mesh: {file: tool.stl, unit: cm, nodes: 100}}
     device: {topic: {start_m: [0, 0, 0.4]}}
+  - name: held
+    shape: {sphere: {}}
+    device:
+      emulated:
+        kind: omega
+        start_m: [0, 0, 0.5]
+        rotation_xyzw: [0, 1, 0, 0]
+        mass_kg: 0.3
+        damping_n_s_per_m: 0.7
+        max_force_n: 6
+        encoder_step_m: 1e-6
+        rate_hz: 4000
+        transport_delay_s: 5e-4
+        hand:
+          mass_kg: 0.25
+          damping_n_s_per_m: 3
+          stiffness_n_per_m: 150
+          push_n: [0, 0, -0.15]
+          moves:
+            - {to_m: [0, 0, 0.3], duration_s: 2}
+            - {wait_s: 1}
 gravity_m_per_s2: [0, 0, -9.81]
 duration_s: 20
 rates: {haptics_hz: 2000, collision_hz: 500, deformation_hz: 400, visualizer_hz: 60}

@@ -74,6 +74,15 @@ void check_same(const ProbeShape& a, const ProbeShape& b) {
   }
 }
 
+void check_same(const std::vector<ScriptedDevice::Move>& a,
+                const std::vector<ScriptedDevice::Move>& b) {
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].to == b[i].to);
+    CHECK(a[i].duration == b[i].duration);
+  }
+}
+
 void check_same(const Device& a, const Device& b) {
   REQUIRE(a.index() == b.index());
   if (const auto* trajectory = std::get_if<TrajectoryDevice>(&a)) {
@@ -83,15 +92,30 @@ void check_same(const Device& a, const Device& b) {
   } else if (const auto* topic = std::get_if<TopicDevice>(&a)) {
     CHECK(topic->start == std::get<TopicDevice>(b).start);
     CHECK(topic->rotation.coeffs() == std::get<TopicDevice>(b).rotation.coeffs());
+  } else if (const auto* mouse = std::get_if<MouseDevice>(&a)) {
+    CHECK(mouse->start == std::get<MouseDevice>(b).start);
+    CHECK(mouse->rotation.coeffs() == std::get<MouseDevice>(b).rotation.coeffs());
+  } else if (const auto* held = std::get_if<EmulatedDevice>(&a)) {
+    const auto& two = std::get<EmulatedDevice>(b);
+    CHECK(held->kind == two.kind);
+    CHECK(held->start == two.start);
+    CHECK(held->rotation.coeffs() == two.rotation.coeffs());
+    CHECK(held->mass == two.mass);
+    CHECK(held->damping == two.damping);
+    CHECK(held->max_force == two.max_force);
+    CHECK(held->encoder_step == two.encoder_step);
+    CHECK(held->rate == two.rate);
+    CHECK(held->transport_delay == two.transport_delay);
+    CHECK(held->hand.mass == two.hand.mass);
+    CHECK(held->hand.damping == two.hand.damping);
+    CHECK(held->hand.stiffness == two.hand.stiffness);
+    CHECK(held->hand.push == two.hand.push);
+    check_same(held->hand.moves, two.hand.moves);
   } else {
     const auto &one = std::get<ScriptedDevice>(a), &two = std::get<ScriptedDevice>(b);
     CHECK(one.start == two.start);
     CHECK(one.rotation.coeffs() == two.rotation.coeffs());
-    REQUIRE(one.moves.size() == two.moves.size());
-    for (std::size_t i = 0; i < one.moves.size(); ++i) {
-      CHECK(one.moves[i].to == two.moves[i].to);
-      CHECK(one.moves[i].duration == two.moves[i].duration);
-    }
+    check_same(one.moves, two.moves);
   }
 }
 

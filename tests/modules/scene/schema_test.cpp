@@ -136,7 +136,7 @@ TEST_CASE("schema: an unknown model or integrator is refused with all there are"
 TEST_CASE("schema: the camera does not look at itself") {
   // Oracle: the rule of the camera's table.
   CHECK(refusal("target_m: [0, 0, 0.1]", "target_m: [0, -1, 0]") ==
-        "scene.yaml:72: key 'camera' = '{…}': position_m and target_m must differ");
+        "scene.yaml:93: key 'camera' = '{…}': position_m and target_m must differ");
   CHECK(refusal("position_m: [0, -1, 0], ", "") == "accepted");
 }
 

@@ -84,20 +84,29 @@ TEST_CASE("yaml value: every number has its range, whose ends belong to it") {
       {"47", "radius_m: 0.003", "9e-5", "1e-4", "0.5", "0.6", "1e-04 and 0.5 m"},
       {"47", "length_m: 0.2", "9e-5", "1e-4", "2", "2.1", "1e-04 and 2 m"},
       {"5", "nodes: 550", "-1", "0", "200000", "200001", "0 and 2e+05"},
-      {"64", "duration_s: 20", "-1", "0", "1e6", "1.1e6", "0 and 1e+06 s"},
-      {"65", "haptics_hz: 2000", "499", "500", "4000", "4001", "500 and 4000 Hz"},
-      {"65", "collision_hz: 500", "9", "10", "2000", "2001", "10 and 2000 Hz"},
-      {"65", "deformation_hz: 400", "9", "10", "2000", "2001", "10 and 2000 Hz"},
-      {"65", "visualizer_hz: 60", "0.9", "1", "120", "121", "1 and 120 Hz"},
-      {"67", "max_force_n: 5", "0", "0.1", "100", "101", "0.1 and 100 N"},
-      {"68", "max_force_rate_n_per_s: 300", "0", "1", "1e5", "1.1e5", "1 and 1e+05 N/s"},
-      {"69", "device_damping_n_s_per_m: 0.4", "-1", "0", "50", "51", "0 and 50 N·s/m"},
-      {"70", "stale_after_s: 0.06", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
-      {"71", "fade_time_s: 0.07", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
+      {"70", "mass_kg: 0.3", "0.009", "0.01", "10", "11", "0.01 and 10 kg"},
+      {"71", "damping_n_s_per_m: 0.7", "-1", "0", "100", "101", "0 and 100 N·s/m"},
+      {"72", "max_force_n: 6", "0", "0.1", "100", "101", "0.1 and 100 N"},
+      {"73", "encoder_step_m: 1e-6", "-1", "0", "0.01", "0.011", "0 and 0.01 m"},
+      {"74", "rate_hz: 4000", "99", "100", "10000", "10001", "100 and 10000 Hz"},
+      {"75", "transport_delay_s: 5e-4", "-1", "0", "0.1", "0.11", "0 and 0.1 s"},
+      {"77", "mass_kg: 0.25", "-1", "0", "5", "5.1", "0 and 5 kg"},
+      {"78", "damping_n_s_per_m: 3", "-1", "0", "100", "101", "0 and 100 N·s/m"},
+      {"79", "stiffness_n_per_m: 150", "-1", "0", "5000", "5001", "0 and 5000 N/m"},
+      {"85", "duration_s: 20", "-1", "0", "1e6", "1.1e6", "0 and 1e+06 s"},
+      {"86", "haptics_hz: 2000", "499", "500", "4000", "4001", "500 and 4000 Hz"},
+      {"86", "collision_hz: 500", "9", "10", "2000", "2001", "10 and 2000 Hz"},
+      {"86", "deformation_hz: 400", "9", "10", "2000", "2001", "10 and 2000 Hz"},
+      {"86", "visualizer_hz: 60", "0.9", "1", "120", "121", "1 and 120 Hz"},
+      {"88", "max_force_n: 5", "0", "0.1", "100", "101", "0.1 and 100 N"},
+      {"89", "max_force_rate_n_per_s: 300", "0", "1", "1e5", "1.1e5", "1 and 1e+05 N/s"},
+      {"90", "device_damping_n_s_per_m: 0.4", "-1", "0", "50", "51", "0 and 50 N·s/m"},
+      {"91", "stale_after_s: 0.06", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
+      {"92", "fade_time_s: 0.07", "0.004", "0.005", "1", "1.1", "0.005 and 1 s"},
       {"19", "volume_corrections: 2", "-1", "0", "5", "6", "0 and 5"},
       {"25", "breathing_amplitude: 0.1", "-0.1", "0", "0.5", "0.6", "0 and 0.5"},
       {"26", "breathing_hz: 0.4", "0", "0.01", "5", "6", "0.01 and 5 Hz"},
-      {"73", "deformation_threads: 3", "0", "1", "16", "17", "1 and 16"},
+      {"94", "deformation_threads: 3", "0", "1", "16", "17", "1 and 16"},
       {"27", "max_rate_per_s: 0.7", "0", "0.001", "10", "11", "0.001 and 10 1/s"}};
   const SceneFolder folder;
   for (const auto& range : ranges) {
@@ -159,7 +168,7 @@ TEST_CASE("yaml value: points are lists of three numbers within a hundred metres
           "55: key 'probes[2].shape.box.size_m' = '[0.01, 0, 0.03]': each number must be between "
           "1e-04 and 2 m"},
          {"[0, 0, -9.81]", "[0, 0, -981]",
-          "63: key 'gravity_m_per_s2' = '[0, 0, -981]': each number must be between -100 and 100 "
+          "84: key 'gravity_m_per_s2' = '[0, 0, -981]': each number must be between -100 and 100 "
           "m/s²"}});
 }
 

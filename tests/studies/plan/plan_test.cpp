@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "haptics/device.h"
+#include "haptics/devices/device.h"
 #include "modules/core/data_folder.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/models.h"
@@ -98,7 +98,7 @@ TEST_CASE("plan: the reference of a solid is fine where the probe goes, and of t
   CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==
         Approx(geometry::enclosed_volume(coarse.nodes, coarse.triangles)).epsilon(1e-9));
   std::vector<std::string> warnings;
-  const auto device = haptics::make_device(scene.probes[0].device, warnings);
+  const auto device = haptics::make_device(scene.probes[0].device, scene.haptics, warnings);
   double longest_near = 0, longest = 0;
   for (const auto& [a, b] : geometry::edges_of(fine.triangles)) {
     const Vec3 middle = (fine.nodes[a] + fine.nodes[b]) / 2;

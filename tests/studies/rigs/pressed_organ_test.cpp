@@ -37,7 +37,7 @@ TEST_CASE("pressed organ: a ball answers with the force the pipeline gives") {
     pressed.advance({pose});
   }
   pressed.settle(3);
-  const double expected = pipeline.contact_model(0).force.z();
+  const double expected = pipeline.contact_model(0).force().z();
   REQUIRE(expected > 0.03);
   CHECK(pressed.force(0).z() == Approx(expected).epsilon(0.005));
   CHECK(pressed.busy() > 0);

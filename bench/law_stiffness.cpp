@@ -1,0 +1,160 @@
+// The stiffness of the hand's law against the organ's own: along a press, the force over one period
+// more, ended 20 µm further and 20 µm less far.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "deformation/models.h"
+#include "haptics/local_law.h"
+#include "modules/core/error.h"
+#include "modules/geometry/primitives.h"
+#include "modules/runtime/program.h"
+#include "modules/scene/assets.h"
+#include "modules/scene/models.h"
+#include "modules/scene/scene_reader.h"
+#include "studies/rigs/poked_organ.h"
+#include "studies/rigs/pressed_organ.h"
+#include "studies/rigs/squeezed_ball.h"
+
+using namespace palpate;
+
+namespace {
+
+constexpr double kSpeed = 0.02, kAbove = 1e-3, kOff = 2e-5;  // [m/s], [m], [m]
+constexpr double kDepths[] = {0.5e-3, 1e-3, 2e-3, 4e-3, 6e-3, 8e-3};
+
+struct Press {
+  scene::Scene scene;
+  geometry::OrganShape shape;
+  Vec3 touch;  ///< middle of the tip where it touches [m]
+  Vec3 into;   ///< unit
+
+  Pose at(double depth) const { return {touch + depth * into, Quat::Identity()}; }
+
+  /// Force along the press after a period that ends `off` beside it; the law before.
+  double force(double depth, double off, LocalLaw& law) const {
+    const double way = kSpeed / scene.rates.deformation;
+    const int periods = static_cast<int>((depth + kAbove) / way);
+    rigs::PressedOrgan organ(scene, shape, {at(-kAbove)});
+    for (int i = 1; i <= periods; ++i) organ.advance({at(i * way - kAbove)});
+    law = organ.law(0);
+    organ.advance({at((periods + 1) * way - kAbove + off)});
+    return -organ.force(0).dot(into);
+  }
+};
+
+void print(const std::string& name, const Press& press) {
+  std::cout << name << ", " << press.scene.rates.deformation << " Hz:" << std::flush;
+  for (const double depth : kDepths) {
+    LocalLaw law;
+    const double more = press.force(depth, kOff, law), less = press.force(depth, -kOff, law);
+    const double organ = (more - less) / (2 * kOff),
+                 hand = press.into.dot(law.stiffness * press.into);
+    std::printf("  %.1f mm %.0f/%.0f", 1e3 * depth, hand, organ);
+    if (organ > 0) std::printf(" = %.2f", hand / organ);
+    std::fflush(stdout);
+  }
+  std::cout << "\n";
+}
+
+Press on_ball(const char* model, double rate) {
+  Press press;
+  scene::Organ organ = rigs::ball_organ();
+  organ.model = model;
+  organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
+  const bool solid = scene::is_solid(model);
+  if (solid) {
+    organ.tissue.youngs_modulus = 5e3;
+    organ.solid.poisson_ratio = 0.45;
+    press.shape = rigs::filled_ball(2);
+  } else {
+    press.shape.surface = geometry::make_ball(rigs::kBallRadius, 3);
+  }
+  press.scene.organs.push_back(organ);
+  press.scene.rates.deformation = rate;
+  press.scene.probes.push_back({"tip", scene::SphereShape{0.008}, 0.1, scene::ScriptedDevice{}});
+  press.touch = Vec3(0.003, 0.002, rigs::kBallRadius + 0.008);
+  press.into = -Vec3::UnitZ();
+  return press;
+}
+
+/// A shipped organ, where the charts poke it.
+Press on_organ(const std::string& file) {
+  Press press;
+  press.scene = scene::load_scene(file);
+  press.scene.organs.resize(1);
+  press.scene.probes = {{"tip", scene::SphereShape{0.008}, 0.1, scene::ScriptedDevice{}}};
+  press.shape = scene::load_organ(press.scene.organs[0]);
+  const bool liver = file.find("liver") != std::string::npos;
+  const rigs::PokedPlace place = liver ? rigs::kOnLiver : rigs::kOnStomach;
+  press.touch = rigs::poker_at(press.shape.surface, place, 0);
+  press.into = (rigs::poker_at(press.shape.surface, place, 1) - press.touch).normalized();
+  return press;
+}
+
+/// What making and solving the law of a pressed ball costs: 16 rows with friction, the probe in
+/// motion, a tick at a time.
+void print_cost() {
+  const Press press = on_ball("implicit_volume", 100);
+  LocalLaw law;
+  press.force(8e-3, 0, law);
+  haptics::LawSolver solver;
+  solver.take(law);
+  std::vector<double> solving, making;
+  const auto timed = [](std::vector<double>& times, const auto& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+    times.push_back(took.count());
+  };
+  double sum = 0;
+  int sweeps = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    Pose pose = law.anchor;
+    pose.position += 3e-4 * Vec3(std::sin(0.03 * i), 0.5 * std::sin(0.011 * i), std::sin(0.02 * i));
+    haptics::LawForce found;
+    timed(solving, [&] { found = solver.evaluate(pose, 1e-3 * (i % 10)); });
+    sum += found.wrench.force.z();
+    sweeps = std::max(sweeps, found.sweeps);
+  }
+  rigs::PressedOrgan organ(press.scene, press.shape, {press.at(-kAbove)});
+  for (int i = 1; i < 40; ++i) organ.advance({press.at(i * 2e-4 - kAbove)});
+  for (int i = 0; i < 1000; ++i) timed(making, [&] { sum += organ.law(0).stiffness(2, 2); });
+  const auto at = [](std::vector<double>& times, double share) {
+    std::ranges::sort(times);
+    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
+  };
+  std::printf(
+      "%zu rows with friction: solved in %.1f us (median), %.1f us (99.9 %%), at most %d "
+      "sweeps; made in %.0f us (median, %zu nodes)%s\n",
+      law.rows.size(), at(solving, 0.5), at(solving, 0.999), sweeps, at(making, 0.5),
+      organ.node_count(), sum == 0 ? " " : "");
+}
+
+int run(const std::vector<std::string>& scenes) {
+  print_cost();
+  std::cout << "law/organ [N/m] = ratio, by depth of the press\n";
+  for (const std::string& scene : scenes) print(scene, on_organ(scene));
+  if (!scenes.empty()) return kExitDone;
+  for (const double rate : {250.0, 100.0}) {
+    for (const auto& row : deformation::model_rows()) {
+      if (!scene::is_quadratic(row.word)) print(row.word, on_ball(row.word, rate));
+    }
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Stiffness of the hand's law against the organ's own, along a press.",
+               "palpate-bench-law");
+  std::vector<std::string> scenes;
+  app.add_option("SCENE", scenes,
+                 "Scenes whose first organ is pressed; none: a ball of each model");
+  return runtime::run_program(app, argc, argv, [&] { return run(scenes); });
+}

@@ -1,0 +1,108 @@
+#include "collision/closed_surface.h"
+
+#include <limits>
+
+#include "modules/core/tolerances.h"
+#include "modules/geometry/closest_points.h"
+
+namespace palpate::collision {
+namespace {
+
+constexpr double kFirstReach = 2e-3;  // [m]
+
+/// A ray from p along an axis, up or down it.
+struct Ray {
+  Vec3 p;
+  int axis = 0;
+  bool upwards = true;
+
+  int u() const { return (axis + 1) % 3; }
+  int v() const { return (axis + 2) % 3; }
+};
+
+/// The shortest way out of the bounds.
+Ray ray_out_of(const Bounds& bounds, const Vec3& p) {
+  Ray ray{p};
+  double shortest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool upwards : {true, false}) {
+      const double way = upwards ? bounds.upper[axis] - p[axis] : p[axis] - bounds.lower[axis];
+      if (way >= shortest) continue;
+      shortest = way;
+      ray.axis = axis;
+      ray.upwards = upwards;
+    }
+  }
+  return ray;
+}
+
+/// On which side of the line from node a to node b the ray passes: 1 left, −1 right.
+int side_of(const Ray& ray, const std::vector<Vec3>& nodes, std::uint32_t a, std::uint32_t b) {
+  if (a > b) return -side_of(ray, nodes, b, a);
+  const int u = ray.u(), v = ray.v();
+  const double du = nodes[b][u] - nodes[a][u], dv = nodes[b][v] - nodes[a][v];
+  const double side = du * (ray.p[v] - nodes[a][v]) - dv * (ray.p[u] - nodes[a][u]);
+  if (side != 0) return side > 0 ? 1 : -1;
+  if (dv != 0) return dv < 0 ? 1 : -1;
+  return du > 0 ? 1 : -1;
+}
+
+/// 1 if the ray leaves through the triangle, −1 if it enters, 0 if it misses it.
+int crossing_of(const Ray& ray, const std::vector<Vec3>& nodes, const geometry::Triangle& t) {
+  const int turn = side_of(ray, nodes, t[0], t[1]);
+  if (side_of(ray, nodes, t[1], t[2]) != turn || side_of(ray, nodes, t[2], t[0]) != turn) return 0;
+  const Vec3 normal = (nodes[t[1]] - nodes[t[0]]).cross(nodes[t[2]] - nodes[t[0]]);
+  const double height = turn * normal.dot(nodes[t[0]] - ray.p);  // of the triangle over p
+  if (ray.upwards) return height > 0 ? turn : 0;
+  return height < 0 ? -turn : 0;
+}
+
+}  // namespace
+
+bool ClosedSurface::encloses(const OrganSurface& organ, const Vec3& p) {
+  const Bounds bounds = organ.bvh().bounds();
+  Bounds thin;
+  thin.add(p);
+  if (!bounds.overlaps(thin)) return false;
+  const Ray ray = ray_out_of(bounds, p);
+  (ray.upwards ? thin.upper : thin.lower)[ray.axis] =
+      (ray.upwards ? bounds.upper : bounds.lower)[ray.axis];
+  triangles_.clear();
+  organ.bvh().append_overlapping(thin, triangles_);
+  int winding = 0;
+  for (const std::uint32_t t : triangles_) {
+    winding += crossing_of(ray, organ.positions(), organ.triangles()[t]);
+  }
+  return winding > 0;
+}
+
+std::uint32_t ClosedSurface::nearest_triangle(const OrganSurface& organ, const Vec3& p,
+                                              double& distance) {
+  const auto distance_to = [&](std::uint32_t t) {
+    const geometry::Triangle& nodes = organ.triangles()[t];
+    const auto& x = organ.positions();
+    const geometry::TriangleCorners corners{x[nodes[0]], x[nodes[1]], x[nodes[2]]};
+    if (geometry::unit_normal(corners).isZero(0)) return std::numeric_limits<double>::infinity();
+    return (geometry::closest_on_triangle(p, corners).point - p).norm();
+  };
+  // Boxes around p grow until what they hold is nearer than their sides.
+  std::uint32_t nearest = 0;
+  distance = std::numeric_limits<double>::infinity();
+  for (double reach = kFirstReach; reach < 4 * kWorldReach; reach *= 2) {
+    Bounds box;
+    box.add(p);
+    box.inflate(reach);
+    triangles_.clear();
+    organ.bvh().append_overlapping(box, triangles_);
+    for (const std::uint32_t t : triangles_) {
+      const double d = distance_to(t);
+      if (d > distance || (d == distance && t > nearest)) continue;
+      distance = d;
+      nearest = t;
+    }
+    if (distance <= reach) break;
+  }
+  return nearest;
+}
+
+}  // namespace palpate::collision

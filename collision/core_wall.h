@@ -1,0 +1,56 @@
+// Contacts of one rounded core with the triangles near it: seen from their front, touched in
+// passing, or of a wall that the core is behind.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "collision/contact_reduction.h"
+#include "collision/core_sweep.h"
+
+namespace palpate::collision {
+
+/// A triangle belongs to the wall a core is behind if its normal is within 78° of the wall's.
+inline constexpr double kSameWall = 0.2;
+
+/// A triangle the core may touch in the step.
+struct CoreCandidate {
+  const SweptTriangle& triangle;
+  geometry::SegmentAndTriangle pair;  ///< at the end
+  double side = 0;                    ///< of the core at the end, > 0 in front [m]
+  std::optional<Crossing> crossing;   ///< from the front through it
+  bool remembered = false;            ///< the core was behind it
+  bool on_wall = false;               ///< connected with what the core is behind
+
+  CoreCandidate(const Core& core, const SweptTriangle& swept);
+  double gap(const Core& core) const { return pair.distance - core.radius; }
+};
+
+/// Did the core go from the front of the triangle through it?
+std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
+                                       const CoreCandidate& candidate);
+
+/// Core in front of the triangle at the end.
+void append_front(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
+                  std::vector<FoundContact>& found);
+
+/// Contact of the closest approach, carried to the end, for a triangle touched in passing that is
+/// now neither in front within the margin nor crossed.
+void append_graze(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
+                  std::vector<FoundContact>& found);
+
+/// Contact of a core inside with the triangle nearest to it, which pushes it straight out.
+void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
+                    std::vector<FoundContact>& found);
+
+/// Contacts of a core that is behind the wall of the crossed and remembered candidates and of what
+/// is connected with them and faces the same way.
+/// @param depth_limit  a wall deeper than this is given up [m]
+/// @param candidates   ascending
+/// @returns the triangles it is behind now
+std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, double depth_limit,
+                                       std::vector<CoreCandidate>& candidates,
+                                       std::vector<FoundContact>& found);
+
+}  // namespace palpate::collision

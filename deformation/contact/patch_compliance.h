@@ -1,0 +1,47 @@
+// What the touched tissue gives way by within one period of deformation.
+//
+// A force held for a period T moves a patch, from free flight, by u = A⁻¹ f at its end,
+//     A = M/T² + (drag M + D)/T · d + K k
+// as if every node moved there evenly. With n steps explicit in the elastic forces d = (n − 1)/n
+// and k = (n − 1)/2n, with implicit ones d = 1 and k = (n + 1)/2n: the means over the steps of the
+// velocities and displacements their forces are taken at. Within T a wave of shear in soft tissue
+// makes its way of some millimetres; the patch is that large, and what is beyond is held. Contents
+// whose volume is kept take their share at once, wherever they are: a rank-one less.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "deformation/contact/compliance_row.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/model/patch.h"
+
+namespace palpate::deformation {
+
+/// Adds shares of K and D of the patch to the lower triangle.
+using AddStiffness = std::function<void(const Patch& patch, double stiffness_share,
+                                        double damping_share, Eigen::MatrixXf& sum)>;
+
+class PatchCompliance {
+ public:
+  /// @param body   outlives this
+  /// @param nodes  of a patch, at most
+  PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes);
+
+  /// C A⁻¹ Cᵀ [m/N], symmetric. Nodes that are touched but do not fit the patch answer alone.
+  /// @param gradient  of a kept volume (volume_gradient.h), empty: none is kept
+  Eigen::MatrixXd solve(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows,
+                        const PeriodSteps& steps, std::span<const Vec3> gradient,
+                        const AddStiffness& add_stiffness);
+
+ private:
+  const Body& body_;
+  Neighbours neighbours_;
+  std::size_t most_nodes_;
+  Patch patch_;
+};
+
+}  // namespace palpate::deformation

@@ -1,0 +1,62 @@
+#include "deformation/model/patch.h"
+
+#include <algorithm>
+
+namespace palpate::deformation {
+
+Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_t, 4>> tetrahedra) {
+  std::vector<std::vector<std::uint32_t>> lists(body.node_count());
+  const auto join = [&](std::uint32_t a, std::uint32_t b) {
+    lists[a].push_back(b);
+    lists[b].push_back(a);
+  };
+  for (const auto& t : body.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) join(t[k], t[(k + 1) % 3]);
+  }
+  for (const auto& t : tetrahedra) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = a + 1; b < 4; ++b) join(t[a], t[b]);
+    }
+  }
+  starts_.push_back(0);
+  for (auto& list : lists) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    neighbours_.insert(neighbours_.end(), list.begin(), list.end());
+    starts_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
+  }
+}
+
+void grow_patch(const Body& body, const Neighbours& neighbours, const std::vector<Vec3>& positions,
+                std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t most,
+                Patch& patch) {
+  patch.places.resize(body.node_count(), -1);
+  for (const std::uint32_t node : patch.nodes) patch.places[node] = -1;
+  patch.nodes.clear();
+  std::vector<std::uint32_t> ring(touched.begin(), touched.end());
+  for (std::size_t first = 0; !ring.empty() && patch.nodes.size() < most;) {
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    std::erase_if(ring, [&](std::uint32_t node) {
+      return patch.places[node] >= 0 || body.inverse_masses[node] == 0;
+    });
+    const std::size_t fits = std::min(ring.size(), most - patch.nodes.size());
+    if (fits < ring.size()) {
+      std::stable_sort(ring.begin(), ring.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return (positions[a] - centre).squaredNorm() < (positions[b] - centre).squaredNorm();
+      });
+      ring.resize(fits);
+    }
+    for (const std::uint32_t node : ring) {
+      patch.places[node] = static_cast<std::int32_t>(patch.nodes.size());
+      patch.nodes.push_back(node);
+    }
+    ring.clear();
+    for (; first < patch.nodes.size(); ++first) {
+      const auto next = neighbours.of(patch.nodes[first]);
+      ring.insert(ring.end(), next.begin(), next.end());
+    }
+  }
+}
+
+}  // namespace palpate::deformation

@@ -1,0 +1,40 @@
+// Some nodes of a body, for what is local to them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "deformation/model/body.h"
+
+namespace palpate::deformation {
+
+struct Patch {
+  std::vector<std::uint32_t> nodes;  ///< free ones
+  std::vector<std::int32_t>
+      places;  ///< where a node stands in `nodes`, −1: not among them  (node_count)
+
+  int place(std::uint32_t node) const { return places[node]; }
+};
+
+/// Neighbours in a body: nodes that share an edge of its triangles or tetrahedra.
+class Neighbours {
+ public:
+  /// @param tetrahedra  their corners; empty for a surface
+  Neighbours(const Body& body, std::span<const std::array<std::uint32_t, 4>> tetrahedra);
+
+  std::span<const std::uint32_t> of(std::uint32_t node) const {
+    return {neighbours_.data() + starts_[node], starts_[node + 1] - starts_[node]};
+  }
+
+ private:
+  std::vector<std::uint32_t> starts_, neighbours_;
+};
+
+/// Fills the patch with the free ones of `touched` and, ring by ring, of their neighbours, at most
+/// `most` in all; of a ring that does not fit the nearest to `centre` [m].
+void grow_patch(const Body& body, const Neighbours& neighbours, const std::vector<Vec3>& positions,
+                std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t most,
+                Patch& patch);
+
+}  // namespace palpate::deformation

@@ -1,0 +1,28 @@
+// What the springs of some nodes resist with while all others are held.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "deformation/model/patch.h"
+#include "deformation/model/spring_network.h"
+
+namespace palpate::deformation {
+
+class PatchSprings {
+ public:
+  /// @param network  outlives this
+  PatchSprings(const SpringNetwork& network, std::size_t node_count);
+
+  /// Adds stiffness K and damping D of the patch at these positions [m] to the lower triangle of
+  /// `sum`: stiffness_share K + damping_share D. Of the part across a spring only tension counts,
+  /// as in spring_linearization.h.
+  void add(const std::vector<Vec3>& positions, const Patch& patch, double stiffness_share,
+           double damping_share, Eigen::MatrixXf& sum) const;
+
+ private:
+  const SpringNetwork& network_;
+  std::vector<std::uint32_t> starts_, springs_;  ///< of each node
+};
+
+}  // namespace palpate::deformation

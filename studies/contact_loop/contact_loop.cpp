@@ -1,0 +1,142 @@
+#include "studies/contact_loop/contact_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "modules/geometry/closest_points.h"
+#include "studies/contact_loop/closed_surface.h"
+#include "studies/rigs/poked_organ.h"
+
+namespace palpate::contact_loop {
+namespace {
+
+constexpr double kShallow = -7e-3, kDeep = 15e-3;  // the ball's front below the skin at rest [m]
+constexpr double kMiddle = (kShallow + kDeep) / 2, kHalf = (kDeep - kShallow) / 2;
+constexpr double kHeldDepth = 10e-3;            // at the end [m]
+constexpr double kSideways = 8e-3;              // [m]
+constexpr double kTurnX = 0.31, kTurnZ = 0.23;  // of the rate of presses
+constexpr double kWait = 0.1, kHold = 0.3;      // before and after the motion [s]
+constexpr double kLeastMotion = 1.0;            // [s]
+constexpr double kLeastPresses = 2;
+
+/// In and out along y, to and fro along x and z, then held where it is.
+class Sliding final : public haptics::Device {
+ public:
+  Sliding(const Vec3& skin, const LoopCase& loop)
+      : skin_(skin - loop.radius * Vec3::UnitY()),
+        rate_(loop.speed / std::hypot(kHalf, kTurnX * kSideways, kTurnZ * kSideways)),
+        last_turn_(2 * M_PI * std::ceil(std::max(kLeastPresses, kLeastMotion * rate_ / 2 / M_PI)) +
+                   std::acos((kMiddle - kHeldDepth) / kHalf)) {}
+
+  double duration() const { return kWait + last_turn_ / rate_ + kHold; }
+
+  haptics::DeviceSample read(double time) override {
+    const double turn = std::clamp(rate_ * (time - kWait), 0.0, last_turn_);
+    const double depth = kMiddle - kHalf * std::cos(turn);
+    haptics::DeviceSample sample;
+    sample.pose.position = skin_ + Vec3(kSideways * std::sin(kTurnX * turn), depth,
+                                        kSideways * std::sin(kTurnZ * turn));
+    if (turn <= 0 || turn >= last_turn_) return sample;
+    sample.twist.linear =
+        rate_ * Vec3(kTurnX * kSideways * std::cos(kTurnX * turn), kHalf * std::sin(turn),
+                     kTurnZ * kSideways * std::cos(kTurnZ * turn));
+    return sample;
+  }
+
+ private:
+  Vec3 skin_;
+  double rate_, last_turn_;
+};
+
+scene::Scene scene_of(scene::Scene scene, const LoopCase& loop) {
+  scene.probes.clear();
+  scene.probes.push_back({"ball", scene::SphereShape{loop.radius}, 0.1, scene::ScriptedDevice{}});
+  scene.rates.haptics = 1000;
+  scene.rates.collision = loop.collision_hz;
+  scene.rates.deformation = loop.deformation_hz;
+  return scene;
+}
+
+/// Looks at every search with the surface it was made on.
+class Judge {
+ public:
+  explicit Judge(session::InProcess& session)
+      : session_(session),
+        contacts_(session.bus().reader(bus::kContacts)),
+        positions_(session.bus().reader(bus::kNodePositions)) {}
+
+  void look(LoopResult& result) {
+    NodePositions nodes;
+    while (positions_.take(nodes)) {
+      if (nodes.organ == 0) surfaces_.push_back(nodes);
+    }
+    while (contacts_.take(newest_)) judge(result);
+    while (surfaces_.size() > 8) surfaces_.pop_front();
+  }
+
+ private:
+  void judge(LoopResult& result) {
+    ++result.searches;
+    result.truncated += newest_.truncated;
+    const auto on = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const NodePositions& s) {
+      return s.header.sequence == newest_.node_positions_sequence;
+    });
+    if (on == surfaces_.end()) return;
+    const Vec3& p = newest_.probe_pose.position;
+    const auto& triangles = session_.surface(0).triangles;
+    if (winding_number(p, on->positions, triangles) < 0.5) {
+      lost_since_ = -1;
+      return;
+    }
+    ++result.inside;
+    double nearest = 1e300;
+    const auto at = [&](std::uint32_t node) -> Vec3 {
+      return Eigen::Map<const Eigen::Vector3f>(&on->positions[3 * node]).cast<double>();
+    };
+    for (const auto& t : triangles) {
+      const auto q = geometry::closest_on_triangle(p, {at(t[0]), at(t[1]), at(t[2])});
+      nearest = std::min(nearest, (q.point - p).norm());
+    }
+    result.deepest = std::max(result.deepest, nearest);
+    const bool held = std::any_of(newest_.contacts.begin(), newest_.contacts.end(),
+                                  [](const Contact& c) { return c.gap < 0; });
+    if (held) {
+      lost_since_ = -1;
+      return;
+    }
+    ++result.lost;
+    const double now = seconds_from_ns(newest_.header.sim_time_ns);
+    if (lost_since_ < 0) lost_since_ = now;
+    result.longest_lost =
+        std::max(result.longest_lost, now - lost_since_ + 1 / session_.scene().rates.collision);
+  }
+
+  session::InProcess& session_;
+  bus::Reader<Contacts> contacts_;
+  bus::Reader<NodePositions> positions_;
+  std::deque<NodePositions> surfaces_;
+  Contacts newest_;
+  double lost_since_ = -1;
+};
+
+}  // namespace
+
+LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
+                    const LoopCase& loop) {
+  session::InProcess session(scene_of(scene, loop), assets);
+  const Vec3 skin(place.x(), rigs::front_of(assets.organs[0].surface, place.x(), place.z()),
+                  place.z());
+  auto device = std::make_unique<Sliding>(skin, loop);
+  const double duration = device->duration();
+  session.haptics().set_device(0, std::move(device));
+  LoopResult result;
+  Judge judge(session);
+  while (session.time() < duration) {
+    session.tick();
+    judge.look(result);
+  }
+  return result;
+}
+
+}  // namespace palpate::contact_loop

@@ -1,0 +1,79 @@
+#include "studies/contact_loop/contact_loop_command.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <ostream>
+
+#include "modules/core/data_folder.h"
+#include "modules/core/error.h"
+#include "modules/scene/scene_reader.h"
+#include "studies/contact_loop/contact_loop.h"
+
+namespace palpate::contact_loop {
+namespace {
+
+/// Where an organ is pressed: (x, z) [m], on the front of the shipped organs.
+const Vec3 kOnLiver(-0.020, 0, 0.013), kOnStomach(0.022, 0, -0.004);
+
+template <class T>
+std::vector<T> or_else(const std::vector<T>& given, std::vector<T> usual) {
+  return given.empty() ? usual : given;
+}
+
+struct Sum {
+  long runs = 0, inside = 0, lost = 0, truncated = 0;
+};
+
+}  // namespace
+
+int run_contact_loop(const ContactLoopOptions& options, const std::function<bool()>& stop,
+                     std::ostream& out) {
+  const auto folder = data_file("scenes");
+  using Files = std::vector<std::filesystem::path>;
+  const Files files =
+      or_else(options.scenes,
+              options.quick ? Files{folder / "stomach_probe.yaml"}
+                            : Files{folder / "stomach_probe.yaml", folder / "liver_solid.yaml",
+                                    folder / "stomach_probe_refined.yaml"});
+  using Numbers = std::vector<double>;
+  const Numbers radii = or_else(
+      options.radii, options.quick ? Numbers{1e-3, 4e-3} : Numbers{5e-4, 1e-3, 2e-3, 4e-3, 8e-3});
+  const Numbers speeds =
+      or_else(options.speeds,
+              options.quick ? Numbers{0.1, 1.0} : Numbers{0.05, 0.1, 0.25, 0.63, 1.26, 2.5});
+  const Numbers rates =
+      or_else(options.rates, options.quick ? Numbers{100} : Numbers{50, 100, 250});
+  out << "scene                   r [mm] v [m/s] [Hz]  searches inside   lost longest [s] "
+         "deepest [mm] truncated\n";
+  Sum sum;
+  for (const auto& file : files) {
+    const scene::Scene scene = scene::load_scene(file);
+    const session::Assets assets = session::load_assets(scene);
+    const bool is_liver = scene.organs.at(0).name == "liver";
+    for (const double rate : rates) {
+      for (const double radius : radii) {
+        for (const double speed : speeds) {
+          if (stop()) return kExitFailed;
+          const LoopResult r =
+              run_loop(scene, {{assets.organs[0]}, {geometry::TriangleSurface{}}},
+                       is_liver ? kOnLiver : kOnStomach, {radius, speed, rate, 250});
+          out << fmt::format("{:<23} {:6g} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:9}\n",
+                             file.stem().string(), 1e3 * radius, speed, rate, r.searches, r.inside,
+                             r.lost, r.longest_lost, 1e3 * r.deepest, r.truncated)
+              << std::flush;
+          ++sum.runs;
+          sum.inside += r.inside;
+          sum.lost += r.lost;
+          sum.truncated += r.truncated;
+        }
+      }
+    }
+  }
+  out << fmt::format(
+      "{} runs: {} searches inside an organ, {} of them without contact; {} "
+      "truncated\n",
+      sum.runs, sum.inside, sum.lost, sum.truncated);
+  return sum.lost == 0 ? kExitDone : kExitFailed;
+}
+
+}  // namespace palpate::contact_loop

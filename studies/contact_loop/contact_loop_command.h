@@ -1,0 +1,26 @@
+// What `palpate contact-loop` does.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <vector>
+
+namespace palpate::contact_loop {
+
+struct ContactLoopOptions {
+  std::vector<std::filesystem::path> scenes;  ///< empty: both stomachs and the solid liver
+  std::vector<double> radii;                  ///< of the balls [m]; empty: 0.5 to 8 mm
+  std::vector<double> speeds;                 ///< [m/s]; empty: 0.05 to 2.5
+  std::vector<double> rates;                  ///< of deformation [Hz]; empty: 50, 100, 250
+  bool quick = false;
+};
+
+/// Runs every combination, prints a line for each with what its searches found, and their sum.
+/// Ends early when `stop` says so.
+/// @return kExitDone if no search inside an organ was without contact
+/// @throws InputError
+int run_contact_loop(const ContactLoopOptions& options, const std::function<bool()>& stop,
+                     std::ostream& out);
+
+}  // namespace palpate::contact_loop

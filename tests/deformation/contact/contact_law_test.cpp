@@ -1,0 +1,151 @@
+#include "deformation/contact/contact_law.h"
+
+#include <catch2/catch.hpp>
+
+#include "deformation/models.h"
+#include "modules/scene/models.h"
+#include "studies/rigs/pressed_organ.h"
+#include "tests/deformation/organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// One node a contact, the plate's, each with an impulse.
+struct Plate {
+  OrganModel model = testing::ball_model(2);
+  OrganState state = rest_state(model);
+  ProbeContacts probe{{"plate", scene::PlaneShape{}, 0, scene::ScriptedDevice{}}};
+
+  /// @param impulse  of a contact, by its number; 0: it does not press
+  template <class Impulse>
+  void press(std::uint32_t count, const Impulse& impulse) {
+    std::vector<Contact> contacts;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      Contact contact;
+      contact.triangle = t;
+      contact.barycentric = Vec3(0.2, 0.3, 0.5);
+      Vec3 place = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) {
+        place += contact.barycentric[k] *
+                 state.positions[model.triangles[t][static_cast<std::size_t>(k)]];
+      }
+      contact.normal_P = place.normalized();
+      contact.point_P = place + 1e-4 * t * contact.normal_P;
+      contacts.push_back(contact);
+    }
+    probe.set_pose({});
+    probe.set_contacts(contacts);
+    probe.begin(kPeriod);
+    std::vector<ContactRow> rows;
+    probe.append_rows(0, model, state, kPeriod, 1, rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = impulse(i);
+    probe.take_rows(0, rows.data());
+    probe.end();
+  }
+  std::vector<CondensedContact> condense() const {
+    return condense_contacts(probe, {&model}, {&state}, kPeriod);
+  }
+  static constexpr double kPeriod = 4e-3;
+};
+
+TEST_CASE("contact law: rows are the pressing contacts, strongest first, then the nearest") {
+  // Oracle: by hand; gaps are 0.1 mm times the contact's number.
+  Plate plate;
+  plate.press(40, [](std::size_t i) { return i == 5 ? 1e-3 : i == 9 ? 2e-3 : 0; });
+  const auto contacts = plate.condense();
+  REQUIRE(contacts.size() == kMaxLawRows);
+  CHECK(contacts[0].row.force.norm() == Approx(2e-3 / Plate::kPeriod));
+  CHECK(contacts[1].row.force.norm() == Approx(1e-3 / Plate::kPeriod));
+  CHECK(contacts[0].row.gap == 0);
+  CHECK(contacts[2].row.gap == Approx(0).margin(1e-12));
+  CHECK(contacts[3].row.gap == Approx(1e-4));
+  CHECK(contacts.back().row.gap == Approx(15e-4));  // 0 … 15 without 5 and 9
+}
+
+TEST_CASE(
+    "contact law: more pressing contacts than rows are taken together, force and place kept") {
+  // Oracle: sums over the contacts. The place of a sum of forces that are not parallel is not one
+  // point: torque to 2 % of force times radius.
+  Plate plate;
+  plate.press(90, [](std::size_t i) { return 1e-3 * (1 + double(i % 7)); });
+  const auto contacts = plate.condense();
+  CHECK(contacts.size() <= kMaxLawRows);
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero(), expected = Vec3::Zero(), turn = Vec3::Zero();
+  for (const CondensedContact& c : contacts) {
+    double weight = 0;
+    for (const auto& [node, share] : c.weights) weight += share;
+    CHECK(weight == Approx(1));
+    force += c.row.force;
+    torque += c.row.point_P.cross(c.row.force);
+  }
+  for (const CarriedContact& c : plate.probe.contacts()) {
+    expected += c.pushed / Plate::kPeriod;
+    turn += c.point_P.cross(c.pushed) / Plate::kPeriod;
+  }
+  CHECK((force - expected).norm() < 1e-12 * expected.norm());
+  CHECK((torque - turn).norm() < 0.02 * expected.norm() * testing::kBallRadius);
+}
+
+TEST_CASE("contact law: the stiffness of rows is that of springs beside each other") {
+  // Oracle: analytic. Two parallel rows of 100 and 200 N/m; coupled ones by the inverse of W.
+  LocalLaw law;
+  law.rows.resize(2);
+  for (LawRow& row : law.rows) row.force = Vec3(0, 0, 1);
+  law.compliance = {0.01, 0, 0.005};
+  CHECK(stiffness_of(law)(2, 2) == Approx(300).epsilon(1e-5));
+  law.compliance = {0.01, 0.004, 0.005};
+  CHECK(stiffness_of(law)(2, 2) == Approx((0.01 + 0.005 - 0.008) / (0.01 * 0.005 - 0.000016)));
+  law.rows[1].force.setZero();
+  CHECK(stiffness_of(law)(2, 2) == Approx(100).epsilon(1e-5));
+}
+
+/// A ball of 642 nodes on its lower part, pressed by a fingertip.
+struct PressedBall {
+  static constexpr double kSpeed = 0.02, kStart = -0.001;
+  scene::Scene scene;
+  geometry::OrganShape shape{geometry::make_ball(testing::kBallRadius, 3)};
+
+  explicit PressedBall(const char* model) {
+    scene::Organ organ = testing::ball_organ();
+    organ.model = model;
+    organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
+    scene.organs.push_back(organ);
+    scene.probes.push_back({"tip", scene::SphereShape{0.008}, 0.1, scene::ScriptedDevice{}});
+  }
+  Pose at(double depth) const {
+    return {Vec3(0.003, 0.002, testing::kBallRadius + 0.008 - depth), Quat::Identity()};
+  }
+  /// Force after a period that ends `off` beside the press; the law before it.
+  double force(double depth, double off, LocalLaw& law) const {
+    const double way = kSpeed / scene.rates.deformation;
+    const int periods = static_cast<int>((depth - kStart) / way);
+    rigs::PressedOrgan organ(scene, shape, {at(kStart)});
+    for (int i = 1; i <= periods; ++i) organ.advance({at(kStart + i * way)});
+    law = organ.law(0);
+    organ.advance({at(kStart + (periods + 1) * way + off)});
+    return organ.force(0).z();
+  }
+};
+
+TEST_CASE("contact law: its stiffness is that of the organ itself, pressed a little further") {
+  // Oracle: finite differences of the organ over one period of the press, every model of springs.
+  // 20 %: what the hand's loop is asked for. Not of models whose contents are stiff by pyramids
+  // (their stiffness is not in the patch), nor of chainmail, which has no forces.
+  for (const ModelRow& row : model_rows()) {
+    const std::string word = row.word;
+    if (scene::is_solid(word) || word == "element_volume" || word == "zordan" ||
+        word == "chainmail") {
+      continue;
+    }
+    INFO(word);
+    const PressedBall ball(row.word);
+    for (const double depth : {0.004, 0.008}) {
+      LocalLaw law;
+      const double more = ball.force(depth, 2e-5, law), less = ball.force(depth, -2e-5, law);
+      CHECK(law.stiffness(2, 2) == Approx((more - less) / 4e-5).epsilon(0.2));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace palpate::deformation

@@ -1,0 +1,149 @@
+#include "deformation/contact/patch_compliance.h"
+
+#include <Eigen/Dense>
+#include <catch2/catch.hpp>
+
+#include "deformation/springs/patch_springs.h"
+#include "deformation/springs/spring_forces.h"
+#include "tests/deformation/organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// A ball of 42 nodes blown up by 5 %, so that all springs are in tension.
+struct Ball {
+  OrganModel model = testing::ball_model(1);
+  OrganState state = rest_state(model);
+  PatchSprings springs{model.network(), model.node_count()};
+  Ball() {
+    for (Vec3& x : state.positions) x *= 1.05;
+  }
+
+  /// All of the surface. Virtual nodes share no edge: a patch never has them.
+  Patch whole() const {
+    Patch patch;
+    patch.places.assign(model.node_count(), -1);
+    for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
+      patch.places[i] = static_cast<std::int32_t>(i);
+      patch.nodes.push_back(i);
+    }
+    return patch;
+  }
+  AddStiffness add() const {
+    return [this](const Patch& patch, double stiffness, double damping, Eigen::MatrixXf& sum) {
+      springs.add(state.positions, patch, stiffness, damping, sum);
+    };
+  }
+};
+
+Eigen::MatrixXd symmetric(const Eigen::MatrixXf& lower) {
+  return lower.selfadjointView<Eigen::Lower>().toDenseMatrix().cast<double>();
+}
+
+std::vector<ComplianceRow> some_rows() {
+  return {{{{3, 0.2}, {7, 0.3}, {12, 0.5}}, Vec3(0.6, 0, 0.8)},
+          {{{3, 1.0}}, Vec3::UnitY()},
+          {{{20, 0.5}, {21, 0.5}}, Vec3::UnitX()}};
+}
+
+/// C, three columns a node.
+Eigen::MatrixXd matrix_of(const std::vector<ComplianceRow>& rows, std::size_t nodes) {
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(rows.size()),
+                                            static_cast<Eigen::Index>(3 * nodes));
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (const auto& [node, weight] : rows[r].weights) {
+      C.block<1, 3>(static_cast<Eigen::Index>(r), 3 * node) += weight * rows[r].axis.transpose();
+    }
+  }
+  return C;
+}
+
+TEST_CASE("patch springs: stiffness and damping are the derivatives of the springs' forces") {
+  // Oracle: central differences of the plain forces. Tolerance: float, 1e-5 of the largest entry.
+  Ball ball;
+  const Patch whole = ball.whole();
+  const auto size = static_cast<Eigen::Index>(3 * whole.nodes.size());
+  Eigen::MatrixXf stiffness = Eigen::MatrixXf::Zero(size, size), damping = stiffness;
+  ball.springs.add(ball.state.positions, whole, 1, 0, stiffness);
+  ball.springs.add(ball.state.positions, whole, 0, 1, damping);
+  const auto forces = [&](OrganState state, Eigen::Index column, double by, bool move) {
+    auto& moved = move ? state.positions : state.velocities;
+    moved[static_cast<std::size_t>(column / 3)][column % 3] += by;
+    std::vector<Vec3> result(ball.model.node_count(), Vec3::Zero());
+    add_spring_forces(ball.model.network(), state, result);
+    return result;
+  };
+  for (const bool move : {true, false}) {
+    const Eigen::MatrixXd matrix = symmetric(move ? stiffness : damping);
+    const double h = move ? 1e-7 : 1;
+    for (Eigen::Index column = 0; column < size; column += 5) {
+      const auto more = forces(ball.state, column, h, move);
+      const auto less = forces(ball.state, column, -h, move);
+      for (Eigen::Index row = 0; row < size; ++row) {
+        const auto node = static_cast<std::size_t>(row / 3);
+        const double slope = -(more[node] - less[node])[row % 3] / (2 * h);
+        REQUIRE(matrix(row, column) == Approx(slope).margin(1e-5 * matrix.cwiseAbs().maxCoeff()));
+      }
+    }
+  }
+}
+
+TEST_CASE("patch compliance: of a patch that is the whole organ it is C A⁻¹ Cᵀ") {
+  // Oracle: the dense matrix in double, inverted; with a kept volume the bordered one. Tolerance:
+  // float's ε times the condition of A, of the largest entry.
+  const Ball ball;
+  PatchCompliance compliance(ball.model, Neighbours(ball.model, {}), ball.model.node_count());
+  VolumeGradient volume;
+  evaluate_volume(ball.model, ball.state.positions, volume);
+  const auto rows = some_rows();
+  const Eigen::MatrixXd C = matrix_of(rows, ball.model.surface_node_count);
+  const Eigen::Index size = C.cols();
+  for (const bool implicit : {false, true}) {
+    const PeriodSteps steps{0.01, 4, implicit};
+    const double T = steps.period, moving = implicit ? 1 : 0.75,
+                 displaced = implicit ? 0.625 : 0.375;
+    Eigen::MatrixXf lower = Eigen::MatrixXf::Zero(size, size);
+    ball.springs.add(ball.state.positions, ball.whole(), displaced, moving / T, lower);
+    Eigen::MatrixXd A = symmetric(lower);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      A(i, i) += ball.model.masses[static_cast<std::size_t>(i / 3)] *
+                 (1 + T * ball.model.drag * moving) / (T * T);
+    }
+    Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(size + 1, size + 1);
+    bordered.topLeftCorner(size, size) = A;
+    for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
+      bordered.block<3, 1>(static_cast<Eigen::Index>(3 * i), size) = volume.gradient[i];
+      bordered.block<1, 3>(size, static_cast<Eigen::Index>(3 * i)) = volume.gradient[i].transpose();
+    }
+    const Eigen::MatrixXd free = C * A.inverse() * C.transpose();
+    const Eigen::MatrixXd kept = C * bordered.inverse().topLeftCorner(size, size) * C.transpose();
+    const auto found_free = compliance.solve(ball.state.positions, rows, steps, {}, ball.add());
+    const auto found_kept =
+        compliance.solve(ball.state.positions, rows, steps, volume.gradient, ball.add());
+    const Eigen::VectorXd modes = A.selfadjointView<Eigen::Lower>().eigenvalues();
+    const double tolerance = std::numeric_limits<float>::epsilon() * modes.maxCoeff() /
+                             modes.minCoeff() * free.cwiseAbs().maxCoeff();
+    CHECK((found_free - free).cwiseAbs().maxCoeff() < tolerance);
+    CHECK((found_kept - kept).cwiseAbs().maxCoeff() < tolerance);
+    CHECK((free - kept).cwiseAbs().maxCoeff() > 10 * tolerance);
+  }
+}
+
+TEST_CASE("patch compliance: in a single explicit step only masses answer") {
+  // Oracle: by hand, Σ b² T²/m, and nothing between rows that share no node.
+  const Ball ball;
+  PatchCompliance compliance(ball.model, Neighbours(ball.model, {}), 5);
+  Ball drag_free;
+  drag_free.model.drag = 0;
+  PatchCompliance without_drag(drag_free.model, Neighbours(drag_free.model, {}), 5);
+  const auto W =
+      without_drag.solve(ball.state.positions, some_rows(), {0.004, 1, false}, {}, ball.add());
+  const auto& w = ball.model.inverse_masses;
+  const double T2 = 0.004 * 0.004;
+  CHECK(W(0, 0) == Approx(T2 * (0.04 * w[3] + 0.09 * w[7] + 0.25 * w[12])).epsilon(1e-6));
+  CHECK(W(1, 1) == Approx(T2 * w[3]).epsilon(1e-6));
+  CHECK(W(0, 2) == Approx(0).margin(1e-12));
+}
+
+}  // namespace
+}  // namespace palpate::deformation

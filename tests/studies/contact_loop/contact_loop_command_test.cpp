@@ -1,0 +1,29 @@
+#include "studies/contact_loop/contact_loop_command.h"
+
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "modules/core/data_folder.h"
+#include "modules/core/error.h"
+
+namespace palpate::contact_loop {
+
+TEST_CASE("contact loop command: a line for each ball and their sum, stopped, it says it failed") {
+  // Oracle: the options.
+  ContactLoopOptions options;
+  options.scenes = {data_file("scenes/stomach_probe.yaml")};
+  options.radii = {2e-3, 8e-3};
+  options.speeds = {0.63};
+  options.rates = {100};
+  std::ostringstream out;
+  CHECK(run_contact_loop(
+            options, [] { return false; }, out) == kExitDone);
+  const std::string said = out.str();
+  CHECK(std::count(said.begin(), said.end(), '\n') == 4);
+  CHECK(said.find("2 runs:") != std::string::npos);
+  CHECK(said.find(" 0 of them without contact") != std::string::npos);
+  CHECK(run_contact_loop(
+            options, [] { return true; }, out) == kExitFailed);
+}
+
+}  // namespace palpate::contact_loop

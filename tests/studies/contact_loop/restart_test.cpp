@@ -1,0 +1,103 @@
+// Deformation or collision begin anew under a pressed probe.
+#include <catch2/catch.hpp>
+
+#include "haptics/devices/placed_device.h"
+#include "modules/core/data_folder.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/session/in_process.h"
+#include "studies/rigs/poked_organ.h"
+
+namespace palpate::contact_loop {
+namespace {
+
+constexpr double kRestart = 1.0;  // [s]
+constexpr double kBack = 1.0;     // within which the force is to be back [s]
+
+/// Silent for a while from kRestart on, then as if started anew.
+class Restarted final : public runtime::Stage {
+ public:
+  Restarted(std::unique_ptr<runtime::Stage> stage, double silence)
+      : stage_(std::move(stage)), silence_(silence) {}
+
+  runtime::Health cycle(const runtime::Cycle& now) override {
+    if (now.time() < kRestart || restarted_) return stage_->cycle(now);
+    if (now.time() < kRestart + silence_) return {};
+    restarted_ = true;
+    runtime::Cycle anew = now;
+    anew.reset = true;
+    return stage_->cycle(anew);
+  }
+
+ private:
+  std::unique_ptr<runtime::Stage> stage_;
+  double silence_;
+  bool restarted_ = false;
+};
+
+struct Seen {
+  double before = 0, greatest_after = 0, last = 0;  ///< force on the hand [N]
+  bool touches_at_first = false;
+  bool said = false;  ///< collision's status told of a probe begun inside
+};
+
+Seen run(const std::string& module, double depth, double silence) {
+  auto scene = scene::load_scene(data_file("scenes/stomach_probe.yaml"));
+  const session::Assets assets = session::load_assets(scene);
+  session::InProcessOptions options;
+  options.make = [&](std::string_view name, bus::Bus& bus, const session::MakeStage& usual) {
+    auto stage = usual(bus);
+    if (name != module) return stage;
+    return std::unique_ptr<runtime::Stage>(std::make_unique<Restarted>(std::move(stage), silence));
+  };
+  session::InProcess session(scene, assets, options);
+  const Vec3 from = rigs::poker_at(assets.organs[0].surface, rigs::kOnStomach, -0.002);
+  const Vec3 to = rigs::poker_at(assets.organs[0].surface, rigs::kOnStomach, depth);
+  auto device = std::make_unique<haptics::PlacedDevice>(Pose{from, Quat::Identity()});
+  haptics::PlacedDevice& hand = *device;
+  session.haptics().set_device(0, std::move(device));
+  Seen seen;
+  const double back = kRestart + silence;
+  while (session.time() < back + kBack) {
+    const double now = session.time();
+    const double way = std::clamp(now / 0.5, 0.0, 1.0);
+    hand.place({from + way * (to - from), Quat::Identity()},
+               {way < 1 ? Vec3(2 * (to - from)) : Vec3::Zero(), Vec3::Zero()});
+    session.tick();
+    const double force = session.haptic_force(0).force.norm();
+    if (now < kRestart) seen.before = force;
+    if (now < back) continue;
+    seen.greatest_after = std::max(seen.greatest_after, force);
+    seen.last = force;
+    // One period for deformation's reset to be heard.
+    if (now < back + 0.006) {
+      for (const Contact& c : session.contacts(0).contacts) seen.touches_at_first |= c.gap < 0;
+    }
+    const std::string guard = session.health("collision").guard;
+    seen.said |= guard.find("first heard of inside") != std::string::npos;
+  }
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "restart: under a pressed probe, contact is back at the first search and the force with it") {
+  // Oracle: the force before the restart, held by the same tissue at the same place. It comes back
+  // to within 5 %, and on the way never passes it by more than 10 %.
+  for (const std::string module : {"collision", "deformation"}) {
+    for (const double depth : {0.004, 0.009, 0.014, 0.020}) {
+      for (const double silence : {0.0, 0.02, 0.1}) {
+        const Seen seen = run(module, depth, silence);
+        INFO(module << " silent for " << silence << " s, " << depth << " m deep: " << seen.before
+                    << " N before, " << seen.last << " N after");
+        CHECK(seen.before > 0.01);
+        CHECK(seen.touches_at_first);
+        if (module == "deformation") CHECK(seen.said == (depth > 0.0085));  // its centre inside
+        CHECK(seen.last == Approx(seen.before).epsilon(0.05));
+        CHECK(seen.greatest_after <= 1.1 * seen.before);
+      }
+    }
+  }
+}
+
+}  // namespace palpate::contact_loop
