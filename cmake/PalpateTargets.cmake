@@ -49,6 +49,7 @@ function(palpate_precompile target kind)
     set(headers <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <filesystem> <functional> <map>
                 <memory> <optional> <span> <sstream> <string> <variant> <vector>)
     if(kind STREQUAL "tests")
+      target_compile_options(palpate_precompiled_tests PRIVATE $<$<CONFIG:Release>:-O1>)
       target_link_libraries(palpate_precompiled_tests PRIVATE Catch2::Catch2)
       list(APPEND headers <catch2/catch.hpp>)
     endif()
@@ -131,6 +132,8 @@ function(palpate_tests name)
     math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")
   endif()
   add_executable(${name}_tests ${ARG_SOURCES})
+  # A test's own code is compiled often and run once; what it judges keeps the preset's optimization.
+  target_compile_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name}_tests PRIVATE ${ARG_DEPENDS} Catch2::Catch2WithMain palpate_warnings)
   palpate_precompile(${name}_tests tests)
   target_compile_definitions(${name}_tests PRIVATE
