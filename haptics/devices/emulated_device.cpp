@@ -49,6 +49,7 @@ EmulatedDevice::EmulatedDevice(const scene::EmulatedDevice& config)
   encoder_step_ = config.encoder_step.value_or(of_kind.encoder_step);
   transport_ = std::llround(config.transport_delay * config.rate);
   config_.rotation.normalize();
+  if (config_.axis) config_.axis->normalize();
 
   const scene::EmulatedDevice::Hand& hand = config.hand;
   const double mass = config.mass.value_or(of_kind.mass) + hand.mass;
@@ -92,8 +93,9 @@ void EmulatedDevice::step() {
   const DeviceSample target = target_.read(period_ * (static_cast<double>(cycle_) + 0.5));
   const Vec3 to_target = target.pose.position - config_.start;
   const scene::EmulatedDevice::Hand& hand = config_.hand;
-  const Vec3 force =
+  Vec3 force =
       motor_force_ + hand.push + hand.stiffness * to_target + hand.damping * target.twist.linear;
+  if (config_.axis) force = config_.axis->dot(force) * *config_.axis;  // the rail bears the rest
   const Vec3 moved = position_ - config_.start;
   position_ = config_.start + free_(0, 0) * moved + free_(0, 1) * velocity_ + driven_[0] * force;
   velocity_ = free_(1, 0) * moved + free_(1, 1) * velocity_ + driven_[1] * force;

@@ -1,5 +1,5 @@
 // A haptic device and the hand that holds it, to test with: what a real one does to the loop, by
-// numbers. One body, moved in translation; its orientation stays.
+// numbers. One body, moved in translation, or along one axis; its orientation stays.
 //
 //   (m + m_h) ẍ = f_motor + push + k_h (x_t − x) + b_h (ẋ_t − ẋ) − b ẋ
 //

@@ -41,6 +41,8 @@ class PeriodicLoop {
   bool wait_for_period();
 
   std::int64_t woke_ns() const { return woke_ns_; }  ///< when this cycle began, monotonic clock
+  /// When the period began that this cycle belongs to: a whole number of periods after the first.
+  std::int64_t period_began_ns() const { return scheduled_ns_ - period_ns_; }
   std::int64_t period_ns() const { return period_ns_; }
   double rate_hz() const { return 1e9 / static_cast<double>(period_ns_); }
   const LoopStatistics& statistics() const { return statistics_; }

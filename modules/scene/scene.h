@@ -120,6 +120,7 @@ struct EmulatedDevice {
   Kind kind = Kind::kTouch;            ///< `kind`: which sizes those below have that are absent
   Vec3 start = Vec3::Zero();           ///< `start_m`
   Quat rotation = Quat::Identity();    ///< `rotation_xyzw`, kept
+  std::optional<Vec3> axis;            ///< `axis`: of W, moves along it only; absent: free
   std::optional<double> mass;          ///< `mass_kg` [0.01 … 10]
   std::optional<double> damping;       ///< `damping_n_s_per_m` [0 … 100]
   std::optional<double> max_force;     ///< `max_force_n`, of its motors [0.1 … 100]

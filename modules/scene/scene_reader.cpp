@@ -74,4 +74,18 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   return scene;
 }
 
+EmulatedDevice parse_emulated_device(std::string_view text, const std::string& source,
+                                     const TopicDevice& place) {
+  const Source origin{source, {}};
+  YamlValue keys{parse_yaml(text, origin), 1, "", &origin};
+  if (keys.node.IsNull()) keys.node = YAML::Node(YAML::NodeType::Map);
+  if (keys.node.IsMap() && !keys.node["start_m"].IsDefined()) {
+    for (const double coordinate : place.start) keys.node["start_m"].push_back(coordinate);
+  }
+  EmulatedDevice device;
+  device.rotation = place.rotation;
+  ObjectReader::read_object(keys, device);
+  return device;
+}
+
 }  // namespace palpate::scene

@@ -15,6 +15,12 @@ Scene load_scene(const std::filesystem::path& file);
 /// The same from text; `file` is used for messages and for resolving relative paths.
 Scene parse_scene(std::string_view text, const std::filesystem::path& file);
 
+/// An emulated device from the keys that a scene's `emulated` has, in the place of a probe that a
+/// driver moves: it starts there unless start_m or rotation_xyzw say otherwise.
+/// @param source  what messages call the text
+EmulatedDevice parse_emulated_device(std::string_view text, const std::string& source,
+                                     const TopicDevice& place);
+
 /// YAML with every default written out; parse_scene() of it gives the same scene.
 std::string resolved_text(const Scene& scene);
 

@@ -284,6 +284,9 @@ void describe(V& v, EmulatedDevice& device) {
   v.field("kind", device.kind, plain("whose sizes it has where they are not given"));
   v.field("start_m", device.start, point("where it starts").needed());
   v.field("rotation_xyzw", device.rotation, plain("unit quaternion, kept throughout"));
+  v.field("axis", device.axis,
+          ranged("", -1, 1, "in W: moves along it only, as on a rail").otherwise("moves freely"));
+  v.require(!device.axis || device.axis->norm() > 0.1, "axis must be a direction");
   v.field("mass_kg", device.mass,
           ranged("kg", 0.01, 10, "at the grip").otherwise("0.1 of a touch, 0.2 of an omega"));
   v.field("damping_n_s_per_m", device.damping,

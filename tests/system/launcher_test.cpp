@@ -1,73 +1,15 @@
 // `palpate run` as a person uses it.
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
 #include <set>
 #include <sstream>
 
-#include "tests/system/running_session.h"
+#include "tests/system/launched.h"
 
 using namespace palpate;
 using namespace palpate::testing;
 using Catch::Contains;
 
 namespace {
-
-/// A running `palpate run` and all it has said.
-class Launched {
- public:
-  Launched(const BallScene& scene, std::vector<std::string> more,
-           const bus::BusOptions& options = own_bus_options())
-      : options_(options) {
-    std::vector<std::string> arguments{
-        "run",      scene.file().string(),          "--headless", "--session", options_.session,
-        "--domain", std::to_string(options_.domain)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    child_ = std::make_unique<launcher::ChildProcess>(
-        std::filesystem::path(PALPATE_BIN_DIR) / "palpate", arguments);
-  }
-
-  bool wait_for_text(const std::string& text) {
-    return wait_until([&] {
-      listen();
-      return said_.find(text) != std::string::npos;
-    });
-  }
-  /// Exit code; −1 if it does not end or is killed.
-  int wait_for_end() {
-    wait_until([&] {
-      listen();
-      return child_->ended().has_value();
-    });
-    listen();
-    if (!child_->ended() || !WIFEXITED(*child_->ended())) return -1;
-    return WEXITSTATUS(*child_->ended());
-  }
-  /// Processes whose command line names this session, by their program.
-  std::map<std::string, pid_t> processes() const {
-    std::map<std::string, pid_t> found;
-    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-      std::ifstream stream(entry.path() / "cmdline", std::ios::binary);
-      const std::string line{std::istreambuf_iterator<char>(stream), {}};
-      if (line.find(options_.session + '\0') == std::string::npos) continue;
-      const std::string program = std::filesystem::path(line.substr(0, line.find('\0'))).filename();
-      found[program] = std::stoi(entry.path().filename().string());
-    }
-    return found;
-  }
-  launcher::ChildProcess& child() { return *child_; }
-  const bus::BusOptions& options() const { return options_; }
-  const std::string& said() const { return said_; }
-
- private:
-  void listen() {
-    for (const auto& line : child_->take_lines()) said_ += line + "\n";
-  }
-
-  bus::BusOptions options_;
-  std::unique_ptr<launcher::ChildProcess> child_;
-  std::string said_;
-};
 
 std::set<std::string> shared_memory_files() {
   std::set<std::string> names;

@@ -71,6 +71,19 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("emulated device: on an axis it moves along it, by that part of what acts on it") {
+  // Oracle: analytic, f t²/2m with f what the axis has of push and motor force.
+  auto config = plain(0.1, 0);
+  config.start = Vec3(1, 2, 3);
+  config.axis = Vec3(0, 0.5, 0.5);
+  config.hand.push = Vec3(3, 0.2, 0);
+  EmulatedDevice device(config);
+  device.read(0);
+  device.feel(force_of(Vec3(-1, 0, -0.1)));
+  const Vec3 moved = device.read(0.1).pose.position - config.start;
+  CHECK((moved - Vec3(0, 0.05, 0.05) * 0.01 / 0.2).norm() < 1e-12);
+}
+
 TEST_CASE("emulated device: encoders give whole steps, and start on one") {
   // Oracle: definition.
   scene::EmulatedDevice config;

@@ -122,6 +122,7 @@ TEST_CASE("scene reader: every key of a probe arrives in its field") {
   const auto& emulated = std::get<EmulatedDevice>(probes[5].device);
   CHECK(emulated.kind == EmulatedDevice::Kind::kOmega);
   CHECK(emulated.start == Vec3(0, 0, 0.5));
+  CHECK(emulated.axis == Vec3(0, 0.6, 0.8));
   CHECK(emulated.mass == 0.3);
   CHECK(emulated.encoder_step == 1e-6);
   CHECK(emulated.rate == 4000);
@@ -288,4 +289,24 @@ TEST_CASE("scene reader: a scene whose file name is no acceptable name needs one
                        Catch::Predicate<InputError>([](const InputError& error) {
                          return std::string(error.what()).find("key 'name'") != std::string::npos;
                        }));
+}
+
+TEST_CASE("scene reader: an emulated device is read by itself, in a driven probe's place") {
+  // Oracle: what is written; the messages.
+  const TopicDevice place{Vec3(0.1, 0.2, 0.3), Quat(0, 1, 0, 0)};
+  const EmulatedDevice plain = parse_emulated_device("", "--device", place);
+  CHECK(plain.start == place.start);
+  CHECK(plain.rotation.coeffs() == place.rotation.coeffs());
+  CHECK(plain.kind == EmulatedDevice::Kind::kTouch);
+  const EmulatedDevice given = parse_emulated_device(
+      "{start_m: [1, 2, 3], axis: [0, 0, 1], hand: {mass_kg: 2}}", "--device", place);
+  CHECK(given.start == Vec3(1, 2, 3));
+  CHECK(given.axis == Vec3(0, 0, 1));
+  CHECK(given.hand.mass == 2);
+  CHECK_THROWS_WITH(parse_emulated_device("{kind: omega, mass: 3}", "--device", place),
+                    Catch::StartsWith("--device:1: key 'mass' is not known"));
+  CHECK_THROWS_WITH(parse_emulated_device("[1]", "--device", place),
+                    Catch::StartsWith("--device:1: "));
+  CHECK_THROWS_WITH(parse_emulated_device("{axis: [0, 0, 0]}", "--device", place),
+                    Catch::Contains("axis must be a direction"));
 }

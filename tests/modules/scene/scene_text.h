@@ -170,9 +170,9 @@ probes:
           damping_n_s_per_m: 3
           stiffness_n_per_m: 150
           push_n: [0, 0, -0.15]
-          moves:
-            - {to_m: [0, 0, 0.3], duration_s: 2}
-            - {wait_s: 1}
+          moves: [{to_m: [0, 0, 0.3], duration_s: 2},
+                  {wait_s: 1}]
+        axis: [0, 0.6, 0.8]
 gravity_m_per_s2: [0, 0, -9.81]
 duration_s: 20
 rates: {haptics_hz: 2000, collision_hz: 500, deformation_hz: 400, visualizer_hz: 60}

@@ -100,6 +100,7 @@ void check_same(const Device& a, const Device& b) {
     CHECK(held->kind == two.kind);
     CHECK(held->start == two.start);
     CHECK(held->rotation.coeffs() == two.rotation.coeffs());
+    CHECK(held->axis == two.axis);
     CHECK(held->mass == two.mass);
     CHECK(held->damping == two.damping);
     CHECK(held->max_force == two.max_force);

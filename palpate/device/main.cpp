@@ -1,0 +1,125 @@
+// palpate-emulated-device: moves one probe of a session as a haptic device in a hand would, until
+// the session ends or it is told to stop (Ctrl-C, SIGTERM).
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+
+#include "modules/bus/dds_bus.h"
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/runtime/module_options.h"
+#include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/program.h"
+#include "modules/runtime/realtime.h"
+#include "modules/runtime/session.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/device/device_log.h"
+#include "palpate/device/emulated_driver.h"
+
+namespace {
+
+using namespace palpate;
+
+constexpr const char* kName = "palpate-emulated-device";
+constexpr int kFifo = 60;  // below haptics, above collision and deformation
+
+struct Options {
+  std::filesystem::path scene;
+  bus::BusOptions bus;
+  std::string probe, device;
+  double duration = 0;  // of the hand's [s]; 0: until the session ends
+  std::string table;
+  bool no_realtime = false;
+};
+
+/// The named probe, or the first one that a driver may move.
+std::uint32_t probe_of(const scene::Scene& scene, const std::string& name) {
+  for (std::size_t i = 0; i < scene.probes.size(); ++i) {
+    const scene::Probe& probe = scene.probes[i];
+    if (!name.empty() && probe.name != name) continue;
+    if (std::holds_alternative<scene::TopicDevice>(probe.device)) {
+      return static_cast<std::uint32_t>(i);
+    }
+    if (!name.empty()) {
+      throw InputError("probe '" + name + "' of " + scene.file.string() +
+                       " is moved by the scene: its device must be topic");
+    }
+  }
+  throw InputError(scene.file.string() + " has no probe " +
+                   (name.empty() ? "with device topic" : "'" + name + "'"));
+}
+
+/// Until the session ends, a signal comes or time is up; the hand takes the device as the session
+/// begins to run, and holds it while it pauses.
+void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDriver& driver,
+         bus::Bus& bus, launcher::DeviceLog& log) {
+  const runtime::StopSignal stop;
+  runtime::Session session(bus, scene::scene_digest(scene));
+  runtime::PeriodicLoop loop(1 / driver.device().period());
+  std::int64_t began_ns = 0;
+  while (!stop.requested() && session.phase() != runtime::SessionPhase::kStopped) {
+    if (!loop.wait_for_period()) continue;
+    session.poll();
+    if (!session.fault().empty()) throw InputError(session.fault());
+    const std::int64_t now_ns = loop.period_began_ns();
+    if (began_ns == 0 && session.running()) began_ns = now_ns;
+    if (began_ns == 0) {
+      driver.cycle(now_ns, std::nullopt);
+      continue;
+    }
+    const std::int64_t period = (now_ns - began_ns) / loop.period_ns();
+    driver.cycle(now_ns, period);
+    const double time = static_cast<double>(period) * driver.device().period();
+    log.add(now_ns, time, driver.device().position(), driver.device().motor_force());
+    if (options.duration > 0 && time >= options.duration) break;
+  }
+  const runtime::LoopStatistics& statistics = loop.statistics();
+  std::cerr << kName << ": " << statistics.cycles << " periods, "
+            << 100 * statistics.on_time_fraction() << " % on time\n";
+}
+
+void attach(const Options& options) {
+  const scene::Scene scene = scene::load_scene(options.scene);
+  const std::uint32_t probe = probe_of(scene, options.probe);
+  const scene::EmulatedDevice device = scene::parse_emulated_device(
+      options.device, "--device", std::get<scene::TopicDevice>(scene.probes[probe].device));
+  if (!options.no_realtime) {
+    const runtime::Realtime granted = runtime::request_realtime(kFifo, false);
+    if (!granted.refused.empty()) std::cerr << kName << ": " << granted.refused << '\n';
+  }
+  bus::DdsBus bus(options.bus);
+  launcher::EmulatedDriver driver(device, probe, bus);
+  std::ofstream table;
+  if (!options.table.empty()) {
+    table.open(options.table);
+    if (!table) throw InputError(options.table + ": cannot be written");
+  }
+  launcher::DeviceLog log(std::cout, options.table.empty() ? nullptr : &table);
+  run(options, scene, driver, bus, log);
+  std::cout << scene.probes[probe].name << ": " << log.summary() << std::endl;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Moves a probe of a running session as a haptic device in a hand would", kName);
+  Options options;
+  options.bus.participant_name = "emulated_device";
+  app.add_option("SCENE", options.scene, "Scene of the session; the probe's device is topic")
+      ->required();
+  app.add_option("--probe", options.probe, "Name of the probe; else the first with device topic");
+  app.add_option("--device", options.device,
+                 "Device and hand: the keys of a scene's `emulated`, such as "
+                 "'{kind: omega, hand: {push_n: [0, 0, -0.2]}}'");
+  runtime::add_bus_options(app, options.bus);
+  app.add_option("--duration", options.duration, "Seconds; else until the session ends")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--csv", options.table,
+                 "Place and force of each period; an existing one is replaced");
+  app.add_flag("--no-realtime", options.no_realtime, "Do not ask for real-time priority");
+  return runtime::run_program(app, argc, argv, [&] {
+    attach(options);
+    return kExitDone;
+  });
+}

@@ -1,0 +1,137 @@
+// palpate-emulated-device beside `palpate run`: a device in a hand, over loopback DDS.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <sstream>
+
+#include "modules/scene/scene_reader.h"
+#include "tests/system/launched.h"
+
+using namespace palpate;
+using namespace palpate::testing;
+using Catch::Contains;
+
+namespace {
+
+constexpr const char* kAboveTheBall = "topic: {start_m: [0, 0, 0.0605]}";  // by 0.5 mm
+
+/// The device's program, joined to a session.
+struct Device : Running {
+  Device(const std::filesystem::path& scene, const bus::BusOptions& session,
+         std::vector<std::string> more)
+      : Running(bin("palpate-emulated-device"), arguments(scene, session, std::move(more))) {}
+
+  static std::vector<std::string> arguments(const std::filesystem::path& scene,
+                                            const bus::BusOptions& session,
+                                            std::vector<std::string> more) {
+    more.insert(more.begin(), scene.string());
+    return joined(std::move(more), session);
+  }
+};
+
+struct Row {
+  double time;
+  Vec3 position, force;
+};
+std::vector<Row> rows_of(const std::filesystem::path& table) {
+  std::ifstream stream(table);
+  std::vector<Row> rows;
+  std::string line;
+  for (std::getline(stream, line); std::getline(stream, line);) {
+    std::istringstream numbers(line);
+    std::vector<double> values;
+    for (std::string number; std::getline(numbers, number, ',');)
+      values.push_back(std::stod(number));
+    if (values.size() != 8) break;  // cut short
+    rows.push_back(
+        {values[1], {values[2], values[3], values[4]}, {values[5], values[6], values[7]}});
+  }
+  return rows;
+}
+
+/// A shipped scene with its probe moved by a driver, as text.
+std::string driven(const std::string& name, const Vec3& start) {
+  scene::Scene scene =
+      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes" / name);
+  scene.probes[0].device = scene::TopicDevice{start};
+  return scene::resolved_text(scene);
+}
+
+}  // namespace
+
+TEST_CASE("emulated device: over DDS a solid liver pushes back as hard as the hand pushes") {
+  // Oracle: momentum. Over the last second the motors' mean force is the push, less what moved mass
+  // and damping: m Δv + (b + b_h) Δx over 1 s. Velocities are differences over 5 ms.
+  constexpr double kPush = 0.2, kMass = 0.1, kDamping = 3.2;
+  const Scripts files;
+  const auto scene = files.folder() / "liver.yaml", table = files.folder() / "device.csv";
+  std::ofstream(scene) << driven("liver_solid.yaml", Vec3(-0.020, -0.0726, 0.013));
+  Launched session(scene, {});
+  Device device(scene, session.options(),
+                {"--device", "{axis: [0, 1, 0], hand: {push_n: [0, 0.2, 0], damping_n_s_per_m: 3}}",
+                 "--duration", "4", "--csv", table.string()});
+  CHECK(device.wait_for_end() == 0);
+  INFO(device.said() << session.said());
+  CHECK_THAT(device.said(), Contains("fingertip: 4.0 s at "));
+
+  const std::vector<Row> rows = rows_of(table);
+  REQUIRE(rows.size() > 2000);
+  const auto last = rows.end() - 1;
+  const auto begin = std::find_if(rows.begin() + 5, rows.end(),
+                                  [&](const Row& row) { return row.time >= last->time - 1; });
+  double impulse = 0;
+  Vec3 low = last->position, high = low;
+  for (auto row = begin + 1; row != rows.end(); ++row) {
+    impulse += row->force.y() * (row->time - (row - 1)->time);
+    low = low.cwiseMin(row->position);
+    high = high.cwiseMax(row->position);
+  }
+  const auto speed = [&](std::vector<Row>::const_iterator row) {
+    return (row->position - (row - 5)->position).y() / (row->time - (row - 5)->time);
+  };
+  const double span = last->time - begin->time;
+  const double taken =
+      kMass * (speed(last) - speed(begin)) + kDamping * (last->position - begin->position).y();
+  INFO("mean force " << impulse / span << " N, swing " << (high - low).transpose() << " m");
+  CHECK(std::abs(kPush * span + impulse - taken) < 0.02 * kPush * span);
+  CHECK((high - low).norm() < 1e-3);  // 4 mm are pressed
+  CHECK((high - low).x() == 0);       // its rail
+}
+
+TEST_CASE("emulated device: ends with its session, and at once when told to") {
+  // Oracle: its exit codes and what it says.
+  const BallScene scene(kAboveTheBall);
+  const std::string push = "{axis: [0, 0, 1], hand: {push_n: [0, 0, -0.1], damping_n_s_per_m: 3}}";
+  Launched session(scene, {"--duration", "3"});
+  Device stopped(scene.file(), session.options(), {"--device", push});
+  REQUIRE(stopped.wait_for_text("1.0 s  at 0.00 0.00"));
+  stopped.child().signal(SIGTERM);
+  CHECK(stopped.wait_for_end() == 0);
+  CHECK_THAT(stopped.said(), Contains("finger: ") && Contains(" mm, force "));
+  Device again(scene.file(), session.options(), {"--device", "{kind: omega}"});
+  CHECK(again.wait_for_end() == 0);  // the session is over
+  CHECK_THAT(again.said(), Contains("finger: "));
+  CHECK(session.wait_for_end() == 0);
+}
+
+TEST_CASE("emulated device: what it cannot do is one line and exit code 2") {
+  // Oracle: the messages.
+  const BallScene driven(kAboveTheBall),
+      scripted("scripted: {start_m: [0, 0, 0.09], moves: [{wait_s: 1}]}");
+  struct Case {
+    const BallScene& scene;
+    std::vector<std::string> more;
+    std::string said;
+  };
+  for (const Case& wrong :
+       {Case{driven, {"--probe", "thumb"}, "has no probe 'thumb'"},
+        Case{scripted, {"--probe", "finger"}, "its device must be topic"},
+        Case{scripted, {}, "has no probe with device topic"},
+        Case{driven, {"--device", "{mass: 1}"}, "--device:1: "},
+        Case{driven, {"--device", "{hand: {push_n: [0, 0, -1e9]}}"}, "key 'hand.push_n'"},
+        Case{driven, {"--device", "{axis: [0, 0, 0]}"}, "axis must be a direction"},
+        Case{driven, {"--csv", "/nowhere/table.csv"}, "/nowhere/table.csv: cannot be written"}}) {
+    Device device(wrong.scene.file(), own_bus_options(), wrong.more);
+    CHECK(device.wait_for_end() == 2);
+    CHECK_THAT(device.said(), Contains(wrong.said));
+  }
+}
