@@ -107,7 +107,7 @@ Wrench HapticRenderer::wrench_at(const Pose& pose, double time, std::uint32_t& l
   const double old = age(current_, time);
   const LawForce modelled = solver_.evaluate(pose, current_.law.anchor_age + old);
   if (modelled.beyond_validity) limits |= kForceOutOfValidity;
-  if (coupled_) limits |= kStiffnessCapped;
+  if (softening_ > 0) limits |= kStiffnessCapped;
   Wrench wrench = modelled.wrench;
   if (cross_fade_left_ > 0) {
     const double share = static_cast<double>(cross_fade_left_) / cross_fade_ticks_;
@@ -132,13 +132,17 @@ double HapticRenderer::presence(double silence) {
 }
 
 /// A stiffness K on a device of damping b is stable up to b/(T/2 + t_d), T the tick and t_d the
-/// device's delay. What is stiffer is felt through a spring in series that makes it that stiff.
-/// @returns the spring's compliance [m/N]; 0: none is needed, or nobody holds the device
-double HapticRenderer::coupling_of(const LocalLaw& law, const DeviceSample& device) const {
+/// device's delay. A law that is stiffer is softened to that from its anchor on. The tissue meets
+/// the device's own pose: told the far end of a spring in series, with which it agrees only a
+/// period later, it would be pressed and let go in turn under a hand at rest. Rows that do not
+/// press yet tell no stiffness: what held before holds for them, too.
+/// @returns the compliance that it gains [m/N]; 0: it is not capped, or nobody holds the device
+double HapticRenderer::softening_of(const LocalLaw& law, const DeviceSample& device) const {
   if (!device.delay || !(limits_.device_damping > 0)) return 0;
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
   solver.computeDirect(law.stiffness, Eigen::EigenvaluesOnly);
   const double stiffness = solver.eigenvalues().maxCoeff();
+  if (!law.rows.empty() && !(stiffness > 0)) return softening_;
   const double stable = limits_.device_damping / (period_ / 2 + *device.delay);
   return stiffness > stable ? 1 / stable - 1 / stiffness : 0;
 }
@@ -153,9 +157,8 @@ void HapticRenderer::begin_cross_fade(const DeviceSample& device, double time) {
       std::max(1, static_cast<int>(std::lround(std::min(since_last, kCrossFadeTime) / period_)));
   std::swap(current_, next_);
   next_.valid = false;
-  const double coupling = coupling_of(current_.law, device);
-  coupled_ = coupling > 0;
-  solver_.take(current_.law, coupling);
+  softening_ = softening_of(current_.law, device);
+  solver_.take(current_.law, softening_);
   cross_fade_left_ = 0;
   const Wrench after = wrench_at(device.pose, time, ignored);
   cross_fade_ = before - after;

@@ -38,11 +38,6 @@ class HapticRenderer {
   /// Forgets the law; what the hand still feels is let go within the slew limit.
   void reset();
 
-  /// Where the probe is: the device's pose, but for the spring of a capped stiffness between them.
-  Pose probe_pose(const Pose& device) const {
-    return {device.position + solver_.coupling_offset(), device.rotation};
-  }
-
   std::uint64_t refused_laws() const { return refused_laws_; }  ///< since the last reset
 
  private:
@@ -53,7 +48,7 @@ class HapticRenderer {
   };
   double age(const Received& received, double time) const;
   double presence(double silence);
-  double coupling_of(const LocalLaw& law, const DeviceSample& device) const;
+  double softening_of(const LocalLaw& law, const DeviceSample& device) const;
   Wrench propose(const DeviceSample& device, double time, std::uint32_t& limits);
   Wrench wrench_at(const Pose& pose, double time, std::uint32_t& limits);
   void begin_cross_fade(const DeviceSample& device, double time);
@@ -67,7 +62,7 @@ class HapticRenderer {
 
   Received current_, next_;  ///< `next_` takes over at the coming tick
   LawSolver solver_;         ///< of the current law
-  bool coupled_ = false;     ///< by a spring between device and probe
+  double softening_ = 0;     ///< of a law too stiff for the device [m/N]; 0: not capped
   double presence_ = 1;      ///< of who holds the device: 0 when its driver is silent
   int cross_fade_ticks_ = 1, cross_fade_left_ = 0;
   Wrench cross_fade_;   ///< old minus new wrench where the new law took over

@@ -51,14 +51,13 @@ bool is_usable(const LocalLaw& law) {
          is_usable(law.compliance, law.directions() * law.rows.size());
 }
 
-void LawSolver::take(const LocalLaw& law, double coupling) {
+void LawSolver::take(const LocalLaw& law, double softening) {
   anchor_ = law.anchor;
   longest_ = kVelocityPeriods * law.period;
   growth_ = law.growth;
   half_period_ = law.period / 2;
   friction_ = law.friction_coefficient;
   validity_radius_ = law.validity_radius;
-  coupling_ = coupling;
   per_row_ = static_cast<int>(law.directions());
   directions_ = per_row_ * static_cast<int>(law.rows.size());
   for (std::size_t r = 0; r < law.rows.size(); ++r) {
@@ -75,11 +74,10 @@ void LawSolver::take(const LocalLaw& law, double coupling) {
       forces_[i] = anchor_forces_[i] = row.basis.col(k).dot(from.force);
     }
   }
-  anchor_force_ = law.force();
   for (std::size_t i = 0, at = 0; i < static_cast<std::size_t>(directions_); ++i) {
     for (std::size_t j = 0; j <= i; ++j, ++at) {
       compliance_[i][j] = compliance_[j][i] =
-          law.compliance[at] + coupling * axis(static_cast<int>(i)).dot(axis(static_cast<int>(j)));
+          law.compliance[at] + softening * axis(static_cast<int>(i)).dot(axis(static_cast<int>(j)));
     }
   }
 }
@@ -93,15 +91,13 @@ LawForce LawSolver::evaluate(const Pose& pose, double since_anchor) {
   place_rows(pose, std::clamp(since_anchor, 0.0, longest_), result.beyond_validity);
   while (result.sweeps++ < kMaxSweeps && sweep() > kForceTolerance) {
   }
-  force_.setZero();
   for (int i = 0; i < directions_; ++i) {
     const Row& row = rows_[static_cast<std::size_t>(i / per_row_)];
     const Vec3 force = forces_[static_cast<std::size_t>(i)] * axis(i);
     const Vec3 surface = pose.rotation * row.point_P - row.radius * row.basis.col(0);
-    force_ += force;
+    result.wrench.force += force;
     result.wrench.torque += surface.cross(force);
   }
-  result.wrench.force = force_;
   // Numbers too large for doubles must not outlive the pose or law that brought them.
   if (!result.wrench.is_finite()) forces_ = anchor_forces_;
   return result;
@@ -112,8 +108,7 @@ void LawSolver::place_rows(const Pose& pose, double time, bool& beyond_validity)
   const Vec3 away = pose.position - anchor_.position;
   beyond_validity = directions_ > 0 && is_longer_than(away, validity_radius_);
   const double grown = std::max(0.0, 1 + growth_ * (time + half_period_));
-  const Vec3 origin =
-      anchor_.position + clamp_length(away, validity_radius_) + grown * coupling_ * anchor_force_;
+  const Vec3 origin = anchor_.position + clamp_length(away, validity_radius_);
   for (int i = 0; i < directions_; ++i) {
     const auto k = static_cast<std::size_t>(i);
     Row& row = rows_[static_cast<std::size_t>(i / per_row_)];

@@ -28,9 +28,10 @@ class LawSolver {
   static constexpr double kForceTolerance = 1e-6;  ///< largest change in the last sweep [N]
 
   /// Starts from the law's own forces.
-  /// @param law       is_usable()
-  /// @param coupling  compliance of a spring between device and probe, ≥ 0 [m/N]; 0: none
-  void take(const LocalLaw& law, double coupling = 0);
+  /// @param law        is_usable()
+  /// @param softening  what every row gives way by beside W, to the change of the force since the
+  ///                   anchor, ≥ 0 [m/N]: the force at the anchor stays the tissue's own
+  void take(const LocalLaw& law, double softening = 0);
   void clear() { directions_ = 0; }  ///< no law: no force
 
   /// @param pose          of the device, finite
@@ -39,8 +40,6 @@ class LawSolver {
 
   /// ½ λᵀW λ at the last evaluation: what the rows' springs could return [J].
   double stored_energy() const;
-  /// How far the probe is from the device at the last evaluation: coupling times the force [m].
-  Vec3 coupling_offset() const { return coupling_ * force_; }
 
  private:
   static constexpr int kMost = 3 * static_cast<int>(kMaxLawRows);
@@ -61,13 +60,11 @@ class LawSolver {
   void change(int direction, double by);
 
   Pose anchor_;
-  double longest_ = 0, growth_ = 0, half_period_ = 0, friction_ = 0, validity_radius_ = 0,
-         coupling_ = 0;
+  double longest_ = 0, growth_ = 0, half_period_ = 0, friction_ = 0, validity_radius_ = 0;
   int directions_ = 0, per_row_ = 1;  ///< of all rows, of one
   std::array<Row, kMaxLawRows> rows_;
-  std::array<Numbers, kMost> compliance_;       ///< W and the coupling
+  std::array<Numbers, kMost> compliance_;       ///< W, softened
   Numbers anchor_forces_, forces_, distances_;  ///< λ⁰, λ, s
-  Vec3 anchor_force_ = Vec3::Zero(), force_ = Vec3::Zero();
 };
 
 }  // namespace palpate::haptics

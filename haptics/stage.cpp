@@ -54,7 +54,7 @@ void tick(const runtime::Cycle& now, RenderedProbe& probe) {
   probe.state.header = probe.force.header = now.header();
   probe.renderer.tick(source_time, sample, probe.force);
   probe.device->feel(probe.force);
-  probe.state.pose = probe.renderer.probe_pose(sample.pose);
+  probe.state.pose = sample.pose;
   probe.state.twist = sample.twist;
   probe.state.buttons = sample.buttons;
 }

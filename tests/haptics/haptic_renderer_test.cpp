@@ -292,21 +292,24 @@ TEST_CASE("haptic renderer: a silent driver's force fades, and rises as slowly w
   }
 }
 
-TEST_CASE("haptic renderer: what is stiffer than the device can hold is felt through a spring") {
-  // Oracle: analytic. b 0.2 N·s/m, T 1 ms, t_d 2 ms hold 0.2/(T/2 + t_d) = 80 N/m; a wall of
-  // 200 N/m 10 mm deep then gives 0.8 N, the probe 4 mm deep. Without delay 400 N/m are held.
+TEST_CASE("haptic renderer: of what is stiffer than the device can hold the change is capped") {
+  // Oracle: analytic. b 0.2 N·s/m, T 1 ms, t_d 2 ms hold 0.2/(T/2 + t_d) = 80 N/m; of a wall of
+  // 200 N/m that gives 2 N where the law was made, 1 mm is then felt as 0.08 N. Without delay 400
+  // N/m are held. A law that says of no row that it presses keeps the cap of the one before.
   Bench bench;
   REQUIRE(scene::Haptics{}.device_damping == 0.2);
-  DeviceSample held = resting_at(kPressed);
-  held.delay = 0.002;
+  DeviceSample held = resting_at(kPressed), deeper = resting_at(kPressed - Vec3(0, 0, 1e-3));
+  held.delay = deeper.delay = 0.002;
   const RenderedForce capped = bench.hold(wall_model(kPressed), held, 40);
-  CHECK(capped.force.z() == Approx(0.8).epsilon(1e-9));
+  CHECK(capped.force.z() == Approx(2).epsilon(1e-9));
   CHECK(capped.limits == kStiffnessCapped);
-  CHECK(bench.renderer.probe_pose(held.pose).position.z() == Approx(-0.004).epsilon(1e-9));
-  held.delay = 0;
-  const RenderedForce whole = bench.hold(wall_model(kPressed), held, 40);
-  CHECK(whole.force.z() == Approx(2).epsilon(1e-9));
-  CHECK(whole.limits == kForceNotLimited);
+  CHECK(bench.hold(wall_model(kPressed), deeper, 40).force.z() == Approx(2.08).epsilon(1e-9));
+  LocalLaw open = wall_model(kPressed);
+  open.stiffness.setZero();
+  CHECK(bench.hold(open, deeper, 40).force.z() == Approx(2.08).epsilon(1e-9));
+  held.delay = deeper.delay = 0;
+  CHECK(bench.hold(wall_model(kPressed), deeper, 40).force.z() == Approx(2.2).epsilon(1e-9));
+  CHECK(bench.hold(wall_model(kPressed), held, 40).limits == kForceNotLimited);
 }
 
 TEST_CASE("haptic renderer: what the device reports of itself reaches the force message") {

@@ -58,17 +58,18 @@ std::string driven(const std::string& name, const Vec3& start) {
 
 }  // namespace
 
-TEST_CASE("emulated device: over DDS a solid liver pushes back as hard as the hand pushes") {
+TEST_CASE("emulated device: over DDS a solid liver pushes back as hard as the hand, and rests") {
   // Oracle: momentum. Over the last second the motors' mean force is the push, less what moved mass
-  // and damping: m Δv + (b + b_h) Δx over 1 s. Velocities are differences over 5 ms.
-  constexpr double kPush = 0.2, kMass = 0.1, kDamping = 3.2;
+  // and damping: m Δv + b Δx over 1 s. Velocities are differences over 5 ms. Nothing of a hand
+  // damps this device; a loop that made energy would swing by the 2 mm that it is pressed in.
+  constexpr double kPush = 0.2, kMass = 0.1, kDamping = 0.2;
   const Scripts files;
   const auto scene = files.folder() / "liver.yaml", table = files.folder() / "device.csv";
   std::ofstream(scene) << driven("liver_solid.yaml", Vec3(-0.020, -0.0726, 0.013));
   Launched session(scene, {});
   Device device(scene, session.options(),
-                {"--device", "{axis: [0, 1, 0], hand: {push_n: [0, 0.2, 0], damping_n_s_per_m: 3}}",
-                 "--duration", "4", "--csv", table.string()});
+                {"--device", "{axis: [0, 1, 0], hand: {push_n: [0, 0.2, 0]}}", "--duration", "4",
+                 "--csv", table.string()});
   CHECK(device.wait_for_end() == 0);
   INFO(device.said() << session.said());
   CHECK_THAT(device.said(), Contains("fingertip: 4.0 s at "));
@@ -93,8 +94,8 @@ TEST_CASE("emulated device: over DDS a solid liver pushes back as hard as the ha
       kMass * (speed(last) - speed(begin)) + kDamping * (last->position - begin->position).y();
   INFO("mean force " << impulse / span << " N, swing " << (high - low).transpose() << " m");
   CHECK(std::abs(kPush * span + impulse - taken) < 0.02 * kPush * span);
-  CHECK((high - low).norm() < 1e-3);  // 4 mm are pressed
-  CHECK((high - low).x() == 0);       // its rail
+  CHECK((high - low).norm() < 1e-4);
+  CHECK((high - low).x() == 0);  // its rail
 }
 
 TEST_CASE("emulated device: ends with its session, and at once when told to") {
