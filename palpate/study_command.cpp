@@ -13,6 +13,7 @@ namespace palpate::launcher {
 
 const std::vector<Study>& studies() {
   static const std::vector<Study> kStudies{
+      {"certify", "Hold hand, device, haptics and organ to their limits, line by line"},
       {"chart", "Measure and draw speed against accuracy of all models"},
       {"plan", "Find the cheapest model, mesh and step that meet a scene's needs"},
       {"stability", "Map where each method fails, measured and predicted"},

@@ -8,6 +8,7 @@
 #include "modules/bus/tap.h"
 #include "modules/core/error.h"
 #include "palpate/session/in_process.h"
+#include "studies/rigs/wall_stage.h"
 
 namespace palpate::stability {
 namespace {
@@ -29,40 +30,6 @@ struct Hand {
     z += terminal * tick + (velocity - terminal) * kTime * (1 - decay);
     velocity = terminal + (velocity - terminal) * decay;
   }
-};
-
-/// In the place of deformation: what it would say of a probe on a wall z ≤ 0.
-class WallStage final : public runtime::Stage {
- public:
-  WallStage(bus::Bus& bus, double stiffness, bool local_model)
-      : states_(bus.reader(bus::kProbeState)),
-        models_(bus.writer(bus::kContactModel)),
-        stiffness_(stiffness) {
-    model_.validity_radius = 0.05;
-    model_.rows.resize(1);
-    model_.compliance = {local_model ? 1 / stiffness : kSoftest};
-    model_.stiffness(2, 2) = 1 / model_.compliance[0];
-  }
-
-  runtime::Health cycle(const runtime::Cycle& now) override {
-    while (states_.take(state_)) {
-      const double z = state_.pose.position.z();
-      model_.anchor = state_.pose;
-      model_.rows[0].gap = std::max(0.0, z);
-      model_.rows[0].force.z() = std::max(0.0, -stiffness_ * z);
-    }
-    model_.header = now.header();
-    models_.write(model_);
-    return {};
-  }
-
- private:
-  static constexpr double kSoftest = 1e6;  ///< of a bare force, which does not vary [m/N]
-  bus::Reader<ProbeState> states_;
-  bus::Writer<ContactModel> models_;
-  ProbeState state_;
-  ContactModel model_;
-  double stiffness_;  ///< [N/m]
 };
 
 /// In the place of haptics: the newest law at the device's pose, and nothing else.
@@ -136,7 +103,7 @@ class LoopSession {
                              const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
       if (module == "collision") return nullptr;
       if (module == "deformation") {
-        return std::make_unique<WallStage>(bus, stiffness, loop.local_model);
+        return std::make_unique<rigs::WallStage>(bus, stiffness, loop.local_model);
       }
       if (loop.passivity) return usual(bus);
       return std::make_unique<BareLawStage>(bus, *device_);

@@ -40,4 +40,5 @@ set -x
 "$palpate" plan "$scene" --seconds 3 -o planned.yaml
 "$palpate" check planned.yaml
 "$palpate" stability --quick --only squeeze --series mass_spring -o stability
-for result in chart/*.csv stability/*.csv; do [ -s "$result" ]; done
+"$palpate" certify "$scene" --lockstep --quick -o certify || [ $? -eq 1 ]  # 1: a line failed
+for result in chart/*.csv stability/*.csv certify/certif*; do [ -s "$result" ]; done

@@ -44,7 +44,7 @@ TEST_CASE("command line: --help lists every command and is no error") {
     CHECK_THAT(help.said, Contains(command));
     CHECK(type("palpate", {command, "--help"}).code == kExitDone);
   }
-  for (const char* program : {"plan", "stability", "fuzz"}) {
+  for (const char* program : {"certify", "plan", "stability", "fuzz"}) {
     CHECK_THAT(help.said, Contains(program));
   }
 }

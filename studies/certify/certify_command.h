@@ -1,0 +1,30 @@
+// What `palpate certify` does.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+
+#include "modules/bus/bus.h"
+
+namespace palpate::certify {
+
+struct CertifyOptions {
+  std::filesystem::path scene;
+  std::filesystem::path out = "out/certify";
+  double depth = 6e-3;    ///< of presses [m]
+  double speed = 0.04;    ///< of presses in the mean, of slides [m/s]
+  bool lockstep = false;  ///< without the real processes: the same numbers every time
+  bool quick = false;
+  bus::BusOptions bus;  ///< of the real processes; session: a name that nobody else has
+};
+
+/// Measures line by line and writes certificate.json, certificate.html, tables and pictures.
+/// Stopped, it writes what is done, marked incomplete.
+/// @return kExitDone if every line that was measured passed, kExitFailed if one did not, 130 if it
+///         was stopped
+/// @throws InputError for a scene that cannot be certified
+int run_certify(const CertifyOptions& options, const std::function<bool()>& stop, std::ostream& out,
+                std::ostream& log);
+
+}  // namespace palpate::certify

@@ -1,0 +1,22 @@
+// The stiffness of the hand's law against the organ's own: along a press, the force over one period
+// more, ended a little further and a little less far.
+#pragma once
+
+#include "studies/certify/line.h"
+#include "studies/certify/subject.h"
+
+namespace palpate::certify {
+
+struct LawStiffness {
+  double depth = 0;           ///< of the press [m]
+  double law = 0, organ = 0;  ///< along the press [N/m]
+};
+
+/// At depths of 1/12 to 4/3 of the subject's, from first touch, at 20 mm/s. The organ is pressed
+/// anew for each.
+std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going);
+
+/// In the median and at worst. Where the organ's own is not positive nothing can be said.
+std::vector<Line> law_lines(const std::vector<LawStiffness>& stiffness);
+
+}  // namespace palpate::certify

@@ -1,0 +1,78 @@
+// The real processes over loopback DDS, with the driver of an emulated device in this one.
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "haptics/devices/emulated_device.h"
+#include "modules/bus/bus.h"
+#include "palpate/child_process.h"
+#include "studies/certify/loop.h"
+
+namespace palpate::certify {
+
+/// What a session says, as far as a driver can hear it.
+struct Heard {
+  HapticForce force;                            ///< the newest
+  std::map<std::string, ModuleStatus> modules;  ///< the newest of each
+  std::int64_t last_pushed_ns = 0;              ///< source time of the last force that was not zero
+  std::int64_t last_driven_ns = 0;              ///< of the last pose that the driver wrote
+  std::int64_t last_law_ns = 0;                 ///< of the last contact_model
+  std::int64_t last_contacts_ns = 0;
+  double largest_step = 0;  ///< of the force per tick, since it was set to 0 [N]
+  // While `timing`:
+  bool timing = false;
+  std::vector<double> periods;    ///< between two ticks of haptics that follow each other [s]
+  std::vector<double> latencies;  ///< from a pose written to the force of its tick heard [s]
+  std::vector<Tick> held;         ///< time and depth of the body, since a hand took the device
+};
+
+class Processes {
+ public:
+  /// Starts deformation, collision and haptics on the subject's scene, whose probe becomes a
+  /// `topic`, written to `folder`. What they say is dropped.
+  /// @throws std::runtime_error if one cannot be started
+  Processes(const Subject& subject, const bus::BusOptions& bus, const std::filesystem::path& folder,
+            KeepGoing keep_going);
+  ~Processes();
+
+  /// Waits until all are ready and starts the session. False after a minute.
+  bool start();
+
+  /// A hand takes the device, which is where it says at once; before, it waits above the place.
+  void hold(const scene::EmulatedDevice& hand);
+
+  /// Drives and listens, a millisecond at a time, until the condition holds; false after `longest`
+  /// [s].
+  bool wait(const std::function<bool(const Heard&)>& condition, double longest);
+
+  void kill(const std::string& module);
+  void start_again(const std::string& module);
+  void drive(bool on);
+
+  Heard& heard() { return heard_; }
+
+ private:
+  struct Bus;
+  void start_module(const std::string& module);
+  void tick();
+  void write_pose(std::int64_t now_ns);
+  void listen(std::int64_t now_ns);
+  void hear(const HapticForce& force, std::int64_t now_ns);
+
+  const Subject& subject_;
+  bus::BusOptions options_;
+  KeepGoing keep_going_;
+  scene::Scene scene_;
+  std::filesystem::path file_;
+  std::map<std::string, std::unique_ptr<launcher::ChildProcess>> children_;
+  std::unique_ptr<Bus> bus_;  // after the children: they are born from a program of one thread
+  std::unique_ptr<haptics::EmulatedDevice> device_;  ///< none: the hand waits above
+  bool driving_ = true;
+  std::int64_t next_ns_ = 0, began_ns_ = 0;
+  std::uint32_t count_ = 0, answered_ = 0;  ///< poses written, and the newest that was answered
+  std::vector<std::int64_t> written_ns_;    ///< by count, a ring
+  Heard heard_;
+};
+
+}  // namespace palpate::certify

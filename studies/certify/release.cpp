@@ -1,0 +1,98 @@
+#include "studies/certify/release.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "modules/core/units.h"
+
+namespace palpate::certify {
+namespace {
+
+constexpr double kOnTheWay = 0.010;  // the last sample's way and a late tick [s]
+constexpr double kLongest = 20, kReleased = 5, kCalm = 1;  // [s]
+const std::string kDriver = "driver";
+
+/// Pressed as it should for a while.
+bool presses(Processes& processes, double pressed, double longest) {
+  const bool force = processes.wait(
+      [&](const Heard& heard) { return heard.force.force.norm() > pressed; }, longest);
+  processes.wait([](const Heard&) { return false; }, kCalm);
+  return force && processes.heard().force.force.norm() > pressed;
+}
+
+std::int64_t last_word_ns(const std::string& who, const Heard& heard) {
+  if (who == kDriver) return heard.last_driven_ns;
+  return who == "deformation" ? heard.last_law_ns : heard.last_contacts_ns;
+}
+
+Release release(Processes& processes, const std::string& who, double pressed) {
+  Release found{who};
+  found.came = presses(processes, pressed, kLongest);
+  processes.heard().largest_step = 0;
+  if (who == kDriver) {
+    processes.drive(false);
+  } else {
+    processes.kill(who);
+  }
+  found.came &=
+      processes.wait([](const Heard& heard) { return heard.force.force.isZero(0); }, kReleased);
+  const Heard& heard = processes.heard();
+  found.took = seconds_from_ns(heard.last_pushed_ns - last_word_ns(who, heard));
+  if (who == kDriver) {
+    processes.drive(true);
+  } else {
+    processes.start_again(who);
+  }
+  found.back = presses(processes, pressed, kLongest);
+  found.step = heard.largest_step;
+  return found;
+}
+
+}  // namespace
+
+std::vector<Release> measure_releases(Processes& processes, double pressed, int times,
+                                      const std::function<void(const Release&)>& told) {
+  std::vector<Release> found;
+  for (const auto& who : {kDriver, std::string("deformation"), std::string("collision")}) {
+    for (int i = 0; i < times; ++i) {
+      found.push_back(release(processes, who, pressed));
+      told(found.back());
+    }
+  }
+  return found;
+}
+
+std::vector<Line> release_lines(const std::vector<Release>& releases, const scene::Scene& scene) {
+  const std::string group = "released";
+  const double limit = scene.haptics.stale_after + scene.haptics.fade_time + kOnTheWay;
+  const double slew = scene.haptics.max_force_rate / scene.rates.haptics * (1 + 1e-9);
+  std::vector<Line> lines;
+  for (const auto& who : {kDriver, std::string("deformation"), std::string("collision")}) {
+    const std::string name = who + " killed, ";
+    double took = 0, step = 0;
+    int count = 0, back = 0;
+    for (const Release& r : releases) {
+      if (r.who != who) continue;
+      ++count;
+      back += r.back;
+      took = std::max(took, r.came ? r.took : HUGE_VAL);
+      step = std::max(step, r.step);
+    }
+    if (count == 0) continue;
+    const std::string note = fmt::format("{} times", count);
+    lines.push_back(at_most(group, {name + "force zero after", 1e3 * took, 1e3 * limit, "ms",
+                                    "stale_after_s + fade_time_s + 10 ms", note}));
+    lines.push_back(at_most(group, {name + "largest step until it is back", step, slew, "N",
+                                    "max_force_rate_n_per_s", note}));
+    lines.push_back(at_least(group, {name + "presses again within 20 s", 100.0 * back / count, 100,
+                                     "%", "docs/certify.md", note}));
+  }
+  lines.push_back(
+      not_measured(group, "haptics killed",
+                   "only the device's own firmware can let go (docs/haptic_safety.md)"));
+  return lines;
+}
+
+}  // namespace palpate::certify

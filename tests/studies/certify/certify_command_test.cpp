@@ -1,0 +1,82 @@
+#include "studies/certify/certify_command.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "modules/core/error.h"
+#include "studies/certify/tables.h"
+#include "studies/report/progress.h"
+#include "studies/report/reference_table.h"
+#include "tests/studies/certify/subjects.h"
+
+using namespace palpate;
+using namespace palpate::testing;
+using namespace palpate::certify;
+
+namespace {
+
+std::string text_in(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+CertifyOptions options_for(const BallScene& scene, const char* folder) {
+  CertifyOptions options;
+  options.scene = scene.file();
+  options.out = scene.folder() / folder;
+  options.lockstep = options.quick = true;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("certify command: in lockstep it writes the same bytes each time") {
+  // Oracle: the promise of docs/certify.md.
+  const BallScene scene(kFingerFromAbove);
+  std::ostringstream out, log;
+  const auto go_on = [] { return false; };
+  const int code = run_certify(options_for(scene, "one"), go_on, out, log);
+  CHECK(run_certify(options_for(scene, "two"), go_on, out, log) == code);
+  const std::string one = text_in(scene.folder() / "one/certificate.json");
+  CHECK(one == text_in(scene.folder() / "two/certificate.json"));
+  CHECK((one.find("\"verdict\" : \"fail\"") != std::string::npos) == (code == kExitFailed));
+  CHECK(one.find("\"complete\" : true") != std::string::npos);
+  for (const char* table : {"law.csv", "force.csv", "press.csv", "held.csv", "slide.csv"}) {
+    INFO(table);
+    CHECK(report::ReferenceTable(scene.folder() / "one" / table).size() > 2);
+  }
+  CHECK(std::filesystem::exists(scene.folder() / "one/certificate.html"));
+}
+
+TEST_CASE("certify command: stopped, it leaves what is done, marked incomplete") {
+  // Oracle: the promise of docs/certify.md.
+  const BallScene scene(kFingerFromAbove);
+  std::ostringstream out, log;
+  const auto soon = [&] { return out.str().find("force: ") != std::string::npos; };
+  CHECK(run_certify(options_for(scene, "cut"), soon, out, log) == report::kExitStopped);
+  const std::string json = text_in(scene.folder() / "cut/certificate.json");
+  CHECK(json.find("\"complete\" : false") != std::string::npos);
+  CHECK(json.find("\"group\" : \"law\"") != std::string::npos);
+  CHECK(json.find("\"group\" : \"sliding\"") == std::string::npos);
+}
+
+TEST_CASE("certify command: a scene that is none is bad input") {
+  // Oracle: the error families.
+  CertifyOptions options;
+  options.scene = "/nowhere.yaml";
+  std::ostringstream out, log;
+  CHECK_THROWS_AS(run_certify(
+                      options, [] { return false; }, out, log),
+                  InputError);
+}
+
+TEST_CASE("certify tables: columns name their unit") {
+  // Oracle: what is read back.
+  const BallScene scene;
+  write_law({{1e-3, 90, 100}}, scene.folder());
+  const report::ReferenceTable table(scene.folder() / "law.csv");
+  CHECK(table.at("depth_m", 0) == 1e-3);
+  CHECK(table.at("organ_n_per_m", 0) == 100);
+}

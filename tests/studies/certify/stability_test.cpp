@@ -1,0 +1,54 @@
+#include "studies/certify/stability.h"
+
+#include <catch2/catch.hpp>
+#include <iostream>
+
+#include "studies/certify/hands.h"
+#include "tests/studies/certify/subjects.h"
+
+using namespace palpate;
+using namespace palpate::testing;
+using namespace palpate::certify;
+
+TEST_CASE("certify stability: the critical stiffness of a wall is found where the formula says") {
+  // Oracle: analytic, b/(T/2 + t_d). 5 %: the bisection's 2 %, and a vibration counts as bounded
+  // when it has lost less than 2 % in five seconds.
+  for (const double transport : {0.0, 2e-3}) {
+    Subject subject = wall_subject();
+    subject.device.transport_delay = transport;
+    const double formula = formula_stiffness(subject);
+    CHECK(formula == Approx(0.2 / (5e-4 + 2 * transport)));
+    const auto found = critical_stiffness(subject, kGoOn);
+    REQUIRE(found.has_value());
+    std::cout << "certify stability: formula " << formula << " N/m, found " << *found << " N/m\n";
+    CHECK(*found / formula == Approx(1).margin(0.05));
+  }
+}
+
+TEST_CASE("certify stability: a scene that claims a damping which the device lacks fails") {
+  // Oracle: the formula: 2 N·s/m would hold 4000 N/m, the device's 0.2 hold 400.
+  Subject subject = wall_subject();
+  subject.scene.haptics.device_damping = 2;
+  const Line line = critical_line(subject, kGoOn);
+  INFO(text_of(line));
+  CHECK(line.verdict == Verdict::kFail);
+  CHECK(line.value == Approx(400).epsilon(0.05));
+  CHECK(stiff_wall_line(subject, kGoOn).verdict == Verdict::kFail);
+  CHECK(stiff_wall_line(wall_subject(), kGoOn).verdict == Verdict::kPass);
+}
+
+TEST_CASE("certify stability: a device that is calmed comes to rest, one that is not swings") {
+  // Oracle: analytic, a swing decays as exp(−b t/2m): 2 N·s/m and 0.1 kg leave e⁻²⁰ of it after two
+  // seconds, 0.2 N·s/m and 1 kg 0.8 of it. 0.48 N hold 80 N/m at 6 mm.
+  Subject subject = wall_subject();
+  subject.device.encoder_step = 0;
+  const Loop wall = loop_on_wall(subject.scene, 80);
+  subject.device.damping = 2;
+  const auto calm = hold(wall, subject, 0.48, kGoOn);
+  CHECK(calm.back().depth == Approx(subject.depth).epsilon(0.01));
+  CHECK(swing_line("g", "n", calm).verdict == Verdict::kPass);
+  CHECK(limit_cycle_line("g", calm).verdict == Verdict::kPass);
+  subject.device.damping = 0.2;
+  subject.device.mass = 1;
+  CHECK(swing_line("g", "n", hold(wall, subject, 0.48, kGoOn)).verdict == Verdict::kFail);
+}

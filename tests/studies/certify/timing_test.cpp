@@ -1,0 +1,33 @@
+#include "studies/certify/timing.h"
+
+#include <catch2/catch.hpp>
+
+using namespace palpate::certify;
+
+TEST_CASE("certify timing: quantiles are values that so many do not exceed") {
+  // Oracle: definition, on 1 to 1000.
+  std::vector<double> values;
+  for (int i = 1000; i > 0; --i) values.push_back(i);
+  CHECK(quantile(values, 0.5) == 500);
+  CHECK(quantile(values, 0.999) == 999);
+  CHECK(quantile(values, 1) == 1000);
+  CHECK(quantile({}, 0.5) == 0);
+}
+
+TEST_CASE("certify timing: a loop that misses ticks, or answers late, fails the lines of that") {
+  // Oracle: definition. Of 10,000 periods 20 are doubled: 99.8 % on time, and 0.2 % of periods are
+  // long; latencies are 2 ms.
+  Timing timing;
+  timing.periods.assign(10'000, 1e-3);
+  std::fill_n(timing.periods.begin(), 20, 2.1e-3);
+  timing.latencies.assign(10'000, 2e-3);
+  timing.cycles = 9980;
+  timing.overruns = 20;
+  for (const Line& line : timing_lines(timing, 1e-3)) {
+    INFO(text_of(line));
+    const bool broken = line.name == "loop period, p99.9" || line.name == "ticks on time" ||
+                        (line.name.starts_with("pose to force") && !line.name.ends_with("max"));
+    CHECK((line.verdict == Verdict::kFail) == broken);
+  }
+  for (const Line& line : timing_lines({}, 1e-3)) CHECK(line.verdict == Verdict::kNotMeasured);
+}
