@@ -16,6 +16,7 @@
 #include "modules/scene/assets.h"
 #include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
+#include "studies/certify/law.h"
 #include "studies/rigs/poked_organ.h"
 #include "studies/rigs/pressed_organ.h"
 #include "studies/rigs/squeezed_ball.h"
@@ -24,45 +25,17 @@ using namespace palpate;
 
 namespace {
 
-constexpr double kSpeed = 0.02, kAbove = 1e-3, kOff = 2e-5;  // [m/s], [m], [m]
-constexpr double kDepths[] = {0.5e-3, 1e-3, 2e-3, 4e-3, 6e-3, 8e-3};
-
-struct Press {
-  scene::Scene scene;
-  geometry::OrganShape shape;
-  Vec3 touch;  ///< middle of the tip where it touches [m]
-  Vec3 into;   ///< unit
-
-  Pose at(double depth) const { return {touch + depth * into, Quat::Identity()}; }
-
-  /// Force along the press after a period that ends `off` beside it; the law before.
-  double force(double depth, double off, LocalLaw& law) const {
-    const double way = kSpeed / scene.rates.deformation;
-    const int periods = static_cast<int>((depth + kAbove) / way);
-    rigs::PressedOrgan organ(scene, shape, {at(-kAbove)});
-    for (int i = 1; i <= periods; ++i) organ.advance({at(i * way - kAbove)});
-    law = organ.law(0);
-    organ.advance({at((periods + 1) * way - kAbove + off)});
-    return -organ.force(0).dot(into);
-  }
-};
-
-void print(const std::string& name, const Press& press) {
-  std::cout << name << ", " << press.scene.rates.deformation << " Hz:" << std::flush;
-  for (const double depth : kDepths) {
-    LocalLaw law;
-    const double more = press.force(depth, kOff, law), less = press.force(depth, -kOff, law);
-    const double organ = (more - less) / (2 * kOff),
-                 hand = press.into.dot(law.stiffness * press.into);
-    std::printf("  %.1f mm %.0f/%.0f", 1e3 * depth, hand, organ);
-    if (organ > 0) std::printf(" = %.2f", hand / organ);
-    std::fflush(stdout);
+void print(const std::string& name, const certify::Subject& subject) {
+  std::cout << name << ", " << subject.scene.rates.deformation << " Hz:" << std::flush;
+  for (const auto& point : certify::measure_law(subject, [] {})) {
+    std::printf("  %.1f mm %.0f/%.0f", 1e3 * point.depth, point.law, point.organ);
+    if (point.organ > 0) std::printf(" = %.2f", point.law / point.organ);
   }
   std::cout << "\n";
 }
 
-Press on_ball(const char* model, double rate) {
-  Press press;
+certify::Subject on_ball(const char* model, double rate) {
+  certify::Subject press;
   scene::Organ organ = rigs::ball_organ();
   organ.model = model;
   organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.03)});
@@ -70,38 +43,41 @@ Press on_ball(const char* model, double rate) {
   if (solid) {
     organ.tissue.youngs_modulus = 5e3;
     organ.solid.poisson_ratio = 0.45;
-    press.shape = rigs::filled_ball(2);
+    press.assets.organs = {rigs::filled_ball(2)};
   } else {
-    press.shape.surface = geometry::make_ball(rigs::kBallRadius, 3);
+    press.assets.organs = {geometry::make_ball(rigs::kBallRadius, 3)};
   }
   press.scene.organs.push_back(organ);
   press.scene.rates.deformation = rate;
   press.scene.probes.push_back({"tip", scene::SphereShape{0.008}, 0.1, scene::ScriptedDevice{}});
-  press.touch = Vec3(0.003, 0.002, rigs::kBallRadius + 0.008);
-  press.into = -Vec3::UnitZ();
+  press.place.pose.position = Vec3(0.003, 0.002, rigs::kBallRadius + 0.008);
   return press;
 }
 
 /// A shipped organ, where the charts poke it.
-Press on_organ(const std::string& file) {
-  Press press;
+certify::Subject on_organ(const std::string& file) {
+  certify::Subject press;
   press.scene = scene::load_scene(file);
   press.scene.organs.resize(1);
   press.scene.probes = {{"tip", scene::SphereShape{0.008}, 0.1, scene::ScriptedDevice{}}};
-  press.shape = scene::load_organ(press.scene.organs[0]);
+  press.assets.organs = {scene::load_organ(press.scene.organs[0])};
   const bool liver = file.find("liver") != std::string::npos;
   const rigs::PokedPlace place = liver ? rigs::kOnLiver : rigs::kOnStomach;
-  press.touch = rigs::poker_at(press.shape.surface, place, 0);
-  press.into = (rigs::poker_at(press.shape.surface, place, 1) - press.touch).normalized();
+  const auto& surface = press.assets.organs[0].surface;
+  Vec3& touch = press.place.pose.position;
+  touch = rigs::poker_at(surface, place, 0);
+  press.place.into = (rigs::poker_at(surface, place, 1) - touch).normalized();
   return press;
 }
 
 /// What making and solving the law of a pressed ball costs: 16 rows with friction, the probe in
 /// motion, a tick at a time.
 void print_cost() {
-  const Press press = on_ball("implicit_volume", 100);
-  LocalLaw law;
-  press.force(8e-3, 0, law);
+  const certify::Subject press = on_ball("implicit_volume", 100);
+  const auto at_period = [&](int i) { return pose_below(press.place, i * 2e-4 - 1e-3); };
+  rigs::PressedOrgan organ(press.scene, press.assets.organs[0], {at_period(0)});
+  for (int i = 1; i <= 45; ++i) organ.advance({at_period(i)});  // 8 mm deep at 20 mm/s
+  const LocalLaw law = organ.law(0);
   haptics::LawSolver solver;
   solver.take(law);
   std::vector<double> solving, making;
@@ -121,8 +97,6 @@ void print_cost() {
     sum += found.wrench.force.z();
     sweeps = std::max(sweeps, found.sweeps);
   }
-  rigs::PressedOrgan organ(press.scene, press.shape, {press.at(-kAbove)});
-  for (int i = 1; i < 40; ++i) organ.advance({press.at(i * 2e-4 - kAbove)});
   for (int i = 0; i < 1000; ++i) timed(making, [&] { sum += organ.law(0).stiffness(2, 2); });
   const auto at = [](std::vector<double>& times, double share) {
     std::ranges::sort(times);

@@ -25,7 +25,8 @@ RenderedForce EmulatedDriver::newest_force(std::int64_t now_ns) {
   return holds ? static_cast<const RenderedForce&>(force_) : RenderedForce{};
 }
 
-void EmulatedDriver::cycle(std::int64_t now_ns, std::optional<std::int64_t> period) {
+void EmulatedDriver::cycle(std::int64_t now_ns, std::optional<std::int64_t> period,
+                           std::uint32_t buttons) {
   const RenderedForce force = newest_force(now_ns);
   pose_.header.source_time_ns = now_ns;
   if (period) {
@@ -36,6 +37,7 @@ void EmulatedDriver::cycle(std::int64_t now_ns, std::optional<std::int64_t> peri
     pose_.twist = sample.twist;
     pose_.header.source_time_ns -= transport_ns_;
   }
+  pose_.buttons = buttons;
   poses_.write(pose_);
 }
 

@@ -21,7 +21,8 @@ class EmulatedDriver {
   /// @param now_ns  when the period began, on the clock of source times
   /// @param period  which one it is since the hand took the device; none: it has not, the device
   ///                stays where it starts
-  void cycle(std::int64_t now_ns, std::optional<std::int64_t> period);
+  /// @param buttons  held meanwhile
+  void cycle(std::int64_t now_ns, std::optional<std::int64_t> period, std::uint32_t buttons = 0);
 
   const haptics::EmulatedDevice& device() const { return device_; }
 

@@ -50,11 +50,13 @@ def draw_held(axis, folder):
 
 def draw_slide(axis, folder):
     rows = rows_of(folder / "slide.csv", set())
-    axis.plot(columns(rows, "time_s"), columns(rows, "force_n"), linewidth=0.8, label="force [N]")
-    axis.plot(columns(rows, "time_s"), columns(rows, "over"), "C3", linewidth=0.6, label="step over its limit")
-    axis.axhline(1, color="#999", linewidth=0.8)
-    axis.set(xlabel="time [s]", title="sliding over the organ")
-    axis.legend(fontsize=8)
+    axis.plot(columns(rows, "time_s"), columns(rows, "force_n"), linewidth=0.8)
+    axis.set(xlabel="time [s]", ylabel="force [N]", title="sliding over the organ", ylim=(0, None))
+    steps = axis.twinx()
+    steps.plot(columns(rows, "time_s"), columns(rows, "over"), "C3", linewidth=0.6)
+    steps.axhline(1, color="C3", linewidth=0.8, linestyle=":")
+    steps.set_ylabel("step over its limit", color="C3")
+    steps.set_ylim(0, None)
 
 
 def draw_timing(axis, folder):

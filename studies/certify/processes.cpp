@@ -1,6 +1,7 @@
 #include "studies/certify/processes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 
@@ -38,7 +39,6 @@ struct Processes::Bus {
         session(bus, scene::scene_digest(scene)),
         conductor(bus),
         scenes(bus.writer(bus::kScene)),
-        inputs(bus.writer(bus::kProbeInput)),
         states(bus.reader(bus::kProbeState)),
         forces(bus.reader(bus::kHapticForce)),
         laws(bus.reader(bus::kContactModel)),
@@ -54,13 +54,12 @@ struct Processes::Bus {
   runtime::Session session;
   runtime::SessionConductor conductor;
   bus::Writer<SceneDescription> scenes;
-  bus::Writer<ProbeState> inputs;
   bus::Reader<ProbeState> states;
   bus::Reader<HapticForce> forces;
   bus::Reader<ContactModel> laws;
   bus::Reader<Contacts> contacts;
   bus::Reader<ModuleStatus> statuses;
-  ProbeState input, state;
+  ProbeState state;
   HapticForce force;
   ContactModel law;
   Contacts touched;
@@ -79,6 +78,8 @@ Processes::Processes(const Subject& subject, const bus::BusOptions& bus,
   scene_ = scene::load_scene(file_);  // its digest is what the others compare
   for (const char* module : kModules) start_module(module);
   bus_ = std::make_unique<Bus>(options_, scene_);
+  hold(firm_hand(subject.device, subject.place, {}));
+  began_ns_ = 0;
 }
 
 Processes::~Processes() {
@@ -116,7 +117,7 @@ bool Processes::start() {
 }
 
 void Processes::hold(const scene::EmulatedDevice& hand) {
-  device_ = std::make_unique<haptics::EmulatedDevice>(hand);
+  driver_ = std::make_unique<launcher::EmulatedDriver>(hand, 0, bus_->bus);
   began_ns_ = runtime::monotonic_now_ns();
   heard_.held.clear();
 }
@@ -136,7 +137,7 @@ void Processes::tick() {
   std::int64_t now_ns = runtime::monotonic_now_ns();
   if (next_ns_ < now_ns - kPeriodNs) next_ns_ = now_ns;  // late: what has passed is not made up for
   next_ns_ += kPeriodNs;
-  if (driving_) write_pose(now_ns);
+  if (driving_) drive_device(now_ns);
   for (; now_ns < next_ns_; now_ns = runtime::monotonic_now_ns()) {
     bus_->forces.wait(seconds_from_ns(next_ns_ - now_ns));
     listen(runtime::monotonic_now_ns());
@@ -150,24 +151,19 @@ void Processes::tick() {
   for (auto& [module, child] : children_) child->take_lines();
 }
 
-void Processes::write_pose(std::int64_t now_ns) {
-  ProbeState& input = bus_->input;
-  input.pose = pose_below(subject_.place, -kAbove);
-  if (device_) {
-    const double time = seconds_from_ns(now_ns - began_ns_);
-    const auto sample = device_->read(time);
-    device_->feel(heard_.force);
-    Tick& tick = heard_.held.emplace_back();
-    tick.time = time;
-    tick.off = device_->position() - subject_.place.pose.position;
-    tick.depth = tick.off.dot(subject_.place.into);
-    input.pose = sample.pose;
-    input.twist = sample.twist;
-  }
-  input.header.source_time_ns = heard_.last_driven_ns = now_ns;
-  input.buttons = ++count_;  // comes back in the probe_state of the tick that used it
-  written_ns_[count_ % kWritten] = now_ns;
-  bus_->inputs.write(input);
+void Processes::drive_device(std::int64_t now_ns) {
+  const haptics::EmulatedDevice& device = driver_->device();
+  std::optional<std::int64_t> period;
+  if (began_ns_ > 0) period = std::llround(seconds_from_ns(now_ns - began_ns_) / device.period());
+  ++count_;  // comes back as the buttons in the probe_state of the tick that used the pose
+  written_ns_[count_ % kWritten] = heard_.last_driven_ns = now_ns;
+  driver_->cycle(now_ns, period, count_);
+  if (!period) return;
+  Tick& tick = heard_.held.emplace_back();
+  tick.time = static_cast<double>(*period) * device.period();
+  tick.off = device.position() - subject_.place.pose.position;
+  tick.depth = tick.off.dot(subject_.place.into);
+  if (!device.motor_force().isZero(0)) heard_.last_motor_ns = now_ns;
 }
 
 void Processes::listen(std::int64_t now_ns) {
@@ -202,9 +198,6 @@ void Processes::kill(const std::string& module) {
 
 void Processes::start_again(const std::string& module) { start_module(module); }
 
-void Processes::drive(bool on) {
-  driving_ = on;
-  if (device_) device_->feel({});  // a device whose driver is gone has let go
-}
+void Processes::drive(bool on) { driving_ = on; }
 
 }  // namespace palpate::certify

@@ -1,12 +1,12 @@
-// The real processes over loopback DDS, with the driver of an emulated device in this one.
+// The real processes over loopback DDS, and in this one the driver that palpate-emulated-device is.
 #pragma once
 
 #include <map>
 #include <memory>
 
-#include "haptics/devices/emulated_device.h"
 #include "modules/bus/bus.h"
 #include "palpate/child_process.h"
+#include "palpate/device/emulated_driver.h"
 #include "studies/certify/loop.h"
 
 namespace palpate::certify {
@@ -19,7 +19,8 @@ struct Heard {
   std::int64_t last_driven_ns = 0;              ///< of the last pose that the driver wrote
   std::int64_t last_law_ns = 0;                 ///< of the last contact_model
   std::int64_t last_contacts_ns = 0;
-  double largest_step = 0;  ///< of the force per tick, since it was set to 0 [N]
+  std::int64_t last_motor_ns = 0;  ///< when the device's motors were last not at zero
+  double largest_step = 0;         ///< of the force per tick, since it was set to 0 [N]
   // While `timing`:
   bool timing = false;
   std::vector<double> periods;    ///< between two ticks of haptics that follow each other [s]
@@ -56,7 +57,7 @@ class Processes {
   struct Bus;
   void start_module(const std::string& module);
   void tick();
-  void write_pose(std::int64_t now_ns);
+  void drive_device(std::int64_t now_ns);
   void listen(std::int64_t now_ns);
   void hear(const HapticForce& force, std::int64_t now_ns);
 
@@ -67,11 +68,11 @@ class Processes {
   std::filesystem::path file_;
   std::map<std::string, std::unique_ptr<launcher::ChildProcess>> children_;
   std::unique_ptr<Bus> bus_;  // after the children: they are born from a program of one thread
-  std::unique_ptr<haptics::EmulatedDevice> device_;  ///< none: the hand waits above
+  std::unique_ptr<launcher::EmulatedDriver> driver_;
   bool driving_ = true;
-  std::int64_t next_ns_ = 0, began_ns_ = 0;
-  std::uint32_t count_ = 0, answered_ = 0;  ///< poses written, and the newest that was answered
-  std::vector<std::int64_t> written_ns_;    ///< by count, a ring
+  std::int64_t next_ns_ = 0, began_ns_ = 0;  ///< began 0: the hand has not taken the device
+  std::uint32_t count_ = 0, answered_ = 0;   ///< poses written, and the newest that was answered
+  std::vector<std::int64_t> written_ns_;     ///< by count, a ring
   Heard heard_;
 };
 

@@ -1,4 +1,5 @@
-// Who dies while a hand presses lets go of it: the driver, or a process that is killed.
+// Who dies while a hand presses lets go of it: the driver, or a process that is killed. Of haptics
+// itself it is the driver's own guard that does.
 #pragma once
 
 #include "studies/certify/line.h"

@@ -41,6 +41,6 @@ TEST_CASE(
     CHECK(release.back);
     ++told;
   });
-  CHECK(told == 3);
-  CHECK(releases.size() == 3);
+  CHECK(told == 4);
+  CHECK(releases.size() == 4);
 }

@@ -25,5 +25,7 @@ TEST_CASE("certify release: late, with a step, never or for good: each fails its
   CHECK(failed({good, {"driver", 0.111, 0.1, true, true}}) == 1);
   CHECK(failed({good, {"driver", 0.1, 0.21, true, true}}) == 1);
   CHECK(failed({good, {"driver", 0.1, 0.1, false, true}}) == 1);
+  CHECK(failed({good, {"haptics", 0.109, 0.1, true, true}}) == 0);
+  CHECK(failed({good, {"haptics", 0.111, 0.1, true, true}}) == 1);
   CHECK(failed({good, {"collision", 0.1, 0.1, true, false}}) == 1);
 }
