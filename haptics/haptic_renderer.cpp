@@ -77,7 +77,9 @@ void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce
   const double present = presence(device.silence);
   if (present < 1) limits |= kDriverSilent;
   wanted = present * wanted;
-  const Wrench passive_wrench = passive(wanted, device, limits);
+  Wrench passive_wrench = passive(wanted, device, limits);
+  // Who has nothing to go by lets go: a debt must not hold the hand.
+  if (present == 0 || freshness(age(current_, time), limits_) == 0) passive_wrench = {};
   out.force = force_limiter_.limit(passive_wrench.force, limits);
   // What cuts the force cuts the torque it exerts.
   const double length = passive_wrench.force.stableNorm();

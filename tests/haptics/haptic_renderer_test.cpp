@@ -112,6 +112,25 @@ TEST_CASE("haptic renderer: a stale model fades linearly to zero in the stated t
   CHECK(before == 2);
 }
 
+TEST_CASE("haptic renderer: a hand that gives way as a stale model fades is let go all the same") {
+  // Oracle: the stated times, whatever the hand does: here it is pushed out while the force fades,
+  // then swings with 20 mm/s. Slew: 2 N go within 10 ticks.
+  Bench bench;
+  bench.hold(wall_model(kPressed), resting_at(kPressed), 400);
+  const double fresh = bench.time();  // the last model is 4 ticks old at most
+  DeviceSample device = resting_at(kPressed);
+  double last = 0;
+  for (int i = 0; i < 300; ++i) {
+    device.twist.linear.z() = i < 60 ? 0 : 0.02 * std::cos(0.05 * (i - 60));
+    device.pose.position.z() += kT * device.twist.linear.z();
+    const double now = bench.time();
+    if (bench.tick(device).force.norm() > 0) last = now;
+  }
+  const scene::Haptics limits;
+  INFO("let go " << last - fresh << " s after the last model");
+  CHECK(last - fresh <= limits.stale_after + limits.fade_time + 10 * kT);
+}
+
 TEST_CASE("haptic renderer: where the slew limit is slower than the fade, it decides") {
   // Oracle: analytic. 10 N/s: 2 N take 200 ms however short the fade.
   scene::Haptics limits;
