@@ -28,7 +28,7 @@ class ProbeContacts {
  public:
   static constexpr double kSeenDepth = 1e-3;    ///< [m]
   static constexpr double kGentleRise = 0.03;   ///< to the speed of a gentle push [s]
-  static constexpr double kGentleEnd = 0.1;     ///< its speed falls with the depth over this [s]
+  static constexpr double kGentleEnd = 0.2;     ///< its speed falls with the depth over this [s]
   static constexpr double kGentleDepth = 5e-6;  ///< at which it is over [m],
   static constexpr double kGentleTime = 2;      ///< or, under a hand that moves, after this [s]
 

@@ -27,6 +27,7 @@ struct Heard {
   Contacts contacts;
   std::map<std::string, ModuleStatus> modules;
   double largest_force_step = 0;    ///< per haptic tick, between samples that were heard [N]
+  double largest_force = 0;         ///< since forget_largest() [N]
   std::int64_t last_pushed_ns = 0;  ///< source time of the last force that was not zero
   std::int64_t last_driven_ns = 0;  ///< source time of the last pose that the test wrote
 
@@ -36,6 +37,7 @@ struct Heard {
       const double step = (next.force - force.force).norm() / ticks;
       largest_force_step = std::max(largest_force_step, step);
     }
+    largest_force = std::max(largest_force, next.force.norm());
     if (next.force.norm() > 0) last_pushed_ns = next.header.source_time_ns;
     force = next;
   }
@@ -105,6 +107,8 @@ class RunningSession {
     children_.at(name)->signal(SIGKILL);
     wait_until([&] { return children_.at(name)->ended().has_value(); });
   }
+
+  void forget_largest() { heard_.largest_force = heard_.largest_force_step = 0; }
 
   launcher::ChildProcess& child(const std::string& name) { return *children_.at(name); }
   const Heard& heard() const { return heard_; }
