@@ -5,6 +5,8 @@ include(CMakePackageConfigHelpers)
 install(DIRECTORY idl/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/idl COMPONENT dev
         FILES_MATCHING PATTERN *.idl PATTERN README.md)
 
+install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT dev)
+
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 configure_package_config_file(cmake/palpate-config.cmake.in
   ${PROJECT_BINARY_DIR}/palpate-config.cmake INSTALL_DESTINATION ${package_folder})
