@@ -12,15 +12,16 @@ namespace {
 
 constexpr double kOnTheWay = 0.010;  // the last sample's way and a late tick [s]
 constexpr double kLongest = 20, kReleased = 5, kCalm = 1;  // [s]
+constexpr double kStill = 0.2;                             // a force may pass through zero [s]
 const std::string kDriver = "driver", kHaptics = "haptics";
 const std::string kAll[] = {kDriver, "deformation", "collision", kHaptics};
 
-/// Pressed as it should for a while.
+/// It presses, and still does so a while later.
 bool presses(Processes& processes, double pressed, double longest) {
-  const bool force = processes.wait(
-      [&](const Heard& heard) { return heard.force.force.norm() > pressed; }, longest);
+  const auto feels = [&](const Heard& heard) { return heard.force.force.norm() > pressed; };
+  const bool force = processes.wait(feels, longest);
   processes.wait([](const Heard&) { return false; }, kCalm);
-  return force && processes.heard().force.force.norm() > pressed;
+  return force && processes.wait(feels, kCalm);
 }
 
 std::int64_t last_word_ns(const std::string& who, const Heard& heard) {
@@ -29,10 +30,12 @@ std::int64_t last_word_ns(const std::string& who, const Heard& heard) {
   return who == "deformation" ? heard.last_law_ns : heard.last_contacts_ns;
 }
 
-/// Nobody is pushed any more: of a dead haptics nothing is heard, and the driver is asked.
+/// Nobody has been pushed for a while; of a dead haptics nothing is heard, and the driver is asked.
 bool is_let_go(const std::string& who, const Heard& heard) {
-  if (who == kHaptics) return heard.last_motor_ns < heard.last_driven_ns;
-  return heard.force.force.isZero(0);
+  const std::int64_t still_ns = who == kHaptics
+                                    ? heard.last_driven_ns - heard.last_motor_ns
+                                    : heard.force.header.source_time_ns - heard.last_pushed_ns;
+  return still_ns > ns_from_seconds(kStill);
 }
 
 Release release(Processes& processes, const std::string& who, double pressed) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kShare = 0.8;                    // of the formula, that a loop must reach
 constexpr double kSoftest = 0.05, kStiffest = 4;  // of the formula
-constexpr double kResolution = 1.02;
+constexpr double kStride = 1.25, kResolution = 1.02;
 constexpr double kWallPush = 0.5, kWallDepth = 0.01;  // at most, on walls [N], [m]
 constexpr double kStiffWall = 10;                     // of the formula: needs the virtual coupling
 constexpr double kSettled = 1e-6;                     // no device resolves it [m]
@@ -46,9 +46,14 @@ double formula_stiffness(const Subject& subject) {
 
 std::optional<double> critical_stiffness(const Subject& subject, const KeepGoing& keep_going) {
   const double formula = formula_stiffness(subject);
-  double low = kSoftest * formula, high = kStiffest * formula;
-  if (comes_to_rest(subject, high, keep_going)) return high;
+  double low = kSoftest * formula, high = low;
   if (!comes_to_rest(subject, low, keep_going)) return std::nullopt;
+  // From below: far beyond the border a bounded vibration may calm down by chance.
+  while (comes_to_rest(subject, high, keep_going)) {
+    low = high;
+    if (high >= kStiffest * formula) return high;
+    high *= kStride;
+  }
   while (high > kResolution * low) {
     const double middle = std::sqrt(low * high);
     (comes_to_rest(subject, middle, keep_going) ? low : high) = middle;

@@ -12,8 +12,8 @@ namespace palpate::certify {
 double formula_stiffness(const Subject& subject);
 
 /// The stiffest wall on which the device, pushed with a constant force and its encoders exact,
-/// comes to rest: by bisection between 0.05 and 4 times the formula, to 2 %. Nothing if it does on
-/// none; 4 times the formula if it does on all.
+/// comes to rest, and on all softer ones that are tried from 0.05 times the formula on: to 2 %.
+/// Nothing if it does on none; about 4 times the formula if it does on all.
 std::optional<double> critical_stiffness(const Subject& subject, const KeepGoing& keep_going);
 Line critical_line(const Subject& subject, const KeepGoing& keep_going);
 
