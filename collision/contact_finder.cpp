@@ -48,9 +48,10 @@ class ProbeSearch {
       OrganSurface& organ = organs[i];
       if (!organ.present()) continue;
       const double displacement = organ.displacement_since(seen_versions_[i]);
-      const OrganStep step{i,        organ,
-                           relative, organ.positions_at(seen_versions_[i]),
-                           margin,   model_.depth_believed + relative.travel() + displacement};
+      const OrganStep step{
+          i,        organ,
+          relative, organ.positions_at(seen_versions_[i]),
+          margin,   model_.max_tracked_penetration + relative.travel() + displacement};
       const bool first = seen_versions_[i] == 0;
       if (first) report.begun_inside |= hold_inside(step, 1);
       const std::size_t others = found_.size();

@@ -34,7 +34,7 @@ struct Builder {
   void operator()(const geometry::HalfSpace&) const {
     model.solid = make_half_space();
     model.is_bounded = false;
-    model.depth_believed = std::numeric_limits<double>::infinity();
+    model.max_tracked_penetration = std::numeric_limits<double>::infinity();
   }
   void operator()(geometry::TriangleSurface& surface) const {
     model.sharp = std::make_unique<SharpMesh>(std::move(surface));
@@ -45,7 +45,7 @@ struct Builder {
 
   void set_bounds(const Bounds& bounds) const {
     model.bounds = bounds;
-    model.depth_believed = (bounds.upper - bounds.lower).maxCoeff();
+    model.max_tracked_penetration = (bounds.upper - bounds.lower).maxCoeff();
   }
 };
 

@@ -21,7 +21,8 @@ struct ProbeModel {
   bool is_round = false;              ///< a ball about P's origin: rotation changes nothing
   Bounds bounds;                      ///< in P [m], if bounded
   double reach = 0;                   ///< largest distance of the surface from P's origin [m]
-  double depth_believed = 0;  ///< twice the largest half extent; the half-space's is unlimited
+  double max_tracked_penetration =
+      0;  ///< twice the largest half extent; the half-space's is unlimited
 };
 
 }  // namespace palpate::collision

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "collision/contact_margin.h"
+#include "collision/activation_distance.h"
 #include "modules/core/error.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
@@ -215,7 +215,7 @@ struct CollisionStage::Impl {
       organs.finder()->forget(probe);
     }
     const double margin =
-        contact_margin(present_rates(rates, organs.interval()), state.twist.linear.norm());
+        activation_distance(present_rates(rates, organs.interval()), state.twist.linear.norm());
     const SearchReport found =
         organs.finder()->find(probe, probes.motion(probe), margin, kMaxContactsPerProbe, contacts);
     acted.found.begun_inside |= found.begun_inside;

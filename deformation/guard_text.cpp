@@ -27,7 +27,7 @@ constexpr std::array<Text, kGuardCodes> kTexts{{
     {GuardCode::kEnergyGrew,
      "an organ diverged (more energy than it was given): its last good state was restored, at "
      "rest"},
-    {GuardCode::kContactsIgnored,
+    {GuardCode::kContactsSuspended,
      "an organ put back to its rest state takes no contacts for a second"},
     {GuardCode::kPressureCapped, "an organ's pressure met its cap: its target volume gives way"},
     {GuardCode::kVolumeReleased,

@@ -27,7 +27,7 @@ SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const 
     : model_(std::move(model)),
       dynamics_(std::move(dynamics)),
       target_volume_(organ.filling),
-      guard_(*model_, row_of(organ.model).knows_energy),
+      detector_(*model_, row_of(organ.model).knows_energy),
       guarding_(guarding),
       holds_volume_(row_of(organ.model).has_volume_constraint),
       pressure_limit_(holds_volume_ ? pressure_cap(organ.tissue, model_->rest_volume)
@@ -43,8 +43,8 @@ int SimulatedOrgan::substeps(double period) const {
 void SimulatedOrgan::put(const OrganState& state) {
   state_ = state;
   release_volume();
-  guard_.begin(state_, dynamics_->elastic_energy(state_));
-  advances_ = kThoroughLookEvery;
+  detector_.begin(state_, dynamics_->elastic_energy(state_));
+  advances_ = kThoroughCheckEvery;
   folded_ = false;
   collapsed_time_ = 0;
 }
@@ -52,10 +52,10 @@ void SimulatedOrgan::put(const OrganState& state) {
 void SimulatedOrgan::reset() {
   target_volume_.reset();
   state_ = last_good_ = rest_state(*model_);
-  guard_.begin(state_, dynamics_->elastic_energy(state_));
+  detector_.begin(state_, dynamics_->elastic_energy(state_));
   halvings_ = failures_ = advances_ = 0;
   folded_ = false;
-  collapsed_time_ = aloof_time_ = gentle_time_ = 0;
+  collapsed_time_ = suspension_time_ = gentle_time_ = 0;
   quiet_time_ = kQuietTime;
 }
 
@@ -68,33 +68,33 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
     for (ContactRow& row : rows) row.gap = std::max(row.gap, -kGentleSpeed * h);
   }
   const StepReport stepped = dynamics_->step(h, rows, state_);
-  guard_.add_work(h, rows, state_.target_volume - before, state_);
+  detector_.add_work(h, rows, state_.target_volume - before, state_);
   if (stepped.volume_skipped) {
     report.volume_skipped = true;
-    advances_ = kThoroughLookEvery;
+    advances_ = kThoroughCheckEvery;
   }
   const bool collapsed = (stepped.volume_skipped || folded_) && rows.empty();
   collapsed_time_ = collapsed ? collapsed_time_ + h : 0;
   if (!stepped.pressure_capped) return;
   report.pressure_capped = true;
   release_volume();
-  advances_ = kThoroughLookEvery;
+  advances_ = kThoroughCheckEvery;
 }
 
 bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   if (guarding_ == Guarding::kOff) return true;
-  const bool thorough = ++advances_ >= kThoroughLookEvery;
-  Disbelief seen =
-      thorough ? guard_.look_thoroughly(state_, period, *dynamics_) : guard_.look(state_, period);
-  if (collapsed_time_ > kCollapsedTime) seen = Disbelief::kCollapsed;
-  if (seen != Disbelief::kNone) {
+  const bool thorough = ++advances_ >= kThoroughCheckEvery;
+  Violation seen = thorough ? detector_.check_thoroughly(state_, period, *dynamics_)
+                            : detector_.check_bounds(state_, period);
+  if (collapsed_time_ > kCollapsedTime) seen = Violation::kCollapsed;
+  if (seen != Violation::kNone) {
     recover(seen, report);
     return false;
   }
-  if (guard_.suspicious() && quiet_time_ >= kAdvancesToShow * period) shorten_steps();
+  if (detector_.suspicious() && quiet_time_ >= kAdvancesToShow * period) shorten_steps();
   lengthen_steps(period);
   report.step_reduced |= halvings_ > 0;
-  report.contacts_ignored |= aloof();
+  report.contacts_suspended |= contacts_suspended();
   if (!thorough) return true;
   advances_ = 0;
   const bool far = holds_volume_ && volume_is_far();
@@ -104,7 +104,7 @@ bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
       model_->is_solid() && inverted_tetrahedra(model_->mesh(), state_.positions) > 0;
   report.tissue_inverted |= inverted;
   folded_ = inverted && !has_rest_volume();
-  if (!guard_.suspicious() && !far && !folded_ && collapsed_time_ == 0) last_good_ = state_;
+  if (!detector_.suspicious() && !far && !folded_ && collapsed_time_ == 0) last_good_ = state_;
   return true;
 }
 
@@ -125,14 +125,14 @@ bool SimulatedOrgan::has_rest_volume() const {
   return std::abs(volume / model_->rest_volume - 1) <= kMaxVolumeError;
 }
 
-void SimulatedOrgan::recover(Disbelief reason, AdvanceReport& report) {
+void SimulatedOrgan::recover(Violation reason, AdvanceReport& report) {
   report.diverged = report.step_reduced = true;
   report.reason = reason;
   gentle_time_ = kQuietTime;
   if (++failures_ > kMostFailures) {
     report.back_to_rest = true;
     last_good_ = rest_state(*model_);
-    aloof_time_ = kQuietTime;
+    suspension_time_ = kQuietTime;
     gentle_time_ += kQuietTime;
   }
   put(last_good_);
@@ -147,7 +147,7 @@ void SimulatedOrgan::shorten_steps() {
 }
 
 void SimulatedOrgan::lengthen_steps(double period) {
-  aloof_time_ -= period;
+  suspension_time_ -= period;
   gentle_time_ -= period;
   quiet_time_ += period;
   if (halvings_ == 0 || quiet_time_ < kQuietTime) return;

@@ -1,20 +1,20 @@
 // One organ with all that keeps it alive: its dynamics, the volume it is asked for, and what is
-// done when its state is not believed (state_guard.h).
+// done when its state is implausible (divergence_detector.h).
 //
 // From mild to harsh, each seen in AdvanceReport:
 //   1. suspicious energy: the next steps are halved, quartered, … down to 1/2^kMostHalvings
-//   2. not believed: back to the last good state, at rest, with halved steps; where that is inside
+//   2. implausible: back to the last good state, at rest, with halved steps; where that is inside
 //      a probe, contacts push it out at kGentleSpeed for kQuietTime
-//   3. not believed for the fourth time: back to the rest state, and no contacts for kQuietTime
+//   3. implausible for the fourth time: back to the rest state, and no contacts for kQuietTime
 // kQuietTime without any of them doubles the steps again and forgives a failure. Each advance ends
-// in a state that was looked at; none is computed twice.
+// in a state that was checked; none is computed twice.
 #pragma once
 
 #include <memory>
 #include <span>
 
 #include "deformation/guard/advance_report.h"
-#include "deformation/guard/state_guard.h"
+#include "deformation/guard/divergence_detector.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/target_volume.h"
 #include "deformation/steppers/organ_dynamics.h"
@@ -35,8 +35,8 @@ inline constexpr double kCollapsedTime = 0.5;
 inline constexpr int kMostHalvings = 3;
 inline constexpr int kMostFailures = 3;
 inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
-/// Energy, volume and inversion are looked at in every such advance, and after any guard acted.
-inline constexpr int kThoroughLookEvery = 16;
+/// Energy, volume and inversion are checked in every such advance, and after any guard acted.
+inline constexpr int kThoroughCheckEvery = 16;
 
 /// Off: nothing of the above is done. For measuring what it is worth (`palpate fuzz`).
 enum class Guarding : std::uint8_t { kOn, kOff };
@@ -51,7 +51,7 @@ class SimulatedOrgan {
   const OrganState& state() const { return state_; }
 
   int substeps(double period) const;
-  bool aloof() const { return aloof_time_ > 0; }  ///< takes no contacts for now
+  bool contacts_suspended() const { return suspension_time_ > 0; }  ///< takes no contacts for now
 
   /// Starts from any state. V* begins at its volume.
   void put(const OrganState& state);
@@ -68,27 +68,27 @@ class SimulatedOrgan {
   void release_volume();
   bool volume_is_far() const;
   bool has_rest_volume() const;
-  void recover(Disbelief reason, AdvanceReport& report);
+  void recover(Violation reason, AdvanceReport& report);
   void shorten_steps();
   void lengthen_steps(double period);
 
   std::unique_ptr<const OrganModel> model_;
   std::unique_ptr<OrganDynamics> dynamics_;
   TargetVolume target_volume_;
-  StateGuard guard_;
+  DivergenceDetector detector_;
   OrganState state_, last_good_;
   Guarding guarding_;
-  bool holds_volume_ = false;  ///< by a constraint that answers an error with an impulse
-  double pressure_limit_ = 0;  ///< [Pa]; infinite where no constraint makes it
-  int halvings_ = 0;           ///< of the step
-  int failures_ = 0;           ///< states not believed, less those forgiven
-  double aloof_time_ = 0;      ///< left [s]
-  double gentle_time_ = 0;     ///< left [s]
-  double quiet_time_ = 0;      ///< since a guard acted [s]
-  /// At the last thorough look a solid had tetrahedra inside out and a volume far from V₀.
+  bool holds_volume_ = false;   ///< by a constraint that answers an error with an impulse
+  double pressure_limit_ = 0;   ///< [Pa]; infinite where no constraint makes it
+  int halvings_ = 0;            ///< of the step
+  int failures_ = 0;            ///< implausible states, less those forgiven
+  double suspension_time_ = 0;  ///< left [s]
+  double gentle_time_ = 0;      ///< left [s]
+  double quiet_time_ = 0;       ///< since a guard acted [s]
+  /// At the last thorough check a solid had tetrahedra inside out and a volume far from V₀.
   bool folded_ = false;
   double collapsed_time_ = 0;  ///< [s]
-  int advances_ = 0;           ///< since the last thorough look
+  int advances_ = 0;           ///< since the last thorough check
 };
 
 }  // namespace palpate::deformation

@@ -35,10 +35,10 @@ struct WorldOrgan {
   bool replaced = false;      ///< its state, at the end of the last advance
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
-  VolumeGradient volume = {};                       ///< buffer of answer()
+  VolumeGradient volume = {};                       ///< buffer of compliance()
 
   /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N].
-  Eigen::MatrixXd answer(std::span<const ComplianceRow> touched, double period) {
+  Eigen::MatrixXd compliance(std::span<const ComplianceRow> touched, double period) {
     const OrganState& state = simulated.state();
     std::span<const Vec3> gradient;
     if (keeps_volume) {
@@ -122,7 +122,7 @@ struct DeformationWorld::Impl {
            (probe.to_world(contact.point_P) - tissue).stableNorm() <= kFarthestContact;
   }
 
-  bool believes(const Contact& contact, const Pose& probe) {
+  bool is_plausible(const Contact& contact, const Pose& probe) {
     if (!names_our_triangle(contact)) return false;
     const bool near = is_near(contact, probe);
     contact_refused |= !near;
@@ -137,16 +137,16 @@ struct DeformationWorld::Impl {
     for (int step = 1; step <= substeps; ++step) {
       const double fraction = static_cast<double>(step) / substeps;
       organ.rows.clear();
-      const bool aloof = organ.simulated.aloof();
+      const bool contacts_suspended = organ.simulated.contacts_suspended();
       for (auto& probe : probes) {
-        if (aloof) break;
+        if (contacts_suspended) break;
         probe.append_rows(index, organ.simulated.model(), organ.simulated.state(), h, fraction,
                           organ.rows);
       }
       organ.simulated.step(time + fraction * period, h, organ.rows, report);
       std::size_t first = 0;
       for (auto& probe : probes) {
-        if (aloof) break;
+        if (contacts_suspended) break;
         first += probe.take_rows(index, organ.rows.data() + first);
       }
     }
@@ -177,7 +177,7 @@ struct DeformationWorld::Impl {
         for (std::size_t k = 0; k < directions; ++k) places.push_back(directions * c + k);
       }
       if (rows.empty()) continue;
-      const Eigen::MatrixXd W = organs[i].answer(rows, period);
+      const Eigen::MatrixXd W = organs[i].compliance(rows, period);
       for (std::size_t a = 0; a < places.size(); ++a) {
         for (std::size_t b = 0; b <= a; ++b) {
           const auto [low, high] = std::minmax(places[a], places[b]);
@@ -239,7 +239,7 @@ void DeformationWorld::set_contacts(const ContactSet& contacts) {
   std::vector<Contact>& accepted = impl_->accepted;
   accepted.clear();
   for (const Contact& contact : contacts.contacts) {
-    if (impl_->believes(contact, contacts.probe_pose)) accepted.push_back(contact);
+    if (impl_->is_plausible(contact, contacts.probe_pose)) accepted.push_back(contact);
   }
   impl_->probes[contacts.probe].set_contacts(accepted);
 }

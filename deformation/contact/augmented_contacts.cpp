@@ -6,7 +6,7 @@
 namespace palpate::deformation {
 namespace {
 
-/// ρ over the inverse mobility of the contact's nodes, others held: what the last step's impulses
+/// ρ over the effective mass of the contact's nodes, others held: what the last step's impulses
 /// leave is soon taken up, and conjugate gradients are not slowed. At 100 they did not find the
 /// contacts of a fine mesh.
 constexpr double kStiffness = 10;
@@ -27,18 +27,18 @@ Vec3 across(const Vec3& vector, const Vec3& direction) {
 
 }  // namespace
 
-void AugmentedContacts::begin(std::span<const Mat3> mobilities, std::span<ContactRow> rows,
+void AugmentedContacts::begin(std::span<const Mat3> inverse_mass_blocks, std::span<ContactRow> rows,
                               double h, const std::vector<Vec3>& velocities) {
   springs_.assign(rows.size(), {});
   for (std::size_t c = 0; c < rows.size(); ++c) {
     ContactRow& row = rows[c];
     Spring& spring = springs_[c];
-    double mobility = 0;
+    double effective_inverse_mass = 0;
     for (int k = 0; k < 3; ++k) {
-      mobility +=
-          row.weights[k] * row.weights[k] * row.normal.dot(mobilities[row.nodes[k]] * row.normal);
+      inverse_mass += row.weights[k] * row.weights[k] *
+                      row.normal.dot(inverse_mass_blocks[row.nodes[k]] * row.normal);
     }
-    if (mobility > 0) spring.stiffness = kStiffness / mobility;
+    if (inverse_mass > 0) spring.stiffness = kStiffness / inverse_mass;
     spring.allowed_approach = std::max(row.gap / h, -kMaxSeparationSpeed);
     if (spring.stiffness == 0) row.normal_impulse = 0;
     const double last = spring.last_pressing = row.normal_impulse;
@@ -50,7 +50,7 @@ void AugmentedContacts::begin(std::span<const Mat3> mobilities, std::span<Contac
     const Vec3 relative = relative_velocity(row, velocities);
     row.normal_impulse =
         last + spring.stiffness * (row.normal.dot(relative) - spring.allowed_approach);
-    spring.friction = rub(row, relative, last, spring);
+    spring.friction = friction_update(row, relative, last, spring);
   }
 }
 
@@ -60,11 +60,11 @@ double AugmentedContacts::press(ContactRow& row, const std::vector<Vec3>& veloci
   const double approach = row.normal.dot(relative) - spring.allowed_approach;
   row.normal_impulse = std::max(0.0, spring.last_pressing + spring.stiffness * approach);
   spring.presses = row.normal_impulse > 0;
-  return rub(row, relative, row.normal_impulse, spring);
+  return friction_update(row, relative, row.normal_impulse, spring);
 }
 
-double AugmentedContacts::rub(ContactRow& row, const Vec3& relative, double pressing,
-                              const Spring& spring) {
+double AugmentedContacts::friction_update(ContactRow& row, const Vec3& relative, double pressing,
+                                          const Spring& spring) {
   const Vec3 wanted = spring.last_friction - spring.stiffness * across(relative, row.normal);
   const double limit = row.friction * pressing, norm = wanted.norm();
   const double share = norm > limit ? limit / norm : 1;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "deformation/contact/contact_solve.h"
-#include "modules/core/wide_vectors.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
@@ -20,8 +20,8 @@ class AugmentedContacts {
  public:
   /// Takes as pressing the contacts that pressed in the last step, by the impulses they bring, and
   /// those penetrated by these velocities [m/s].
-  /// @param mobilities  inverse 3×3 blocks of A, zero for fixed nodes [1/kg]  (node_count)
-  void begin(std::span<const Mat3> mobilities, std::span<ContactRow> rows, double h,
+  /// @param inverse_mass_blocks  inverse 3×3 blocks of A, zero for fixed nodes [1/kg]  (node_count)
+  void begin(std::span<const Mat3> inverse_mass_blocks, std::span<ContactRow> rows, double h,
              const std::vector<Vec3>& velocities);
 
   /// Sets the rows' impulses to those at these velocities [m/s].
@@ -52,7 +52,8 @@ class AugmentedContacts {
   double press(ContactRow& row, const std::vector<Vec3>& velocities, Spring& spring) const;
 
   /// Sets the row's friction under a normal impulse. @returns σ [kg]
-  static double rub(ContactRow& row, const Vec3& relative, double pressing, const Spring& spring);
+  static double friction_update(ContactRow& row, const Vec3& relative, double pressing,
+                                const Spring& spring);
 
   std::vector<Spring> springs_;  ///< by row
 };

@@ -11,7 +11,7 @@ constexpr double kCompliance = 1e-9;
 /// A contact whose friction is nearer to its cone than this slides.
 constexpr double kSlidingFraction = 0.999;
 /// Below this part of gᵀWg the contacts hold all the volume that can move.
-constexpr double kVanishedMobility = 1e-9;
+constexpr double kVanishedInverseMass = 1e-9;
 /// A projection that leaves less than this part of r·W r is mostly rounding: it is done again,
 /// without what the rows took.
 constexpr double kMostlyTaken = 1e-4;
@@ -22,40 +22,42 @@ bool sticks(const ContactRow& contact) {
 }
 
 /// Whether none of the nodes it acts on can move.
-bool is_held(std::span<const Mat3> mobilities, const ContactRow& contact) {
+bool is_held(std::span<const Mat3> inverse_mass_blocks, const ContactRow& contact) {
   for (int k = 0; k < 3; ++k) {
-    if (contact.weights[k] != 0 && !mobilities[contact.nodes[k]].isZero(0)) return false;
+    if (contact.weights[k] != 0 && !inverse_mass_blocks[contact.nodes[k]].isZero(0)) return false;
   }
   return true;
 }
 
 }  // namespace
 
-void ConstraintProjection::prepare(std::span<const Mat3> mobilities, std::span<const Vec3> gradient,
+void ConstraintProjection::prepare(std::span<const Mat3> inverse_mass_blocks,
+                                   std::span<const Vec3> gradient,
                                    std::span<const ContactRow> contacts) {
-  take_mobilities(mobilities);
-  collect_rows(mobilities, contacts);
-  if (!rows_.empty()) factor_contacts(mobilities);
+  take_inverse_masses(inverse_mass_blocks);
+  collect_rows(inverse_mass_blocks, contacts);
+  if (!rows_.empty()) factor_contacts(inverse_mass_blocks);
   prepare_volume(gradient);
   all_mu_.setZero(static_cast<Eigen::Index>(rows_.size()));
   all_volume_mu_ = volume_mu_ = 0;
 }
 
-void ConstraintProjection::take_mobilities(std::span<const Mat3> mobilities) {
-  mobilities_.resize(mobilities.size());
-  for (std::size_t i = 0; i < mobilities.size(); ++i) {
+void ConstraintProjection::take_inverse_masses(std::span<const Mat3> inverse_mass_blocks) {
+  inverse_mass_blocks_.resize(inverse_mass_blocks.size());
+  for (std::size_t i = 0; i < inverse_mass_blocks.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      mobilities_[i][static_cast<std::size_t>(axis)] = wide(mobilities[i].col(axis));
+      inverse_mass_blocks_[i][static_cast<std::size_t>(axis)] =
+          wide(inverse_mass_blocks[i].col(axis));
     }
   }
 }
 
-void ConstraintProjection::collect_rows(std::span<const Mat3> mobilities,
+void ConstraintProjection::collect_rows(std::span<const Mat3> inverse_mass_blocks,
                                         std::span<const ContactRow> contacts) {
   rows_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactRow& contact = contacts[c];
-    if (contact.normal_impulse <= 0 || is_held(mobilities, contact)) continue;
+    if (contact.normal_impulse <= 0 || is_held(inverse_mass_blocks, contact)) continue;
     rows_.push_back({c, contact.nodes, contact.weights, contact.normal, true});
     if (!sticks(contact)) continue;
     const Vec3 tangent = contact.normal.unitOrthogonal();
@@ -64,7 +66,7 @@ void ConstraintProjection::collect_rows(std::span<const Mat3> mobilities,
   }
 }
 
-void ConstraintProjection::factor_contacts(std::span<const Mat3> mobilities) {
+void ConstraintProjection::factor_contacts(std::span<const Mat3> inverse_mass_blocks) {
   // Rows meet at nodes: (node, row, W b d) sorted by node.
   struct Visit {
     std::uint32_t node;
@@ -76,8 +78,8 @@ void ConstraintProjection::factor_contacts(std::span<const Mat3> mobilities) {
     for (int k = 0; k < 3; ++k) {
       if (rows_[r].weights[k] == 0) continue;
       const Vec3 arm = rows_[r].weights[k] * rows_[r].direction;
-      visits.push_back(
-          {rows_[r].nodes[k], static_cast<int>(r), arm, mobilities[rows_[r].nodes[k]] * arm});
+      visits.push_back({rows_[r].nodes[k], static_cast<int>(r), arm,
+                        inverse_mass_blocks[rows_[r].nodes[k]] * arm});
     }
   }
   std::stable_sort(visits.begin(), visits.end(),
@@ -101,31 +103,31 @@ void ConstraintProjection::factor_contacts(std::span<const Mat3> mobilities) {
 }
 
 void ConstraintProjection::prepare_volume(std::span<const Vec3> gradient) {
-  gradient_.assign(mobilities_.size(), Vec4f::Zero());
-  volume_answer_.assign(mobilities_.size(), Vec4f::Zero());
+  gradient_.assign(inverse_mass_blocks_.size(), Vec4f::Zero());
+  volume_response_.assign(inverse_mass_blocks_.size(), Vec4f::Zero());
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     gradient_[i] = wide(gradient[i]);
-    volume_answer_[i] = answer(i, gradient_[i]);
+    volume_response_[i] = apply_inverse_mass(i, gradient_[i]);
   }
-  const double unhindered = dot(gradient_, volume_answer_);
+  const double unhindered = dot(gradient_, volume_response_);
   if (!rows_.empty()) {
-    volume_shares_ = factor_.solve(times_rows(volume_answer_));
-    subtract_rows(volume_shares_, gradient_, volume_answer_);
+    volume_shares_ = factor_.solve(times_rows(volume_response_));
+    subtract_rows(volume_shares_, gradient_, volume_response_);
   }
-  volume_mobility_ = dot(gradient_, volume_answer_);
-  if (!(volume_mobility_ > kVanishedMobility * unhindered)) volume_mobility_ = 0;
+  volume_inverse_mass_ = dot(gradient_, volume_response_);
+  if (!(volume_inverse_mass_ > kVanishedInverseMass * unhindered)) volume_inverse_mass_ = 0;
 }
 
 double ConstraintProjection::project(std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
   double descent = 0;
   for (int pass = 0; pass < 2; ++pass) {
     add(-volume_mu_, gradient_, r);
-    for (std::size_t i = 0; i < r.size(); ++i) z[i] = answer(i, r[i]);
+    for (std::size_t i = 0; i < r.size(); ++i) z[i] = apply_inverse_mass(i, r[i]);
     const Sums sums{dot(r, z), dot(gradient_, z)};
     descent = hold_rows(sums, r, z);
     if (descent > kMostlyTaken * sums.r_z) break;
   }
-  add(-volume_mu_, volume_answer_, z);
+  add(-volume_mu_, volume_response_, z);
   return descent;
 }
 
@@ -141,7 +143,7 @@ double ConstraintProjection::descend(double step, const AlignedVector<WideNode>&
       x[i] += factor * p[i].vector;
       const Vec4f rest = r[i] - factor * q[i] - mu * gradient_[i];
       r[i] = rest;
-      const Vec4f velocity = answer(i, rest);
+      const Vec4f velocity = apply_inverse_mass(i, rest);
       z[i] = velocity;
       r_z += rest.cwiseProduct(velocity);
       g_z += gradient_[i].cwiseProduct(velocity);
@@ -153,7 +155,7 @@ double ConstraintProjection::descend(double step, const AlignedVector<WideNode>&
 }
 
 /// With c = C W r:  μ_c = S⁻¹ c but for what the volume's share of it changes, μ_v = g'·W r /
-/// mobility, and r·z is r·W r less what each row takes.
+/// effective mass, and r·z is r·W r less what each row takes.
 double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& r,
                                        std::vector<Vec4f>& z) {
   double r_z = sums.r_z;
@@ -163,7 +165,7 @@ double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& r,
     r_z -= mu.dot(row_speeds);
     all_mu_ += mu;
   }
-  volume_mu_ = volume_mobility_ > 0 ? sums.g_z / volume_mobility_ : 0;
+  volume_mu_ = volume_inverse_mass_ > 0 ? sums.g_z / volume_inverse_mass_ : 0;
   all_volume_mu_ += volume_mu_;
   return r_z - volume_mu_ * sums.g_z;
 }
@@ -172,13 +174,13 @@ void ConstraintProjection::turn(double kept, const std::vector<Vec4f>& z,
                                 AlignedVector<WideNode>& p) const {
   const auto factor = static_cast<float>(kept), mu = static_cast<float>(volume_mu_);
   for (std::size_t i = 0; i < z.size(); ++i) {
-    p[i].vector = z[i] - mu * volume_answer_[i] + factor * p[i].vector;
+    p[i].vector = z[i] - mu * volume_response_[i] + factor * p[i].vector;
   }
 }
 
 void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double& volume_impulse,
                                          std::vector<Vec4f>& r) {
-  if (volume_mobility_ > 0 && !rows_.empty()) all_mu_ -= all_volume_mu_ * volume_shares_;
+  if (volume_inverse_mass_ > 0 && !rows_.empty()) all_mu_ -= all_volume_mu_ * volume_shares_;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const Row& row = rows_[k];
     const double mu = all_mu_[static_cast<Eigen::Index>(k)];
@@ -195,8 +197,8 @@ void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double&
   volume_impulse += all_volume_mu_;
 }
 
-Vec4f ConstraintProjection::answer(std::size_t node, const Vec4f& impulse) const {
-  const auto& w = mobilities_[node];
+Vec4f ConstraintProjection::apply_inverse_mass(std::size_t node, const Vec4f& impulse) const {
+  const auto& w = inverse_mass_blocks_[node];
   return w[0] * impulse[0] + w[1] * impulse[1] + w[2] * impulse[2];
 }
 
@@ -222,7 +224,7 @@ void ConstraintProjection::subtract_rows(const Eigen::VectorXd& mu, std::vector<
       if (row.weights[n] == 0) continue;
       const Vec4f impulse = wide((row.weights[n] * row_mu) * row.direction);
       r[row.nodes[n]] -= impulse;
-      z[row.nodes[n]] -= answer(row.nodes[n], impulse);
+      z[row.nodes[n]] -= apply_inverse_mass(row.nodes[n], impulse);
     }
   }
 }

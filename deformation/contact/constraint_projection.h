@@ -1,7 +1,7 @@
 // Projection onto velocities that change neither the volume nor any active contact.
 //
 // With rows B (the volume gradient g; per closed contact n, and two tangents if it sticks) and node
-// mobilities W, the projection of a force r is
+// inverse_mass_blocks W, the projection of a force r is
 //     z = W (r − Bᵀμ),   B z = 0
 // As preconditioner of conjugate gradients it keeps every iterate on the rows, however few
 // iterations: N. Gould, M. Hribar, J. Nocedal, "On the Solution of Equality Constrained Quadratic
@@ -24,16 +24,16 @@
 
 #include "deformation/contact/contact_solve.h"
 #include "modules/core/aligned_vector.h"
-#include "modules/core/wide_vectors.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
 class ConstraintProjection {
  public:
   /// Takes as active the contacts with a normal impulse; those below the cone stick.
-  /// @param mobilities  W, zero for fixed nodes [1/kg]  (node_count)
+  /// @param inverse_mass_blocks  W, zero for fixed nodes [1/kg]  (node_count)
   /// @param gradient    g [m²]  (surface_node_count); empty: no volume row
-  void prepare(std::span<const Mat3> mobilities, std::span<const Vec3> gradient,
+  void prepare(std::span<const Mat3> inverse_mass_blocks, std::span<const Vec3> gradient,
                std::span<const ContactRow> contacts);
 
   /// @param r  loses what the rows take, but for what the volume row takes at last [N·s]
@@ -65,9 +65,10 @@ class ConstraintProjection {
     bool normal = false;
   };
 
-  void take_mobilities(std::span<const Mat3> mobilities);
-  void collect_rows(std::span<const Mat3> mobilities, std::span<const ContactRow> contacts);
-  void factor_contacts(std::span<const Mat3> mobilities);
+  void take_inverse_masses(std::span<const Mat3> inverse_mass_blocks);
+  void collect_rows(std::span<const Mat3> inverse_mass_blocks,
+                    std::span<const ContactRow> contacts);
+  void factor_contacts(std::span<const Mat3> inverse_mass_blocks);
   void prepare_volume(std::span<const Vec3> gradient);
   /// Sums over the nodes of z = W r.
   struct Sums {
@@ -76,19 +77,19 @@ class ConstraintProjection {
   /// Takes from r and z = W r what the contacts take, and finds μ.
   /// @returns r·z, the volume's part taken
   double hold_rows(const Sums& sums, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
-  Vec4f answer(std::size_t node, const Vec4f& impulse) const;     ///< W impulse
-  Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;  ///< C v
+  Vec4f apply_inverse_mass(std::size_t node, const Vec4f& impulse) const;  ///< W impulse
+  Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;           ///< C v
   /// r −= Cᵀ μ and z −= W Cᵀ μ
   void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r, std::vector<Vec4f>& z) const;
 
-  std::vector<std::array<Vec4f, 3>> mobilities_;  ///< W, by columns
+  std::vector<std::array<Vec4f, 3>> inverse_mass_blocks_;  ///< W, by columns
   std::vector<Row> rows_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;  ///< of S
-  Eigen::VectorXd volume_shares_;     ///< S⁻¹ C W g: what of the volume row the contacts take
-  std::vector<Vec4f> gradient_;       ///< g' = g − Cᵀ S⁻¹ C W g  (node_count)
-  std::vector<Vec4f> volume_answer_;  ///< W g', the velocity a pressure gives
-  double volume_mobility_ = 0;        ///< g' · W g'; 0: no volume row
-  double volume_mu_ = 0;              ///< of the last projection, still in r
+  Eigen::VectorXd volume_shares_;       ///< S⁻¹ C W g: what of the volume row the contacts take
+  std::vector<Vec4f> gradient_;         ///< g' = g − Cᵀ S⁻¹ C W g  (node_count)
+  std::vector<Vec4f> volume_response_;  ///< W g', the velocity a pressure gives
+  double volume_inverse_mass_ = 0;      ///< g' · W g'; 0: no volume row
+  double volume_mu_ = 0;                ///< of the last projection, still in r
   // Since prepare():
   Eigen::VectorXd all_mu_;  ///< without the volume row's shares
   double all_volume_mu_ = 0;

@@ -8,7 +8,7 @@
 namespace palpate::deformation {
 namespace {
 
-/// At least this part of a contact's inverse mass is kept when the volume removes mobility from
+/// At least this part of a contact's inverse mass is kept when the volume takes freedom from
 /// it: a contact that holds the whole organ could otherwise not be moved at all.
 constexpr double kLeastMobility = 1e-3;
 constexpr int kMaxSweeps = 60;
@@ -17,8 +17,8 @@ constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly 
 
 /// A row with what Gauss–Seidel needs at every visit.
 struct PreparedRow {
-  double normal_mobility = 0;           ///< Σ b² W along n with σ held or eliminated [1/kg]
-  double tangential_mobility = 0;       ///< Σ b² W across n, the most of it [1/kg]
+  double normal_inverse_mass = 0;       ///< Σ b² W along n with σ held or eliminated [1/kg]
+  double tangential_inverse_mass = 0;   ///< Σ b² W across n, the most of it [1/kg]
   Vec3 volume_coupling = Vec3::Zero();  ///< Σ b W g [m²/kg]
   double normal_coupling = 0;           ///< n·Σ b W g
   double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
@@ -26,12 +26,12 @@ struct PreparedRow {
   int first_node = 0, last_node = 2;    ///< of the row's three, those it acts on
 };
 
-template <class Mobility>
+template <class InverseMass>
 class Solver {
  public:
-  Solver(const Mobility& mobility, const VolumeRow* volume, double volume_velocity, double h,
-         std::span<ContactRow> rows, std::vector<Vec3>& velocities, StartImpulses start)
-      : mobility_(mobility),
+  Solver(const InverseMass& inverse_mass, const VolumeRow* volume, double volume_velocity, double h,
+         std::span<ContactRow> rows, std::vector<Vec3>& velocities, WarmStart start)
+      : inverse_mass_(inverse_mass),
         volume_(volume),
         rows_(rows),
         velocities_(velocities),
@@ -40,7 +40,7 @@ class Solver {
                                  [](const ContactRow& row) { return only_node(row) >= 0; });
     prepared_.resize(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) prepare(rows[r], h, prepared_[r]);
-    for (std::size_t r = 0; start == StartImpulses::kToApply && r < rows.size(); ++r) {
+    for (std::size_t r = 0; start == WarmStart::kToApply && r < rows.size(); ++r) {
       // Start values are only a guess, but must lie in the cone of this row.
       rows[r].tangential_impulse -= rows[r].normal * rows[r].normal.dot(rows[r].tangential_impulse);
       clamp_to_cone(rows[r]);
@@ -54,7 +54,7 @@ class Solver {
   double sweep() {
     double change = 0;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      if (prepared_[r].tangential_mobility == 0) continue;  // all nodes fixed
+      if (prepared_[r].tangential_inverse_mass == 0) continue;  // all nodes fixed
       change = std::max(change, relax_normal(r));
       if (rows_[r].friction > 0) change = std::max(change, relax_friction(r));
     }
@@ -70,7 +70,7 @@ class Solver {
 
  private:
   void prepare(const ContactRow& row, double h, PreparedRow& prepared) {
-    const auto [along, across] = mobility_.along_and_across(row);
+    const auto [along, across] = inverse_mass_.along_and_across(row);
     const int only = only_node(row);
     if (only >= 0) prepared.first_node = prepared.last_node = only;
     if (volume_ != nullptr) {
@@ -78,18 +78,18 @@ class Solver {
         if (row.weights[k] == 0) continue;
         const std::uint32_t node = row.nodes[k];
         prepared.volume_coupling +=
-            mobility_.answer(node, row.weights[k] * volume_->at.gradient[node]);
+            inverse_mass_.apply(node, row.weights[k] * volume_->at.gradient[node]);
       }
       const double coupling = row.normal.dot(prepared.volume_coupling);
       prepared.normal_coupling = coupling;
       prepared.volume_share = along > 0 ? coupling * coupling / along : 0;
     }
-    prepared.normal_mobility = along;
+    prepared.normal_inverse_mass = along;
     if (volume_ != nullptr && !sigma_is_held_) {
-      prepared.normal_mobility *=
+      prepared.normal_inverse_mass *=
           std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
     }
-    prepared.tangential_mobility = across;
+    prepared.tangential_inverse_mass = across;
     prepared.allowed_approach = allowed_approach(row, h) + row.normal.dot(row.probe_velocity);
   }
 
@@ -130,7 +130,7 @@ class Solver {
   void add_impulse(std::size_t r, const Vec3& impulse, double coupling) {
     const ContactRow& row = rows_[r];
     for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
-      velocities_[row.nodes[k]] += mobility_.answer(row.nodes[k], row.weights[k] * impulse);
+      velocities_[row.nodes[k]] += inverse_mass_.apply(row.nodes[k], row.weights[k] * impulse);
     }
     volume_velocity_ += coupling;
     if (!sigma_is_held_) sigma_ = volume_impulse();
@@ -142,11 +142,11 @@ class Solver {
     const double separation = prepared.allowed_approach + sigma_ * prepared.normal_coupling -
                               row.normal.dot(tissue_velocity(r));
     if (row.normal_impulse == 0 && separation >= 0) return 0;
-    const double wanted = row.normal_impulse - separation / prepared.normal_mobility;
+    const double wanted = row.normal_impulse - separation / prepared.normal_inverse_mass;
     const double change = std::max(0.0, wanted) - row.normal_impulse;
     row.normal_impulse += change;
     add_impulse(r, -change * row.normal, -change * prepared.normal_coupling);
-    return std::abs(change) * prepared.normal_mobility;
+    return std::abs(change) * prepared.normal_inverse_mass;
   }
 
   double relax_friction(std::size_t r) {
@@ -156,14 +156,14 @@ class Solver {
         tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
     const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
     const Vec3 before = row.tangential_impulse;
-    row.tangential_impulse -= sliding / prepared_[r].tangential_mobility;
+    row.tangential_impulse -= sliding / prepared_[r].tangential_inverse_mass;
     clamp_to_cone(row);
     const Vec3 change = row.tangential_impulse - before;
     add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
-    return change.norm() * prepared_[r].tangential_mobility;
+    return change.norm() * prepared_[r].tangential_inverse_mass;
   }
 
-  const Mobility& mobility_;
+  const InverseMass& inverse_mass_;
   const VolumeRow* volume_;
   std::span<ContactRow> rows_;
   std::vector<Vec3>& velocities_;
@@ -178,10 +178,10 @@ class Solver {
 
 /// Leaves w in `velocities`.
 /// @param volume_velocity  g·v̂ [m³/s]
-template <class Mobility>
-ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, double volume_velocity,
-                         double h, std::span<ContactRow> rows, std::vector<Vec3>& velocities,
-                         StartImpulses start) {
+template <class InverseMass>
+ContactSolveReport solve(const InverseMass& inverse_mass, const VolumeRow* volume,
+                         double volume_velocity, double h, std::span<ContactRow> rows,
+                         std::vector<Vec3>& velocities, WarmStart start) {
   ContactSolveReport report;
   if (rows.empty()) {
     if (volume != nullptr) {
@@ -189,14 +189,14 @@ ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, doub
     }
     return report;
   }
-  if (auto contacts =
-          IndependentContacts<Mobility>::take(mobility, volume, h, rows, velocities, start)) {
+  if (auto contacts = IndependentContacts<InverseMass>::take(inverse_mass, volume, h, rows,
+                                                             velocities, start)) {
     if (volume != nullptr) report.volume_impulse = contacts->solve_volume(*volume, volume_velocity);
-    contacts->apply(mobility, start, rows, velocities);
+    contacts->apply(inverse_mass, start, rows, velocities);
     report.sweeps = contacts->steps();
     return report;
   }
-  Solver solver(mobility, volume, volume_velocity, h, rows, velocities, start);
+  Solver solver(inverse_mass, volume, volume_velocity, h, rows, velocities, start);
   while (solver.sweep() > kContactVelocityTolerance && solver.sweeps() < kMaxSweeps) {
   }
   report.sweeps = solver.sweeps();
@@ -205,18 +205,18 @@ ContactSolveReport solve(const Mobility& mobility, const VolumeRow* volume, doub
 }
 
 /// The same, and v⁺ = w − W g σ.
-template <class Mobility>
-ContactSolveReport solve_all(const Mobility& mobility, const VolumeRow* volume, double h,
+template <class InverseMass>
+ContactSolveReport solve_all(const InverseMass& inverse_mass, const VolumeRow* volume, double h,
                              std::span<ContactRow> rows, std::vector<Vec3>& velocities,
-                             StartImpulses start) {
-  if (volume == nullptr) return solve(mobility, volume, 0, h, rows, velocities, start);
+                             WarmStart start) {
+  if (volume == nullptr) return solve(inverse_mass, volume, 0, h, rows, velocities, start);
   const auto& gradient = volume->at.gradient;
   double volume_velocity = 0;
   for (std::size_t i = 0; i < gradient.size(); ++i)
     volume_velocity += gradient[i].dot(velocities[i]);
-  const auto report = solve(mobility, volume, volume_velocity, h, rows, velocities, start);
+  const auto report = solve(inverse_mass, volume, volume_velocity, h, rows, velocities, start);
   for (std::size_t i = 0; i < gradient.size(); ++i) {
-    velocities[i] -= mobility.answer(i, report.volume_impulse * gradient[i]);
+    velocities[i] -= inverse_mass.apply(i, report.volume_impulse * gradient[i]);
   }
   return report;
 }
@@ -230,28 +230,30 @@ bool has_vanished(const Body& body, const VolumeRow* volume) {
 
 ContactSolveReport solve_contacts_and_volume(const Body& body, const VolumeRow* volume, double h,
                                              std::span<ContactRow> rows,
-                                             std::vector<Vec3>& velocities, StartImpulses start) {
+                                             std::vector<Vec3>& velocities, WarmStart start) {
   const bool vanished = has_vanished(body, volume);
   auto report =
-      solve_all(MassMobility(body), vanished ? nullptr : volume, h, rows, velocities, start);
+      solve_all(NodeInverseMass(body), vanished ? nullptr : volume, h, rows, velocities, start);
   report.volume_skipped = vanished;
   return report;
 }
 
 ContactSolveReport solve_contacts(const Body& body, const VolumeRow* volume, double volume_velocity,
                                   double h, std::span<ContactRow> rows,
-                                  std::vector<Vec3>& velocities, StartImpulses start) {
+                                  std::vector<Vec3>& velocities, WarmStart start) {
   const bool vanished = has_vanished(body, volume);
-  auto report = solve(MassMobility(body), vanished ? nullptr : volume, volume_velocity, h, rows,
+  auto report = solve(NodeInverseMass(body), vanished ? nullptr : volume, volume_velocity, h, rows,
                       velocities, start);
   report.volume_skipped = vanished;
   return report;
 }
 
-ContactSolveReport solve_contacts(std::span<const Mat3> mobilities, const VolumeRow* volume,
-                                  double volume_velocity, double h, std::span<ContactRow> rows,
-                                  std::vector<Vec3>& velocities, StartImpulses start) {
-  return solve(BlockMobility(mobilities), volume, volume_velocity, h, rows, velocities, start);
+ContactSolveReport solve_contacts(std::span<const Mat3> inverse_mass_blocks,
+                                  const VolumeRow* volume, double volume_velocity, double h,
+                                  std::span<ContactRow> rows, std::vector<Vec3>& velocities,
+                                  WarmStart start) {
+  return solve(BlockInverseMass(inverse_mass_blocks), volume, volume_velocity, h, rows, velocities,
+               start);
 }
 
 }  // namespace palpate::deformation

@@ -63,27 +63,28 @@ inline double allowed_approach(const ContactRow& row, double h) {
 }
 
 /// Whether the impulses the rows bring are already in the velocities.
-enum class StartImpulses { kToApply, kApplied };
+enum class WarmStart { kToApply, kApplied };
 
 /// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.
 /// Sweeps end when no contact velocity changes by more than 1e-9 m/s, or after 60.
 ContactSolveReport solve_contacts_and_volume(const Body& body, const VolumeRow* volume, double h,
                                              std::span<ContactRow> rows,
                                              std::vector<Vec3>& velocities,
-                                             StartImpulses start = StartImpulses::kToApply);
+                                             WarmStart start = WarmStart::kToApply);
 
 /// The same for a caller that knows g·v̂ and itself takes the volume's impulse: turns v̂ into w.
 /// @param volume_velocity  g·v̂ [m³/s]
 ContactSolveReport solve_contacts(const Body& body, const VolumeRow* volume, double volume_velocity,
                                   double h, std::span<ContactRow> rows,
                                   std::vector<Vec3>& velocities,
-                                  StartImpulses start = StartImpulses::kToApply);
+                                  WarmStart start = WarmStart::kToApply);
 
-/// The same where a node answers an impulse not by M⁻¹ but by its mobility, as in implicit steps.
-/// @param mobilities  W, symmetric, positive; zero for fixed nodes [1/kg]  (node_count)
+/// The same where a node answers an impulse not by M⁻¹ but by a matrix W, as in implicit steps.
+/// @param inverse_mass_blocks  W, symmetric, positive; zero for fixed nodes [1/kg]  (node_count)
 /// @param volume      with gᵀWg of these as denominator, not vanished; or null
-ContactSolveReport solve_contacts(std::span<const Mat3> mobilities, const VolumeRow* volume,
-                                  double volume_velocity, double h, std::span<ContactRow> rows,
-                                  std::vector<Vec3>& velocities, StartImpulses start);
+ContactSolveReport solve_contacts(std::span<const Mat3> inverse_mass_blocks,
+                                  const VolumeRow* volume, double volume_velocity, double h,
+                                  std::span<ContactRow> rows, std::vector<Vec3>& velocities,
+                                  WarmStart start);
 
 }  // namespace palpate::deformation

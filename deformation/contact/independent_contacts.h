@@ -11,26 +11,28 @@
 #include <span>
 #include <vector>
 
-#include "deformation/contact/contact_mobility.h"
+#include "deformation/contact/contact_inverse_mass.h"
 
 namespace palpate::deformation {
 
-template <class Mobility>
+template <class InverseMass>
 class IndependentContacts {
  public:
   /// @returns none if the rows are not independent
-  static std::optional<IndependentContacts> take(const Mobility& mobility, const VolumeRow* volume,
-                                                 double h, std::span<const ContactRow> rows,
+  static std::optional<IndependentContacts> take(const InverseMass& inverse_mass,
+                                                 const VolumeRow* volume, double h,
+                                                 std::span<const ContactRow> rows,
                                                  const std::vector<Vec3>& velocities,
-                                                 StartImpulses start) {
-    std::vector<std::uint8_t> seen(mobility.node_count(), 0);
+                                                 WarmStart start) {
+    std::vector<std::uint8_t> seen(inverse_mass.node_count(), 0);
     for (const ContactRow& row : rows) {
       const int only = only_node(row);
       if (only < 0 || row.friction > 0 || seen[row.nodes[only]]++ > 0) return {};
     }
     IndependentContacts contacts;
     contacts.contacts_.reserve(rows.size());
-    for (const ContactRow& row : rows) contacts.add(mobility, volume, h, row, velocities, start);
+    for (const ContactRow& row : rows)
+      contacts.add(inverse_mass, volume, h, row, velocities, start);
     return contacts;
   }
 
@@ -63,17 +65,17 @@ class IndependentContacts {
   }
 
   /// Sets the rows' impulses, what is not finite among them too, and adds them to the velocities.
-  void apply(const Mobility& mobility, StartImpulses start, std::span<ContactRow> rows,
+  void apply(const InverseMass& inverse_mass, WarmStart start, std::span<ContactRow> rows,
              std::vector<Vec3>& velocities) const {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Contact& c = contacts_[r];
       ContactRow& row = rows[r];
-      const double last = start == StartImpulses::kApplied ? row.normal_impulse : 0;
+      const double last = start == WarmStart::kApplied ? row.normal_impulse : 0;
       const double pressing = std::max(c.approach - sigma_ * c.coupling, 0.0);
-      row.normal_impulse = c.mobility > 0 ? pressing / c.mobility : 0;
+      row.normal_impulse = c.inverse_mass > 0 ? pressing / c.inverse_mass : 0;
       row.tangential_impulse.setZero();
       if (row.normal_impulse == last) continue;
-      velocities[c.node] += mobility.answer(c.node, (last - row.normal_impulse) * row.normal);
+      velocities[c.node] += inverse_mass.apply(c.node, (last - row.normal_impulse) * row.normal);
     }
   }
 
@@ -87,22 +89,23 @@ class IndependentContacts {
     double approach = 0;          ///< u, without the impulses brought [m/s]
     double coupling = 0;          ///< c [m²/kg]
     double impulse_coupling = 0;  ///< c/m [m²]
-    double mobility = 0;          ///< m [1/kg]
+    double inverse_mass = 0;      ///< m, effective [1/kg]
     std::uint32_t node = 0;
   };
 
-  void add(const Mobility& mobility, const VolumeRow* volume, double h, const ContactRow& row,
-           const std::vector<Vec3>& velocities, StartImpulses start) {
+  void add(const InverseMass& inverse_mass, const VolumeRow* volume, double h,
+           const ContactRow& row, const std::vector<Vec3>& velocities, WarmStart start) {
     Contact contact;
     contact.node = row.nodes[only_node(row)];
-    const Vec3 answer = mobility.answer(contact.node, row.normal);
-    contact.mobility = row.normal.dot(answer);
+    const Vec3 answer = inverse_mass.apply(contact.node, row.normal);
+    contact.inverse_mass = row.normal.dot(answer);
     contact.approach =
         row.normal.dot(velocities[contact.node] - row.probe_velocity) - allowed_approach(row, h);
     if (volume != nullptr) contact.coupling = answer.dot(volume->at.gradient[contact.node]);
-    if (contact.mobility > 0) contact.impulse_coupling = contact.coupling / contact.mobility;
-    if (start == StartImpulses::kApplied) {
-      contact.approach += contact.mobility * row.normal_impulse;
+    if (contact.inverse_mass > 0)
+      contact.impulse_coupling = contact.coupling / contact.inverse_mass;
+    if (start == WarmStart::kApplied) {
+      contact.approach += contact.inverse_mass * row.normal_impulse;
       started_ += contact.coupling * row.normal_impulse;
     }
     contacts_.push_back(contact);

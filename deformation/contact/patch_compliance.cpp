@@ -62,21 +62,22 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
     }
   }
   const Eigen::LLT<Eigen::MatrixXf> factor(A);
-  if (factor.info() != Eigen::Success) return Eigen::MatrixXd::Zero(count, count);  // no law from a bad state
+  if (factor.info() != Eigen::Success)
+    return Eigen::MatrixXd::Zero(count, count);  // no law from a bad state
   // W = (L⁻¹Cᵀ)ᵀ(L⁻¹Cᵀ): symmetric and positive however it is rounded.
   const Eigen::MatrixXd half = factor.matrixL().solve(loads).cast<double>();
   Eigen::MatrixXd answers = half.leftCols(count).transpose() * half.leftCols(count) + alone;
   if (gradient.empty()) return answers;
 
-  double mobility = half.col(count).squaredNorm();  // gᵀA⁻¹g
+  double effective_inverse_mass = half.col(count).squaredNorm();  // gᵀA⁻¹g
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     if (patch_.place(static_cast<std::uint32_t>(i)) < 0) {
-      mobility += gradient[i].squaredNorm() * body_.inverse_masses[i] / shares.mass;
+      inverse_mass += gradient[i].squaredNorm() * body_.inverse_masses[i] / shares.mass;
     }
   }
-  if (!(mobility > 0)) return answers;
+  if (!(inverse_mass > 0)) return answers;
   const Eigen::VectorXd shares_of_volume = half.leftCols(count).transpose() * half.col(count);
-  return answers - shares_of_volume * shares_of_volume.transpose() / mobility;
+  return answers - shares_of_volume * shares_of_volume.transpose() / inverse_mass;
 }
 
 }  // namespace palpate::deformation

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "deformation/model/patch.h"
-#include "modules/core/wide_vectors.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 

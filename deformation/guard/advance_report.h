@@ -5,11 +5,11 @@
 
 namespace palpate::deformation {
 
-/// Why a state is not believed.
-enum class Disbelief : std::uint8_t {
+/// Which bound a state violates.
+enum class Violation : std::uint8_t {
   kNone,
   kNotFinite,     ///< a position, velocity, pressure or impulse
-  kTooFast,       ///< a node beyond kMaxNodeSpeed, now or on the way since the last look
+  kTooFast,       ///< a node beyond kMaxNodeSpeed, now or on the way since the last check
   kEnergyGrew,    ///< beyond kEnergyGain times what it had and was given
   kTooLarge,      ///< two nodes further apart than kMaxGrowth times any two at rest
   kTurnedInside,  ///< it encloses less than −kTurnedVolume V₀
@@ -18,17 +18,17 @@ enum class Disbelief : std::uint8_t {
 
 /// What an advance had to do beyond stepping. Never silent: the process publishes it.
 struct AdvanceReport {
-  bool diverged = false;                ///< a state was not believed and replaced
-  Disbelief reason = Disbelief::kNone;  ///< of that
+  bool diverged = false;                ///< a state was implausible and replaced
+  Violation reason = Violation::kNone;  ///< of that
   bool back_to_rest = false;            ///< replaced by the rest state, not the last good one
   bool step_reduced = false;            ///< steps are shorter than stability should need
   bool pressure_capped = false;         ///< the cap was met: V* goes on from V
   bool volume_released = false;         ///< V was far from V*: V* follows V from there
   bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
-  bool contacts_ignored = false;        ///< of an organ put back to rest, for kQuietTime
+  bool contacts_suspended = false;      ///< of an organ put back to rest, for kQuietTime
   bool tissue_inverted = false;         ///< some tetrahedra of a solid are turned inside out
   bool contact_refused = false;         ///< it was too far from its tissue to be one
-  bool probe_jumped = false;            ///< a probe moved faster than believed: no contacts
+  bool probe_jumped = false;            ///< a probe moved faster than is plausible: no contacts
 };
 
 }  // namespace palpate::deformation

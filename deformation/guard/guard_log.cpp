@@ -4,24 +4,24 @@ namespace palpate::deformation {
 namespace {
 
 bool acted(GuardCode code, const AdvanceReport& r) {
-  const auto replaced = [&](Disbelief reason) { return r.diverged && r.reason == reason; };
+  const auto replaced = [&](Violation reason) { return r.diverged && r.reason == reason; };
   switch (code) {
     case GuardCode::kBackToRest:
       return r.back_to_rest;
     case GuardCode::kNotFinite:
-      return replaced(Disbelief::kNotFinite);
+      return replaced(Violation::kNotFinite);
     case GuardCode::kTooFast:
-      return replaced(Disbelief::kTooFast);
+      return replaced(Violation::kTooFast);
     case GuardCode::kTooLarge:
-      return replaced(Disbelief::kTooLarge);
+      return replaced(Violation::kTooLarge);
     case GuardCode::kTurnedInside:
-      return replaced(Disbelief::kTurnedInside);
+      return replaced(Violation::kTurnedInside);
     case GuardCode::kCollapsed:
-      return replaced(Disbelief::kCollapsed);
+      return replaced(Violation::kCollapsed);
     case GuardCode::kEnergyGrew:
-      return replaced(Disbelief::kEnergyGrew);
-    case GuardCode::kContactsIgnored:
-      return r.contacts_ignored;
+      return replaced(Violation::kEnergyGrew);
+    case GuardCode::kContactsSuspended:
+      return r.contacts_suspended;
     case GuardCode::kPressureCapped:
       return r.pressure_capped;
     case GuardCode::kVolumeReleased:

@@ -18,7 +18,7 @@ enum class GuardCode : std::uint8_t {
   kTurnedInside,
   kCollapsed,
   kEnergyGrew,
-  kContactsIgnored,  ///< from here on as in AdvanceReport
+  kContactsSuspended,  ///< from here on as in AdvanceReport
   kPressureCapped,
   kVolumeReleased,
   kVolumeSkipped,

@@ -1,5 +1,5 @@
 // Direct solver for matrices that are sums of small element matrices: nested dissection of the
-// elements, and an L D Lᵀ factorization front by front.
+// elements, and an L D Lᵀ factorisation front by front.
 //   A. George, "Nested dissection of a regular finite element mesh", SIAM J. Numer. Anal. 10, 1973
 //   I. Duff, J. Reid, "The multifrontal solution of indefinite sparse symmetric linear systems",
 //   ACM Trans. Math. Softw. 9, 1983

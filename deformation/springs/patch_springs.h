@@ -16,7 +16,7 @@ class PatchSprings {
 
   /// Adds stiffness K and damping D of the patch at these positions [m] to the lower triangle of
   /// `sum`: stiffness_share K + damping_share D. Of the part across a spring only tension counts,
-  /// as in spring_linearization.h.
+  /// as in projected_spring_stiffness.h.
   void add(const std::vector<Vec3>& positions, const Patch& patch, double stiffness_share,
            double damping_share, Eigen::MatrixXf& sum) const;
 

@@ -26,7 +26,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
   for (auto* buffer : {&inner_change_, &inner_residual_, &projected_, &product_}) {
     buffer->assign(model.node_count(), Vec4f::Zero());
   }
-  mobilities_.assign(model.node_count(), Mat3::Zero());
+  inverse_mass_blocks_.assign(model.node_count(), Mat3::Zero());
 }
 
 StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
@@ -53,14 +53,14 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
 void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   // 2. which contacts close, which slide
   volume_impulse_ = 0;
-  solve_impulses(h, rows, state, StartImpulses::kToApply);
+  solve_impulses(h, rows, state, WarmStart::kToApply);
 
   // 3. springs, with those contacts and the volume held
   update_residual(rows);
   relax_springs(rows);
 
   // 4. what opened, closed or began to slide meanwhile
-  solve_impulses(h, rows, state, StartImpulses::kApplied);
+  solve_impulses(h, rows, state, WarmStart::kApplied);
   keep_momentum(h, rows, state);
 }
 
@@ -78,17 +78,17 @@ void BackwardEuler::push_with(double volume_impulse, double h, std::span<Contact
 }
 
 void BackwardEuler::linearise_springs(double h, const OrganState& state) {
-  flight_.positions = state.positions;
-  flight_.velocities = state.velocities;
-  add(h, state.velocities, flight_.positions);
-  kernel_.free_step(h, flight_, free_);
-  springs_.linearise(flight_.positions, h);
+  predicted_.positions = state.positions;
+  predicted_.velocities = state.velocities;
+  add(h, state.velocities, predicted_.positions);
+  kernel_.free_step(h, predicted_, free_);
+  springs_.linearise(predicted_.positions, h);
   for (std::size_t i = 0; i < model_.node_count(); ++i) {
     change_[i].setZero();
     residual_[i].setZero();
     if (model_.inverse_masses[i] == 0) continue;
     residual_[i] = model_.masses[i] * (free_.velocities[i] - state.velocities[i]);
-    mobilities_[i] = 0.5 * springs_.diagonal()[i].inverse();
+    inverse_mass_blocks_[i] = 0.5 * springs_.diagonal()[i].inverse();
   }
 }
 
@@ -98,11 +98,11 @@ bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradi
   if (!volume_.is_kept) return true;
   if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
   double rate = (volume.volume - target_volume) / h;
-  volume.denominator = 0;  // of these mobilities from here on
+  volume.denominator = 0;  // of these inverse_mass_blocks from here on
   volume_answers_.resize(volume.gradient.size());
   for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
     rate -= volume.gradient[i].dot(velocities[i]);
-    volume_answers_[i] = mobilities_[i] * volume.gradient[i];
+    volume_answers_[i] = inverse_mass_blocks_[i] * volume.gradient[i];
     volume.denominator += volume.gradient[i].dot(volume_answers_[i]);
   }
   volume_row_.emplace(VolumeRow{volume, rate});
@@ -110,22 +110,23 @@ bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradi
 }
 
 void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
-                                   StartImpulses start) {
+                                   WarmStart start) {
   for (std::size_t i = 0; i < trial_.size(); ++i) {
-    trial_[i] = state.velocities[i] + change_[i] + mobilities_[i] * residual_[i];
+    trial_[i] = state.velocities[i] + change_[i] + inverse_mass_blocks_[i] * residual_[i];
   }
   hold_rows(h, rows, start);
   for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
 }
 
-void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, StartImpulses start) {
+void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, WarmStart start) {
   const VolumeRow* const volume = volume_row_ ? &*volume_row_ : nullptr;
   double volume_velocity = 0;
   for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
     volume_velocity += volume->at.gradient[i].dot(trial_[i]);
   }
   const double sigma =
-      solve_contacts(mobilities_, volume, volume_velocity, h, rows, trial_, start).volume_impulse;
+      solve_contacts(inverse_mass_blocks_, volume, volume_velocity, h, rows, trial_, start)
+          .volume_impulse;
   volume_impulse_ += sigma;
   for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
     trial_[i] -= sigma * volume_answers_[i];
@@ -150,8 +151,8 @@ void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
 
 void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
   using Gradient = std::span<const Vec3>;
-  projection_.prepare(mobilities_, volume_row_ ? Gradient(volume_row_->at.gradient) : Gradient(),
-                      rows);
+  projection_.prepare(inverse_mass_blocks_,
+                      volume_row_ ? Gradient(volume_row_->at.gradient) : Gradient(), rows);
   for (std::size_t i = 0; i < residual_.size(); ++i) {
     inner_residual_[i] = wide(residual_[i]);
     inner_change_[i].setZero();
@@ -202,7 +203,7 @@ void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganSt
   evaluate_volume(model_, state.positions, free_.volume);
   if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
   trial_ = state.velocities;
-  hold_rows(h, rows, StartImpulses::kApplied);
+  hold_rows(h, rows, WarmStart::kApplied);
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     state.positions[i] += h * (trial_[i] - state.velocities[i]);
   }

@@ -2,12 +2,13 @@
 //
 //   M (v⁺ − v) = h (F(x⁺, v⁺) + M (gravity − drag v⁺)) − Bᵀ (impulses),   x⁺ = x + h v⁺
 // by one Newton iteration from the free flight x̃ = x + h v, with the springs as they are there
-// (spring_linearization.h). For Δv = v⁺ − v:
+// (projected_spring_stiffness.h). For Δv = v⁺ − v:
 //   A Δv = h F(x̃, v) + h M (gravity − drag v) − Bᵀ (impulses)
 // under the same conditions as in contact_solve.h: Φ(x̃) + h g·Δv = 0, no contact is penetrated or
 // pulls, friction lies in Coulomb's cone.
 //
-// Solved in two movements, each with W ∝ (3×3 diagonal blocks of A)⁻¹ as the nodes' mobility:
+// Solved in two movements, each with W ∝ (3×3 diagonal blocks of A)⁻¹ as the nodes' inverse
+// effective mass:
 //   impulses   one step down the gradient, Δv ← Δv + W r, then contacts and volume by Gauss–Seidel.
 //              W is half the inverse blocks: A ⪯ 2 D, so this never overshoots. It decides which
 //              contacts are closed and which slide.
@@ -27,7 +28,7 @@
 #include "deformation/contact/constraint_projection.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/springs/spring_product.h"
+#include "deformation/springs/spring_hessian_product.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -65,9 +66,9 @@ class BackwardEuler : public OrganDynamics {
                         const std::vector<Vec3>& velocities);
   /// Δv ← Δv + W r and impulses on top of it.
   void solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
-                      StartImpulses start);
+                      WarmStart start);
   /// Turns the unconstrained velocities in trial_ into v⁺, and adds σ to the volume's impulse.
-  void hold_rows(double h, std::span<ContactRow> rows, StartImpulses start);
+  void hold_rows(double h, std::span<ContactRow> rows, WarmStart start);
   /// r −= A Δv + Bᵀ (impulses)
   void update_residual(std::span<const ContactRow> rows);
   void relax_springs(std::span<ContactRow> rows);
@@ -79,17 +80,17 @@ class BackwardEuler : public OrganDynamics {
   KeptVolume volume_;
   int max_iterations_, iterations_used_ = 0;
   double total_mass_ = 0;
-  SpringProduct springs_;
+  SpringHessianProduct springs_;
   ConstraintProjection projection_;
   SpringKernel kernel_;
-  OrganState flight_;                    ///< x̃, v
-  FreeStep free_;                        ///< what the springs do there in h, and the volume
-  std::optional<VolumeRow> volume_row_;  ///< none: contents not kept, or g vanished
-  double volume_impulse_ = 0;            ///< σ [Pa·s]
-  std::vector<Mat3> mobilities_;         ///< W [1/kg]
-  std::vector<Vec3> volume_answers_;     ///< W g [m²/kg]
-  std::vector<Vec3> change_;             ///< Δv [m/s]
-  std::vector<Vec3> residual_;           ///< r [N·s]
+  OrganState predicted_;                   ///< x̃, v
+  FreeStep free_;                          ///< what the springs do there in h, and the volume
+  std::optional<VolumeRow> volume_row_;    ///< none: contents not kept, or g vanished
+  double volume_impulse_ = 0;              ///< σ [Pa·s]
+  std::vector<Mat3> inverse_mass_blocks_;  ///< W [1/kg]
+  std::vector<Vec3> volume_answers_;       ///< W g [m²/kg]
+  std::vector<Vec3> change_;               ///< Δv [m/s]
+  std::vector<Vec3> residual_;             ///< r [N·s]
   std::vector<Vec3> trial_;
   std::vector<Vec4f> inner_change_, inner_residual_, projected_, product_;
 };

@@ -103,7 +103,7 @@ void Modal::write(OrganState& state) const {
 }
 
 void Modal::prepare(double h, std::span<const ContactRow> contacts) {
-  mobility_ = (1 + h * damping_.array() + (h * frequencies_).array().square()).inverse();
+  inverse_mass_ = (1 + h * damping_.array() + (h * frequencies_).array().square()).inverse();
   rows_.resize(contacts.size());
   for (std::size_t r = 0; r < contacts.size(); ++r) {
     const ContactRow& contact = contacts[r];
@@ -115,8 +115,8 @@ void Modal::prepare(double h, std::span<const ContactRow> contacts) {
     }
     row.allowed = std::max(contact.gap / h, -kMaxSeparationSpeed);
     const Eigen::VectorXd along = row.motion.transpose() * contact.normal;
-    row.along = along.cwiseAbs2().dot(mobility_);
-    row.across = row.motion.colwise().squaredNorm().transpose().dot(mobility_) - row.along;
+    row.along = along.cwiseAbs2().dot(inverse_mass_);
+    row.across = row.motion.colwise().squaredNorm().transpose().dot(inverse_mass_) - row.along;
   }
 }
 
@@ -149,7 +149,7 @@ bool Modal::move_freely(double h, std::span<ContactRow> contacts, InternalState&
 void Modal::move_in_touch(double h, std::span<ContactRow> contacts, InternalState& state) const {
   const Eigen::VectorXd forces = load_ - frequencies_.cwiseAbs2().cwiseProduct(state.amplitudes);
   Eigen::VectorXd& rates = state.rates;
-  rates = mobility_.cwiseProduct(rates + h * forces);
+  rates = inverse_mass_.cwiseProduct(rates + h * forces);
   for (std::size_t r = 0; r < contacts.size(); ++r) {
     contacts[r].tangential_impulse.setZero();
     add_impulse(rows_[r], -contacts[r].normal_impulse * contacts[r].normal, rates);
@@ -165,7 +165,7 @@ void Modal::move_in_touch(double h, std::span<ContactRow> contacts, InternalStat
 }
 
 void Modal::add_impulse(const Row& row, const Vec3& impulse, Eigen::VectorXd& rates) const {
-  rates += mobility_.cwiseProduct(row.motion.transpose() * impulse);
+  rates += inverse_mass_.cwiseProduct(row.motion.transpose() * impulse);
 }
 
 /// @returns the change of the contact's velocity [m/s]

@@ -49,7 +49,7 @@ class Modal : public OrganDynamics {
   struct Row {
     Eigen::Matrix3Xd motion;  ///< of its tissue point by the amplitudes  (3 × modes)
     double allowed = 0;       ///< gap/h [m/s]
-    double along = 0;         ///< mobility along n [1/kg]
+    double along = 0;         ///< inverse effective mass along n [1/kg]
     double across = 0;        ///< at least the most across n [1/kg]
   };
 
@@ -65,13 +65,13 @@ class Modal : public OrganDynamics {
   double relax(std::size_t row, ContactRow& contact, Eigen::VectorXd& rates) const;
 
   const OrganModel& model_;
-  Eigen::MatrixXd modes_;        ///< U [kg^−½]  (3 node_count × modes)
-  Eigen::MatrixXd momenta_;      ///< M U [kg^½]  (3 node_count × modes)
-  Eigen::VectorXd frequencies_;  ///< ω  (modes)
-  Eigen::VectorXd pressures_;    ///< mean pressure per amplitude  (modes)
-  Eigen::VectorXd damping_;      ///< 2ζω + drag [1/s]  (modes)
-  Eigen::VectorXd load_;         ///< UᵀM gravity  (modes)
-  Eigen::VectorXd mobility_;     ///< (1 + h(2ζω + drag) + h²ω²)⁻¹  (modes)
+  Eigen::MatrixXd modes_;         ///< U [kg^−½]  (3 node_count × modes)
+  Eigen::MatrixXd momenta_;       ///< M U [kg^½]  (3 node_count × modes)
+  Eigen::VectorXd frequencies_;   ///< ω  (modes)
+  Eigen::VectorXd pressures_;     ///< mean pressure per amplitude  (modes)
+  Eigen::VectorXd damping_;       ///< 2ζω + drag [1/s]  (modes)
+  Eigen::VectorXd load_;          ///< UᵀM gravity  (modes)
+  Eigen::VectorXd inverse_mass_;  ///< (1 + h(2ζω + drag) + h²ω²)⁻¹  (modes)
   std::vector<Row> rows_;
 };
 

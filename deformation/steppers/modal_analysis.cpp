@@ -78,7 +78,7 @@ Eigenmodes modal_analysis(const TaylorHoodElements& solid, const std::vector<cha
   Eigen::VectorXd earlier = Eigen::VectorXd::Zero(vectors);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     Eigen::MatrixXd x = y;  // y = M Y
-    solver.factorization().solve(x);
+    solver.factorisation().solve(x);
     const Eigen::MatrixXd mass_x = mass * x;
     const Eigen::MatrixXd projected = x.transpose() * y, metric = x.transpose() * mass_x;
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(

@@ -38,7 +38,7 @@ class NewtonBackwardEuler : public OrganDynamics {
   /// Contacts are taken as flat over a step [s].
   static constexpr double kLargestStep = 0.01;
   static constexpr int kMostParts = 8;
-  /// A step that has used up as many factorizations begins no further try: solvable ones need 3 to
+  /// A step that has used up as many factorisations begins no further try: solvable ones need 3 to
   /// 30, and a loop that steps must not wait for what will not converge.
   static constexpr int kMostIterations = 100;
 
@@ -50,7 +50,7 @@ class NewtonBackwardEuler : public OrganDynamics {
   /// With the state's pressures, else of the shape alone.
   double elastic_energy(const OrganState& state) override;
 
-  int iterations_used() const { return iterations_used_; }  ///< factorizations of the last step
+  int iterations_used() const { return iterations_used_; }  ///< factorisations of the last step
 
  private:
   bool advance(double h, int parts, std::span<ContactRow> rows, OrganState& state);

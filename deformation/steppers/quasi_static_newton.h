@@ -19,7 +19,7 @@ struct Inertia {
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;  ///< of Newton: factorizations
+  int iterations = 0;  ///< of Newton: factorisations
   double deepest = 0;  ///< penetration left [m]
 };
 
@@ -51,7 +51,7 @@ class QuasiStaticNewton {
   /// @returns false if it is singular
   bool factor(const SolidState& state, const std::optional<Inertia>& inertia,
               bool positive = false);
-  const MultifrontalLdlt& factorization() const { return factor_; }
+  const MultifrontalLdlt& factorisation() const { return factor_; }
   bool is_constrained(std::size_t coordinate) const { return constrained_[coordinate] != 0; }
 
  private:

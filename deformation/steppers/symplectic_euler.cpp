@@ -28,7 +28,7 @@ void correct_volume(const OrganModel& model, double h, std::span<ContactRow> row
   const VolumeRow volume{buffers.volume, rate};
   buffers.velocities = state.velocities;
   const auto correction =
-      solve_contacts_and_volume(model, &volume, h, rows, state.velocities, StartImpulses::kApplied);
+      solve_contacts_and_volume(model, &volume, h, rows, state.velocities, WarmStart::kApplied);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     state.positions[i] += h * (state.velocities[i] - buffers.velocities[i]);
   }
@@ -105,7 +105,7 @@ void SymplecticEuler::correct_volume(double h, std::span<ContactRow> rows, Organ
   const VolumeRow volume{free_.volume,
                          (free_.volume.volume - state.target_volume) / h - free_.volume_velocity};
   const auto correction = solve_contacts(model_, &volume, free_.volume_velocity, h, rows,
-                                         free_.velocities, StartImpulses::kApplied);
+                                         free_.velocities, WarmStart::kApplied);
   state.positions = start_;
   kernel_.finish_step(h, correction.volume_impulse, free_, state);
   report.volume_impulse += correction.volume_impulse;

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "deformation/model/organ_model.h"
-#include "deformation/springs/kernel/spring_visits.h"
+#include "deformation/springs/kernel/spring_gauss_seidel.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -48,7 +48,7 @@ class XpbdSprings : public OrganDynamics {
   const OrganModel& model_;
   int iterations_;
   KeptVolume volume_;
-  SpringVisits visits_;
+  SpringGaussSeidel visits_;
   SpringKernel kernel_;
   FreeStep free_;
   std::vector<Vec3> positions_;

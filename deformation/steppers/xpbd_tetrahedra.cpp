@@ -73,7 +73,7 @@ StepReport XpbdTetrahedra::step(double h, std::span<ContactRow> rows, OrganState
   for (std::size_t i = 0; i < positions_.size(); ++i) {
     velocities_[i] = (positions_[i] - state.positions[i]) / h;
   }
-  solve_contacts_and_volume(body_, nullptr, h, rows, velocities_, StartImpulses::kToApply);
+  solve_contacts_and_volume(body_, nullptr, h, rows, velocities_, WarmStart::kToApply);
 
   // 4. the new state
   for (std::size_t i = 0; i < positions_.size(); ++i) {

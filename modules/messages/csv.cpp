@@ -31,10 +31,10 @@ constexpr auto part_names() {
 std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
 
 // Walks a message for the names of its columns, or for their values.
-class Row {
+class CsvRow {
  public:
   enum class Shows { kNames, kValues };
-  Row(std::ostream& stream, Shows shows) : stream_(stream), shows_(shows) {}
+  CsvRow(std::ostream& stream, Shows shows) : stream_(stream), shows_(shows) {}
 
   void header(const Header&) {}
   template <class T>
@@ -96,8 +96,8 @@ class Row {
 };
 
 template <class T>
-void walk(std::ostream& stream, Row::Shows shows, const T& described) {
-  Row row(stream, shows);
+void walk(std::ostream& stream, CsvRow::Shows shows, const T& described) {
+  CsvRow row(stream, shows);
   describe(row, described);
 }
 
@@ -152,22 +152,22 @@ std::string name_of_part(std::string_view field, std::string_view part) {
 
 std::string csv_columns(const AnyMessage& message) {
   std::ostringstream names;
-  std::visit([&](const auto& m) { walk(names, Row::Shows::kNames, m); }, message);
+  std::visit([&](const auto& m) { walk(names, CsvRow::Shows::kNames, m); }, message);
   return names.str();
 }
 
 void write_csv_values(std::ostream& stream, const AnyMessage& message) {
-  std::visit([&](const auto& m) { walk(stream, Row::Shows::kValues, m); }, message);
+  std::visit([&](const auto& m) { walk(stream, CsvRow::Shows::kValues, m); }, message);
 }
 
 std::string csv_columns(const ModuleStatus::Input& input) {
   std::ostringstream names;
-  walk(names, Row::Shows::kNames, input);
+  walk(names, CsvRow::Shows::kNames, input);
   return names.str();
 }
 
 void write_csv_values(std::ostream& stream, const ModuleStatus::Input& input) {
-  walk(stream, Row::Shows::kValues, input);
+  walk(stream, CsvRow::Shows::kValues, input);
 }
 
 std::string key_text(const AnyMessage& message) {

@@ -28,13 +28,13 @@ bool sleep_until(std::int64_t due_ns, const std::function<bool()>& stop_requeste
   }
 }
 
-struct Row {
+struct MotionRow {
   std::int64_t time_ns;
   Pose pose;
 };
 
 struct Motion {
-  std::vector<Row> rows;
+  std::vector<MotionRow> rows;
   std::size_t resets = 0;
 };
 
@@ -64,10 +64,10 @@ std::map<std::uint32_t, Motion> read_motions(SampleReader& recording, std::size_
   return motions;
 }
 
-void write_trajectory(const std::filesystem::path& file, const std::vector<Row>& rows) {
+void write_trajectory(const std::filesystem::path& file, const std::vector<MotionRow>& rows) {
   std::ofstream stream(file);
   stream << "t,x,y,z,qx,qy,qz,qw\n";
-  for (const Row& row : rows) {
+  for (const MotionRow& row : rows) {
     const Quat& q = row.pose.rotation;
     messages::write_seconds(stream, row.time_ns);
     for (const double value : {row.pose.position.x(), row.pose.position.y(), row.pose.position.z(),

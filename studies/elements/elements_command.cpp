@@ -28,7 +28,7 @@ void print_run(const Run& run, double seconds, std::ostream& out) {
         run.complete ? "" : "; NOT COMPLETE: Newton failed beyond the last row");
   print(out, "%12s %12s %12s %9s %12s %9s %6s\n", "load", "value", "reference", "error %",
         "bulge [mm]", "error %", "Newton");
-  for (const Row& row : run.rows) {
+  for (const ErrorRow& row : run.rows) {
     print(out, "%12.5g %12.6g %12.6g %9.3f", row.load, row.force, row.reference_force,
           100 * error_of(row.force, row.reference_force));
     if (row.reference_bulge > 0) {
@@ -68,7 +68,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<Run>& runs) 
          "newton_iterations\n";
   csv.precision(10);
   for (const Run& run : runs) {
-    for (const Row& row : run.rows) {
+    for (const ErrorRow& row : run.rows) {
       csv << run.size << ',' << run.nodes << ',' << run.elements << ',' << run.unknowns << ','
           << row.load << ',' << row.force << ',' << row.reference_force << ',' << row.bulge << ','
           << row.reference_bulge << ',' << row.iterations << '\n';

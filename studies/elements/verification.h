@@ -20,7 +20,7 @@ struct Setting {
   std::function<void(const std::string& line)> report;  ///< progress
 };
 
-struct Row {
+struct ErrorRow {
   double load = 0;   ///< compression [1], depth [m]; for E the exact frequency [Hz]
   double force = 0;  ///< [N]; for E the frequency [Hz]
   double reference_force = 0;
@@ -32,8 +32,8 @@ struct Row {
 struct Run {
   double size = 0;  ///< finest wanted edge length over the case's length, see default_sizes()
   std::size_t nodes = 0, elements = 0, unknowns = 0;
-  std::vector<Row> rows;  ///< those reached
-  bool complete = true;   ///< false: Newton failed at a load beyond the last row
+  std::vector<ErrorRow> rows;  ///< those reached
+  bool complete = true;        ///< false: Newton failed at a load beyond the last row
 };
 
 /// "A", "C", "D", "E".

@@ -108,7 +108,7 @@ class Lockstep {
     count(Guard::kPressureCapped, r.pressure_capped);
     count(Guard::kVolumeReleased, r.volume_released);
     count(Guard::kVolumeSkipped, r.volume_skipped);
-    count(Guard::kContactsIgnored, r.contacts_ignored);
+    count(Guard::kContactsSuspended, r.contacts_suspended);
     count(Guard::kTissueInverted, r.tissue_inverted);
     count(Guard::kMessageRefused, r.contact_refused);
     count(Guard::kProbeJumped, r.probe_jumped);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "deformation/guard/state_guard.h"
+#include "deformation/guard/divergence_detector.h"
 #include "modules/core/tolerances.h"
 #include "studies/fuzz/outcome.h"
 

@@ -22,7 +22,7 @@ enum class Guard : std::uint8_t {
   kPressureCapped,
   kVolumeReleased,
   kVolumeSkipped,
-  kContactsIgnored,
+  kContactsSuspended,
   kTissueInverted,
   kProbeJumped,
   kMessageRefused,
@@ -32,7 +32,7 @@ inline constexpr std::size_t kGuardCount = 16;
 inline constexpr std::array<const char*, kGuardCount> kGuardNames{
     "not_finite",      "too_fast",        "energy_grew",     "too_large",
     "turned_inside",   "collapsed",       "back_to_rest",    "step_reduced",
-    "pressure_capped", "volume_released", "volume_skipped",  "contacts_ignored",
+    "pressure_capped", "volume_released", "volume_skipped",  "contacts_suspended",
     "tissue_inverted", "probe_jumped",    "message_refused", "force_not_finite"};
 
 /// What became of a scene in which a guard of the state acted (acts_on_state()) without any.

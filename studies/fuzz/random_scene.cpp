@@ -37,7 +37,7 @@ constexpr std::array<const char*, kFaultCount> kFaultNames{"pose_not_a_number",
                                                            "late",
                                                            "twice"};
 
-/// All as likely, but for those that factorize large matrices.
+/// All as likely, but for those that factorise large matrices.
 std::string random_model(RandomStream& random) {
   std::vector<std::string> usual, rare;
   for (const scene::ModelFormat& format : scene::model_formats()) {

@@ -13,7 +13,7 @@ namespace palpate::fuzz {
 /// Smaller meshes first, so that a scene is made simpler by a lower index.
 enum class Shape { kTetrahedron, kBall42, kBox, kCapsule, kStomach, kLiver, kBall162, kLiver300 };
 inline constexpr std::size_t kShapeCount = 8;
-/// The largest shape that implicit models of solids get: they factorize matrices.
+/// The largest shape that implicit models of solids get: they factorise matrices.
 inline constexpr std::size_t kTinyShapeCount = 3;
 const char* name_of(Shape shape);
 

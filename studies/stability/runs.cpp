@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "deformation/guard/state_guard.h"
+#include "deformation/guard/divergence_detector.h"
 #include "deformation/springs/spring_forces.h"
 
 namespace palpate::stability {

@@ -35,7 +35,7 @@ const Scheme& scheme_named(const std::string& name);
 scene::Organ organ_of(const Scheme& scheme, double youngs_modulus);
 
 /// The ball's mesh, 162 nodes on the surface; filled with tetrahedra at the first call that asks.
-/// Quadratic models factorize matrices, or look for modes: 42 nodes for modal, 12 for
+/// Quadratic models factorise matrices, or look for modes: 42 nodes for modal, 12 for
 /// quadratic_elements.
 class Shapes {
  public:

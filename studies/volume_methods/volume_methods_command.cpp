@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kQuickSeconds = 4;  // the probe is in the organ by then
 
-struct Row {
+struct MethodRow {
   Method method;
   VolumeErrors ball, organ;
   Cost cost;
@@ -35,7 +35,7 @@ struct Column {
   const char* csv;
   int width;
   const char* format;
-  double (*value)(const Row&);
+  double (*value)(const MethodRow&);
 };
 
 /// Infinite for a run that diverged, not a number where there is nothing to measure.
@@ -53,24 +53,26 @@ double unless_diverged(const VolumeErrors& errors, double value) {
 
 constexpr std::array<Column, 11> kColumns{{
     {"ball: error", "peak", "ball_volume_error_peak", 13, "%.1e",
-     [](const Row& r) { return unless_diverged(r.ball, r.ball.peak); }},
+     [](const MethodRow& r) { return unless_diverged(r.ball, r.ball.peak); }},
     {"", "held", "ball_volume_error_held", 9, "%.1e",
-     [](const Row& r) { return unless_diverged(r.ball, r.ball.held); }},
-    {"plate", "[N]", "ball_plate_force_n", 7, "%.3f", [](const Row& r) { return r.ball.force; }},
+     [](const MethodRow& r) { return unless_diverged(r.ball, r.ball.held); }},
+    {"plate", "[N]", "ball_plate_force_n", 7, "%.3f",
+     [](const MethodRow& r) { return r.ball.force; }},
     {"pressure", "[Pa]", "ball_pressure_pa", 9, "%.1f",
-     [](const Row& r) { return r.ball.pressure + 0.0; }},
+     [](const MethodRow& r) { return r.ball.pressure + 0.0; }},
     {"organ: error", "peak", "organ_volume_error_peak", 13, "%.1e",
-     [](const Row& r) { return unless_diverged(r.organ, r.organ.peak); }},
+     [](const MethodRow& r) { return unless_diverged(r.organ, r.organ.peak); }},
     {"probe", "max [N]", "organ_probe_force_n", 8, "%.3f",
-     [](const Row& r) { return r.organ.force; }},
-    {"step", "[us]", "step_cost_us", 7, "%.1f", [](const Row& r) { return 1e6 * r.cost.step; }},
+     [](const MethodRow& r) { return r.organ.force; }},
+    {"step", "[us]", "step_cost_us", 7, "%.1f",
+     [](const MethodRow& r) { return 1e6 * r.cost.step; }},
     {"cost", "/plain", "step_cost_over_plain", 7, "%.2f",
-     [](const Row& r) { return r.cost.relative; }},
+     [](const MethodRow& r) { return r.cost.relative; }},
     {"stable to", "[ms]", "largest_stable_step_ms", 10, "%.2f",
-     [](const Row& r) { return 1e3 * r.limits.measured; }},
+     [](const MethodRow& r) { return 1e3 * r.limits.measured; }},
     {"given", "[ms]", "largest_given_step_ms", 6, "%.2f",
-     [](const Row& r) { return 1e3 * r.limits.given; }},
-    {"energy", "drift", "energy_drift", 9, "%.1e", [](const Row& r) { return r.drift; }},
+     [](const MethodRow& r) { return 1e3 * r.limits.given; }},
+    {"energy", "drift", "energy_drift", 9, "%.1e", [](const MethodRow& r) { return r.drift; }},
 }};
 
 std::size_t name_width() {
@@ -98,18 +100,18 @@ void print_header(const VolumeMethodsOptions& options, std::ostream& out) {
   line("", &Column::unit);
 }
 
-void print(const Row& row, std::ostream& out) {
+void print(const MethodRow& row, std::ostream& out) {
   out << std::left << std::setw(static_cast<int>(name_width())) << row.method.name << std::right;
   for (const Column& column : kColumns)
     out << std::setw(column.width) << text(column.format, column.value(row));
   out << std::endl;
 }
 
-void write_csv(const std::vector<Row>& rows, const std::filesystem::path& file) {
+void write_csv(const std::vector<MethodRow>& rows, const std::filesystem::path& file) {
   std::vector<std::string> names{"method"};
   for (const Column& column : kColumns) names.emplace_back(column.csv);
   report::TableFile table(file, names);
-  for (const Row& row : rows) {
+  for (const MethodRow& row : rows) {
     std::vector<std::string> cells{row.method.name};
     for (const Column& column : kColumns) cells.push_back(text("%.8g", column.value(row)));
     table.write_row(cells);
@@ -117,10 +119,10 @@ void write_csv(const std::vector<Row>& rows, const std::filesystem::path& file) 
   table.finish();
 }
 
-Row measure(const Method& method, const VolumeMethodsOptions& options, const scene::Scene& scene,
-            report::Progress& progress) {
+MethodRow measure(const Method& method, const VolumeMethodsOptions& options,
+                  const scene::Scene& scene, report::Progress& progress) {
   progress.begin(method.name);
-  Row row;
+  MethodRow row;
   row.method = method;
   const double duration = options.quick ? kQuickSeconds : scene.duration;
   const std::vector<std::pair<const char*, std::function<void()>>> parts{
@@ -156,7 +158,7 @@ int run_volume_methods(const VolumeMethodsOptions& options, std::ostream& out, s
   if (!options.out.empty()) make_folder(options.out);
   const runtime::StopSignal stop;
   report::Progress progress(log, [&] { return stop.requested(); });
-  std::vector<Row> rows;
+  std::vector<MethodRow> rows;
   print_header(options, out);
   try {
     for (const Method& method : compared_methods()) {

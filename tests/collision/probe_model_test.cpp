@@ -13,7 +13,7 @@ TEST_CASE("probe model: every form has what its searches need, and its bounds") 
   CHECK(sphere.cores.size() == 1);
   CHECK(sphere.cores[0].is_point());
   CHECK(sphere.reach == 0.5);
-  CHECK(sphere.depth_believed == 1);
+  CHECK(sphere.max_tracked_penetration == 1);
   CHECK_FALSE(sphere.solid);
 
   const ProbeModel capsule(geometry::RoundedSegment{-Vec3::UnitZ(), Vec3::UnitZ(), 0.5});
@@ -22,7 +22,7 @@ TEST_CASE("probe model: every form has what its searches need, and its bounds") 
   CHECK(capsule.cores[0].b == Vec3(0, 0, 1));
   CHECK(capsule.bounds.upper == Vec3(0.5, 0.5, 1.5));
   CHECK(capsule.reach == 1.5);
-  CHECK(capsule.depth_believed == 3);
+  CHECK(capsule.max_tracked_penetration == 3);
 
   const ProbeModel box(geometry::Box{Vec3(2, 4, 4)});
   CHECK(box.cores.empty());
@@ -50,7 +50,7 @@ TEST_CASE("probe model: every form has what its searches need, and its bounds") 
   CHECK(mesh.solid);
   CHECK(mesh.bounds.lower == Vec3(4, -1, -1));
   CHECK(mesh.reach == Approx(std::sqrt(38.0)));
-  CHECK(mesh.depth_believed == 2);
+  CHECK(mesh.max_tracked_penetration == 2);
 }
 
 }  // namespace palpate::collision

@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "deformation/guard/state_guard.h"
+#include "deformation/guard/divergence_detector.h"
 
 namespace palpate::deformation {
 namespace {

@@ -56,7 +56,7 @@ TEST_CASE("simulated organ: after a failure steps are halved until a second was 
   organ.put(fast);
   const AdvanceReport report = one_advance(organ);
   CHECK(report.diverged);
-  CHECK(report.reason == Disbelief::kTooFast);
+  CHECK(report.reason == Violation::kTooFast);
   CHECK(report.step_reduced);
   CHECK_FALSE(report.back_to_rest);
   CHECK(organ.substeps(kPeriod) == 2 * usual);
@@ -77,14 +77,14 @@ TEST_CASE("simulated organ: the fourth failure in a row ends at rest, without co
     broken.positions[3].x() = std::numeric_limits<double>::quiet_NaN();
     organ.put(broken);
     const AdvanceReport report = one_advance(organ);
-    CHECK(report.reason == Disbelief::kNotFinite);
+    CHECK(report.reason == Violation::kNotFinite);
     CHECK(report.back_to_rest == (failure > kMostFailures));
-    CHECK(organ.aloof() == (failure > kMostFailures));
+    CHECK(organ.contacts_suspended() == (failure > kMostFailures));
     CHECK(testing::shape_error(organ) < 1e-6);  // springs in float
   }
   CHECK(organ.substeps(kPeriod) == testing::simulated_ball(2).substeps(kPeriod) << kMostHalvings);
   testing::run(organ, 1.1 * kQuietTime);
-  CHECK_FALSE(organ.aloof());
+  CHECK_FALSE(organ.contacts_suspended());
 }
 
 TEST_CASE("simulated organ: a volume far from its target comes back at the scene's rate") {

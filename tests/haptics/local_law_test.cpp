@@ -277,9 +277,9 @@ TEST_CASE("local law: only complete, finite laws are usable") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(is_usable(pressed_wall()));
   CHECK(is_usable(LocalLaw{}));
-  const auto refused = [](auto spoil) {
+  const auto refused = [](auto corrupt) {
     LocalLaw law = pressed_wall();
-    spoil(law);
+    corrupt(law);
     return !is_usable(law);
   };
   CHECK(refused([&](LocalLaw& m) { m.anchor.position.x() = nan; }));

@@ -50,7 +50,7 @@ inline std::vector<ModelUnderTest> models_under_test() {
 }
 
 /// A lopsided organ of about 5 cm: no axis, plane or two nodes of it are alike. Quadratic models
-/// factorize matrices: 12 tetrahedra for them, 72 for the other solids.
+/// factorise matrices: 12 tetrahedra for them, 72 for the other solids.
 inline geometry::OrganShape lopsided_shape(const std::string& model) {
   const bool quadratic = scene::is_quadratic(model);
   geometry::OrganShape shape;
@@ -69,7 +69,7 @@ inline geometry::OrganShape lopsided_shape(const std::string& model) {
   return quadratic ? geometry::with_edge_nodes(shape) : shape;
 }
 
-/// A ball about the origin, of solids a cube as wide. Quadratic models factorize matrices: 6
+/// A ball about the origin, of solids a cube as wide. Quadratic models factorise matrices: 6
 /// tetrahedra for quadratic_elements, or tests take minutes.
 inline geometry::OrganShape compact_shape(const std::string& model) {
   if (!scene::is_solid(model)) return geometry::make_ball(kBallRadius, 2);

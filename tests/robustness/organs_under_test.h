@@ -29,7 +29,7 @@ struct Story {
   bool step_reduced = false;
   bool finite = true;
   double fastest = 0;  ///< node at the end of an advance [m/s]
-  Disbelief first_reason = Disbelief::kNone;
+  Violation first_reason = Violation::kNone;
 };
 
 inline void note(const AdvanceReport& report, const OrganState& state, Story& story) {

@@ -11,14 +11,14 @@ struct Witness {
   Story story;
   double largest_force = 0, largest_pressure = 0, least_volume = 1;
   bool finite = true;
-  bool contacts_ignored = false, probe_jumped = false;
+  bool contacts_suspended = false, probe_jumped = false;
   NodePositions nodes;
   ContactModel model;
 
   void advance(DeformationWorld& world) {
     const AdvanceReport report = world.advance(kPeriod);
     note(report, {}, story);
-    contacts_ignored |= report.contacts_ignored;
+    contacts_suspended |= report.contacts_suspended;
     probe_jumped |= report.probe_jumped;
     deformation::write_node_positions(world, 0, nodes);
     for (const float x : nodes.positions) finite &= std::isfinite(x);

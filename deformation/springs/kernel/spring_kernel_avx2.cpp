@@ -1,8 +1,8 @@
 // The spring kernel and product for CPUs with AVX2 and FMA.
 #include <immintrin.h>
 
+#include "deformation/springs/kernel/spring_hessian_product_body.h"
 #include "deformation/springs/kernel/spring_kernel_body.h"
-#include "deformation/springs/kernel/spring_product_body.h"
 
 namespace palpate::deformation::kernel {
 namespace {

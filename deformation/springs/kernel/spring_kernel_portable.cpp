@@ -1,7 +1,7 @@
 // The spring kernel and product for any CPU: registers of 128 bits, as the baseline of both x86-64
 // and AArch64 has them.
+#include "deformation/springs/kernel/spring_hessian_product_body.h"
 #include "deformation/springs/kernel/spring_kernel_body.h"
-#include "deformation/springs/kernel/spring_product_body.h"
 
 namespace palpate::deformation::kernel {
 namespace {

@@ -21,11 +21,11 @@ ContactRow row_at(const Vec3& weights, double friction) {
 
 TEST_CASE("augmented contacts: impulses change with velocities as apply() says") {
   // Oracle: finite differences of a function that is linear while no contact changes its kind.
-  const std::vector<Mat3> mobilities(3, 2 * Mat3::Identity());
+  const std::vector<Mat3> inverse_mass_blocks(3, 2 * Mat3::Identity());
   std::vector<ContactRow> rows{row_at({0.2, 0.3, 0.5}, 0), row_at({1, 0, 0}, 10)};
   AugmentedContacts contacts;
   std::vector<Vec3> velocities{Vec3(0.01, 0, 0.12), Vec3(0, 0.02, 0.11), Vec3(0, 0, 0.12)};
-  contacts.begin(mobilities, rows, 0.01, velocities);
+  contacts.begin(inverse_mass_blocks, rows, 0.01, velocities);
   contacts.update(rows, velocities);
   CHECK(rows[0].normal_impulse > 0);
   CHECK(rows[0].tangential_impulse.norm() == 0);
@@ -51,11 +51,11 @@ TEST_CASE("augmented contacts: impulses change with velocities as apply() says")
 
 TEST_CASE("augmented contacts: never pull, and rub within Coulomb's cone") {
   // Oracle: invariants.
-  const std::vector<Mat3> mobilities(3, 2 * Mat3::Identity());
+  const std::vector<Mat3> inverse_mass_blocks(3, 2 * Mat3::Identity());
   std::vector<ContactRow> rows{row_at({0.2, 0.3, 0.5}, 0.5), row_at({1, 0, 0}, 0.5)};
   rows[1].tangential_impulse = Vec3(3, 0, 1);
   AugmentedContacts contacts;
-  contacts.begin(mobilities, rows, 0.01, std::vector<Vec3>(3, Vec3(0.3, 0, 0.15)));
+  contacts.begin(inverse_mass_blocks, rows, 0.01, std::vector<Vec3>(3, Vec3(0.3, 0, 0.15)));
   for (const double speed : {-1.0, 0.05, 0.2}) {
     contacts.update(rows, std::vector<Vec3>(3, Vec3(0.3, 0.1, speed)));
     for (const ContactRow& row : rows) {

@@ -10,11 +10,11 @@
 namespace palpate::deformation {
 namespace {
 
-/// A ball's nodes with random mobilities, its volume gradient and some contacts.
+/// A ball's nodes with random inverse_mass_blocks, its volume gradient and some contacts.
 struct Fixture {
   OrganModel model = testing::ball_model(1);
   VolumeGradient volume;
-  std::vector<Mat3> mobilities;
+  std::vector<Mat3> inverse_mass_blocks;
   std::vector<ContactRow> contacts;
   std::vector<Vec4f> r;
   std::mt19937 random{7};
@@ -27,10 +27,10 @@ struct Fixture {
     for (std::size_t i = 0; i < model.node_count(); ++i) {
       Mat3 factor;
       for (int column = 0; column < 3; ++column) factor.col(column) = random_vector();
-      mobilities.push_back(factor * factor.transpose() + 0.1 * Mat3::Identity());
+      inverse_mass_blocks.push_back(factor * factor.transpose() + 0.1 * Mat3::Identity());
       r.push_back(wide(random_vector()));
     }
-    mobilities[3].setZero();  // fixed
+    inverse_mass_blocks[3].setZero();  // fixed
   }
 
   /// On a triangle; sticking ones hold three directions.
@@ -86,15 +86,15 @@ TEST_CASE("constraint projection: agrees with dense linear algebra") {
   f.add_contact(1, true);
   f.add_contact(12, true);
   ConstraintProjection projection;
-  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   std::vector<Vec4f> z(f.r.size());
   auto rest = f.r;
   projection.project(rest, z);
 
   Eigen::MatrixXd w = Eigen::MatrixXd::Zero(f.size(), f.size());
-  for (std::size_t i = 0; i < f.mobilities.size(); ++i) {
+  for (std::size_t i = 0; i < f.inverse_mass_blocks.size(); ++i) {
     const auto at = 3 * static_cast<Eigen::Index>(i);
-    w.block<3, 3>(at, at) = f.mobilities[i];
+    w.block<3, 3>(at, at) = f.inverse_mass_blocks[i];
   }
   const Eigen::MatrixXd b = f.dense_rows();
   const Eigen::VectorXd mu = (b * w * b.transpose()).fullPivLu().solve(b * w * flat(f.r));
@@ -108,7 +108,7 @@ TEST_CASE("constraint projection: agrees with dense linear algebra") {
   CHECK(volume_impulse == Approx(0.25 + mu[0]).epsilon(1e-5));
   CHECK(f.contacts[0].normal_impulse == Approx(before[0].normal_impulse + mu[1]).epsilon(1e-5));
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    const Vec3 answer = f.mobilities[i] * rest[i].head<3>().cast<double>();
+    const Vec3 answer = f.inverse_mass_blocks[i] * rest[i].head<3>().cast<double>();
     CHECK((wide(answer) - z[i]).norm() < 1e-5f);
   }
 }
@@ -119,7 +119,7 @@ TEST_CASE("constraint projection: a step in one pass is the same as its parts") 
   f.add_contact(0, false);
   f.add_contact(12, true);
   ConstraintProjection projection;
-  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   const double step = 0.3, kept = 0.6;
   AlignedVector<WideNode> p(f.r.size());
   std::vector<Vec4f> q = f.r, x(f.r.size(), Vec4f::Ones()), r(f.r.size()), z(f.r.size());
@@ -134,7 +134,7 @@ TEST_CASE("constraint projection: a step in one pass is the same as its parts") 
   double pressure = 0;
   projection.take_impulses(contacts, pressure, r);
 
-  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   auto rest = f.r;
   auto found_z = z, found_x = x;
   auto turned = p;
@@ -157,7 +157,7 @@ TEST_CASE("constraint projection: rows that take all but a millionth leave the r
   f.add_contact(0, false);
   f.add_contact(12, true);
   ConstraintProjection projection;
-  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   auto small = f.r;
   std::vector<Vec4f> z_small(f.r.size()), z(f.r.size());
   const double expected = projection.project(small, z_small);
@@ -170,7 +170,7 @@ TEST_CASE("constraint projection: rows that take all but a millionth leave the r
   for (std::size_t i = 0; i < large.size(); ++i) {
     large[i] += wide(along.segment<3>(3 * static_cast<Eigen::Index>(i)));
   }
-  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   CHECK(projection.project(large, z) == Approx(expected).epsilon(0.1));
   CHECK((flat(z) - flat(z_small)).norm() < 0.1 * flat(z_small).norm());
 }
@@ -183,9 +183,9 @@ TEST_CASE("constraint projection: dependent contacts hold what one of them would
   twice.contacts.push_back(twice.contacts[0]);
   std::vector<Vec4f> z(once.r.size()), z_twice(once.r.size());
   ConstraintProjection projection;
-  projection.prepare(once.mobilities, once.volume.gradient, once.contacts);
+  projection.prepare(once.inverse_mass_blocks, once.volume.gradient, once.contacts);
   projection.project(once.r, z);
-  projection.prepare(twice.mobilities, twice.volume.gradient, twice.contacts);
+  projection.prepare(twice.inverse_mass_blocks, twice.volume.gradient, twice.contacts);
   projection.project(twice.r, z_twice);
   CHECK((flat(z) - flat(z_twice)).norm() < 1e-5 * flat(z).norm());
 }
@@ -196,13 +196,13 @@ TEST_CASE("constraint projection: without rows it is W r, and held nodes do not 
   f.add_contact(5, false);
   f.contacts[0].normal_impulse = 0;
   f.add_contact(6, true);
-  for (const std::uint32_t node : f.contacts[1].nodes) f.mobilities[node].setZero();
+  for (const std::uint32_t node : f.contacts[1].nodes) f.inverse_mass_blocks[node].setZero();
   ConstraintProjection projection;
-  projection.prepare(f.mobilities, {}, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, {}, f.contacts);
   std::vector<Vec4f> z(f.r.size());
   projection.project(f.r, z);
   for (std::size_t i = 0; i < z.size(); ++i) {
-    const Vec3 answer = f.mobilities[i] * f.r[i].head<3>().cast<double>();
+    const Vec3 answer = f.inverse_mass_blocks[i] * f.r[i].head<3>().cast<double>();
     CHECK((z[i] - wide(answer)).norm() <= 1e-6f * z[i].norm());
   }
 }
@@ -217,7 +217,7 @@ TEST_CASE("constraint projection: contacts that hold every node leave the volume
     }
   }
   ConstraintProjection projection;
-  projection.prepare(f.mobilities, f.volume.gradient, f.contacts);
+  projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   std::vector<Vec4f> z(f.r.size());
   projection.project(f.r, z);
   for (std::size_t i = 0; i < f.model.surface_node_count; ++i) CHECK(z[i].norm() < 1e-4f);

@@ -55,18 +55,17 @@ double volume_rate(const Case& c, const std::vector<Vec3>& velocities) {
 }
 
 /// Contacts, and the volume's impulse, for nodes that answer by W.
-void solve_blocks(const std::vector<Mat3>& mobilities, const VolumeRow* volume, double h,
-                  std::vector<ContactRow>& rows, std::vector<Vec3>& velocities,
-                  StartImpulses start) {
+void solve_blocks(const std::vector<Mat3>& inverse_mass_blocks, const VolumeRow* volume, double h,
+                  std::vector<ContactRow>& rows, std::vector<Vec3>& velocities, WarmStart start) {
   double volume_velocity = 0;
   for (std::size_t i = 0; volume != nullptr && i < volume->at.gradient.size(); ++i) {
     volume_velocity += volume->at.gradient[i].dot(velocities[i]);
   }
   const double sigma =
-      solve_contacts(mobilities, volume, volume_velocity, h, rows, velocities, start)
+      solve_contacts(inverse_mass_blocks, volume, volume_velocity, h, rows, velocities, start)
           .volume_impulse;
   for (std::size_t i = 0; volume != nullptr && i < volume->at.gradient.size(); ++i) {
-    velocities[i] -= sigma * (mobilities[i] * volume->at.gradient[i]);
+    velocities[i] -= sigma * (inverse_mass_blocks[i] * volume->at.gradient[i]);
   }
 }
 
@@ -165,9 +164,9 @@ TEST_CASE("contact solve: contacts without friction on a node each are solved as
   solve_contacts_and_volume(swept.model, volume, 1e-3, swept.rows, expected);
   if (keeps_volume) CHECK(volume_rate(at_once, velocities) == Approx(-1e-6).margin(1e-15));
   CHECK(report.sweeps <= 5);
-  std::vector<Mat3> mobilities;
+  std::vector<Mat3> inverse_mass_blocks;
   for (const double inverse_mass : swept.model.inverse_masses) {
-    mobilities.emplace_back(inverse_mass * Mat3::Identity());
+    inverse_mass_blocks.emplace_back(inverse_mass * Mat3::Identity());
   }
   auto started = swept;
   auto again = swept.free_velocities;
@@ -175,9 +174,9 @@ TEST_CASE("contact solve: contacts without friction on a node each are solved as
     contact.friction = 0;
     contact.normal_impulse = 1e-4;
     again[contact.nodes[0]] -=
-        contact.normal_impulse * (mobilities[contact.nodes[0]] * contact.normal);
+        contact.normal_impulse * (inverse_mass_blocks[contact.nodes[0]] * contact.normal);
   }
-  solve_blocks(mobilities, volume, 1e-3, started.rows, again, StartImpulses::kApplied);
+  solve_blocks(inverse_mass_blocks, volume, 1e-3, started.rows, again, WarmStart::kApplied);
   double pressed = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     REQUIRE((velocities[i] - expected[i]).norm() < 1e-8);
@@ -191,14 +190,15 @@ TEST_CASE("contact solve: nodes that answer by 3×3 blocks do as those that answ
   // Oracle: the scalar form, with blocks I/m; both solve to 1e-9 m/s.
   for (const bool on_nodes : {false, true}) {
     auto by_mass = on_nodes ? node_case(4, 0.2) : random_case(4, 10, 0.2), by_block = by_mass;
-    std::vector<Mat3> mobilities;
+    std::vector<Mat3> inverse_mass_blocks;
     for (const double inverse_mass : by_mass.model.inverse_masses) {
-      mobilities.emplace_back(inverse_mass * Mat3::Identity());
+      inverse_mass_blocks.emplace_back(inverse_mass * Mat3::Identity());
     }
     const VolumeRow volume{by_mass.at, 1e-6};
     auto expected = by_mass.free_velocities, velocities = expected;
     solve_contacts_and_volume(by_mass.model, &volume, 1e-3, by_mass.rows, expected);
-    solve_blocks(mobilities, &volume, 1e-3, by_block.rows, velocities, StartImpulses::kToApply);
+    solve_blocks(inverse_mass_blocks, &volume, 1e-3, by_block.rows, velocities,
+                 WarmStart::kToApply);
     double difference = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
       difference = std::max(difference, (velocities[i] - expected[i]).norm());

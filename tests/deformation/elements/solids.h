@@ -26,8 +26,8 @@ inline void shake_interior(geometry::TetMesh& mesh, const Vec3& size, double amo
   }
 }
 
-inline TaylorHoodElements solid(const geometry::TetMesh& mesh, double poissons_ratio) {
-  return {make_quadratic(mesh), ElasticConstants(3000, poissons_ratio), 1000};
+inline TaylorHoodElements solid(const geometry::TetMesh& mesh, double poisson_ratio) {
+  return {make_quadratic(mesh), ElasticConstants(3000, poisson_ratio), 1000};
 }
 
 /// Some state away from rest, J > 0.

@@ -7,7 +7,7 @@
 namespace palpate::deformation {
 namespace {
 
-AdvanceReport replaced(Disbelief reason) {
+AdvanceReport replaced(Violation reason) {
   AdvanceReport report;
   report.diverged = report.step_reduced = true;
   report.reason = reason;
@@ -23,13 +23,13 @@ TEST_CASE("guard log: nothing acted, nothing is noted") {
 TEST_CASE("guard log: every guard has a code of its own, and every code a guard") {
   // Oracle: the members of AdvanceReport, and counting.
   std::vector<AdvanceReport> reports;
-  for (int reason = 1; reason <= static_cast<int>(Disbelief::kCollapsed); ++reason) {
-    reports.push_back(replaced(static_cast<Disbelief>(reason)));
+  for (int reason = 1; reason <= static_cast<int>(Violation::kCollapsed); ++reason) {
+    reports.push_back(replaced(static_cast<Violation>(reason)));
   }
   for (const auto flag :
        {&AdvanceReport::back_to_rest, &AdvanceReport::step_reduced, &AdvanceReport::pressure_capped,
         &AdvanceReport::volume_released, &AdvanceReport::volume_skipped,
-        &AdvanceReport::contacts_ignored, &AdvanceReport::tissue_inverted,
+        &AdvanceReport::contacts_suspended, &AdvanceReport::tissue_inverted,
         &AdvanceReport::contact_refused, &AdvanceReport::probe_jumped}) {
     reports.emplace_back();
     reports.back().*flag = true;
@@ -44,7 +44,7 @@ TEST_CASE("guard log: every guard has a code of its own, and every code a guard"
 TEST_CASE("guard log: the harshest guard counts, and how often it acted") {
   // Oracle: definition; two advances within a second are one event.
   GuardLog log;
-  auto report = replaced(Disbelief::kTooFast);
+  auto report = replaced(Violation::kTooFast);
   report.probe_jumped = true;
   const auto times_at = [&](double time) {
     const GuardEvent event = log.note(report, time);

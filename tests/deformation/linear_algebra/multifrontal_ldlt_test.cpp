@@ -44,7 +44,7 @@ struct System {
   }
 };
 
-TEST_CASE("multifrontal LDLᵀ: solves what a dense factorization solves, several columns at once") {
+TEST_CASE("multifrontal LDLᵀ: solves what a dense factorisation solves, several columns at once") {
   // Oracle: Eigen's dense LU of the same matrix; residual relative to the right-hand side.
   const System system;
   MultifrontalLdlt factor(system.solid.dof_count(), system.dofs, system.centres);

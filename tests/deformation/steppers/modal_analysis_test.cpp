@@ -21,7 +21,7 @@ TEST_CASE("modal analysis: none is missed, and modes are orthonormal") {
   for (std::size_t k = 0; k + 1 < 8; ++k) {
     const double w = (vibration.angular_frequencies[k] + vibration.angular_frequencies[k + 1]) / 2;
     REQUIRE(solver.factor(rest, Inertia{-w * w, rest.positions}));
-    CHECK(solver.factorization().negative_pivots() == solid.mesh().corner_count + k + 1);
+    CHECK(solver.factorisation().negative_pivots() == solid.mesh().corner_count + k + 1);
   }
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(8, 8);
   for (std::size_t e = 0; e < solid.element_count(); ++e) {

@@ -84,7 +84,7 @@ TEST_CASE("quasi-static Newton: a block pulled and pressed carries the neo-Hooke
 
 constexpr double kInner = 0.025, kOuter = 0.05;
 
-TaylorHoodElements thick_sphere(double size, double poissons_ratio) {
+TaylorHoodElements thick_sphere(double size, double poisson_ratio) {
   std::string script = "SetFactory(\"OpenCASCADE\");\n";
   script += "Sphere(1) = {0, 0, 0, 0.05, 0, Pi/2, Pi/2};\n";
   script += "Sphere(2) = {0, 0, 0, 0.025, 0, Pi/2, Pi/2};\n";
@@ -99,7 +99,7 @@ TaylorHoodElements thick_sphere(double size, double poissons_ratio) {
   auto quadratic = make_quadratic(mesh);
   curve_onto_sphere(quadratic, Vec3::Zero(), kInner);
   curve_onto_sphere(quadratic, Vec3::Zero(), kOuter);
-  return {std::move(quadratic), ElasticConstants(5000, poissons_ratio), 1000};
+  return {std::move(quadratic), ElasticConstants(5000, poisson_ratio), 1000};
 }
 
 TEST_CASE("quasi-static Newton: a thick sphere blown up a little follows Lamé and does not lock") {

@@ -25,16 +25,16 @@ using testing::own_options;
 using testing::take_soon;
 using testing::wait_until;
 
-// A wire type whose serialized bytes the test may spoil before they leave.
+// A wire type whose serialized bytes the test may corrupt before they leave.
 template <class Support>
-class SpoiledSupport : public Support {
+class CorruptedSupport : public Support {
  public:
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
     const bool done = Support::serialize(data, payload);
-    if (spoil) spoil(*payload);
+    if (corrupt) corrupt(*payload);
     return done;
   }
-  std::function<void(eprosima::fastrtps::rtps::SerializedPayload_t&)> spoil;
+  std::function<void(eprosima::fastrtps::rtps::SerializedPayload_t&)> corrupt;
 };
 
 // Writes wire objects as they are, as another program would.
@@ -42,7 +42,7 @@ template <class Wire, class Support>
 class ForeignWriter {
  public:
   ForeignWriter(const BusOptions& options, std::string_view topic)
-      : spoiled_(new SpoiledSupport<Support>), support_(spoiled_) {
+      : corrupted_(new CorruptedSupport<Support>), support_(corrupted_) {
     dds::DomainParticipantQos qos;
     apply_transport({"127.0.0.1"}, qos);
     auto* factory = dds::DomainParticipantFactory::get_instance();
@@ -70,12 +70,12 @@ class ForeignWriter {
     return status.current_count == 1;
   }
   void write(Wire& wire) { writer_->write(&wire); }
-  void spoil(std::function<void(eprosima::fastrtps::rtps::SerializedPayload_t&)> change) {
-    spoiled_->spoil = std::move(change);
+  void corrupt(std::function<void(eprosima::fastrtps::rtps::SerializedPayload_t&)> change) {
+    corrupted_->corrupt = std::move(change);
   }
 
  private:
-  SpoiledSupport<Support>* spoiled_;
+  CorruptedSupport<Support>* corrupted_;
   dds::TypeSupport support_;
   dds::DomainParticipant* participant_;
   dds::DataWriter* writer_;
@@ -139,7 +139,7 @@ TEST_CASE("wire: a reader counts the sequence numbers that never came", "[bus]")
 }
 
 TEST_CASE("wire: payloads that cannot be read are counted and do not stop a reader", "[bus]") {
-  // Oracle: the good sample after each spoiled one arrives.
+  // Oracle: the good sample after each corrupted one arrives.
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
   const BusOptions options = own_options();
   DdsBus bus(options);
@@ -154,9 +154,9 @@ TEST_CASE("wire: payloads that cannot be read are counted and do not stop a read
     const std::uint64_t rejected = reader.statistics().rejected;
     Contacts received;
     wire.sequence_number(++sequence);
-    foreign.spoil(std::move(change));
+    foreign.corrupt(std::move(change));
     foreign.write(wire);
-    foreign.spoil(nullptr);
+    foreign.corrupt(nullptr);
     REQUIRE(wait_until(
         [&] { return !reader.take(received) && reader.statistics().rejected == rejected + 1; }));
     CHECK(std::string(reader.statistics().last_rejected_field) == field);

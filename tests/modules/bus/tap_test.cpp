@@ -133,18 +133,18 @@ TEST_CASE("tap: corrupted bytes are refused by the reader", "[bus]") {
 }
 
 TEST_CASE("tap: a changed message travels, and an invalid one only unchecked", "[bus]") {
-  // Oracle: the change made; the field spoiled.
-  const auto spoil = [](ProbeState& state) {
+  // Oracle: the change made; the field corrupted.
+  const auto corrupt = [](ProbeState& state) {
     double& x = state.pose.position.x();
     x = x == 2 ? std::nan("") : 10 * x;
   };
   Line checked;
-  checked.bus().set_tap("probe_state", change_tap<ProbeState>(spoil, true));
+  checked.bus().set_tap("probe_state", change_tap<ProbeState>(corrupt, true));
   CHECK(checked.write(3) == Xs{10, 30});
   CHECK(checked.statistics().rejected == 0);
 
   Line unchecked;
-  unchecked.bus().set_tap("probe_state", change_tap<ProbeState>(spoil, false));
+  unchecked.bus().set_tap("probe_state", change_tap<ProbeState>(corrupt, false));
   CHECK(unchecked.write(3) == Xs{10, 30});
   CHECK(unchecked.statistics().rejected == 1);
   CHECK(std::string(unchecked.statistics().last_rejected_field) == "position_m");

@@ -68,10 +68,10 @@ void check_survives_any_bytes() {
 }
 
 template <class Message>
-std::string refused(const std::function<void(std::vector<std::uint8_t>&)>& spoil) {
+std::string refused(const std::function<void(std::vector<std::uint8_t>&)>& corrupt) {
   Random random(14);
   auto payload = payload_of(random_message<Message>(random));
-  spoil(payload);
+  corrupt(payload);
   Message decoded;
   const char* field = decode(payload, decoded);
   return field == nullptr ? "accepted" : field;

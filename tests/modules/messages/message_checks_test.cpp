@@ -49,19 +49,19 @@ void check_age(const std::string& field, const Place& place) {
 }
 
 template <class Message>
-void check_spoiled() {
+void check_corrupted() {
   CAPTURE(type_of<Message>().name);
   std::size_t place = 0;
   for (;; ++place) {
     Random random(23);
     auto message = random_message<Message>(random);
-    testing::Spoiler spoiler(place);
-    describe(spoiler, message);
-    if (spoiler.spoiled() == nullptr) break;
+    testing::Corrupter corrupter(place);
+    describe(corrupter, message);
+    if (corrupter.corrupted() == nullptr) break;
     const char* field = first_invalid_field(message);
-    CAPTURE(place, spoiler.spoiled());
+    CAPTURE(place, corrupter.corrupted());
     REQUIRE(field != nullptr);
-    REQUIRE(std::string(field) == spoiler.spoiled());
+    REQUIRE(std::string(field) == corrupter.corrupted());
   }
   CHECK(place >= 2);  // the header and a field of its own at least
 }
@@ -96,9 +96,9 @@ void check_name(const std::string& field, const Place& place) {
 
 }  // namespace
 
-TEST_CASE("message checks: one spoiled field is named, whichever it is", "[messages]") {
-  // Oracle: the field that was spoiled. What each rule allows is tested below, by hand.
-#define PALPATE_CHECK(Message) check_spoiled<Message>();
+TEST_CASE("message checks: one corrupted field is named, whichever it is", "[messages]") {
+  // Oracle: the field that was corrupted. What each rule allows is tested below, by hand.
+#define PALPATE_CHECK(Message) check_corrupted<Message>();
   PALPATE_MESSAGES(PALPATE_CHECK)
 #undef PALPATE_CHECK
 }

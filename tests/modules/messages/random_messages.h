@@ -1,5 +1,5 @@
 // Messages with random content, made by walking their description: valid ones, and ones with one
-// field spoiled.
+// field corrupted.
 #pragma once
 
 #include <cmath>
@@ -182,11 +182,11 @@ bool equal(const Message& a, const Message& b) {
 }
 
 /// Breaks the rule of the `place`-th thing that has one, counted along the description.
-class Spoiler {
+class Corrupter {
  public:
-  explicit Spoiler(std::size_t place) : left_(place) {}
+  explicit Corrupter(std::size_t place) : left_(place) {}
   /// The field it broke; nullptr if there are fewer places.
-  const char* spoiled() const { return spoiled_; }
+  const char* corrupted() const { return corrupted_; }
 
   void header(Header& h) { describe(*this, h); }
   template <class T>
@@ -195,7 +195,7 @@ class Spoiler {
   }
   template <class T>
   void field(const char* name, T& value, Rule rule) {
-    spoil(name, value, rule);
+    corrupt(name, value, rule);
   }
   template <std::floating_point T>
   void numbers(const char* name, std::vector<T>& list, const Bounds&) {
@@ -227,35 +227,35 @@ class Spoiler {
  private:
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-  // True once, at the place to spoil.
+  // True once, at the place to corrupt.
   bool here(const char* name) {
-    if (spoiled_ != nullptr || left_-- > 0) return false;
-    spoiled_ = name;
+    if (corrupted_ != nullptr || left_-- > 0) return false;
+    corrupted_ = name;
     return true;
   }
-  void spoil(const char* name, std::uint64_t& x, Rule rule) {
+  void corrupt(const char* name, std::uint64_t& x, Rule rule) {
     if (rule == Rule::kFromOne && here(name)) x = 0;
   }
-  void spoil(const char* name, std::int64_t& x, Rule rule) {
+  void corrupt(const char* name, std::int64_t& x, Rule rule) {
     if (rule == Rule::kAtLeastZero && here(name)) x = -1;
     if (rule == Rule::kSinceSetUp && here(name)) x = -2;
   }
-  void spoil(const char* name, std::uint32_t& x, Rule rule) {
+  void corrupt(const char* name, std::uint32_t& x, Rule rule) {
     if (rule == Rule::kForceLimits && here(name)) x = kAllForceLimits + 1;
   }
-  void spoil(const char*, bool&, Rule) {}
+  void corrupt(const char*, bool&, Rule) {}
   template <Enumeration E>
-  void spoil(const char* name, E& x, Rule) {
+  void corrupt(const char* name, E& x, Rule) {
     if (here(name)) x = static_cast<E>(Words<E>::texts.size());
   }
-  void spoil(const char* name, double& x, Rule rule) {
+  void corrupt(const char* name, double& x, Rule rule) {
     if (here(name)) x = kNan;
     if (rule != Rule::kAge && here(name)) x = std::numeric_limits<double>::infinity();
     if (rule != Rule::kPlain && here(name)) x = -1e-300;
     if (rule == Rule::kFraction && here(name)) x = 1 + 1e-9;
   }
   template <Composed T>
-  void spoil(const char* name, T& value, Rule rule) {
+  void corrupt(const char* name, T& value, Rule rule) {
     for_each_number(value, [&](double& x) {
       if (here(name)) x = kNan;
     });
@@ -268,14 +268,14 @@ class Spoiler {
       for_each_number(value, [](double& x) { x *= -1.001; });
     }
   }
-  void spoil(const char* name, std::string& text, Rule rule) {
+  void corrupt(const char* name, std::string& text, Rule rule) {
     if (here(name)) text = std::string(1, '\0');
     if (here(name)) text.assign((rule == Rule::kName ? kMaxNameBytes : kMaxTextBytes) + 1, 'x');
     if (rule == Rule::kName && here(name)) text.clear();
   }
 
   std::size_t left_;
-  const char* spoiled_ = nullptr;
+  const char* corrupted_ = nullptr;
 };
 
 }  // namespace palpate::messages::testing

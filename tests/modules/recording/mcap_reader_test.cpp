@@ -122,15 +122,15 @@ TEST_CASE("mcap reader: a file that was flushed but never closed is torn and com
 }
 
 TEST_CASE("mcap reader: bad files are refused with the file and the offset") {
-  // Oracle: bytes spoiled at known places; the message each rule must give.
+  // Oracle: bytes corrupted at known places; the message each rule must give.
   TempFolder folder;
   const auto file = folder / "bad.mcap";
   const auto ends = write_sample_file(file, kMessages);
   auto bytes = bytes_of(file);
-  const auto message_of_spoilt = [&](std::size_t at, std::uint8_t value) -> std::string {
-    auto spoilt = bytes;
-    spoilt[at] = value;
-    write_bytes(file, spoilt);
+  const auto message_of_corrupted = [&](std::size_t at, std::uint8_t value) -> std::string {
+    auto corrupted = bytes;
+    corrupted[at] = value;
+    write_bytes(file, corrupted);
     try {
       read_all(file);
     } catch (const InputError& error) {
@@ -142,56 +142,58 @@ TEST_CASE("mcap reader: bad files are refused with the file and the offset") {
   const auto place = [&](std::size_t at) { return name + std::to_string(at) + ": "; };
 
   SECTION("magic") {
-    CHECK(message_of_spoilt(5, '1') ==
+    CHECK(message_of_corrupted(5, '1') ==
           place(0) + "not an MCAP file of version 0 (its first bytes are not \\x89MCAP0\\r\\n)");
   }
   SECTION("first record is not a header") {
-    CHECK(message_of_spoilt(8, 3) ==
+    CHECK(message_of_corrupted(8, 3) ==
           place(8) + "an MCAP header record must come first, not opcode 3");
   }
   SECTION("opcode 0") {
-    CHECK(message_of_spoilt(ends[6], 0) == place(ends[6]) + "opcode 0: no MCAP record begins here");
+    CHECK(message_of_corrupted(ends[6], 0) ==
+          place(ends[6]) + "opcode 0: no MCAP record begins here");
   }
   SECTION("chunk") {
-    CHECK(message_of_spoilt(ends[6], 6) == place(ends[6]) + "chunked MCAP files are not read here");
+    CHECK(message_of_corrupted(ends[6], 6) ==
+          place(ends[6]) + "chunked MCAP files are not read here");
   }
   SECTION("a second header") {
-    CHECK(message_of_spoilt(ends[6], 1) ==
+    CHECK(message_of_corrupted(ends[6], 1) ==
           place(ends[6]) + "a header or footer inside the data section");
   }
   SECTION("record shorter than its fields") {
-    CHECK(message_of_spoilt(ends[0] + 1, 6) ==
+    CHECK(message_of_corrupted(ends[0] + 1, 6) ==
           place(ends[0]) + "a field of 7 bytes where 2 are left of the record");
   }
   SECTION("schema id 0") {
-    CHECK(message_of_spoilt(ends[1] + 9, 0) == place(ends[1]) + "schema id 0 is not allowed");
+    CHECK(message_of_corrupted(ends[1] + 9, 0) == place(ends[1]) + "schema id 0 is not allowed");
   }
   SECTION("channel of an unknown schema") {
-    CHECK(message_of_spoilt(ends[3] + 11, 9) ==
+    CHECK(message_of_corrupted(ends[3] + 11, 9) ==
           place(ends[3]) +
               "channel 'haptic_force' names schema 9, which was not defined before it");
   }
   SECTION("message on an unknown channel") {
-    CHECK(message_of_spoilt(ends[5] + 9, 9) ==
+    CHECK(message_of_corrupted(ends[5] + 9, 9) ==
           place(ends[5]) + "message on channel 9, which was not defined before it");
   }
   SECTION("closing magic") {
-    CHECK(message_of_spoilt(bytes.size() - 1, 0) ==
+    CHECK(message_of_corrupted(bytes.size() - 1, 0) ==
           place(bytes.size() - 8) + "the closing magic bytes are wrong");
   }
   SECTION("bytes behind the end") {
     bytes.push_back(0);
-    CHECK(message_of_spoilt(bytes.size() - 1, 1) ==
+    CHECK(message_of_corrupted(bytes.size() - 1, 1) ==
           place(bytes.size() - 1) + "bytes after the end of the recording");
   }
   SECTION("a message record turned into an unknown kind is missed by the summary") {
-    CHECK_THAT(message_of_spoilt(ends[5], 0x30),
+    CHECK_THAT(message_of_corrupted(ends[5], 0x30),
                Catch::EndsWith("the summary counts 7 messages, the file holds 6"));
   }
 }
 
 TEST_CASE("mcap reader: a length beyond the file counts as torn there") {
-  // Oracle: the record before the spoilt length is the last that must be read.
+  // Oracle: the record before the corrupted length is the last that must be read.
   TempFolder folder;
   const auto ends = write_sample_file(folder / "a.mcap", kMessages);
   auto bytes = bytes_of(folder / "a.mcap");

@@ -1,4 +1,4 @@
-// Solids put into shapes no organ comes into, as shape_insults_test.cpp does with balls of springs.
+// Solids put into shapes no organ comes into, as shape_faults_test.cpp does with balls of springs.
 // shape_error() is over the cube root of the volume, 10 cm here. There is no jump of V* to try: a
 // solid's volume is its own.
 #include <catch2/catch.hpp>
@@ -73,7 +73,7 @@ Change scatter(double reach) {
   };
 }
 
-TEST_CASE("solid insults: flattened to a disc they come back by themselves") {
+TEST_CASE("solid faults: flattened to a disc they come back by themselves") {
   // Oracle: the rest shape is the only equilibrium a flat one can unfold to, to either side.
   for (const std::string& model : kSolids) {
     const auto story = endure(model, "disc", flatten);
@@ -81,7 +81,7 @@ TEST_CASE("solid insults: flattened to a disc they come back by themselves") {
   }
 }
 
-TEST_CASE("solid insults: a line or a point that does not unfold is put back after half a second") {
+TEST_CASE("solid faults: a line or a point that does not unfold is put back after half a second") {
   // Oracle: with no area the gradients of all volumes vanish, and nothing pulls off the line: the
   // bare method stays there for ever. Corotational tissue takes some rotation and unfolds.
   for (const std::string model : {"nodal_pressure", "xpbd_tetrahedra"}) {
@@ -95,12 +95,12 @@ TEST_CASE("solid insults: a line or a point that does not unfold is put back aft
       const auto story = endure(model, "line or point", change);
       const bool unfolds = model == "corotational";
       CHECK(story.replaced == (unfolds ? 0 : 1));
-      CHECK(story.first_reason == (unfolds ? Disbelief::kNone : Disbelief::kCollapsed));
+      CHECK(story.first_reason == (unfolds ? Violation::kNone : Violation::kCollapsed));
     }
   }
 }
 
-TEST_CASE("solid insults: everted they are put back at once, or turn by themselves") {
+TEST_CASE("solid faults: everted they are put back at once, or turn by themselves") {
   // Oracle: V = −V₀ is what the guard looks for, or energy tenfold before it looks; corotational
   // tissue of half its size turns.
   for (const std::string& model : kSolids) {
@@ -108,14 +108,14 @@ TEST_CASE("solid insults: everted they are put back at once, or turn by themselv
       const auto story = endure(model, "everted", change);
       CHECK(story.replaced <= 1);
       if (story.replaced == 0) continue;
-      CHECK((story.first_reason == Disbelief::kTurnedInside ||
-             story.first_reason == Disbelief::kEnergyGrew));
+      CHECK((story.first_reason == Violation::kTurnedInside ||
+             story.first_reason == Violation::kEnergyGrew));
       CHECK(story.fastest < 1e-6);
     }
   }
 }
 
-TEST_CASE("solid insults: scattered, twisted, thrown and spun until they tear, they calm down") {
+TEST_CASE("solid faults: scattered, twisted, thrown and spun until they tear, they calm down") {
   // Oracle: invariants. At most one state is not believed.
   for (const std::string& model : kSolids) {
     for (const double reach : {0.3, 1.0}) {
@@ -126,7 +126,7 @@ TEST_CASE("solid insults: scattered, twisted, thrown and spun until they tear, t
   }
 }
 
-TEST_CASE("solid insults: quadratic elements twisted by a turn stay folded without guards") {
+TEST_CASE("solid faults: quadratic elements twisted by a turn stay folded without guards") {
   // Oracle: an equilibrium of J > 0 at the elements' points with corners inside out; so the guard
   // above is not for nothing.
   const auto organ = cube("quadratic_elements");

@@ -1,20 +1,21 @@
-// Whether an organ's motion can be believed.
+// Divergence detector: whether an organ's motion is plausible.
 //
 // Energy. An organ cannot hold more than it had and was given. Given is, per step of h,
 //   contacts   J·v⁺ of every impulse J, v⁺ the tissue's velocity after it: an upper bound, for the
 //              impulse itself brought v towards its own direction (exactly: J·(v + v⁺)/2)
 //   contents   p (V*⁺ − V*)
 //   gravity    m g · (way of the centre of mass)
-// The ledger holds the sum, and is brought down to the energy there is at every thorough look:
+// The energy budget is the sum, and is brought down to the energy there is at every thorough check:
 // what damping took cannot be had again. An explicit step beyond its bound multiplies energy in
 // every step, so it passes any factor soon; time stepping within the bound makes the energy swing
 // (near the bound by 1/(1 − h²ω²/4)), which kEnergyGain leaves room for.
 //
 // Of the contacts' work J·v_c is the probe's, v_c the velocity of its surface; the rest,
-// J·(v⁺ − v_c) where positive, undoes penetrations and is paid by nobody. A probe that appeared
-// inside an organ may push it out once; a wall caught on a thin probe, pushed to this side and that
-// in turns, would be shaken by it forever. Only pushes faster than kPushedSpeed count: below 0.05
-// m/s those of an organ pressed flat with 1 kN add up to as much, and it is as healthy as can be.
+// J·(v⁺ − v_c) where positive, undoes penetrations and is injected: nobody did that work. A probe
+// that appeared inside an organ may push it out once; a wall caught on a thin probe, pushed to this
+// side and that in turns, would be shaken by it forever. Only pushes faster than kPushedSpeed
+// count: below 0.05 m/s those of an organ pressed flat with 1 kN add up to as much, and it is as
+// healthy as can be.
 #pragma once
 
 #include <span>
@@ -34,17 +35,17 @@ inline constexpr double kSuspiciousGain = 2.0;
 /// from [m/s].
 inline constexpr double kCalmSpeed = 0.05;
 
-/// Unpaid energy is forgotten by 1/e in this time [s]; no more is believed at a time than pushes
+/// Injected energy is forgotten by 1/e in this time [s]; no more is plausible at a time than pushes
 /// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed², unless the organ is calm.
-inline constexpr double kUnpaidMemory = 10.0;
+inline constexpr double kInjectionMemory = 10.0;
 /// Tissue parts from the probe faster than this where a penetration is undone in a hurry [m/s].
 inline constexpr double kPushedSpeed = 0.2;
 
-class StateGuard {
+class DivergenceDetector {
  public:
   /// @param body  outlives this
-  /// @param knows_energy  false: the ledger is not kept
-  StateGuard(const Body& body, bool knows_energy);
+  /// @param knows_energy  false: the energy budget is not kept
+  DivergenceDetector(const Body& body, bool knows_energy);
 
   /// Begins anew with `state`, whose stored energy is `elastic_energy` [J].
   void begin(const OrganState& state, double elastic_energy);
@@ -55,29 +56,29 @@ class StateGuard {
                 const OrganState& state);
 
   /// One pass over the nodes, for every advance.
-  /// @param period  since the last look [s]
-  Disbelief look(const OrganState& state, double period);
+  /// @param period  since the last check [s]
+  Violation check_bounds(const OrganState& state, double period);
 
-  /// What look() sees, then all energy and the sign of the volume. Brings the ledger down.
-  Disbelief look_thoroughly(const OrganState& state, double period, OrganDynamics& dynamics);
+  /// check_bounds(), then all energy and the sign of the volume. Brings the energy budget down.
+  Violation check_thoroughly(const OrganState& state, double period, OrganDynamics& dynamics);
 
-  /// The last look believed, but the energy was more than it should be: a step too large shows
+  /// The last check passed, but the energy was more than it should be: a step too large shows
   /// itself so before it does harm.
   bool suspicious() const { return suspicious_; }
 
-  double ledger() const { return ledger_; }  ///< what it may hold [J]
+  double energy_budget() const { return energy_budget_; }  ///< what it may hold [J]
 
  private:
   bool is_finite(const OrganState& state) const;
-  Disbelief judge_energy(double energy);
-  Disbelief explain(const OrganState& state, double period) const;
+  Violation judge_energy(double energy);
+  Violation explain(const OrganState& state, double period) const;
 
   const Body& body_;
   bool knows_energy_;
-  double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_unpaid_ = 0;
-  double ledger_ = 0, unpaid_ = 0, kinetic_energy_ = 0;  ///< [J]
-  Vec3 first_moment_ = Vec3::Zero();                     ///< Σ m x, under gravity [kg·m]
-  std::vector<Vec3> seen_;                               ///< positions of the last look [m]
+  double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_injected_energy_ = 0;
+  double energy_budget_ = 0, injected_energy_ = 0, kinetic_energy_ = 0;  ///< [J]
+  Vec3 first_moment_ = Vec3::Zero();  ///< Σ m x, under gravity [kg·m]
+  std::vector<Vec3> seen_;            ///< positions of the last check [m]
   bool suspicious_ = false;
 };
 

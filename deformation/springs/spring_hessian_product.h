@@ -1,6 +1,6 @@
-// The matrix of an implicit step times a vector, fast: spring_linearization.h says what it is, and
-// is the plain code this agrees with to eight binary digits of a spring's two numbers, as they are
-// kept here (spring_product_arrays.h). The matrix stays symmetric and positive.
+// The matrix of an implicit step times a vector, fast: projected_spring_stiffness.h says what it
+// is, and is the plain code this agrees with to eight binary digits of a spring's two numbers, as
+// they are kept here (spring_hessian_product_arrays.h). The matrix stays symmetric and positive.
 //
 // Each node gathers from its neighbours, sixteen nodes side by side in the slices of the spring
 // kernel (spring_kernel_arrays.h). Any number of threads gives the same bits.
@@ -8,22 +8,22 @@
 
 #include <vector>
 
+#include "deformation/springs/kernel/spring_hessian_product_arrays.h"
 #include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/springs/kernel/spring_product_arrays.h"
 #include "modules/core/aligned_vector.h"
 #include "modules/core/parallel.h"
-#include "modules/core/wide_vectors.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
-class SpringProduct {
+class SpringHessianProduct {
  public:
   /// @param body         outlives this
   /// @param with_volume  as of the kernel beside it: neighbours then stand in the same order
   /// @param runner  outlives this; none: the calling thread alone
-  SpringProduct(const Body& body, const SpringNetwork& network, bool with_volume,
-                ChunkRunner* runner = nullptr,
-                InstructionSet set = available_instruction_sets().back());
+  SpringHessianProduct(const Body& body, const SpringNetwork& network, bool with_volume,
+                       ChunkRunner* runner = nullptr,
+                       InstructionSet set = available_instruction_sets().back());
 
   /// Takes A at these positions [m] (node_count) for a step of h [s].
   void linearise(const std::vector<Vec3>& positions, double h);

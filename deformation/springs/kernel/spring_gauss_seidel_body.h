@@ -1,5 +1,5 @@
-// Visits of springs for any instruction set: included once by each spring_visits_<set>.cpp, which
-// is compiled for that set and gives a struct of kWidth lanes:
+// Visits of springs for any instruction set: included once by each spring_gauss_seidel_<set>.cpp,
+// which is compiled for that set and gives a struct of kWidth lanes:
 //
 //   Pack                       kWidth doubles with + − * / elementwise
 //   broadcast, load, store     a Pack from and to memory
@@ -8,7 +8,7 @@
 //   store_nodes(base, offsets, nodes)
 #pragma once
 
-#include "deformation/springs/kernel/spring_visits_arrays.h"
+#include "deformation/springs/kernel/spring_gauss_seidel_arrays.h"
 
 namespace palpate::deformation::kernel {
 namespace {

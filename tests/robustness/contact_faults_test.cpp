@@ -1,5 +1,5 @@
 // Probes that do what no hand does. Whatever the tissue answers, what leaves is finite, the hand
-// gets no more than the scene's largest force, and some time after the insult the organ is back.
+// gets no more than the scene's largest force, and some time after the fault the organ is back.
 #include <catch2/catch.hpp>
 
 #include "deformation/organ_messages.h"
@@ -18,7 +18,7 @@ using testing::plate_contacts;
 using testing::squeeze_and_release;
 using testing::Witness;
 
-TEST_CASE("contact insults: two plates squeeze a ball to a twentieth and it comes back") {
+TEST_CASE("contact faults: two plates squeeze a ball to a twentieth and it comes back") {
   // Oracle: both integrators keep the volume, to some per cent where every node is held; no guard
   // is needed.
   auto organ = ball_organ();
@@ -35,7 +35,7 @@ TEST_CASE("contact insults: two plates squeeze a ball to a twentieth and it come
   CHECK(std::abs(witness.nodes.volume / rest - 1) < 1e-6);
 }
 
-TEST_CASE("contact insults: plain springs lose their volume between plates, and their inside") {
+TEST_CASE("contact faults: plain springs lose their volume between plates, and their inside") {
   // Oracle: nothing keeps it; the walls meet and pass each other.
   auto organ = ball_organ();
   organ.model = "mass_spring";
@@ -45,7 +45,7 @@ TEST_CASE("contact insults: plain springs lose their volume between plates, and 
   CHECK(witness.least_volume < 0.05 * testing::ball_model(2, organ).rest_volume);
 }
 
-TEST_CASE("contact insults: plates that shut on an organ are let go, not obeyed") {
+TEST_CASE("contact faults: plates that shut on an organ are let go, not obeyed") {
   // Oracle: a volume that is kept has no place between them. The pressure is capped, the organ
   // goes to rest and takes no contacts for a while; when the plates open it is back.
   auto organ = ball_organ();
@@ -83,7 +83,7 @@ Contacts shell_contacts(const DeformationWorld& world, double shrunk) {
   return contacts;
 }
 
-TEST_CASE("contact insults: an organ held at every node, squeezed from all sides") {
+TEST_CASE("contact faults: an organ held at every node, squeezed from all sides") {
   // Oracle: with every node's motion prescribed no multiplier changes the volume; the pressure that
   // would is without bound, and is capped.
   auto organ = ball_organ();
@@ -108,7 +108,7 @@ TEST_CASE("contact insults: an organ held at every node, squeezed from all sides
   CHECK(std::abs(after.nodes.volume / rest - 1) < 1e-6);
 }
 
-TEST_CASE("contact insults: a probe that teleports into, out of and through an organ") {
+TEST_CASE("contact faults: a probe that teleports into, out of and through an organ") {
   // Oracle: a contact of a probe that jumped is none; nothing is shot away.
   DeformationWorld world(ball_scene(1), {geometry::make_ball(kBallRadius, 2)});
   const double heights[] = {0.05, -0.2, 0.0, 0.3, 0.045, -0.045, 50, 0.04, -1e3};
@@ -127,7 +127,7 @@ TEST_CASE("contact insults: a probe that teleports into, out of and through an o
   CHECK(witness.shape_error(testing::ball_model(2)) < 2e-3);
 }
 
-TEST_CASE("contact insults: a probe that is found inside an organ pushes it out gently") {
+TEST_CASE("contact faults: a probe that is found inside an organ pushes it out gently") {
   // Oracle: kMaxSeparationSpeed bounds what it gives; no guard takes it for a divergence.
   const double depth = GENERATE(2e-3, 5e-3, 10e-3);
   DeformationWorld world(ball_scene(1), {geometry::make_ball(kBallRadius, 2)});
@@ -143,7 +143,7 @@ TEST_CASE("contact insults: a probe that is found inside an organ pushes it out 
   CHECK(witness.shape_error(testing::ball_model(2)) < 2e-3);
 }
 
-TEST_CASE("contact insults: a dropped organ lands on a plate and rests there") {
+TEST_CASE("contact faults: a dropped organ lands on a plate and rests there") {
   // Oracle: the plate carries its weight, m g. 1 %: the ball still breathes a little.
   auto organ = ball_organ();
   organ.integrator =
@@ -212,7 +212,7 @@ Pricked prick(session::InProcess& pipeline, double speed, double way = kNeedleWa
   return result;
 }
 
-TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor shakes the hand") {
+TEST_CASE("contact faults: a needle through a thin wall neither blows it up nor shakes the hand") {
   // Oracle: limits; in the 8 s after it was pulled out the wall slips off it and swings out. (A
   // needle left 1 cm over the ball may keep hold of the wall: that is a contact, not a failure.)
   const double radius = GENERATE(1e-3, 2e-4);
@@ -229,7 +229,7 @@ TEST_CASE("contact insults: a needle through a thin wall neither blows it up nor
   CHECK(farthest < 0.5e-3);
 }
 
-TEST_CASE("contact insults: a needle through a solid neither blows it up nor shakes the hand") {
+TEST_CASE("contact faults: a needle through a solid neither blows it up nor shakes the hand") {
   // Oracle: limits; the shape 8 s after it was pulled out, as above. Quadratic elements are pricked
   // 2 cm deep: driven on into what is fixed by a needle that never breaks through, their Newton
   // steps take minutes.

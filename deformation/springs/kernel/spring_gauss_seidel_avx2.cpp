@@ -1,7 +1,7 @@
 // Visits of springs for CPUs with AVX2 and FMA.
 #include <immintrin.h>
 
-#include "deformation/springs/kernel/spring_visits_body.h"
+#include "deformation/springs/kernel/spring_gauss_seidel_body.h"
 
 namespace palpate::deformation::kernel {
 namespace {

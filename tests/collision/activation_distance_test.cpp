@@ -1,4 +1,4 @@
-#include "collision/contact_margin.h"
+#include "collision/activation_distance.h"
 
 #include <catch2/catch.hpp>
 
@@ -11,11 +11,11 @@ TEST_CASE("contact margin: what moves at its speed is not met unseen") {
   for (const double rate : {50.0, 250.0, 1000.0}) {
     rates.collision = rates.deformation = rate;
     for (const double speed : {0.0, 0.1, 1.0}) {
-      CHECK(contact_margin(rates, speed) >= (speed + 0.12) * 2 / rate);
+      CHECK(activation_distance(rates, speed) >= (speed + 0.12) * 2 / rate);
     }
-    CHECK(contact_margin(rates, 0) >= 1e-3);
+    CHECK(activation_distance(rates, 0) >= 1e-3);
   }
-  CHECK(contact_margin(scene::Rates{}, 0) == Approx(1e-3));
+  CHECK(activation_distance(scene::Rates{}, 0) == Approx(1e-3));
 }
 
 }  // namespace

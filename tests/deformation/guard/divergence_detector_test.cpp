@@ -1,4 +1,4 @@
-#include "deformation/guard/state_guard.h"
+#include "deformation/guard/divergence_detector.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
@@ -31,47 +31,48 @@ std::vector<ContactRow> plate_rows(const OrganModel& model, const OrganState& st
   return rows;
 }
 
-TEST_CASE("state guard: the ledger bounds what a press puts in, and closely") {
+TEST_CASE("divergence detector: the energy budget bounds what a press puts in, and closely") {
   // Oracle: energy of an undamped ball. 1.5: first contact of a node is an impact, whose loss the
   // bound does not see.
   const auto organ = testing::undamped_ball_with("implicit_volume");
   const auto model = testing::ball_model(3, organ);
   auto dynamics = testing::constrained(model);
-  StateGuard guard(model, true);
+  DivergenceDetector detector(model, true);
   OrganState state = rest_state(model);
-  guard.begin(state, 0);
+  detector.begin(state, 0);
   double height = testing::kBallRadius, energy = 0;
   constexpr double kSpeed = 0.1;
   for (int s = 0; s < 400; ++s) {
     auto rows = plate_rows(model, state, height, kSpeed);
     dynamics.step(kStep, rows, state);
-    guard.add_work(kStep, rows, 0, state);
+    detector.add_work(kStep, rows, 0, state);
     height -= kStep * kSpeed;
-    REQUIRE(guard.look(state, kStep) == Disbelief::kNone);
-    CHECK_FALSE(guard.suspicious());
+    REQUIRE(detector.check_bounds(state, kStep) == Violation::kNone);
+    CHECK_FALSE(detector.suspicious());
     energy = dynamics.elastic_energy(state);
     for (std::size_t i = 0; i < model.node_count(); ++i) {
       energy += model.masses[i] * state.velocities[i].squaredNorm() / 2;
     }
     // The energy of symplectic Euler swings with the step.
-    REQUIRE(guard.ledger() > 0.95 * energy - 1e-7);
+    REQUIRE(detector.energy_budget() > 0.95 * energy - 1e-7);
   }
   CHECK(energy > 1e-3);
-  CHECK(guard.ledger() < 1.5 * energy);
+  CHECK(detector.energy_budget() < 1.5 * energy);
 }
 
-TEST_CASE("state guard: a probe at rest may push tissue out of itself once, not on and on") {
+TEST_CASE(
+    "divergence detector: a probe at rest may push tissue out of itself once, not on and on") {
   // Oracle: a plate at rest does no work. Standing 5 mm deep it drives the cap out once; found
   // as deep in it in every step, now on this side, now on that, it would do so forever.
   const auto organ = testing::undamped_ball_with("mass_spring");
   const auto model = testing::ball_model(3, organ);
   for (const bool again : {false, true}) {
     auto dynamics = testing::constrained(model);
-    StateGuard guard(model, true);
+    DivergenceDetector detector(model, true);
     OrganState state = rest_state(model);
-    guard.begin(state, 0);
-    Disbelief seen = Disbelief::kNone;
-    for (int s = 0; s < 4000 && seen == Disbelief::kNone; ++s) {
+    detector.begin(state, 0);
+    Violation seen = Violation::kNone;
+    for (int s = 0; s < 4000 && seen == Violation::kNone; ++s) {
       double top = testing::kBallRadius;
       const int side = again && s / 25 % 2 == 1 ? -1 : 1;
       if (again) {
@@ -80,116 +81,118 @@ TEST_CASE("state guard: a probe at rest may push tissue out of itself once, not 
       }
       auto rows = plate_rows(model, state, top - 0.005, 0, side);
       dynamics.step(kStep, rows, state);
-      guard.add_work(kStep, rows, 0, state);
-      seen = guard.look(state, kStep);
+      detector.add_work(kStep, rows, 0, state);
+      seen = detector.check_bounds(state, kStep);
     }
-    CHECK(seen == (again ? Disbelief::kEnergyGrew : Disbelief::kNone));
+    CHECK(seen == (again ? Violation::kEnergyGrew : Violation::kNone));
   }
 }
 
-TEST_CASE("state guard: a pressure that moves the volume does work") {
+TEST_CASE("divergence detector: a pressure that moves the volume does work") {
   // Oracle: p dV.
   const auto model = testing::ball_model(1);
-  StateGuard guard(model, true);
+  DivergenceDetector detector(model, true);
   OrganState state = rest_state(model);
-  guard.begin(state, 0.25);
+  detector.begin(state, 0.25);
   state.pressure = 100;
-  guard.add_work(kStep, {}, 1e-5, state);
-  CHECK(guard.ledger() == Approx(0.25 + 1e-3));
+  detector.add_work(kStep, {}, 1e-5, state);
+  CHECK(detector.energy_budget() == Approx(0.25 + 1e-3));
 }
 
-TEST_CASE("state guard: falling is not gaining") {
+TEST_CASE("divergence detector: falling is not gaining") {
   // Oracle: m g s; the same speed without gravity is too much energy.
   const auto organ = testing::undamped_ball_with("implicit_volume");
   for (const double g : {9.81, 0.0}) {
     const auto model = testing::ball_model(1, organ, Vec3(0, 0, -g));
     auto dynamics = testing::constrained(model);
-    StateGuard guard(model, true);
+    DivergenceDetector detector(model, true);
     OrganState state = rest_state(model);
-    guard.begin(state, 0);
-    Disbelief seen = Disbelief::kNone;
-    for (int s = 1; s <= 1000 && seen == Disbelief::kNone; ++s) {
+    detector.begin(state, 0);
+    Violation seen = Violation::kNone;
+    for (int s = 1; s <= 1000 && seen == Violation::kNone; ++s) {
       for (auto& v : state.velocities) v.z() = -9.81 * s * kStep;
       for (auto& p : state.positions) p.z() -= 9.81 * s * kStep * kStep;
-      seen = s % 10 == 0 ? guard.look_thoroughly(state, kStep, dynamics) : guard.look(state, kStep);
+      seen = s % 10 == 0 ? detector.check_thoroughly(state, kStep, dynamics)
+                         : detector.check_bounds(state, kStep);
     }
-    CHECK(seen == (g > 0 ? Disbelief::kNone : Disbelief::kEnergyGrew));
+    CHECK(seen == (g > 0 ? Violation::kNone : Violation::kEnergyGrew));
   }
 }
 
-TEST_CASE("state guard: each kind of nonsense is told from the others") {
-  // Oracle: definitions of Disbelief.
+TEST_CASE("divergence detector: each kind of nonsense is told from the others") {
+  // Oracle: definitions of Violation.
   const auto model = testing::ball_model(2);
   auto dynamics = testing::constrained(model);
-  StateGuard guard(model, true);
+  DivergenceDetector detector(model, true);
   const OrganState rest = rest_state(model);
-  guard.begin(rest, 0);
-  CHECK(guard.look(rest, kLong) == Disbelief::kNone);
+  detector.begin(rest, 0);
+  CHECK(detector.check_bounds(rest, kLong) == Violation::kNone);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf}) {
     for (const std::size_t node : {std::size_t{0}, model.node_count() - 1}) {
       OrganState state = rest;
       state.positions[node].y() = bad;
-      CHECK(guard.look(state, kLong) == Disbelief::kNotFinite);
+      CHECK(detector.check_bounds(state, kLong) == Violation::kNotFinite);
       state = rest;
       state.velocities[node].x() = bad;
-      CHECK(guard.look(state, kLong) == Disbelief::kNotFinite);
+      CHECK(detector.check_bounds(state, kLong) == Violation::kNotFinite);
     }
     OrganState state = rest;
     state.pressure = bad;
-    CHECK(guard.look(state, kLong) == Disbelief::kNotFinite);
+    CHECK(detector.check_bounds(state, kLong) == Violation::kNotFinite);
   }
   OrganState state = rest;
   state.velocities[5].x() = 1.01 * kMaxNodeSpeed;
-  CHECK(guard.look(state, kLong) == Disbelief::kTooFast);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kTooFast);
   state = rest;  // slow now, but it has come a long way
   state.positions[5].x() += 1.01 * kMaxNodeSpeed * kStep;
-  CHECK(guard.look(state, kStep) == Disbelief::kTooFast);
+  CHECK(detector.check_bounds(state, kStep) == Violation::kTooFast);
   state.positions[5].x() -= 0.02 * kMaxNodeSpeed * kStep;
-  CHECK(guard.look(state, kStep) == Disbelief::kNone);
+  CHECK(detector.check_bounds(state, kStep) == Violation::kNone);
   state = rest;
   state.positions[5] += 2 * kMaxGrowth * Vec3(testing::kBallRadius, 0, 0);
-  CHECK(guard.look(state, kLong) == Disbelief::kTooLarge);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kTooLarge);
   state = rest;
   for (auto& v : state.velocities) v = Vec3(4 * kCalmSpeed, 0, 0);
-  CHECK(guard.look(state, kLong) == Disbelief::kEnergyGrew);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kEnergyGrew);
   for (auto& v : state.velocities) v = Vec3(2 * kCalmSpeed, 0, 0);
-  CHECK(guard.look(state, kLong) == Disbelief::kNone);
-  CHECK(guard.suspicious());
+  CHECK(detector.check_bounds(state, kLong) == Violation::kNone);
+  CHECK(detector.suspicious());
   state = rest;
   for (auto& p : state.positions) p = -p;
-  CHECK(guard.look(state, kLong) == Disbelief::kNone);
-  CHECK(guard.look_thoroughly(state, kLong, dynamics) == Disbelief::kTurnedInside);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kNone);
+  CHECK(detector.check_thoroughly(state, kLong, dynamics) == Violation::kTurnedInside);
 }
 
-TEST_CASE("state guard: models that do not know their energy are not judged by it") {
+TEST_CASE("divergence detector: models that do not know their energy are not judged by it") {
   // Oracle: definition; speed and size still count.
   const auto model = testing::ball_model(1);
-  StateGuard guard(model, row_of("chainmail").knows_energy);
+  DivergenceDetector detector(model, row_of("chainmail").knows_energy);
   OrganState state = rest_state(model);
-  guard.begin(state, 0);
+  detector.begin(state, 0);
   for (auto& v : state.velocities) v = Vec3(50, 0, 0);
-  CHECK(guard.look(state, kLong) == Disbelief::kNone);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kNone);
   for (auto& v : state.velocities) v = Vec3(150, 0, 0);
-  CHECK(guard.look(state, kLong) == Disbelief::kTooFast);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kTooFast);
 }
 
 TEST_CASE(
-    "state guard: an impulse that is no number is not believed, whatever it left of the state") {
-  // Oracle: IEEE arithmetic: without the look the ledger would be no number for ever, and any
-  // energy be less than that.
+    "divergence detector: an impulse that is no number is a violation, whatever it left of the "
+    "state") {
+  // Oracle: IEEE arithmetic: without the check the energy budget would be no number for ever, and
+  // any energy be less than that.
   const auto model = testing::ball_model(1);
-  StateGuard guard(model, true);
+  DivergenceDetector detector(model, true);
   const OrganState state = rest_state(model);
-  guard.begin(state, 0);
+  detector.begin(state, 0);
   ContactRow row;
   row.weights = Vec3(1, 0, 0);
   row.tangential_impulse = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  guard.add_work(kStep, std::span(&row, 1), 0, state);
-  CHECK(guard.look(state, kLong) == Disbelief::kNotFinite);
-  guard.begin(state, std::numeric_limits<double>::quiet_NaN());
-  CHECK(guard.look(state, kLong) == Disbelief::kNone);
+  detector.add_work(kStep, std::span(&row, 1), 0, state);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kNotFinite);
+  detector.begin(state, std::numeric_limits<double>::quiet_NaN());
+  CHECK(detector.check_bounds(state, kLong) == Violation::kNone);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Visits of springs for any CPU: registers of 128 bits, as the baseline of both x86-64 and AArch64
 // has them.
-#include "deformation/springs/kernel/spring_visits_body.h"
+#include "deformation/springs/kernel/spring_gauss_seidel_body.h"
 
 namespace palpate::deformation::kernel {
 namespace {

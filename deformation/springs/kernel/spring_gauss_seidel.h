@@ -12,16 +12,16 @@
 
 #include "deformation/model/body.h"
 #include "deformation/model/spring_network.h"
+#include "deformation/springs/kernel/spring_gauss_seidel_arrays.h"
 #include "deformation/springs/kernel/spring_kernel.h"
-#include "deformation/springs/kernel/spring_visits_arrays.h"
 
 namespace palpate::deformation {
 
-class SpringVisits {
+class SpringGaussSeidel {
  public:
   /// Springs of no stiffness and those between fixed nodes are left out.
-  SpringVisits(const Body& body, const SpringNetwork& network,
-               InstructionSet set = available_instruction_sets().back());
+  SpringGaussSeidel(const Body& body, const SpringNetwork& network,
+                    InstructionSet set = available_instruction_sets().back());
 
   /// Passes over all springs.
   /// @param h           of the step [s]

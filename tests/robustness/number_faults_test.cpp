@@ -71,9 +71,9 @@ struct Exit {
   }
 };
 
-/// Presses lightly for some advances, `spoil` changing what is sent in the tenth; then leaves.
+/// Presses lightly for some advances, `corrupt` changing what is sent in the tenth; then leaves.
 void press(DeformationWorld& world, Exit& exit,
-           const std::function<void(ProbeState&, ContactSet&)>& spoil) {
+           const std::function<void(ProbeState&, ContactSet&)>& corrupt) {
   const double height = kBallRadius - 2e-3;
   for (int k = 0; k < 20; ++k) {
     ProbeState probe;
@@ -81,7 +81,7 @@ void press(DeformationWorld& world, Exit& exit,
     ContactSet contacts = plate_contacts(world, 0, height, 1, 10e-3);
     if (k == 10) {
       REQUIRE(!contacts.contacts.empty());
-      spoil(probe, contacts);
+      corrupt(probe, contacts);
     }
     world.set_contacts(contacts);
     world.set_probe(probe.probe, probe.pose);
@@ -121,7 +121,7 @@ std::vector<Place> places() {
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].time_of_impact; }};
 }
 
-TEST_CASE("number insults: a bad number in any field of contacts or pose stays inside") {
+TEST_CASE("number faults: a bad number in any field of contacts or pose stays inside") {
   // Oracle: finiteness, the force limit, and a surface within 1 mm of rest 3 s later.
   const auto integrator =
       GENERATE(scene::Integrator::kSymplecticEuler, scene::Integrator::kBackwardEuler);
@@ -139,7 +139,7 @@ TEST_CASE("number insults: a bad number in any field of contacts or pose stays i
   }
 }
 
-TEST_CASE("number insults: a bad number stays inside of solids, too") {
+TEST_CASE("number faults: a bad number stays inside of solids, too") {
   // Oracle: as above; a solid's volume comes back with its shape.
   const auto model = GENERATE(as<std::string>{}, "corotational", "nodal_pressure",
                               "xpbd_tetrahedra", "quadratic_elements", "modal");
@@ -160,7 +160,7 @@ TEST_CASE("number insults: a bad number stays inside of solids, too") {
   CHECK(replaced > 0);
 }
 
-TEST_CASE("number insults: the bare dynamics do take a bad number in") {
+TEST_CASE("number faults: the bare dynamics do take a bad number in") {
   // Oracle: IEEE arithmetic; so the guard above is not for nothing.
   const auto model = testing::ball_model(1);
   const auto dynamics = make_dynamics(ball_organ(), model, kPeriod);
@@ -175,7 +175,7 @@ TEST_CASE("number insults: the bare dynamics do take a bad number in") {
   CHECK_FALSE(state.positions[0].allFinite());
 }
 
-TEST_CASE("number insults: messages of random nonsense, thousands of them") {
+TEST_CASE("number faults: messages of random nonsense, thousands of them") {
   // Oracle: as above. Seeded: the same nonsense every time.
   auto world = ball_world(scene::Integrator::kSymplecticEuler);
   Exit exit;

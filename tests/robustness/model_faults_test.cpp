@@ -15,7 +15,7 @@ double expected_shape(const std::string& model) {
   return may_fold ? 2 : 1e-2;
 }
 
-TEST_CASE("model insults: between plates that close to a tenth no model breaks out") {
+TEST_CASE("model faults: between plates that close to a tenth no model breaks out") {
   // Oracle: invariants; the table above is what was measured.
   for (const auto& kind : testing::models_under_test()) {
     const auto organ = testing::organ_of(kind);

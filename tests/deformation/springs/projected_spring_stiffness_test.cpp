@@ -1,4 +1,4 @@
-#include "deformation/springs/spring_linearization.h"
+#include "deformation/springs/projected_spring_stiffness.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -20,7 +20,7 @@ std::vector<Vec3> random_vectors(std::size_t count, double size, unsigned seed) 
 }
 
 /// A p.
-std::vector<Vec3> product(const SpringLinearization& springs, const std::vector<Vec3>& p) {
+std::vector<Vec3> product(const ProjectedSpringStiffness& springs, const std::vector<Vec3>& p) {
   std::vector<Vec4f> wide_p(p.size()), wide_product(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) wide_p[i] = wide(p[i]);
   springs.apply(wide_p, wide_product);
@@ -56,13 +56,13 @@ OrganState compressed_state(const OrganModel& model) {
   return state;
 }
 
-TEST_CASE("spring linearization: in tension A p is the finite difference of M p − h F") {
+TEST_CASE("spring linearisation: in tension A p is the finite difference of M p − h F") {
   // Oracle: finite difference of the forces along p in the velocities and h p in the positions.
   // Damping is taken along the springs as they are: velocities zero, so that it has no turning.
   const auto model = testing::ball_model(2);
   auto state = stretched_state(model);
   for (Vec3& v : state.velocities) v.setZero();
-  SpringLinearization springs(model, model.network());
+  ProjectedSpringStiffness springs(model, model.network());
   springs.linearise(state.positions, kStep);
   const auto p = random_vectors(model.node_count(), 1, 3);
   const auto found = product(springs, p);
@@ -86,11 +86,11 @@ TEST_CASE("spring linearization: in tension A p is the finite difference of M p 
   }
 }
 
-TEST_CASE("spring linearization: A is symmetric, above M and below 2 D, also compressed") {
+TEST_CASE("spring linearisation: A is symmetric, above M and below 2 D, also compressed") {
   // Oracle: invariants.
   const auto model = testing::ball_model(2);
   const auto state = compressed_state(model);
-  SpringLinearization springs(model, model.network());
+  ProjectedSpringStiffness springs(model, model.network());
   springs.linearise(state.positions, kStep);
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto p = random_vectors(model.node_count(), 1, seed);
@@ -107,11 +107,11 @@ TEST_CASE("spring linearization: A is symmetric, above M and below 2 D, also com
   }
 }
 
-TEST_CASE("spring linearization: D holds the diagonal blocks of A") {
+TEST_CASE("spring linearisation: D holds the diagonal blocks of A") {
   // Oracle: A applied to unit vectors.
   const auto model = testing::ball_model(1);
   const auto state = stretched_state(model);
-  SpringLinearization springs(model, model.network());
+  ProjectedSpringStiffness springs(model, model.network());
   springs.linearise(state.positions, kStep);
   for (const std::size_t node : {std::size_t{0}, std::size_t{17}, model.node_count() - 1}) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -123,11 +123,11 @@ TEST_CASE("spring linearization: D holds the diagonal blocks of A") {
   }
 }
 
-TEST_CASE("spring linearization: a common velocity strains nothing") {
+TEST_CASE("spring linearisation: a common velocity strains nothing") {
   // Oracle: A 1 = (1 + h·drag) M 1.
   const auto model = testing::ball_model(2);
   const auto state = compressed_state(model);
-  SpringLinearization springs(model, model.network());
+  ProjectedSpringStiffness springs(model, model.network());
   springs.linearise(state.positions, kStep);
   const auto found = product(springs, std::vector<Vec3>(model.node_count(), Vec3(1, 2, 3)));
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -136,12 +136,12 @@ TEST_CASE("spring linearization: a common velocity strains nothing") {
   }
 }
 
-TEST_CASE("spring linearization: a spring without length gives nothing and no NaN") {
+TEST_CASE("spring linearisation: a spring without length gives nothing and no NaN") {
   // Oracle: convention of spring_forces.h.
   const auto model = testing::ball_model(1);
   auto state = rest_state(model);
   for (Vec3& x : state.positions) x.setZero();
-  SpringLinearization springs(model, model.network());
+  ProjectedSpringStiffness springs(model, model.network());
   springs.linearise(state.positions, kStep);
   const auto p = random_vectors(model.node_count(), 1, 5);
   const auto found = product(springs, p);

@@ -1,4 +1,4 @@
-#include "deformation/springs/kernel/spring_visits.h"
+#include "deformation/springs/kernel/spring_gauss_seidel.h"
 
 #include <catch2/catch.hpp>
 #include <random>
@@ -18,7 +18,7 @@ OrganModel held_ball() {
 
 /// All springs of a batch, those of padding left out.
 template <class Act>
-void for_springs(const SpringVisits& visits, std::size_t node_count, Act act) {
+void for_springs(const SpringGaussSeidel& visits, std::size_t node_count, Act act) {
   for (const auto& batch : visits.batches()) {
     for (std::size_t lane = 0; lane < kernel::kVisitLanes; ++lane) {
       const std::size_t a = batch.nodes_a[lane] / kernel::kVisitedDoubles;
@@ -31,7 +31,7 @@ void for_springs(const SpringVisits& visits, std::size_t node_count, Act act) {
 TEST_CASE("spring visits: every spring that can move a node once, four at a time apart") {
   // Oracle: the network.
   const OrganModel model = held_ball();
-  const SpringVisits visits(model, model.network());
+  const SpringGaussSeidel visits(model, model.network());
   std::multiset<std::pair<std::size_t, std::size_t>> visited, wanted;
   for_springs(visits, model.node_count(), [&](const auto&, std::size_t, auto a, auto b) {
     visited.insert({a, b});
@@ -53,7 +53,7 @@ TEST_CASE("spring visits: every spring that can move a node once, four at a time
 }
 
 /// xpbd_springs.h, spring by spring.
-void relax_plainly(const OrganModel& model, const SpringVisits& visits, double h, int passes,
+void relax_plainly(const OrganModel& model, const SpringGaussSeidel& visits, double h, int passes,
                    const std::vector<Vec3>& start, std::vector<Vec3>& x) {
   std::vector<double> multipliers;
   for (int k = 0; k < passes; ++k) {
@@ -92,7 +92,7 @@ TEST_CASE("spring visits: the plain formula to rounding, the same bits by every 
   for (const InstructionSet set : available_instruction_sets()) {
     for (const int passes : {1, 3}) {
       INFO(name_of(set) << ", " << passes << " passes");
-      SpringVisits visits(model, model.network(), set),
+      SpringGaussSeidel visits(model, model.network(), set),
           portable(model, model.network(), InstructionSet::kPortable);
       auto velocities = began, plain = moved;
       std::vector<Vec3> fast, same;
@@ -126,7 +126,7 @@ TEST_CASE("spring visits: a spring without length pulls at nothing") {
   const std::vector<Vec3> together(2, Vec3(0.02, 0.01, 0));
   for (const InstructionSet set : available_instruction_sets()) {
     std::vector<Vec3> positions, velocities(2, Vec3::Zero());
-    SpringVisits(model, model.network(), set).relax(1e-3, 2, together, velocities, positions);
+    SpringGaussSeidel(model, model.network(), set).relax(1e-3, 2, together, velocities, positions);
     CHECK(positions == together);
   }
 }

@@ -20,14 +20,14 @@
 
 #include "deformation/model/body.h"
 #include "deformation/model/spring_network.h"
-#include "modules/core/wide_vectors.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
-class SpringLinearization {
+class ProjectedSpringStiffness {
  public:
   /// @param body  outlives this
-  SpringLinearization(const Body& body, const SpringNetwork& network);
+  ProjectedSpringStiffness(const Body& body, const SpringNetwork& network);
 
   /// Takes A at these positions [m] (node_count) for a step of h [s].
   void linearise(const std::vector<Vec3>& positions, double h);

@@ -1,4 +1,4 @@
-#include "deformation/guard/state_guard.h"
+#include "deformation/guard/divergence_detector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,48 +38,49 @@ double largest_rest_distance(const Body& body) {
 
 }  // namespace
 
-StateGuard::StateGuard(const Body& body, bool knows_energy)
+DivergenceDetector::DivergenceDetector(const Body& body, bool knows_energy)
     : body_(body),
       knows_energy_(knows_energy),
       total_mass_(moving_mass(body)),
       largest_distance_(kMaxGrowth * largest_rest_distance(body)),
       calm_energy_(total_mass_ * kCalmSpeed * kCalmSpeed / 2),
-      largest_unpaid_(total_mass_ * kMaxSeparationSpeed * kMaxSeparationSpeed) {}
+      largest_injected_energy_(total_mass_ * kMaxSeparationSpeed * kMaxSeparationSpeed) {}
 
-void StateGuard::begin(const OrganState& state, double elastic_energy) {
+void DivergenceDetector::begin(const OrganState& state, double elastic_energy) {
   double kinetic = 0;
   for (std::size_t i = 0; i < state.velocities.size(); ++i) {
     kinetic += body_.masses[i] * state.velocities[i].squaredNorm() / 2;
   }
-  // Tissue pressed flat may have no energy that is a number; it is judged from the next look on.
-  ledger_ =
+  // Tissue pressed flat may have no energy that is a number; it is judged from the next check on.
+  energy_budget_ =
       std::isfinite(elastic_energy) ? kinetic + elastic_energy : std::numeric_limits<double>::max();
-  unpaid_ = 0;
+  injected_energy_ = 0;
   first_moment_ = first_moment(body_, state.positions);
   seen_ = state.positions;
   suspicious_ = false;
 }
 
-void StateGuard::add_work(double h, std::span<const ContactRow> rows, double volume_change,
-                          const OrganState& state) {
-  unpaid_ -= std::min(h / kUnpaidMemory, 1.0) * unpaid_;
+void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, double volume_change,
+                                  const OrganState& state) {
+  injected_energy_ -= std::min(h / kInjectionMemory, 1.0) * injected_energy_;
   for (const ContactRow& row : rows) {
     Vec3 velocity = Vec3::Zero();
     for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
-    ledger_ += impulse.dot(velocity);
+    energy_budget_ += impulse.dot(velocity);
     const Vec3 parting = velocity - row.probe_velocity;
-    if (-row.normal.dot(parting) > kPushedSpeed) unpaid_ += std::max(0.0, impulse.dot(parting));
+    if (-row.normal.dot(parting) > kPushedSpeed)
+      injected_energy_ += std::max(0.0, impulse.dot(parting));
   }
-  ledger_ += state.pressure * volume_change;
+  energy_budget_ += state.pressure * volume_change;
 }
 
-/// Of the pressure and, by the ledger, of every impulse since the last look.
-bool StateGuard::is_finite(const OrganState& state) const {
-  return std::isfinite(state.pressure) && std::isfinite(ledger_);
+/// Of the pressure and, by the energy budget, of every impulse since the last check.
+bool DivergenceDetector::is_finite(const OrganState& state) const {
+  return std::isfinite(state.pressure) && std::isfinite(energy_budget_);
 }
 
-Disbelief StateGuard::look(const OrganState& state, double period) {
+Violation DivergenceDetector::check_bounds(const OrganState& state, double period) {
   const double way = period * period * kMaxNodeSpeed * kMaxNodeSpeed;
   const double far = largest_distance_ * largest_distance_;
   const double fast = kMaxNodeSpeed * kMaxNodeSpeed;
@@ -99,37 +100,37 @@ Disbelief StateGuard::look(const OrganState& state, double period) {
   kinetic_energy_ = twice_energy / 2;
   if (!body_.gravity.isZero(0)) {
     const Vec3 moment = first_moment(body_, state.positions);
-    ledger_ += body_.gravity.dot(moment - first_moment_);
+    energy_budget_ += body_.gravity.dot(moment - first_moment_);
     first_moment_ = moment;
   }
   return judge_energy(kinetic_energy_);
 }
 
-Disbelief StateGuard::look_thoroughly(const OrganState& state, double period,
-                                      OrganDynamics& dynamics) {
-  const Disbelief seen = look(state, period);
-  if (seen != Disbelief::kNone) return seen;
+Violation DivergenceDetector::check_thoroughly(const OrganState& state, double period,
+                                               OrganDynamics& dynamics) {
+  const Violation seen = check_bounds(state, period);
+  if (seen != Violation::kNone) return seen;
   const double volume = geometry::enclosed_volume(state.positions, body_.triangles);
-  if (volume < -kTurnedVolume * body_.rest_volume) return Disbelief::kTurnedInside;
-  if (!knows_energy_) return Disbelief::kNone;
+  if (volume < -kTurnedVolume * body_.rest_volume) return Violation::kTurnedInside;
+  if (!knows_energy_) return Violation::kNone;
   const double energy = kinetic_energy_ + dynamics.elastic_energy(state);
   const bool was_suspicious = suspicious_;
-  const Disbelief judged = judge_energy(energy);
+  const Violation judged = judge_energy(energy);
   suspicious_ |= was_suspicious;
-  if (judged == Disbelief::kNone) ledger_ = std::min(ledger_, energy);
+  if (judged == Violation::kNone) energy_budget_ = std::min(energy_budget_, energy);
   return judged;
 }
 
 /// @param energy  all or part of what the organ holds [J]
-Disbelief StateGuard::judge_energy(double energy) {
-  if (!knows_energy_) return Disbelief::kNone;
-  const double may_hold = std::max(ledger_, 0.0) + calm_energy_;
+Violation DivergenceDetector::judge_energy(double energy) {
+  if (!knows_energy_) return Violation::kNone;
+  const double may_hold = std::max(energy_budget_, 0.0) + calm_energy_;
   suspicious_ = energy > kSuspiciousGain * may_hold;
-  const bool shaken = unpaid_ > largest_unpaid_ && kinetic_energy_ > calm_energy_;
-  return shaken || energy > kEnergyGain * may_hold ? Disbelief::kEnergyGrew : Disbelief::kNone;
+  const bool shaken = injected_energy_ > largest_injected_energy_ && kinetic_energy_ > calm_energy_;
+  return shaken || energy > kEnergyGain * may_hold ? Violation::kEnergyGrew : Violation::kNone;
 }
 
-Disbelief StateGuard::explain(const OrganState& state, double period) const {
+Violation DivergenceDetector::explain(const OrganState& state, double period) const {
   bool finite = is_finite(state);
   double speed = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
@@ -137,8 +138,8 @@ Disbelief StateGuard::explain(const OrganState& state, double period) const {
     speed = std::max(
         {speed, state.velocities[i].norm(), (state.positions[i] - seen_[i]).norm() / period});
   }
-  if (!finite) return Disbelief::kNotFinite;
-  return speed > kMaxNodeSpeed ? Disbelief::kTooFast : Disbelief::kTooLarge;
+  if (!finite) return Violation::kNotFinite;
+  return speed > kMaxNodeSpeed ? Violation::kTooFast : Violation::kTooLarge;
 }
 
 }  // namespace palpate::deformation

@@ -38,7 +38,7 @@ OrganState shaken(const OrganModel& model, double by) {
   return state;
 }
 
-TEST_CASE("parameter insults: a step 100 times too large") {
+TEST_CASE("parameter faults: a step 100 times too large") {
   // Oracle: (h ω/2)² ≫ 1: energy grows by powers of ten per step. The guarded organ cannot be moved
   // by steps like these; it is held at rest, and says so.
   const auto model = testing::ball_model(3, ball_with(scene::Integrator::kSymplecticEuler));
@@ -56,7 +56,7 @@ TEST_CASE("parameter insults: a step 100 times too large") {
   CHECK(shape_error(organ) < 0.5);
 }
 
-TEST_CASE("parameter insults: steps three times too large are cut until they are not") {
+TEST_CASE("parameter faults: steps three times too large are cut until they are not") {
   // Oracle: 3/2 of the bound is stable for this ball (Gershgorin and 0.9 are on the safe side by
   // more than 2), so one halving is enough; it is taken back after a second, and needed again.
   auto organ = testing::ball_with_overstated_step(3);
@@ -68,7 +68,7 @@ TEST_CASE("parameter insults: steps three times too large are cut until they are
   CHECK(volume_error(organ) < 1e-6);
 }
 
-TEST_CASE("parameter insults: half of a ball a million times stiffer than the other") {
+TEST_CASE("parameter faults: half of a ball a million times stiffer than the other") {
   // Oracle: the bound of the stiff springs, h ~ 1/√k: it is safe, and 4 times it is not.
   auto organ = ball_with(scene::Integrator::kSymplecticEuler);
   organ.tissue.damping_ratio = 0;
@@ -95,7 +95,7 @@ TEST_CASE("parameter insults: half of a ball a million times stiffer than the ot
   }
 }
 
-TEST_CASE("parameter insults: spring families a million times apart") {
+TEST_CASE("parameter faults: spring families a million times apart") {
   // Oracle: invariants; the scene allows it.
   auto scene = ball_with(scene::Integrator::kAutomatic);
   scene.tissue.youngs_modulus = 1e7;
@@ -141,7 +141,7 @@ geometry::TriangleSurface ball_with_speck(double ratio) {
   return ball;
 }
 
-TEST_CASE("parameter insults: triangles whose edges differ by a factor of 1e5") {
+TEST_CASE("parameter faults: triangles whose edges differ by a factor of 1e5") {
   // Oracle: a node of next to no mass on springs of full stiffness, h ~ √m ~ 1/ratio. Explicit
   // steps are refused by name; automatic takes backward Euler, which lives.
   const auto ball = ball_with_speck(1e5);
@@ -161,7 +161,7 @@ TEST_CASE("parameter insults: triangles whose edges differ by a factor of 1e5") 
   CHECK(volume_error(organ) < 1e-6);
 }
 
-TEST_CASE("parameter insults: meshes users really hand over are refused by name or live") {
+TEST_CASE("parameter faults: meshes users really hand over are refused by name or live") {
   // Oracle: invariants; the meshes are third-party (data/README.md).
   const char* data = std::getenv("PALPATE_DATA");
   const std::filesystem::path folder =
@@ -197,7 +197,7 @@ TEST_CASE("parameter insults: meshes users really hand over are refused by name 
   CHECK(refused > 0);
 }
 
-TEST_CASE("parameter insults: a target volume that jumps by half") {
+TEST_CASE("parameter faults: a target volume that jumps by half") {
   // Oracle: taken at once, the pressure of one step is Φ/h² over gᵀM⁻¹g; as the scene's ramp of 0.5
   // per second, it is what stretches the wall.
   const double ratio = GENERATE(0.5, 1.5);
@@ -224,7 +224,7 @@ TEST_CASE("parameter insults: a target volume that jumps by half") {
   CHECK(largest < 2e3);
 }
 
-TEST_CASE("parameter insults: an organ of a million springs") {
+TEST_CASE("parameter faults: an organ of a million springs") {
   // Oracle: invariants of a swing; counts.
   auto scene = ball_with(scene::Integrator::kAutomatic);
   auto organ = simulated_ball(7, scene);

@@ -57,7 +57,7 @@ void check_back(const SimulatedOrgan& organ) {
   CHECK(volume_error(organ) < kBackVolume);
 }
 
-TEST_CASE("shape insults: a ball flattened to a disc comes back by itself") {
+TEST_CASE("shape faults: a ball flattened to a disc comes back by itself") {
   // Oracle: g of a flattened sphere is the part of it along the one direction left, n_z² = ⅓ on
   // average; the volume follows at its rate, from 0.
   auto organ = simulated_ball(3, ball_with(any_integrator()));
@@ -72,7 +72,7 @@ TEST_CASE("shape insults: a ball flattened to a disc comes back by itself") {
   check_back(organ);
 }
 
-TEST_CASE("shape insults: a ball flattened at once to its full volume bursts") {
+TEST_CASE("shape faults: a ball flattened at once to its full volume bursts") {
   // Oracle: Φ/h² of the whole volume asked for in one step: why V* begins at the volume there is.
   const auto organ = simulated_ball(3, ball_with(scene::Integrator::kSymplecticEuler));
   const OrganState after = unguarded(organ, flattened(organ, Vec3(1, 1, 0)), testing::kPeriod);
@@ -81,7 +81,7 @@ TEST_CASE("shape insults: a ball flattened at once to its full volume bursts") {
   CHECK(fastest > 5);
 }
 
-TEST_CASE("shape insults: a ball collapsed to a line or a point is put back") {
+TEST_CASE("shape faults: a ball collapsed to a line or a point is put back") {
   // Oracle: every triangle has no area, so g = 0, and by symmetry no spring pulls off the line.
   auto organ = simulated_ball(3, ball_with(any_integrator()));
   const Vec3 keep = GENERATE(Vec3(1, 0, 0), Vec3(0, 0, 0));
@@ -94,13 +94,13 @@ TEST_CASE("shape insults: a ball collapsed to a line or a point is put back") {
   organ.put(line);
   const auto story = run(organ, kBackTime);
   CHECK(story.volume_skipped);
-  CHECK(story.first_reason == Disbelief::kCollapsed);
+  CHECK(story.first_reason == Violation::kCollapsed);
   CHECK(story.replaced == 1);
   CHECK(story.finite);
   check_back(organ);
 }
 
-TEST_CASE("shape insults: an everted ball is put back, not blown up") {
+TEST_CASE("shape faults: an everted ball is put back, not blown up") {
   // Oracle: mirrored, every spring has its rest length, so nothing turns the ball back; the bare
   // constraint asks for 2 V₀ in one step.
   auto organ = simulated_ball(3, ball_with(any_integrator()));
@@ -114,14 +114,14 @@ TEST_CASE("shape insults: an everted ball is put back, not blown up") {
 
   organ.put(everted);
   const auto story = run(organ, kBackTime);
-  CHECK(story.first_reason == Disbelief::kTurnedInside);
+  CHECK(story.first_reason == Violation::kTurnedInside);
   CHECK(story.replaced == 1);
   // At rest float forces keep an organ swinging by 1e-8 m (decision 5), at 2/h at most.
   CHECK(story.fastest < 1e-8 * 2 / stable_step_bound(organ.model()));
   check_back(organ);
 }
 
-TEST_CASE("shape insults: from random positions volume and shape come back") {
+TEST_CASE("shape faults: from random positions volume and shape come back") {
   // Oracle: the only equilibrium without outside forces that was ever reached is the rest shape.
   auto organ = simulated_ball(3, ball_with(any_integrator()));
   std::mt19937 random(GENERATE(1u, 2u, 3u));
@@ -139,7 +139,7 @@ TEST_CASE("shape insults: from random positions volume and shape come back") {
   check_back(organ);
 }
 
-TEST_CASE("shape insults: twisted by a full turn, thrown and spun, an organ calms down") {
+TEST_CASE("shape faults: twisted by a full turn, thrown and spun, an organ calms down") {
   // Oracle: invariant; drag takes speed, springs the twist.
   auto organ = simulated_ball(3, ball_with(any_integrator()));
   OrganState state = organ.state();
@@ -156,7 +156,7 @@ TEST_CASE("shape insults: twisted by a full turn, thrown and spun, an organ calm
   check_back(organ);
 }
 
-TEST_CASE("shape insults: an organ spun until it tears is put back") {
+TEST_CASE("shape faults: an organ spun until it tears is put back") {
   // Oracle: springs of stiffness k do not hold m ω² > k; the speed of a node bounds nothing here,
   // the size does.
   auto organ = simulated_ball(3, ball_with(any_integrator()));
@@ -167,12 +167,12 @@ TEST_CASE("shape insults: an organ spun until it tears is put back") {
   organ.put(state);
   const auto story = run(organ, kBackTime);
   CHECK(story.replaced >= 1);
-  CHECK(story.first_reason == Disbelief::kTooLarge);
+  CHECK(story.first_reason == Violation::kTooLarge);
   CHECK(story.finite);
   check_back(organ);
 }
 
-TEST_CASE("shape insults: an organ of one tetrahedron lives") {
+TEST_CASE("shape faults: an organ of one tetrahedron lives") {
   // Oracle: 4 nodes, 4 triangles, no node two edges away.
   auto scene = ball_with(any_integrator());
   scene.springs.virtual_nodes = GENERATE(std::size_t{0}, std::size_t{1});

@@ -2,8 +2,8 @@
 // `Floats` are the `Set` (spring_kernel_body.h).
 #pragma once
 
+#include "deformation/springs/kernel/spring_hessian_product_arrays.h"
 #include "deformation/springs/kernel/spring_kernel_body.h"
-#include "deformation/springs/kernel/spring_product_arrays.h"
 
 namespace palpate::deformation::kernel {
 namespace {

@@ -10,13 +10,13 @@
 namespace palpate::deformation {
 
 /// W = M⁻¹.
-class MassMobility {
+class NodeInverseMass {
  public:
-  explicit MassMobility(const Body& body) : inverse_masses_(body.inverse_masses) {}
+  explicit NodeInverseMass(const Body& body) : inverse_masses_(body.inverse_masses) {}
 
   std::size_t node_count() const { return inverse_masses_.size(); }
   /// W impulse: the velocity that node takes [m/s].
-  Vec3 answer(std::size_t node, const Vec3& impulse) const {
+  Vec3 apply(std::size_t node, const Vec3& impulse) const {
     return inverse_masses_[node] * impulse;
   }
   /// Σ b² W along n, and the most it is across n [1/kg]
@@ -33,16 +33,19 @@ class MassMobility {
 };
 
 /// Symmetric 3×3 matrices W.
-class BlockMobility {
+class BlockInverseMass {
  public:
-  explicit BlockMobility(std::span<const Mat3> mobilities) : mobilities_(mobilities) {}
+  explicit BlockInverseMass(std::span<const Mat3> inverse_mass_blocks)
+      : inverse_mass_blocks_(inverse_mass_blocks) {}
 
-  std::size_t node_count() const { return mobilities_.size(); }
-  Vec3 answer(std::size_t node, const Vec3& impulse) const { return mobilities_[node] * impulse; }
+  std::size_t node_count() const { return inverse_mass_blocks_.size(); }
+  Vec3 apply(std::size_t node, const Vec3& impulse) const {
+    return inverse_mass_blocks_[node] * impulse;
+  }
   std::array<double, 2> along_and_across(const ContactRow& row) const {
     Mat3 sum = Mat3::Zero();
     for (int k = 0; k < 3; ++k) {
-      sum += (row.weights[k] * row.weights[k]) * mobilities_[row.nodes[k]];
+      sum += (row.weights[k] * row.weights[k]) * inverse_mass_blocks_[row.nodes[k]];
     }
     const Vec3 t = row.normal.unitOrthogonal(), s = row.normal.cross(t);
     const double tt = t.dot(sum * t), ss = s.dot(sum * s), ts = t.dot(sum * s);
@@ -50,7 +53,7 @@ class BlockMobility {
   }
 
  private:
-  std::span<const Mat3> mobilities_;
+  std::span<const Mat3> inverse_mass_blocks_;
 };
 
 /// Which of the row's nodes it acts on alone, or -1 if it acts on more than one.

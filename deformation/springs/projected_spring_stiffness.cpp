@@ -1,4 +1,4 @@
-#include "deformation/springs/spring_linearization.h"
+#include "deformation/springs/projected_spring_stiffness.h"
 
 #include <cmath>
 
@@ -9,7 +9,7 @@ constexpr float kTinySquare = 1e-20f;  // [m²]
 
 }  // namespace
 
-SpringLinearization::SpringLinearization(const Body& body, const SpringNetwork& network)
+ProjectedSpringStiffness::ProjectedSpringStiffness(const Body& body, const SpringNetwork& network)
     : body_(body),
       positions_(body.node_count()),
       masses_(body.node_count()),
@@ -23,7 +23,7 @@ SpringLinearization::SpringLinearization(const Body& body, const SpringNetwork& 
   }
 }
 
-void SpringLinearization::linearise(const std::vector<Vec3>& positions, double h) {
+void ProjectedSpringStiffness::linearise(const std::vector<Vec3>& positions, double h) {
   for (std::size_t i = 0; i < masses_.size(); ++i) {
     positions_[i] = wide(positions[i] - positions[0]);
     masses_[i] = static_cast<float>((1 + h * body_.drag) * body_.masses[i]);
@@ -60,7 +60,7 @@ void SpringLinearization::linearise(const std::vector<Vec3>& positions, double h
   }
 }
 
-void SpringLinearization::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) const {
+void ProjectedSpringStiffness::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) const {
   for (std::size_t i = 0; i < p.size(); ++i) out[i] = masses_[i] * p[i];
   for (const Coupling& coupling : couplings_) {
     const Vec4f d = positions_[coupling.b] - positions_[coupling.a];

@@ -1,4 +1,4 @@
-#include "deformation/springs/spring_product.h"
+#include "deformation/springs/spring_hessian_product.h"
 
 #include <array>
 
@@ -29,8 +29,9 @@ Mat3 symmetric(const std::array<double, kBlockNumbers>& n, double mass) {
 
 }  // namespace
 
-SpringProduct::SpringProduct(const Body& body, const SpringNetwork& network, bool with_volume,
-                             ChunkRunner* runner, InstructionSet set)
+SpringHessianProduct::SpringHessianProduct(const Body& body, const SpringNetwork& network,
+                                           bool with_volume, ChunkRunner* runner,
+                                           InstructionSet set)
     : body_(body),
       runner_(runner),
       functions_(functions_of(set)),
@@ -51,17 +52,17 @@ SpringProduct::SpringProduct(const Body& body, const SpringNetwork& network, boo
   virtual_sums_.resize(3 * virtual_parts);
 }
 
-kernel::Couplings SpringProduct::couplings() {
+kernel::Couplings SpringHessianProduct::couplings() {
   return {h_, nodes_.data()->position.data(), pairs_.data(), inner_along_.data(),
           inner_across_.data()};
 }
 
-void SpringProduct::run(ChunkBody body) {
+void SpringHessianProduct::run(ChunkBody body) {
   SerialRunner serial;
   (runner_ == nullptr ? serial : *runner_).run(layout_.view().chunk_count, body);
 }
 
-void SpringProduct::linearise(const std::vector<Vec3>& positions, double h) {
+void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double h) {
   PALPATE_DEMAND(positions.size() == body_.node_count());
   h_ = static_cast<float>(h);
   for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -77,7 +78,7 @@ void SpringProduct::linearise(const std::vector<Vec3>& positions, double h) {
   take_diagonal(h);
 }
 
-void SpringProduct::take_diagonal(double h) {
+void SpringHessianProduct::take_diagonal(double h) {
   const kernel::Layout layout = layout_.view();
   const std::size_t surface_count = layout.surface_node_count;
   const std::size_t rows = layout.slice_count * kLanes;
@@ -104,7 +105,7 @@ void SpringProduct::take_diagonal(double h) {
   }
 }
 
-double SpringProduct::apply(std::vector<Vec4f>& out) {
+double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
   const kernel::Layout layout = layout_.view();
   const kernel::Couplings in = couplings();
   const std::size_t stride = 3 * kLanes * layout.virtual_node_count;

@@ -1,4 +1,4 @@
-#include "deformation/springs/kernel/spring_visits.h"
+#include "deformation/springs/kernel/spring_gauss_seidel.h"
 
 #include <algorithm>
 
@@ -83,7 +83,8 @@ class Chooser {
 
 }  // namespace
 
-SpringVisits::SpringVisits(const Body& body, const SpringNetwork& network, InstructionSet set)
+SpringGaussSeidel::SpringGaussSeidel(const Body& body, const SpringNetwork& network,
+                                     InstructionSet set)
     : visit_(visits_by(set)) {
   add_batches(body, network);
   const std::size_t nodes = body.node_count() + 1;  // and the one of lanes left over
@@ -94,7 +95,7 @@ SpringVisits::SpringVisits(const Body& body, const SpringNetwork& network, Instr
   }
 }
 
-void SpringVisits::add_batches(const Body& body, const SpringNetwork& network) {
+void SpringGaussSeidel::add_batches(const Body& body, const SpringNetwork& network) {
   Chooser chooser(body, network);
   while (!chooser.is_done()) {
     kernel::VisitBatch batch;
@@ -115,8 +116,8 @@ void SpringVisits::add_batches(const Body& body, const SpringNetwork& network) {
   }
 }
 
-void SpringVisits::relax(double h, int passes, const std::vector<Vec3>& start,
-                         std::vector<Vec3>& velocities, std::vector<Vec3>& positions) {
+void SpringGaussSeidel::relax(double h, int passes, const std::vector<Vec3>& start,
+                              std::vector<Vec3>& velocities, std::vector<Vec3>& positions) {
   PALPATE_DEMAND(start.size() == velocities.size() && h > 0);
   for (std::size_t i = 0; i < start.size(); ++i) {
     place(start_, i) = start[i];

@@ -13,7 +13,7 @@ namespace palpate::collision {
 /// towards it at up to 0.125 m/s. The margin is at least a millimetre because processes are late at
 /// times. Tissue that entered a probe unseen would be thrown out again, step after step.
 /// @param speed  of the probe [m/s]. @return [m]
-inline double contact_margin(const scene::Rates& rates, double speed) {
+inline double activation_distance(const scene::Rates& rates, double speed) {
   constexpr double kTissueSpeed = 0.125, kLeastAllowance = 1e-3;  // [m/s], [m]
   const double blind_time = 1 / rates.collision + 1 / rates.deformation;
   return std::max(kTissueSpeed * blind_time, kLeastAllowance) + 2 * speed * blind_time;

@@ -1,4 +1,4 @@
-#include "deformation/springs/spring_product.h"
+#include "deformation/springs/spring_hessian_product.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -6,7 +6,7 @@
 #include <random>
 #include <thread>
 
-#include "deformation/springs/spring_linearization.h"
+#include "deformation/springs/projected_spring_stiffness.h"
 #include "tests/deformation/organs.h"
 
 namespace palpate::deformation {
@@ -36,7 +36,7 @@ std::vector<Vec4f> directions(const OrganModel& model) {
   return p;
 }
 
-double apply(SpringProduct& product, const std::vector<Vec4f>& p, std::vector<Vec4f>& out) {
+double apply(SpringHessianProduct& product, const std::vector<Vec4f>& p, std::vector<Vec4f>& out) {
   for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
   return product.apply(out);
 }
@@ -44,13 +44,13 @@ double apply(SpringProduct& product, const std::vector<Vec4f>& p, std::vector<Ve
 void check_agrees(const OrganModel& model) {
   const auto positions = disturbed(model, 3e-3);
   const auto p = directions(model);
-  SpringLinearization plain(model, model.network());
+  ProjectedSpringStiffness plain(model, model.network());
   plain.linearise(positions, kStep);
   std::vector<Vec4f> expected(p.size()), found(p.size());
   plain.apply(p, expected);
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
-    SpringProduct fast(model, model.network(), true, nullptr, set);
+    SpringHessianProduct fast(model, model.network(), true, nullptr, set);
     fast.linearise(positions, kStep);
     const double found_dot = apply(fast, p, found);
     CHECK(found_dot == Approx(dot(p, found)).epsilon(1e-5));
@@ -64,14 +64,15 @@ void check_agrees(const OrganModel& model) {
 }
 
 TEST_CASE("spring product: agrees with the plain linearisation, whatever the mesh size") {
-  // Oracle: spring_linearization.h. Compressed and stretched springs, odd ends, several chunks.
+  // Oracle: projected_spring_stiffness.h. Compressed and stretched springs, odd ends, several
+  // chunks.
   auto organ = ball_organ();
   organ.tissue.drag = 3;
   check_agrees(ball_model(GENERATE(0, 1, 2, 3), organ));
 }
 
 TEST_CASE("spring product: agrees without virtual nodes, bending springs or damping") {
-  // Oracle: spring_linearization.h.
+  // Oracle: projected_spring_stiffness.h.
   auto organ = ball_organ();
   SECTION("no virtual nodes") { organ.springs = {0.1, 0, 0}; }
   SECTION("no bending springs") { organ.springs.bending_ratio = 0; }
@@ -85,7 +86,7 @@ TEST_CASE("spring product: springs without length give nothing and no NaN") {
   const std::vector<Vec3> positions(model.node_count(), Vec3(0.1, 0.2, 0.3));
   const auto p = directions(model);
   for (const InstructionSet set : available_instruction_sets()) {
-    SpringProduct product(model, model.network(), true, nullptr, set);
+    SpringHessianProduct product(model, model.network(), true, nullptr, set);
     product.linearise(positions, kStep);
     std::vector<Vec4f> out(p.size());
     apply(product, p, out);
@@ -105,7 +106,7 @@ TEST_CASE("spring product: rounded couplings leave the matrix symmetric, and its
   std::reverse(b.begin(), b.end());
   std::vector<Vec4f> image_a(a.size()), image_b(a.size());
   for (const InstructionSet set : available_instruction_sets()) {
-    SpringProduct product(model, model.network(), true, nullptr, set);
+    SpringHessianProduct product(model, model.network(), true, nullptr, set);
     product.linearise(disturbed(model, 3e-3), kStep);
     const double a_a = apply(product, a, image_a), b_b = apply(product, b, image_b);
     CHECK(a_a > 0);
@@ -150,7 +151,7 @@ TEST_CASE("spring product: the same bits for all instruction sets with fused mul
   const auto model = ball_model(3);
   const auto p = directions(model);
   std::vector<Vec4f> first(p.size()), second(p.size());
-  SpringProduct narrow(model, model.network(), true, nullptr, sets[1]),
+  SpringHessianProduct narrow(model, model.network(), true, nullptr, sets[1]),
       wide(model, model.network(), true, nullptr, sets[2]);
   narrow.linearise(disturbed(model, 3e-3), kStep);
   wide.linearise(disturbed(model, 3e-3), kStep);
@@ -166,12 +167,12 @@ TEST_CASE("spring product: the same bits for any number of threads") {
   const auto p = directions(model);
   for (const InstructionSet set : available_instruction_sets()) {
     std::vector<Vec4f> expected(p.size()), found(p.size());
-    SpringProduct serial(model, model.network(), true, nullptr, set);
+    SpringHessianProduct serial(model, model.network(), true, nullptr, set);
     serial.linearise(positions, kStep);
     apply(serial, p, expected);
     for (std::size_t threads = 2; threads <= 3; ++threads) {
       Threads runner(threads);
-      SpringProduct product(model, model.network(), true, &runner, set);
+      SpringHessianProduct product(model, model.network(), true, &runner, set);
       product.linearise(positions, kStep);
       apply(product, p, found);
       CHECK(found == expected);
