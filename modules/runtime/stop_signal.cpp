@@ -15,13 +15,11 @@ StopSignal::StopSignal() {
   struct sigaction action {};
   action.sa_handler = set_stop_flag;  // no SA_RESTART: a sleeping loop wakes up
   sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, &earlier_interrupt_);
-  sigaction(SIGTERM, &action, &earlier_terminate_);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &earlier_[i]);
 }
 
 StopSignal::~StopSignal() {
-  sigaction(SIGINT, &earlier_interrupt_, nullptr);
-  sigaction(SIGTERM, &earlier_terminate_, nullptr);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &earlier_[i], nullptr);
 }
 
 bool StopSignal::requested() const { return stop_flag != 0; }

@@ -1,11 +1,12 @@
-// Ctrl-C and SIGTERM as a flag that loops look at.
+// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that loops look at.
 #pragma once
 
+#include <array>
 #include <csignal>
 
 namespace palpate::runtime {
 
-/// While one exists, SIGINT and SIGTERM set the flag instead of ending the process. One at a time.
+/// While one exists, these signals set the flag instead of ending the process. One at a time.
 class StopSignal {
  public:
   StopSignal();   ///< clears the flag
@@ -16,8 +17,8 @@ class StopSignal {
   bool requested() const;
 
  private:
-  struct sigaction earlier_interrupt_ {
-  }, earlier_terminate_{};
+  static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, kSignals.size()> earlier_{};
 };
 
 }  // namespace palpate::runtime

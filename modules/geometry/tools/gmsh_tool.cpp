@@ -1,11 +1,12 @@
 #include "modules/geometry/tools/gmsh_tool.h"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -39,24 +40,33 @@ class WorkFolder {
   std::filesystem::path path_;
 };
 
-/// Runs the program found in PATH, both outputs into `log`. @returns exit status, -1 if not found
+/// In the child, after fork: only what is safe there. The kernel ends it with the thread that
+/// started it.
+[[noreturn]] void become(char* const* arguments, const char* log, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const int output = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  ::dup2(output, STDOUT_FILENO);
+  ::dup2(output, STDERR_FILENO);
+  if (::getppid() == parent) ::execvp(arguments[0], arguments);
+  ::_exit(127);
+}
+
+/// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
+/// @throws std::runtime_error if a signal comes that somebody listens to: the user wants an end
 int run(std::vector<std::string> words, const std::filesystem::path& log) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int error =
-      ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) return -1;
+  const pid_t parent = ::getpid(), child = ::fork();
+  if (child < 0) throw std::runtime_error(words[0] + ": cannot be started");
+  if (child == 0) become(arguments.data(), log.c_str(), parent);
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  const bool interrupted = ::waitpid(child, &status, 0) < 0;
+  if (interrupted) {
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+    throw std::runtime_error(words[0] + ": interrupted");
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -100,7 +110,7 @@ TetMesh run_gmsh_with(const WorkFolder& folder, std::vector<std::string> options
   std::vector<std::string> words{"gmsh", "-format", "msh22", "-nt", "1", "-o", output.string()};
   words.insert(words.end(), options.begin(), options.end());
   const int status = run(std::move(words), log);
-  if (status == -1 || status == 127) {
+  if (status == 127) {
     throw InputError("gmsh: not found; tetrahedra are made by it (apt-get install gmsh)");
   }
   const std::string wrong = complaints(log);

@@ -1,4 +1,5 @@
-// Meshing by running Gmsh as a tool.
+// Meshing by running Gmsh as a tool. It ends with the program that runs it; a signal that somebody
+// listens to ends it too, by a std::runtime_error.
 #pragma once
 
 #include <filesystem>

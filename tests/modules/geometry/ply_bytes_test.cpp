@@ -1,5 +1,7 @@
 #include "modules/geometry/ply_bytes.h"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -31,7 +33,7 @@ TEST_CASE("ply bytes: a box whose first coordinate begins with 0x0a comes back")
   // Oracle: round trip; −0.02f is 0xbca3d70a. One part in 10⁷ of 2 cm.
   const auto box = make_box(Vec3(0.04, 0.06, 0.08));
   const auto file = std::filesystem::temp_directory_path() /
-                    ("palpate_ply_bytes_" + std::to_string(std::rand()) + ".ply");
+                    ("palpate_ply_bytes_" + std::to_string(::getpid()) + ".ply");
   write_surface(box, file);
   const auto again = read_surface(file, "m");
   std::filesystem::remove(file);

@@ -79,9 +79,9 @@ Reading read(const std::filesystem::path& file) {
 
 }  // namespace
 
-TEST_CASE("recorder program: on SIGTERM and Ctrl-C it ends the file and says done") {
+TEST_CASE("recorder program: on SIGTERM, Ctrl-C and SIGHUP it ends the file and says done") {
   // Oracle: the reader's verdict on the file; the number of samples written by the test.
-  const int signal = GENERATE(SIGTERM, SIGINT);
+  const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
   TempFolder folder;
   const auto options = own_options();
   bus::DdsBus bus(options);

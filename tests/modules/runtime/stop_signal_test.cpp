@@ -4,19 +4,21 @@
 
 using palpate::runtime::StopSignal;
 
-TEST_CASE("stop signal: SIGINT and SIGTERM are requests, and only while one exists") {
+TEST_CASE("stop signal: SIGINT, SIGTERM and SIGHUP are requests, and only while one exists") {
   // Oracle: the signal's action as the system reports it.
-  struct sigaction before {
-  }, after{};
-  sigaction(SIGTERM, nullptr, &before);
-  for (const int number : {SIGINT, SIGTERM}) {
-    const StopSignal stop;
-    CHECK_FALSE(stop.requested());
-    raise(number);
-    CHECK(stop.requested());
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {
+    }, after{};
+    sigaction(number, nullptr, &before);
+    {
+      const StopSignal stop;
+      CHECK_FALSE(stop.requested());
+      raise(number);
+      CHECK(stop.requested());
+    }
+    sigaction(number, nullptr, &after);
+    CHECK(before.sa_handler == after.sa_handler);
   }
-  sigaction(SIGTERM, nullptr, &after);
-  CHECK(before.sa_handler == after.sa_handler);
 }
 
 TEST_CASE("stop signal: a new one begins without a request") {

@@ -1,8 +1,14 @@
 #include "modules/geometry/tools/gmsh_tool.h"
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 #include "modules/core/error.h"
 #include "modules/geometry/primitives.h"
@@ -18,6 +24,86 @@ double volume_of(const TetMesh& mesh) {
     volume += tetrahedron_volume(mesh.nodes[a], mesh.nodes[b], mesh.nodes[c], mesh.nodes[d]);
   }
   return volume;
+}
+
+/// Stands for a Gmsh that works for long: the first in PATH as long as this object lives.
+class SlowGmsh {
+ public:
+  SlowGmsh() : path_(std::getenv("PATH")) {
+    const auto program = folder_.write("gmsh", "#!/bin/sh\necho $$ > \"$0.id\"\nexec sleep 100\n");
+    std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+    ::setenv("PATH", (program.parent_path().string() + ":" + path_).c_str(), 1);
+  }
+  ~SlowGmsh() { ::setenv("PATH", path_.c_str(), 1); }
+
+  /// Of the one that works; 0: none yet.
+  pid_t process_id() const {
+    pid_t id = 0;
+    std::ifstream(folder_ / "gmsh.id") >> id;
+    return id;
+  }
+
+ private:
+  test::ScratchFolder folder_;
+  std::string path_;
+};
+
+template <class Holds>
+bool comes_true(const Holds& holds) {
+  for (int i = 0; i < 2000; ++i) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+/// Gone, or a zombie that waits for init.
+bool is_over(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("State:")) return line.find('Z') != std::string::npos;
+  }
+  return true;
+}
+
+/// A process that meshes: 0 once Gmsh was interrupted. With or without somebody who listens.
+pid_t start_meshing(bool listens) {
+  const pid_t child = ::fork();
+  if (child > 0) return child;
+  struct sigaction action {};
+  action.sa_handler = listens ? [](int) {} : SIG_DFL;
+  ::sigaction(SIGTERM, &action, nullptr);
+  try {
+    mesh_ball(0.05, BallPart::kWhole, "0.02");
+  } catch (const std::runtime_error& error) {
+    ::_exit(std::string(error.what()) == "gmsh: interrupted" ? 0 : 1);
+  }
+  ::_exit(2);
+}
+
+TEST_CASE("gmsh tool: it ends with the program that runs it, however that ends") {
+  // Oracle: the kernel's table of processes.
+  const int signal = GENERATE(SIGTERM, SIGKILL);
+  const SlowGmsh gmsh;
+  const pid_t meshing = start_meshing(false);
+  REQUIRE(comes_true([&] { return gmsh.process_id() > 0; }));
+  ::kill(meshing, signal);
+  ::waitpid(meshing, nullptr, 0);
+  CHECK(comes_true([&] { return is_over(gmsh.process_id()); }));
+}
+
+TEST_CASE("gmsh tool: a signal that the program listens to ends it with a word") {
+  // Oracle: the message, and the kernel's table of processes.
+  const SlowGmsh gmsh;
+  const pid_t meshing = start_meshing(true);
+  REQUIRE(comes_true([&] { return gmsh.process_id() > 0; }));
+  int status = -1;
+  CHECK(comes_true([&] {  // again: the first may come before anybody waits
+    ::kill(meshing, SIGTERM);
+    return ::waitpid(meshing, &status, WNOHANG) == meshing;
+  }));
+  CHECK(status == 0);
+  CHECK(is_over(gmsh.process_id()));
 }
 
 TEST_CASE("gmsh tool: a filled surface keeps its nodes and triangles, first and in order") {
