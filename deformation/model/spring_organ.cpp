@@ -65,8 +65,8 @@ std::vector<double> axial_damping(const SpringNetwork& network, const std::vecto
 
 OrganModel build_organ_model(const scene::Organ& organ, const Vec3& gravity,
                              const geometry::OrganShape& rest_shape) {
-  if (const std::string reason = scene::impossible_for_model(organ); !reason.empty()) {
-    throw InputError("organ '" + organ.name + "': " + reason);
+  if (const auto misfit = scene::impossible_for_model(organ); !misfit.none()) {
+    throw InputError("organ '" + organ.name + "': key '" + misfit.key + "': " + misfit.why);
   }
   return rest_shape.is_solid() ? build_solid(organ, gravity, rest_shape)
                                : build_spring_organ(organ, gravity, rest_shape.surface);

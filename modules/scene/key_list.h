@@ -26,7 +26,7 @@ struct KeyList {
     choose_one = true;
   }
   void require(bool, const char*) {}
-  void fits(const char*, const std::string&) {}
+  void fits(const char*, const Misfit&) {}
   template <class T>
   void unique_names(const char*, const std::vector<T>&) {}
 };

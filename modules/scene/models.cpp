@@ -86,17 +86,25 @@ const std::array kOptionalKeys{
     OptionalKey{"volume_corrections", [](const ModelFormat& f) { return f.has_volume_corrections; },
                 [](const Organ& o) { return o.volume_corrections == kDefaults.volume_corrections; },
                 [](Organ& o) { o.volume_corrections = kDefaults.volume_corrections; }},
+    OptionalKey{
+        "tissue.wall_thickness_m", of_surfaces,
+        [](const Organ& o) { return o.tissue.wall_thickness == kDefaults.tissue.wall_thickness; },
+        [](Organ& o) { o.tissue.wall_thickness = kDefaults.tissue.wall_thickness; }},
+    OptionalKey{
+        "tissue.damping_ratio", [](const ModelFormat& f) { return of_surfaces(f) || f.has_modes; },
+        [](const Organ& o) { return o.tissue.damping_ratio == kDefaults.tissue.damping_ratio; },
+        [](Organ& o) { o.tissue.damping_ratio = kDefaults.tissue.damping_ratio; }},
     OptionalKey{"springs", of_surfaces,
                 [](const Organ& o) { return o.springs == kDefaults.springs; },
                 [](Organ& o) { o.springs = kDefaults.springs; }},
     OptionalKey{
-        "solid: poisson_ratio", of_solids,
+        "solid.poisson_ratio", of_solids,
         [](const Organ& o) { return o.solid.poisson_ratio == kDefaults.solid.poisson_ratio; },
         [](Organ& o) { o.solid.poisson_ratio = kDefaults.solid.poisson_ratio; }},
-    OptionalKey{"solid: element_size_m", of_solids,
+    OptionalKey{"solid.element_size_m", of_solids,
                 [](const Organ& o) { return o.solid.element_size == kDefaults.solid.element_size; },
                 [](Organ& o) { o.solid.element_size = kDefaults.solid.element_size; }},
-    OptionalKey{"solid: modes", [](const ModelFormat& f) { return f.has_modes; },
+    OptionalKey{"solid.modes", [](const ModelFormat& f) { return f.has_modes; },
                 [](const Organ& o) { return o.solid.modes == kDefaults.solid.modes; },
                 [](Organ& o) { o.solid.modes = kDefaults.solid.modes; }}};
 
@@ -124,27 +132,28 @@ std::string model_words() {
   return words_where([](const ModelFormat&) { return true; });
 }
 
-std::string impossible_for_model(const Organ& organ) {
+Misfit impossible_for_model(const Organ& organ) {
   const ModelFormat& format = format_of(organ.model);
-  if (!format.is_solid()) return "";
+  if (!format.is_solid()) return {};
   if (has_filling(organ)) {
-    return "key 'filling' does not go with model " + organ.model +
-           ", a solid; models of surfaces are filled";
+    return {"filling",
+            "does not go with model " + organ.model + ", a solid; models of surfaces are filled"};
   }
-  if (organ.solid.poisson_ratio <= format.largest_poisson_ratio) return "";
-  return "model " + organ.model + " needs solid: poisson_ratio at most 0.4999; up to 0.5 take " +
-         words_where(
-             [](const ModelFormat& f) { return f.is_solid() && f.largest_poisson_ratio == 0.5; });
+  if (organ.solid.poisson_ratio <= format.largest_poisson_ratio) return {};
+  return {"solid.poisson_ratio", "model " + organ.model + " needs at most 0.4999; up to 0.5 take " +
+                                     words_where([](const ModelFormat& f) {
+                                       return f.is_solid() && f.largest_poisson_ratio == 0.5;
+                                     })};
 }
 
-std::string ignored_by_model(const Organ& organ) {
+Misfit ignored_by_model(const Organ& organ) {
   const ModelFormat& format = format_of(organ.model);
   for (const OptionalKey& key : kOptionalKeys) {
     if (key.is_read(format) || key.is_default(organ)) continue;
-    return std::string("key '") + key.key + "' is not read by model " + organ.model +
-           "; leave it out, or take one of: " + words_where(key.is_read);
+    return {key.key, "is not read by model " + organ.model +
+                         "; leave it out, or take one of: " + words_where(key.is_read)};
   }
-  return "";
+  return {};
 }
 
 void drop_ignored_keys(Organ& organ) {

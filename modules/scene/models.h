@@ -43,17 +43,24 @@ inline bool is_quadratic(std::string_view model) { return format_of(model).is_qu
 /// All words, "a, b, c".
 std::string model_words();
 
-/// What the organ asks of its model that this cannot do. Empty: nothing.
-std::string impossible_for_model(const Organ& organ);
+/// A key of an organ that does not go with its model.
+struct Misfit {
+  std::string key = {};  ///< "springs", "solid.modes"; empty: all is well
+  std::string why = {};
+
+  bool none() const { return key.empty(); }
+};
+
+/// What the organ asks of its model that this cannot do.
+Misfit impossible_for_model(const Organ& organ);
 
 /// Which of the organ's keys its model ignores though they have other values than their defaults.
-/// Empty: none.
-std::string ignored_by_model(const Organ& organ);
+Misfit ignored_by_model(const Organ& organ);
 
 /// Either of these.
-inline std::string misfit_of_model(const Organ& organ) {
-  const std::string impossible = impossible_for_model(organ);
-  return impossible.empty() ? ignored_by_model(organ) : impossible;
+inline Misfit misfit_of_model(const Organ& organ) {
+  const Misfit impossible = impossible_for_model(organ);
+  return impossible.none() ? ignored_by_model(organ) : impossible;
 }
 
 /// Gives keys that the organ's model ignores their defaults.

@@ -107,6 +107,16 @@ void ObjectReader::refuse_name(const char* key, std::size_t index, std::size_t s
                    "] too");
 }
 
+YamlValue ObjectReader::value_at(const std::string& path) const {
+  const auto dot = path.find('.');
+  const auto value = find(path.substr(0, dot));
+  if (!value) return object_;
+  if (dot == std::string::npos) return *value;
+  ObjectReader below(*this);
+  below.object_ = *value;
+  return below.value_at(path.substr(dot + 1));
+}
+
 std::optional<YamlValue> ObjectReader::find(const std::string& key) const {
   for (const auto& entry : object_.node) {
     if (entry.first.Scalar() == key) {

@@ -66,8 +66,8 @@ class ObjectReader {
   void require(bool holds, const char* rule) const {
     if (!holds) object_.refuse(rule);
   }
-  void fits(const char*, const std::string& misfit) const {
-    if (!misfit.empty()) object_.refuse(misfit);
+  void fits(const char*, const Misfit& misfit) const {
+    if (!misfit.none()) value_at(misfit.key).refuse(misfit.why);
   }
 
   template <class T>
@@ -94,6 +94,8 @@ class ObjectReader {
   }
 
   std::optional<YamlValue> find(const std::string& key) const;
+  /// Of "a.b"; where a default is meant, of what would hold it.
+  YamlValue value_at(const std::string& path) const;
   void check_keys(const KeyList& allowed) const;
   void check_options(const KeyList& allowed) const;
   [[noreturn]] void refuse_key(const YAML::Node& key, const KeyList& allowed) const;

@@ -71,7 +71,7 @@ class SchemaTable {
     object_below(key, object);
   }
   void require(bool, const char* rule) { rules_ += std::string("\nRule: ") + rule + ".\n"; }
-  void fits(const char* rule, const std::string&) { require(true, rule); }
+  void fits(const char* rule, const Misfit&) { require(true, rule); }
   template <class T>
   void unique_names(const char* key, const std::vector<T>&) {
     rules_ += std::string("\nRule: no two `") + key + "` have the same name.\n";
@@ -114,7 +114,8 @@ class SchemaTable {
 };
 
 std::string reads(const ModelFormat& format) {
-  std::string keys = format.is_solid() ? "solid" : "springs, filling";
+  std::string keys = format.is_solid() ? "solid" : "springs, filling, wall thickness";
+  if (!format.is_solid() || format.has_modes) keys += ", damping ratio";
   if (format.has_integrator) keys += ", integrator";
   if (format.has_volume_corrections) keys += ", volume_corrections";
   if (format.iterations > 0) {

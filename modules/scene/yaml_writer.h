@@ -69,7 +69,7 @@ class YamlWriter {
     if (T* chosen = std::get_if<T>(&variant)) field(key, *chosen, about);
   }
   void require(bool, const char*) {}
-  void fits(const char*, const std::string&) {}
+  void fits(const char*, const Misfit&) {}
   template <class T>
   void unique_names(const char*, const std::vector<T>&) {}
 
