@@ -73,10 +73,12 @@ int run_diff_command(const DiffOptions& options, std::ostream& out, std::ostream
   bool equal = false;
   const int code = report_failure(err, [&] {
     const RecordingDifference difference = compare(options);
+    for (const std::string& warning : difference.warnings) err << "warning: " << warning << '\n';
     print_difference(difference, out);
     equal = difference.equal();
   });
-  return code == kExitDone && !equal ? kExitFailed : code;
+  if (code != kExitDone) return kExitBadInput;
+  return equal ? kExitDone : kExitFailed;
 }
 
 int run_replay_command(const ReplayOptions& options, const std::function<bool()>& stop_requested,

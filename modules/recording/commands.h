@@ -20,7 +20,7 @@ struct InspectOptions {
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err);
 
 /// Prints where the two recordings of `options` differ.
-/// @return kExitDone if they are equal, kExitFailed if not, kExitBadInput if one cannot be read
+/// @return kExitDone if they are equal, kExitFailed if not, kExitBadInput for anything in the way
 int run_diff_command(const DiffOptions& options, std::ostream& out, std::ostream& err);
 
 struct ReplayOptions {

@@ -23,6 +23,7 @@ class Comparison {
   explicit Comparison(const DiffOptions& options) : options_(options) {
     if (options.csv.empty()) return;
     csv_.open(options.csv);
+    if (!csv_) throw std::runtime_error(options.csv.string() + ": cannot be written");
     csv_ << "sim_time_s,topic,key,field,largest_difference\n";
   }
 
@@ -167,7 +168,11 @@ RecordingDifference compare(const DiffOptions& options) {
     if (more_a) comparison.add_a(std::move(*sample_a));
     if (more_b) comparison.add_b(std::move(*sample_b));
   }
-  return comparison.finish();
+  RecordingDifference difference = comparison.finish();
+  for (const SampleReader* file : {&a, &b}) {
+    if (file->torn()) difference.warnings.push_back(file->torn_warning());
+  }
+  return difference;
 }
 
 void print_difference(const RecordingDifference& difference, std::ostream& out) {

@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <fstream>
 #include <system_error>
 
 #include "modules/core/error.h"
@@ -50,9 +52,22 @@ std::vector<std::uint8_t> content_of(const McapStatistics& statistics) {
   return content;
 }
 
+/// A scene, or a mesh it names, given as the recording by mistake.
+void refuse_to_replace_what_is_no_recording(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) return;
+  std::array<std::uint8_t, kMcapMagic.size()> first{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(reinterpret_cast<char*>(first.data()), first.size());
+  const auto count = static_cast<std::size_t>(stream.gcount());
+  if (count == 0 || std::equal(first.begin(), first.end(), kMcapMagic.begin())) return;
+  throw InputError(file.string() + ": is no recording, and is not replaced by one");
+}
+
 }  // namespace
 
 McapWriter::McapWriter(const std::filesystem::path& file) : file_(file) {
+  refuse_to_replace_what_is_no_recording(file);
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("open", errno);
   append(kMcapMagic);

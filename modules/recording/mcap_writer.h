@@ -14,7 +14,8 @@ namespace palpate::recording {
 /// has gathered. Not thread-safe.
 class McapWriter {
  public:
-  /// Replaces an existing file. @throws std::runtime_error naming the file and the system's reason
+  /// Replaces an existing recording. @throws InputError if the file holds something else;
+  /// std::runtime_error naming the file and the system's reason
   explicit McapWriter(const std::filesystem::path& file);
   /// Without close() the file stays as a killed writer leaves it.
   ~McapWriter();

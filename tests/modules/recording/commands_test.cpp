@@ -37,6 +37,22 @@ TEST_CASE("commands: inspect prints the table and warns of a torn file") {
   CHECK(std::filesystem::exists(folder / "csv/node_positions_0.csv"));
 }
 
+TEST_CASE("commands: diff warns of a torn file, whichever of the two it is") {
+  // Oracle: the same samples in both; the torn one's name.
+  TempFolder folder;
+  write_recording(folder / "whole.mcap", true);
+  write_recording(folder / "torn.mcap", false);
+  for (const auto& [a, b] : {std::pair{"whole.mcap", "torn.mcap"}, {"torn.mcap", "whole.mcap"}}) {
+    std::ostringstream out, err;
+    CHECK(run_diff_command({.a = folder / a, .b = folder / b}, out, err) == kExitDone);
+    CHECK_THAT(out.str(), Catch::EndsWith("equal\n"));
+    CHECK_THAT(err.str(), Catch::StartsWith("warning: ") && Catch::Contains("torn.mcap"));
+  }
+  std::ostringstream out, err;
+  CHECK(run_diff_command({.a = folder / "whole.mcap", .b = folder / "whole.mcap"}, out, err) == 0);
+  CHECK(err.str() == "");
+}
+
 TEST_CASE("commands: a bad recording is bad input, an unwritable CSV folder a failure") {
   // Oracle: exit codes of core/error.h.
   TempFolder folder;

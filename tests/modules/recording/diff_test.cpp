@@ -112,6 +112,7 @@ TEST_CASE("diff: the command's exit code says equal, different or bad input") {
                        "pressure_pa: 10 and 10.5\n") != std::string::npos);
   CHECK(err.str().empty());
   CHECK(run_diff_command({.a = a, .b = folder / "none.mcap"}, out, err) == 2);
+  CHECK(run_diff_command({.a = a, .b = b, .csv = "/nowhere/rows.csv"}, out, err) == 2);
   CHECK(err.str().find("none.mcap") != std::string::npos);
 }
 

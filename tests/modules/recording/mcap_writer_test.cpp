@@ -58,6 +58,19 @@ void write_hand_laid_file(const std::filesystem::path& file) {
 
 }  // namespace
 
+TEST_CASE("mcap writer: replaces a recording, and nothing else") {
+  // Oracle: the message, and the bytes that stay.
+  TempFolder folder;
+  write_bytes(folder / "scene.yaml", {'p', 'a', 'l', 'p', 'a', 't', 'e', ':', ' ', '1'});
+  CHECK_THROWS_WITH(McapWriter(folder / "scene.yaml"),
+                    Catch::EndsWith("scene.yaml: is no recording, and is not replaced by one"));
+  CHECK(std::filesystem::file_size(folder / "scene.yaml") == 10);
+  write_bytes(folder / "empty", {});
+  for (int i = 0; i < 2; ++i) {
+    for (const char* name : {"empty", "new.mcap"}) CHECK_NOTHROW(McapWriter(folder / name));
+  }
+}
+
 TEST_CASE("mcap writer: the data section has the bytes of the specification") {
   // Oracle: bytes laid out by hand from the specification.
   TempFolder folder;
