@@ -4,7 +4,6 @@
 // The session is run tick by tick. A tick is haptics alone, haptics and search, or all three: the
 // search is sought twice a period of deformation so that each part is seen without the next. Times
 // are first quartiles: other programs on the machine only ever add.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -51,12 +50,12 @@ int run(const std::string& file, double seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What each part of a session's cycle costs.", "palpate-bench-cycle");
+  runtime::Program program("What each part of a session's cycle costs.", "palpate-bench-cycle");
   auto scene = (data_folder() / "scenes/stomach_probe.yaml").string();
   double seconds = 20;
-  app.add_option("SCENE", scene, "Scene file (YAML)")->capture_default_str();
-  app.add_option("--seconds", seconds, "Of the scene, from its start")
-      ->check(CLI::Range(0.1, 600.0))
-      ->capture_default_str();
-  return runtime::run_program(app, argc, argv, [&] { return run(scene, seconds); });
+  program.add("SCENE", scene, "Scene file (YAML)").shows_default();
+  program.add("--seconds", seconds, "Of the scene, from its start")
+      .range(0.1, 600.0)
+      .shows_default();
+  return program.run(argc, argv, [&] { return run(scene, seconds); });
 }

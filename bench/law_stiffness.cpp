@@ -1,6 +1,5 @@
 // The stiffness of the hand's law against the organ's own: along a press, the force over one period
 // more, ended 20 µm further and 20 µm less far.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -125,10 +124,9 @@ int run(const std::vector<std::string>& scenes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Stiffness of the hand's law against the organ's own, along a press.",
-               "palpate-bench-law");
+  runtime::Program program("Stiffness of the hand's law against the organ's own, along a press.",
+                           "palpate-bench-law");
   std::vector<std::string> scenes;
-  app.add_option("SCENE", scenes,
-                 "Scenes whose first organ is pressed; none: a ball of each model");
-  return runtime::run_program(app, argc, argv, [&] { return run(scenes); });
+  program.add("SCENE", scenes, "Scenes whose first organ is pressed; none: a ball of each model");
+  return program.run(argc, argv, [&] { return run(scenes); });
 }

@@ -1,6 +1,5 @@
 // What checking and encoding, and decoding and checking, the largest stream costs: node positions
 // of the refined stomach, beside a plain copy of as many bytes.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -59,7 +58,8 @@ int measure() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What encoding and decoding node positions costs, beside a plain copy.",
-               "palpate-bench-message-codec");
-  return palpate::runtime::run_program(app, argc, argv, measure);
+  palpate::runtime::Program program(
+      "What encoding and decoding node positions costs, beside a plain copy.",
+      "palpate-bench-message-codec");
+  return program.run(argc, argv, measure);
 }

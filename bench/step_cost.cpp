@@ -5,7 +5,6 @@
 // Times are first quartiles over the rounds: other programs on the machine only ever add. The
 // streaming bound is the time in which the same core merely reads all arrays of a step and writes
 // its results.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -210,16 +209,16 @@ int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("What one deformation step costs, by mesh size and instruction set.",
-               "palpate-bench-step-cost");
+  runtime::Program program("What one deformation step costs, by mesh size and instruction set.",
+                           "palpate-bench-step-cost");
   auto scene = (data_folder() / "scenes/stomach_probe_refined.yaml").string();
   std::vector<std::size_t> sizes{550, 5'000, 19'362, 200'000};
-  app.add_option("--scene", scene, "Scene whose first organ is measured")->capture_default_str();
-  app.add_option("--nodes", sizes,
-                 "Mesh sizes; above 20,000 made by halving the edges of a "
-                 "fourth of the nodes as often as needed")
-      ->delimiter(',')
-      ->check(CLI::Range(std::size_t{4}, std::size_t{1'000'000}))
-      ->capture_default_str();
-  return runtime::run_program(app, argc, argv, [&] { return run(scene, sizes); });
+  program.add("--scene", scene, "Scene whose first organ is measured").shows_default();
+  program
+      .add("--nodes", sizes,
+           "Mesh sizes; above 20,000 made by halving the edges of a "
+           "fourth of the nodes as often as needed")
+      .range(4, 1'000'000)
+      .shows_default();
+  return program.run(argc, argv, [&] { return run(scene, sizes); });
 }

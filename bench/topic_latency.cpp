@@ -11,7 +11,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -278,17 +277,14 @@ void write_as_told(char** words) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Latency of node positions between two processes, beside plain UDP.",
-               "palpate-bench-topic-latency");
+  palpate::runtime::Program program(
+      "Latency of node positions between two processes, beside plain UDP.",
+      "palpate-bench-topic-latency");
   double seconds = 5, rate_hz = 250;
-  app.add_option("SECONDS", seconds, "Of each measurement")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
-  app.add_option("RATE_HZ", rate_hz, "Of the samples")
-      ->check(CLI::Range(1.0, 10'000.0))
-      ->capture_default_str();
+  program.add("SECONDS", seconds, "Of each measurement").range(0.1, 3600.0).shows_default();
+  program.add("RATE_HZ", rate_hz, "Of the samples").range(1.0, 10'000.0).shows_default();
   const bool writes = argc == 6;
-  return palpate::runtime::run_program(app, writes ? 1 : argc, argv, [&] {
+  return program.run(writes ? 1 : argc, argv, [&] {
     writes ? write_as_told(argv + 1) : run(seconds, rate_hz);
     return palpate::kExitDone;
   });

@@ -35,10 +35,10 @@ struct WorldOrgan {
   bool replaced = false;      ///< its state, at the end of the last advance
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
-  VolumeGradient volume = {};                       ///< buffer of compliance()
+  VolumeGradient volume = {};                       ///< buffer of contact_compliance()
 
   /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N].
-  Eigen::MatrixXd compliance(std::span<const ComplianceRow> touched, double period) {
+  Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period) {
     const OrganState& state = simulated.state();
     std::span<const Vec3> gradient;
     if (keeps_volume) {
@@ -177,7 +177,7 @@ struct DeformationWorld::Impl {
         for (std::size_t k = 0; k < directions; ++k) places.push_back(directions * c + k);
       }
       if (rows.empty()) continue;
-      const Eigen::MatrixXd W = organs[i].compliance(rows, period);
+      const Eigen::MatrixXd W = organs[i].contact_compliance(rows, period);
       for (std::size_t a = 0; a < places.size(); ++a) {
         for (std::size_t b = 0; b <= a; ++b) {
           const auto [low, high] = std::minmax(places[a], places[b]);

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 
 #include "bench/solids/step_cost.h"
 #include "modules/core/error.h"
@@ -7,10 +6,11 @@
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app("What a step of implicit solids costs, by its parts.", "palpate-bench-solids");
+  runtime::Program program("What a step of implicit solids costs, by its parts.",
+                           "palpate-bench-solids");
   std::string mesh;
-  app.add_option("MESH", mesh, "Mesh of tetrahedra, as a scene names it")->required();
-  return runtime::run_program(app, argc, argv, [&] {
+  program.add("MESH", mesh, "Mesh of tetrahedra, as a scene names it").required();
+  return program.run(argc, argv, [&] {
     const auto tetrahedra = geometry::read_tetrahedra(mesh);
     for (const auto model : {"corotational", "nodal_pressure"}) {
       solids_bench::print_step_cost(model, tetrahedra);

@@ -33,7 +33,7 @@ void AugmentedContacts::begin(std::span<const Mat3> inverse_mass_blocks, std::sp
   for (std::size_t c = 0; c < rows.size(); ++c) {
     ContactRow& row = rows[c];
     Spring& spring = springs_[c];
-    double effective_inverse_mass = 0;
+    double inverse_mass = 0;
     for (int k = 0; k < 3; ++k) {
       inverse_mass += row.weights[k] * row.weights[k] *
                       row.normal.dot(inverse_mass_blocks[row.nodes[k]] * row.normal);

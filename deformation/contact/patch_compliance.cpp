@@ -69,7 +69,7 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   Eigen::MatrixXd answers = half.leftCols(count).transpose() * half.leftCols(count) + alone;
   if (gradient.empty()) return answers;
 
-  double effective_inverse_mass = half.col(count).squaredNorm();  // gᵀA⁻¹g
+  double inverse_mass = half.col(count).squaredNorm();  // gᵀA⁻¹g
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     if (patch_.place(static_cast<std::uint32_t>(i)) < 0) {
       inverse_mass += gradient[i].squaredNorm() * body_.inverse_masses[i] / shares.mass;

@@ -1,5 +1,4 @@
-// palpate-recorder: records one session until it is told to stop (Ctrl-C, SIGTERM).
-#include <CLI/CLI.hpp>
+// palpate-recorder: records one session until it is told to stop (Ctrl-C, SIGTERM, SIGHUP).
 #include <iostream>
 
 #include "modules/bus/dds_bus.h"
@@ -9,7 +8,6 @@
 #include "modules/runtime/lockstep_module.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
-#include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
 
@@ -17,7 +15,8 @@ namespace {
 
 constexpr double kPollRateHz = 100;  // a tenth of what the readers can hold at 4 kHz
 
-void record_in_lockstep(const palpate::runtime::ModuleOptions& options, const std::string& file) {
+void record_in_lockstep(const palpate::runtime::ModuleOptions& options,
+                        const std::filesystem::path& file) {
   using namespace palpate;
   if (options.scene.empty()) throw InputError("--lockstep: --scene is missing");
   const scene::Scene scene = scene::load_scene(options.scene);
@@ -26,7 +25,7 @@ void record_in_lockstep(const palpate::runtime::ModuleOptions& options, const st
   });
 }
 
-void record(const palpate::runtime::ModuleOptions& options, const std::string& file) {
+void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file) {
   if (!options.lockstep.empty()) return record_in_lockstep(options, file);
   const palpate::bus::BusOptions& session = options.bus;
   const palpate::runtime::StopSignal stop;
@@ -38,23 +37,25 @@ void record(const palpate::runtime::ModuleOptions& options, const std::string& f
     recorder.poll();
   }
   recorder.close();
-  std::cerr << "[recorder] " << file << ": " << recorder.file().statistics().message_count
+  std::cerr << "[recorder] " << file.string() << ": " << recorder.file().statistics().message_count
             << " samples, " << recorder.file().bytes_written() << " bytes\n";
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Records every sample of a session into one MCAP file", "palpate-recorder");
+  palpate::runtime::Program program("Records every sample of a session into one MCAP file",
+                                    "palpate-recorder");
   palpate::runtime::ModuleOptions options;
   options.bus.participant_name = "recorder";
-  std::string file;
-  app.add_option("FILE", file, "the recording to write; an existing one is replaced")->required();
-  palpate::runtime::add_bus_options(app, options.bus);
-  palpate::runtime::add_lockstep_option(app, options.lockstep);
-  app.add_option("--scene", options.scene,
-                 "Scene file; needed in lockstep, which follows its rates");
-  return palpate::runtime::run_program(app, argc, argv, [&] {
+  std::filesystem::path file;
+  program.add_output("FILE", file, "the recording to write; an existing one is replaced")
+      .required();
+  palpate::runtime::add_bus_options(program, options.bus);
+  palpate::runtime::add_lockstep_option(program, options.lockstep);
+  program.add_input("--scene", options.scene,
+                    "Scene file; needed in lockstep, which follows its rates");
+  return program.run(argc, argv, [&] {
     record(options, file);
     return palpate::kExitDone;
   });

@@ -3,10 +3,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <CLI/CLI.hpp>
-
 #include "modules/core/error.h"
-#include "modules/runtime/program.h"
 #include "modules/runtime/wiring.h"
 
 namespace palpate::runtime {
@@ -20,58 +17,40 @@ void start_log(const std::string& name) {
   spdlog::set_default_logger(logger);
 }
 
-/// Runs `job` and turns what it throws into a line and an exit code.
-int report_failure(const std::function<void()>& job) {
-  try {
-    job();
-    return kExitDone;
-  } catch (const InputError& error) {
-    spdlog::error("{}", error.what());
-    return kExitBadInput;
-  } catch (const std::exception& error) {
-    spdlog::error("{}", error.what());
-    return kExitFailed;
-  }
-}
-
 }  // namespace
 
-void add_bus_options(CLI::App& app, bus::BusOptions& bus) {
-  app.add_option("--session", bus.session, "Name that keeps simultaneous sessions apart")
-      ->capture_default_str();
-  app.add_option("--domain", bus.domain, "DDS domain id, 0 to 200")
-      ->envname("PALPATE_DOMAIN")
-      ->check(CLI::Range(0, 200))
-      ->capture_default_str();
+void add_bus_options(Options& options, bus::BusOptions& bus) {
+  options.add("--session", bus.session, "Name that keeps simultaneous sessions apart")
+      .shows_default();
+  options.add("--domain", bus.domain, "DDS domain id, 0 to 200")
+      .environment("PALPATE_DOMAIN")
+      .range(0, 200)
+      .shows_default();
 }
 
-void add_lockstep_option(CLI::App& app, std::vector<std::string>& participants) {
-  app.add_option("--lockstep", participants,
-                 "Modules of a lockstep session, this one included: cycles wait for their inputs, "
-                 "no clock is read (palpate run --lockstep)")
-      ->delimiter(',')
-      ->check(CLI::IsMember(std::vector<std::string>(kModules.begin(), kModules.end())));
+void add_lockstep_option(Options& options, std::vector<std::string>& participants) {
+  options
+      .add("--lockstep", participants,
+           "Modules of a lockstep session, this one included: cycles wait for their inputs, "
+           "no clock is read (palpate run --lockstep)")
+      .one_of({kModules.begin(), kModules.end()});
 }
 
 int run_module(int argc, char** argv, const ModuleProgram& program,
                const std::function<void(const ModuleOptions&)>& run) {
   start_log(program.name);
   ModuleOptions options;
-  bool no_realtime = false;
-  CLI::App app(program.purpose, "palpate-" + program.name);
-  app.add_option("SCENE", options.scene, "Scene file (YAML)")->required();
-  add_bus_options(app, options.bus);
-  app.add_flag("--no-realtime", no_realtime, "Do not ask for real-time priority");
-  add_lockstep_option(app, options.lockstep);
-  if (program.add_options) program.add_options(app);
-  add_version(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
-  }
-  options.realtime = !no_realtime;
-  return report_failure([&] { run(options); });
+  Program command(program.purpose, "palpate-" + program.name);
+  command.report_to([](const std::string& what) { spdlog::error("{}", what); });
+  command.add_input("SCENE", options.scene, "Scene file (YAML)").required();
+  add_bus_options(command, options.bus);
+  command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
+  add_lockstep_option(command, options.lockstep);
+  if (program.add_options) program.add_options(command);
+  return command.run(argc, argv, [&] {
+    run(options);
+    return kExitDone;
+  });
 }
 
 }  // namespace palpate::runtime

@@ -7,10 +7,7 @@
 #include <vector>
 
 #include "modules/bus/bus.h"
-
-namespace CLI {
-class App;
-}
+#include "modules/runtime/program.h"
 
 namespace palpate::runtime {
 
@@ -26,14 +23,14 @@ struct ModuleProgram {
   std::string name;     ///< "haptics"; the program is palpate-haptics
   std::string purpose;  ///< one sentence for --help
   /// Options beyond the common ones; may be empty.
-  std::function<void(CLI::App&)> add_options;
+  std::function<void(Options&)> add_options;
 };
 
 /// Adds --lockstep with its check of names.
-void add_lockstep_option(CLI::App& app, std::vector<std::string>& participants);
+void add_lockstep_option(Options& options, std::vector<std::string>& participants);
 
 /// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
-void add_bus_options(CLI::App& app, bus::BusOptions& bus);
+void add_bus_options(Options& options, bus::BusOptions& bus);
 
 /// The whole of a module's main: parses, starts the log on stderr ("[haptics] warning: …"), runs,
 /// and reports what is thrown in one line.

@@ -23,30 +23,167 @@ void refuse_nan(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) refuse_nan(*command);
 }
 
+std::string refuse_empty(const std::string& path) {
+  return path.empty() ? "an empty path names no file" : "";
+}
+
+/// @throws InputError for a file that is both read and written
+void refuse_overwriting(const Files& files) {
+  for (const CLI::Option* output : files.written) {
+    for (const CLI::Option* input : files.read) {
+      if (output->empty() || input->empty()) continue;
+      std::error_code none;
+      if (!std::filesystem::equivalent(output->results()[0], input->results()[0], none)) continue;
+      throw InputError(output->get_name() + " " + output->results()[0] + ": is what " +
+                       input->get_name() + " names and would be overwritten");
+    }
+  }
+}
+
 }  // namespace
 
 std::string version_text() {
   return "palpate " PALPATE_VERSION ", protocol " + std::to_string(kProtocolVersion);
 }
 
-void add_version(CLI::App& app) { app.set_version_flag("--version", version_text()); }
+Option& Option::required() { return option_->required(), *this; }
 
-int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body) {
-  add_version(app);
-  const auto failed = [&app](const std::exception& error, int code) {
-    std::cerr << app.get_name() << ": " << error.what() << '\n';
-    return code;
-  };
+Option& Option::shows_default() { return option_->capture_default_str(), *this; }
+
+Option& Option::range(double lowest, double highest) {
+  const bool whole = option_->get_type_name().find("INT") != std::string::npos;
+  const auto rounded = [](double bound) { return static_cast<long long>(bound); };
+  option_->check(whole ? CLI::Range(rounded(lowest), rounded(highest))
+                       : CLI::Range(lowest, highest));
+  return *this;
+}
+
+Option& Option::one_of(const std::vector<std::string>& words) {
+  return option_->check(CLI::IsMember(words)), *this;
+}
+
+Option& Option::environment(const char* variable) { return option_->envname(variable), *this; }
+
+Option& Option::excludes(const Option& other) { return option_->excludes(other.option_), *this; }
+
+template <class T>
+Option Options::add(const char* names, T& value, const std::string& help) {
+  using Path = std::filesystem::path;
+  CLI::Option* option = app_->add_option(names, value, help);
+  if constexpr (std::is_same_v<T, Path> || std::is_same_v<T, std::vector<Path>>) {
+    option->check(refuse_empty);
+  } else if (*names == '-' && option->get_items_expected_max() > 1) {
+    option->delimiter(',');
+  }
+  return Option(*option);
+}
+
+template Option Options::add(const char*, int&, const std::string&);
+template Option Options::add(const char*, std::size_t&, const std::string&);
+template Option Options::add(const char*, double&, const std::string&);
+template Option Options::add(const char*, std::string&, const std::string&);
+template Option Options::add(const char*, std::filesystem::path&, const std::string&);
+template Option Options::add(const char*, std::optional<double>&, const std::string&);
+template Option Options::add(const char*, std::optional<std::size_t>&, const std::string&);
+template Option Options::add(const char*, std::vector<int>&, const std::string&);
+template Option Options::add(const char*, std::vector<std::size_t>&, const std::string&);
+template Option Options::add(const char*, std::vector<double>&, const std::string&);
+template Option Options::add(const char*, std::vector<std::string>&, const std::string&);
+template Option Options::add(const char*, std::vector<std::filesystem::path>&, const std::string&);
+template Option Options::add(const char*, std::set<std::string, std::less<>>&, const std::string&);
+
+Option Options::add_input(const char* names, std::filesystem::path& value,
+                          const std::string& help) {
+  Option option = add(names, value, help);
+  files_->read.push_back(app_->get_options().back());
+  return option;
+}
+
+Option Options::add_output(const char* names, std::filesystem::path& value,
+                           const std::string& help) {
+  Option option = add(names, value, help);
+  files_->written.push_back(app_->get_options().back());
+  return option;
+}
+
+Option Options::flag(const char* names, bool& value, const std::string& help) {
+  return Option(*app_->add_flag(names, value, help));
+}
+
+Option Options::flag_off(const char* names, bool& value, const std::string& help) {
+  return Option(*app_->add_flag_callback(
+      names, [&value] { value = false; }, help));
+}
+
+void Options::footer(const std::string& text) { app_->footer(text); }
+
+Program::Program(const std::string& purpose, const std::string& name)
+    : Program(std::make_unique<CLI::App>(purpose, name)) {}
+
+Program::Program(std::unique_ptr<CLI::App> app)
+    : Options(*app),
+      app_(std::move(app)),
+      report_([name = app_->get_name()](const std::string& what) {
+        std::cerr << name << ": " << what << '\n';
+      }) {
+  app_->set_version_flag("--version", version_text());
+}
+
+Program::~Program() = default;
+
+Options Program::command(const std::string& word, const std::string& purpose,
+                         std::function<int()> job) {
+  app_->require_subcommand(1);
+  CLI::App* command = app_->add_subcommand(word, purpose);
+  command->set_version_flag("--version", version_text());
+  Options options(*command);
+  command->final_callback([this, files = options.files_, job = std::move(job)] {
+    refuse_overwriting(*files);
+    job_ = job;
+  });
+  return options;
+}
+
+void Program::command_with_words(const std::string& word, const std::string& purpose,
+                                 std::function<int(const std::vector<std::string>&)> job) {
+  app_->require_subcommand(1);
+  CLI::App* command = app_->add_subcommand(word, purpose);
+  command->prefix_command();
+  command->set_help_flag();
+  command->final_callback([this, command, job = std::move(job)] {
+    job_ = [job, words = command->remaining()] { return job(words); };
+  });
+}
+
+/// Says so where the first word is meant as a command and is none.
+bool Program::refuse_unknown(int argc, char** argv) const {
+  const auto commands = app_->get_subcommands([](const CLI::App*) { return true; });
+  if (commands.empty() || argc < 2 || *argv[1] == '-') return false;
+  const std::string word = argv[1];
+  std::string names;
+  for (const CLI::App* command : commands) {
+    if (command->get_name() == word) return false;
+    names += ' ' + command->get_name();
+  }
+  report_("there is no command '" + word + "'; there are" + names);
+  return true;
+}
+
+int Program::run(int argc, char** argv, const std::function<int()>& body) {
+  if (refuse_unknown(argc, argv)) return kExitBadInput;
   try {
-    app.parse(argc, argv);
-    refuse_nan(app);
-    return body();
+    app_->parse(argc, argv);
+    refuse_nan(*app_);
+    refuse_overwriting(*files_);
+    return job_ ? job_() : body();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitBadInput;
+    return app_->exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
-    return failed(error, kExitBadInput);
+    report_(error.what());
+    return kExitBadInput;
   } catch (const std::exception& error) {
-    return failed(error, kExitFailed);
+    report_(error.what());
+    return kExitFailed;
   }
 }
 

@@ -1,12 +1,18 @@
-// What is around the body of every program: --version, the command line, and what is thrown.
+// What is around the body of every program: its command line, --help, --version, and what is
+// thrown. The parser is known to one file, for its header costs each that includes it eight
+// seconds.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace palpate::runtime {
 
@@ -14,13 +20,79 @@ namespace palpate::runtime {
 /// session.
 std::string version_text();
 
-/// Adds --version, which prints version_text() and ends the program with kExitDone.
-void add_version(CLI::App& app);
+/// One option, to be told more about.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+  Option& required();
+  Option& shows_default();  ///< --help prints the value it has now
+  Option& range(double lowest, double highest);
+  Option& one_of(const std::vector<std::string>& words);
+  Option& environment(const char* variable);  ///< whose value is the default
+  Option& excludes(const Option& other);
 
-/// Parses the command line into what `app` was given, refuses NaN for a number, and runs `body`.
-/// What is thrown on the way becomes one line on stderr, led by the app's name.
-/// @return what `body` returns; kExitDone after --help or --version; kExitBadInput for an
-/// InputError or a wrong command line, kExitFailed for any other exception
-int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body);
+ private:
+  CLI::Option* option_;
+};
+
+/// The files that options name.
+struct Files {
+  std::vector<const CLI::Option*> read, written;
+};
+
+/// The options of a program, or of one of its commands.
+class Options {
+ public:
+  explicit Options(CLI::App& app) : app_(&app) {}
+
+  /// An option ("-o,--out") or, without dashes, an argument ("SCENE"). NaN and empty paths are
+  /// refused; lists are separated by commas or spaces, arguments and paths by spaces alone.
+  /// @param value  what it sets: a number, text or path, an optional, vector or set of these
+  template <class T>
+  Option add(const char* names, T& value, const std::string& help);
+  /// The same for a file, or a folder of files. What a command reads it does not write.
+  Option add_input(const char* names, std::filesystem::path& value, const std::string& help);
+  Option add_output(const char* names, std::filesystem::path& value, const std::string& help);
+  Option flag(const char* names, bool& value, const std::string& help);
+  Option flag_off(const char* names, bool& value, const std::string& help);  ///< makes it false
+  void footer(const std::string& text);  ///< what --help says last
+
+ private:
+  friend class Program;
+
+  CLI::App* app_;
+  std::shared_ptr<Files> files_ = std::make_shared<Files>();
+};
+
+class Program : public Options {
+ public:
+  /// @param purpose  a sentence for --help  @param name  as it is typed
+  Program(const std::string& purpose, const std::string& name);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  /// "NAME WORD …" runs `job`, whose result is the exit code. With one command, one has to be
+  /// given.
+  Options command(const std::string& word, const std::string& purpose, std::function<int()> job);
+  /// The same where all words that follow, --help too, are the job's.
+  void command_with_words(const std::string& word, const std::string& purpose,
+                          std::function<int(const std::vector<std::string>&)> job);
+  /// Where what is thrown goes, in one line. Else to stderr, led by the program's name.
+  void report_to(std::function<void(const std::string&)> report) { report_ = std::move(report); }
+
+  /// Parses the command line and runs `body`, or the command that was given.
+  /// @return what that returns; kExitDone after --help or --version; kExitBadInput for an
+  /// InputError or a wrong command line, kExitFailed for any other exception
+  int run(int argc, char** argv, const std::function<int()>& body = {});
+
+ private:
+  explicit Program(std::unique_ptr<CLI::App> app);
+  bool refuse_unknown(int argc, char** argv) const;
+
+  std::unique_ptr<CLI::App> app_;
+  std::function<int()> job_;
+  std::function<void(const std::string&)> report_;
+};
 
 }  // namespace palpate::runtime

@@ -1,6 +1,5 @@
 // palpate-emulated-device: moves one probe of a session as a haptic device in a hand would, until
-// the session ends or it is told to stop (Ctrl-C, SIGTERM).
-#include <CLI/CLI.hpp>
+// the session ends or it is told to stop (Ctrl-C, SIGTERM, SIGHUP).
 #include <fstream>
 #include <iostream>
 
@@ -29,8 +28,8 @@ struct Options {
   bus::BusOptions bus;
   std::string probe, device;
   double duration = 0;  // of the hand's [s]; 0: until the session ends
-  std::string table;
-  bool no_realtime = false;
+  std::filesystem::path table;
+  bool realtime = true;
 };
 
 /// The named probe, or the first one that a driver may move.
@@ -84,7 +83,7 @@ void attach(const Options& options) {
   const std::uint32_t probe = probe_of(scene, options.probe);
   const scene::EmulatedDevice device = scene::parse_emulated_device(
       options.device, "--device", std::get<scene::TopicDevice>(scene.probes[probe].device));
-  if (!options.no_realtime) {
+  if (options.realtime) {
     const runtime::Realtime granted = runtime::request_realtime(kFifo, false);
     if (!granted.refused.empty()) std::cerr << kName << ": " << granted.refused << '\n';
   }
@@ -93,7 +92,7 @@ void attach(const Options& options) {
   std::ofstream table;
   if (!options.table.empty()) {
     table.open(options.table);
-    if (!table) throw InputError(options.table + ": cannot be written");
+    if (!table) throw InputError(options.table.string() + ": cannot be written");
   }
   launcher::DeviceLog log(std::cout, options.table.empty() ? nullptr : &table);
   run(options, scene, driver, bus, log);
@@ -103,22 +102,22 @@ void attach(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Moves a probe of a running session as a haptic device in a hand would", kName);
+  runtime::Program program("Moves a probe of a running session as a haptic device in a hand would",
+                           kName);
   Options options;
   options.bus.participant_name = "emulated_device";
-  app.add_option("SCENE", options.scene, "Scene of the session; the probe's device is topic")
-      ->required();
-  app.add_option("--probe", options.probe, "Name of the probe; else the first with device topic");
-  app.add_option("--device", options.device,
-                 "Device and hand: the keys of a scene's `emulated`, such as "
-                 "'{kind: omega, hand: {push_n: [0, 0, -0.2]}}'");
-  runtime::add_bus_options(app, options.bus);
-  app.add_option("--duration", options.duration, "Seconds; else until the session ends")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--csv", options.table,
-                 "Place and force of each period; an existing one is replaced");
-  app.add_flag("--no-realtime", options.no_realtime, "Do not ask for real-time priority");
-  return runtime::run_program(app, argc, argv, [&] {
+  program.add_input("SCENE", options.scene, "Scene of the session; the probe's device is topic")
+      .required();
+  program.add("--probe", options.probe, "Name of the probe; else the first with device topic");
+  program.add("--device", options.device,
+              "Device and hand: the keys of a scene's `emulated`, such as "
+              "'{kind: omega, hand: {push_n: [0, 0, -0.2]}}'");
+  runtime::add_bus_options(program, options.bus);
+  program.add("--duration", options.duration, "Seconds; else until the session ends").range(0, 1e6);
+  program.add_output("--csv", options.table,
+                     "Place and force of each period; an existing one is replaced");
+  program.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
+  return program.run(argc, argv, [&] {
     attach(options);
     return kExitDone;
   });

@@ -1,5 +1,4 @@
 // palpate-generate-meshes FOLDER: writes the meshes that ship in scenes/meshes.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 
@@ -9,12 +8,14 @@
 #include "scenes/meshes/organ_shapes.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes the meshes that ship in scenes/meshes.", "palpate-generate-meshes");
+  palpate::runtime::Program program("Writes the meshes that ship in scenes/meshes.",
+                                    "palpate-generate-meshes");
   std::filesystem::path folder;
-  app.add_option("FOLDER", folder, "Where to; it must exist")
-      ->required()
-      ->check(CLI::ExistingDirectory);
-  return palpate::runtime::run_program(app, argc, argv, [&] {
+  program.add("FOLDER", folder, "Where to; it must exist").required();
+  return program.run(argc, argv, [&] {
+    if (!std::filesystem::is_directory(folder)) {
+      throw palpate::InputError(folder.string() + ": no such folder");
+    }
     for (const auto& [file_name, make] : palpate::meshes::kShippedMeshes) {
       const palpate::geometry::TriangleSurface surface = make();
       palpate::geometry::write_surface(surface, folder / file_name);

@@ -1,5 +1,4 @@
 // palpate calibrate: fits and checks spring stiffness against squeezed balls of finite elements.
-#include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
 
@@ -24,23 +23,19 @@ struct Options {
   bool quick = false, outer_surface = false;
 };
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_flag("--quick", options.quick, "Only compare, do not fit (under a minute)");
-  app.add_option("--case", options.only, "Only this one: hollow or solid")
-      ->check(CLI::IsMember({"hollow", "solid"}));
-  app.add_option("--nodes", options.nodes, "Meshes: of 162, 642, 2562, 10242")
-      ->check(CLI::IsMember({162, 642, 2562, 10242}))
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--bending-ratio", options.bending_ratio, "Instead of the shipped one")
-      ->check(CLI::Range(0.0, 10.0));
-  app.add_option("--inner-ratio", options.inner_ratio, "Instead of the shipped one")
-      ->check(CLI::Range(0.0, 100.0));
-  app.add_flag("--outer-surface", options.outer_surface,
+void add_options(runtime::Program& program, Options& options) {
+  program.flag("--quick", options.quick, "Only compare, do not fit (under a minute)");
+  program.add("--case", options.only, "Only this one: hollow or solid").one_of({"hollow", "solid"});
+  program.add("--nodes", options.nodes, "Meshes: of 162, 642, 2562, 10242")
+      .one_of({"162", "642", "2562", "10242"})
+      .shows_default();
+  program.add("--bending-ratio", options.bending_ratio, "Instead of the shipped one")
+      .range(0.0, 10.0);
+  program.add("--inner-ratio", options.inner_ratio, "Instead of the shipped one").range(0.0, 100.0);
+  program.flag("--outer-surface", options.outer_surface,
                "Nodes on the outer surface instead of the middle of the wall");
-  app.add_option("--csv", options.csv, "File for the comparison");
-  app.add_option("--reference", options.reference, "Folder of the reference tables")
-      ->capture_default_str();
+  program.add("--csv", options.csv, "File for the comparison");
+  program.add("--reference", options.reference, "Folder of the reference tables").shows_default();
 }
 
 std::vector<int> levels_of(const Options& options) {
@@ -105,13 +100,13 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  runtime::Program program(
       "Squeeze balls between plates, fit inner springs and the membrane factor to\n"
       "finite-element solutions, and print what error is left (docs/calibration.md).",
       "palpate calibrate");
   Options options;
-  add_options(app, options);
-  return runtime::run_program(app, argc, argv, [&] {
+  add_options(program, options);
+  return program.run(argc, argv, [&] {
     try {
       return run(options);
     } catch (const report::Stopped&) {

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "modules/runtime/module_options.h"
@@ -9,26 +8,24 @@
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app(
+  runtime::Program program(
       "Certifies the loop people run on a scene: hand, device, haptics, organ. Each line passes,\n"
       "fails or was not measured; exit code 0: none failed, 1: some did, 2: bad input.",
       "palpate certify");
   certify::CertifyOptions options;
-  app.add_option("SCENE", options.scene, "Scene file (YAML)")->required();
-  app.add_option("-o,--out", options.out, "Folder for certificate.html, certificate.json, tables")
-      ->capture_default_str();
-  app.add_option("--depth", options.depth, "Of presses [m]")
-      ->check(CLI::Range(5e-4, 0.05))
-      ->capture_default_str();
-  app.add_option("--speed", options.speed, "Of presses in the mean, of slides [m/s]")
-      ->check(CLI::Range(0.005, 0.5))
-      ->capture_default_str();
-  app.add_flag("--lockstep", options.lockstep,
+  program.add_input("SCENE", options.scene, "Scene file (YAML)").required();
+  program.add("-o,--out", options.out, "Folder for certificate.html, certificate.json, tables")
+      .shows_default();
+  program.add("--depth", options.depth, "Of presses [m]").range(5e-4, 0.05).shows_default();
+  program.add("--speed", options.speed, "Of presses in the mean, of slides [m/s]")
+      .range(0.005, 0.5)
+      .shows_default();
+  program.flag("--lockstep", options.lockstep,
                "Only what runs in one process: the same numbers every time");
-  app.add_flag("--quick", options.quick, "Fewer disturbances, one row of slides: a minute or so");
+  program.flag("--quick", options.quick, "Fewer disturbances, one row of slides: a minute or so");
   options.bus.session = launcher::random_session_name();
-  runtime::add_bus_options(app, options.bus);
-  return runtime::run_program(app, argc, argv, [&] {
+  runtime::add_bus_options(program, options.bus);
+  return program.run(argc, argv, [&] {
     const runtime::StopSignal signal;
     return certify::run_certify(
         options, [&] { return signal.requested(); }, std::cout, std::cerr);

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "modules/core/data_folder.h"
@@ -6,25 +5,32 @@
 #include "studies/chart/chart_command.h"
 #include "studies/chart/fidelity.h"
 
+namespace {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app("Speed against accuracy: what each model costs and how wrong it is.",
-               "palpate chart");
+  runtime::Program program("Speed against accuracy: what each model costs and how wrong it is.",
+                           "palpate chart");
   chart::ChartOptions options;
   options.bullet_program = program_folder() / "palpate-bench-bullet";
   bool quick = false, full = false;
-  app.add_option("-o,--out", options.out, "Folder for tables and charts")->capture_default_str();
-  app.add_option("--case", options.only_cases,
-                 "Only these cases: " + CLI::detail::join(chart::case_names(), ", "))
-      ->delimiter(',');
-  app.add_option("--model", options.only_models,
-                 "Only these models: " + CLI::detail::join(chart::model_hierarchy(), ", "))
-      ->delimiter(',');
-  app.add_flag("--quick", quick, "Coarse meshes, one step: under 2 minutes");
-  app.add_flag("--full", full, "Fine meshes, four steps: hours")->excludes("--quick");
-  app.add_flag("--again", options.again, "Measure anew what earlier runs have left in --out");
-  app.add_flag("!--no-peers", options.peers, "Without Bullet");
-  return runtime::run_program(app, argc, argv, [&] {
+  program.add("-o,--out", options.out, "Folder for tables and charts").shows_default();
+  program.add("--case", options.only_cases, "Only these cases: " + listed(chart::case_names()));
+  program.add("--model", options.only_models,
+              "Only these models: " + listed(chart::model_hierarchy()));
+  const auto coarse = program.flag("--quick", quick, "Coarse meshes, one step: under 2 minutes");
+  program.flag("--full", full, "Fine meshes, four steps: hours").excludes(coarse);
+  program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
+  program.flag_off("--no-peers", options.peers, "Without Bullet");
+  return program.run(argc, argv, [&] {
     if (quick) options.extent = chart::Extent::kQuick;
     if (full) options.extent = chart::Extent::kFull;
     return chart::run_chart(options, std::cout, std::cerr);

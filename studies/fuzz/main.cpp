@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "modules/runtime/program.h"
@@ -6,17 +5,13 @@
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app("Random scenes, looking for one that fails without a guard noticing.",
-               "palpate fuzz");
+  runtime::Program program("Random scenes, looking for one that fails without a guard noticing.",
+                           "palpate fuzz");
   fuzz::FuzzOptions options;
-  app.add_option("-o,--out", options.out, "Folder for outcomes and failing scenes")
-      ->capture_default_str();
-  app.add_option("--scenes", options.scenes, "How many")
-      ->check(CLI::Range(1, 10'000'000))
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "Of the scenes")->capture_default_str();
-  app.add_option("--scene", options.only, "Only this one, in detail");
-  app.add_flag("--again", options.again, "Run anew what earlier runs have left in --out");
-  return runtime::run_program(app, argc, argv,
-                              [&] { return fuzz::run_fuzz(options, std::cout, std::cerr); });
+  program.add("-o,--out", options.out, "Folder for outcomes and failing scenes").shows_default();
+  program.add("--scenes", options.scenes, "How many").range(1, 10'000'000).shows_default();
+  program.add("--seed", options.seed, "Of the scenes").shows_default();
+  program.add("--scene", options.only, "Only this one, in detail");
+  program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
+  return program.run(argc, argv, [&] { return fuzz::run_fuzz(options, std::cout, std::cerr); });
 }

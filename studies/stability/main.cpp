@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "modules/runtime/program.h"
@@ -6,16 +5,14 @@
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app("Stability atlas: where each method fails, measured and predicted.",
-               "palpate stability");
+  runtime::Program program("Stability atlas: where each method fails, measured and predicted.",
+                           "palpate stability");
   stability::StabilityOptions options;
-  app.add_option("-o,--out", options.out, "Folder for tables and charts")->capture_default_str();
-  app.add_option("--only", options.only_maps, "Only these maps")
-      ->delimiter(',')
-      ->check(CLI::IsMember(stability::map_names()));
-  app.add_option("--series", options.only_series, "Only these models or loops")->delimiter(',');
-  app.add_flag("--quick", options.quick, "Fewer models and values: under 90 s");
-  app.add_flag("--again", options.again, "Measure anew what earlier runs have left in --out");
-  return runtime::run_program(
-      app, argc, argv, [&] { return stability::run_stability(options, std::cout, std::cerr); });
+  program.add("-o,--out", options.out, "Folder for tables and charts").shows_default();
+  program.add("--only", options.only_maps, "Only these maps").one_of(stability::map_names());
+  program.add("--series", options.only_series, "Only these models or loops");
+  program.flag("--quick", options.quick, "Fewer models and values: under 90 s");
+  program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
+  return program.run(argc, argv,
+                     [&] { return stability::run_stability(options, std::cout, std::cerr); });
 }

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "modules/core/data_folder.h"
@@ -8,21 +7,18 @@
 
 int main(int argc, char** argv) {
   using namespace palpate;
-  CLI::App app(
+  runtime::Program program(
       "Volume methods of the related work side by side: error, cost, largest step, energy.",
       "palpate volume-methods");
   volume_methods::VolumeMethodsOptions options;
   options.scene = data_file("scenes/stomach_probe.yaml");
   std::vector<std::string> names;
   for (const auto& method : volume_methods::compared_methods()) names.push_back(method.name);
-  app.add_option("-o,--out", options.out, "Folder for volume_methods.csv (none: no file)");
-  app.add_option("--only", options.only, "Only these methods")
-      ->delimiter(',')
-      ->check(CLI::IsMember(names));
-  app.add_flag("--quick", options.quick, "Smaller ball, organ pressed for 4 s: under 20 s");
-  app.add_option("--scene", options.scene, "Scene whose first organ is pressed")
-      ->capture_default_str();
-  return runtime::run_program(app, argc, argv, [&] {
+  program.add("-o,--out", options.out, "Folder for volume_methods.csv (none: no file)");
+  program.add("--only", options.only, "Only these methods").one_of(names);
+  program.flag("--quick", options.quick, "Smaller ball, organ pressed for 4 s: under 20 s");
+  program.add("--scene", options.scene, "Scene whose first organ is pressed").shows_default();
+  return program.run(argc, argv, [&] {
     return volume_methods::run_volume_methods(options, std::cout, std::cerr);
   });
 }

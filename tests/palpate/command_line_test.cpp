@@ -70,6 +70,51 @@ TEST_CASE("command line: what is not a command or option is bad input") {
              Contains("--duration: nan is not a number"));
 }
 
+TEST_CASE("command line: every command says its version, and diff its exit codes") {
+  // Oracle: the version that the program itself says; the codes of core/error.h.
+  const auto version = type("palpate", {"--version"});
+  CHECK(version.code == kExitDone);
+  for (const char* command : {"run", "replay", "inspect", "diff", "check", "mesh", "chart", "plan",
+                              "stability", "fuzz", "paper", "calibrate", "elements"}) {
+    INFO(command);
+    const auto said = type("palpate", {command, "--version"});
+    CHECK(said.code == kExitDone);
+    CHECK(said.said == version.said);
+    CHECK(type("palpate", {command, "--help"}).code == kExitDone);
+  }
+  CHECK_THAT(type("palpate", {"diff", "--help"}).said, Contains("0 if they are equal, 1 if they"));
+}
+
+TEST_CASE("command line: no command writes over what it reads, or to an empty path") {
+  // Oracle: the message, the exit code, and the file's bytes.
+  const BallScene scene;
+  const std::string file = scene.file().string(), folder = scene.folder().string();
+  const std::string mesh = folder + "/ball.ply";
+  const auto size = std::filesystem::file_size(mesh);
+  const std::vector<std::vector<std::string>> wrong{
+      {"run", file, "--record", file},
+      {"run", file, "--in-process", "--duration", "0.1", "--record", mesh},
+      {"run", file, "--summary", folder + "/./" + scene.file().filename().string()},
+      {"replay", mesh, file, "--record", mesh},
+      {"mesh", mesh, "-o", mesh},
+      {"diff", mesh, file, "--csv", file},
+      {"plan", file, "-o", file},
+      {"run", file, "--record", ""},
+      {"run", file, "--frames", ""},
+      {"run", ""},
+      {"mesh", mesh, "-o", ""}};
+  for (const auto& arguments : wrong) {
+    const auto outcome = type("palpate", arguments);
+    CAPTURE(arguments, outcome.said);
+    CHECK(outcome.code == kExitBadInput);
+    const bool named = outcome.said.find("overwritten") != std::string::npos ||
+                       outcome.said.find("is no recording") != std::string::npos ||
+                       outcome.said.find("an empty path names no file") != std::string::npos;
+    CHECK(named);
+  }
+  CHECK(std::filesystem::file_size(mesh) == size);
+}
+
 TEST_CASE("command line: a bad scene is refused by every program with file and line") {
   // Oracle: the message and exit code 2.
   const BallScene scene("topic: {start_m: [0, 0, 0.09]}", "wrong_key: 1\n");

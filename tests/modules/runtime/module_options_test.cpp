@@ -1,6 +1,5 @@
 #include "modules/runtime/module_options.h"
 
-#include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <vector>

@@ -1,6 +1,5 @@
 #include "modules/runtime/program.h"
 
-#include <CLI/CLI.hpp>
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -17,10 +16,10 @@ int run(std::vector<std::string> words, const std::function<int()>& body) {
   words.insert(words.begin(), "palpate-test");
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
-  CLI::App app("Tests.", "palpate-test");
+  runtime::Program program("Tests.", "palpate-test");
   int size = 0;
-  app.add_option("--size", size);
-  return runtime::run_program(app, static_cast<int>(argv.size()), argv.data(), body);
+  program.add("--size", size, "Of it");
+  return program.run(static_cast<int>(argv.size()), argv.data(), body);
 }
 
 }  // namespace
