@@ -173,8 +173,9 @@ class LockstepRun {
     modules_.stop();
     monitor_.poll();
     if (wall_time > 0) {
-      SessionEnd said{scene_.name, seconds_from_ns(slowest_ns()), wall_time, modules_.last_words(),
-                      failures_};
+      SessionEnd said{scene_.name, seconds_from_ns(slowest_ns()),
+                      wall_time,   modules_.last_words(),
+                      failures_,   true};
       write_summary(said);
     }
     if (exit_code_ != kExitDone) return exit_code_;
@@ -246,7 +247,7 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   }
   const double reached = std::min(duration, session.time());
   session.finish(reached);
-  const SessionEnd said{scene.name, reached, progress.wall_time(), {}, {}};
+  const SessionEnd said{scene.name, reached, progress.wall_time(), {}, {}, true};
   write_run_summary(options, summary(monitor.tally(), said), out);
   return kExitDone;
 }

@@ -127,7 +127,7 @@ class Run {
 
   void finish() {
     const std::int64_t now = runtime::monotonic_now_ns();
-    SessionEnd end{scene_.name, session_.time(now), 0, {}, failures_};
+    SessionEnd end{scene_.name, session_.time(now), 0, {}, failures_, false};
     if (began_ns_ != 0) end.wall_time = seconds_from_ns(now - began_ns_);
     if (!joined_) conductor_.command(session_.state(), SessionCommand::kStop);
     modules_.stop();

@@ -27,23 +27,30 @@ std::string probe_lines(const SessionTally& tally) {
   return text;
 }
 
-std::string module_lines(const SessionTally& tally) {
+/// ", 99.950 % on time (of 1000 Hz) …"
+std::string timing(const ModuleTally& module) {
+  const ModuleStatus& status = module.newest;
+  return fmt::format(
+      ", {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms since its start, busy "
+      "{:.0f} %",
+      100 * module.on_time_fraction(), status.nominal_rate_hz,
+      status.realtime_priority ? ", real-time priority" : "", 1e3 * status.worst_lateness,
+      100 * status.busy_fraction);
+}
+
+std::string module_lines(const SessionTally& tally, bool lockstep) {
   std::string text;
   for (const auto& [name, module] : tally.modules()) {
-    const ModuleStatus& status = module.newest;
     std::uint64_t received = 0, dropped = 0, rejected = 0;
-    for (const auto& input : status.inputs) {
+    for (const auto& input : module.newest.inputs) {
       received += input.received;
       dropped += input.dropped;
       rejected += input.rejected;
     }
     text += fmt::format(
-        "{:<12} {} cycles, {:.3f} % on time (of {:.0f} Hz{}), worst lateness {:.2f} ms "
-        "since its start, busy {:.0f} %\n"
+        "{:<12} {} cycles{}\n"
         "             samples: {} taken, {} lost or overtaken by newer ones, {} refused\n",
-        name, module.cycles(), 100 * module.on_time_fraction(), status.nominal_rate_hz,
-        status.realtime_priority ? ", real-time priority" : "", 1e3 * status.worst_lateness,
-        100 * status.busy_fraction, received, dropped, rejected);
+        name, module.cycles(), lockstep ? "" : timing(module), received, dropped, rejected);
   }
   return text;
 }
@@ -87,10 +94,11 @@ std::string status_line(const SessionTally& tally) {
 }
 
 std::string summary(const SessionTally& tally, const SessionEnd& end) {
-  std::string text = fmt::format(
-      "scene {}: {:.1f} s in {:.1f} s, {:.1f} s simulated, real-time factor {:.3f}\n", end.scene,
-      end.session_time, end.wall_time, tally.sim_time(), tally.real_time_factor());
-  text += organ_lines(tally) + probe_lines(tally) + module_lines(tally);
+  const double factor = end.lockstep ? end.session_time / end.wall_time : tally.real_time_factor();
+  std::string text =
+      fmt::format("scene {}: {:.1f} s in {:.1f} s, {:.1f} s simulated, real-time factor {:.3f}\n",
+                  end.scene, end.session_time, end.wall_time, tally.sim_time(), factor);
+  text += organ_lines(tally) + probe_lines(tally) + module_lines(tally, end.lockstep);
   for (const auto& trouble : tally.troubles()) {
     text += fmt::format("degraded for a while: {}\n", trouble);
   }

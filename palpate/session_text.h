@@ -17,6 +17,7 @@ struct SessionEnd {
   double wall_time = 0;                           ///< from start to stop [s]
   std::map<std::string, std::string> last_words;  ///< of each module: its last line
   std::map<std::string, std::string> failures;    ///< module → how it ended
+  bool lockstep = false;                          ///< no cycle was early or late
 };
 
 /// One screen.

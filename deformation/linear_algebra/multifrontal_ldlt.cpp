@@ -239,10 +239,4 @@ std::size_t MultifrontalLdlt::negative_pivots() const {
   return count;
 }
 
-std::size_t MultifrontalLdlt::factor_size() const {
-  std::size_t size = 0;
-  for (const Front& front : fronts_) size += static_cast<std::size_t>(front.columns.size());
-  return size;
-}
-
 }  // namespace palpate::deformation

@@ -43,7 +43,6 @@ class MultifrontalLdlt {
 
   /// By Sylvester's law the matrix's negative eigenvalues.
   std::size_t negative_pivots() const;
-  std::size_t factor_size() const;  ///< numbers in L
 
  private:
   struct Front {

@@ -52,7 +52,6 @@ class QuasiStaticNewton {
   bool factor(const SolidState& state, const std::optional<Inertia>& inertia,
               bool positive = false);
   const MultifrontalLdlt& factorisation() const { return factor_; }
-  bool is_constrained(std::size_t coordinate) const { return constrained_[coordinate] != 0; }
 
  private:
   /// Factors a tangent whose K is positive: the true one where it is.

@@ -5,7 +5,7 @@
 #include <deque>
 
 #include "modules/geometry/closest_points.h"
-#include "studies/contact_loop/closed_surface.h"
+#include "studies/contact_loop/winding_number.h"
 #include "studies/rigs/poked_organ.h"
 
 namespace palpate::contact_loop {

@@ -211,11 +211,6 @@ const std::vector<std::string>& case_names() {
   return kNames;
 }
 
-double case_length(const std::string& name) {
-  if (name == "C") return rigs::kBlockHalfWidth;
-  return name == "D" ? kIndenterRadius : kBallRadius;
-}
-
 std::vector<double> default_sizes(const std::string& name, bool quick) {
   if (name == "A") return quick ? std::vector{0.2, 0.14} : std::vector{0.2, 0.14, 0.1};
   if (name == "C") return quick ? std::vector{1.4, 1.0} : std::vector{1.0, 0.7, 0.5};

@@ -38,9 +38,7 @@ struct Run {
 
 /// "A", "C", "D", "E".
 const std::vector<std::string>& case_names();
-/// What sizes are relative to: radius of ball, half width of block, radius of indenter.
-double case_length(const std::string& name);
-/// Coarse to fine.
+/// Coarse to fine, relative to the radius of ball or indenter, or half the width of the block.
 std::vector<double> default_sizes(const std::string& name, bool quick);
 
 /// Runs one case on one mesh.

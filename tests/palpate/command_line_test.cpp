@@ -1,40 +1,14 @@
 // The programs as they are typed, in processes of their own.
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
 
 #include "modules/core/error.h"
-#include "palpate/child_process.h"
-#include "tests/modules/runtime/waiting.h"
 #include "tests/palpate/ball_scene.h"
+#include "tests/palpate/typed_command.h"
 
 using namespace palpate;
 using Catch::Contains;
 using testing::BallScene;
-
-namespace {
-
-struct Outcome {
-  int code = -1;
-  std::string said;
-};
-
-Outcome type(const std::string& program, const std::vector<std::string>& arguments) {
-  launcher::ChildProcess child(std::filesystem::path(PALPATE_BIN_DIR) / program, arguments);
-  Outcome outcome;
-  const auto listen = [&] {
-    for (const auto& line : child.take_lines()) outcome.said += line + "\n";
-  };
-  testing::wait_until([&] {
-    listen();
-    return child.ended().has_value();
-  });
-  listen();
-  if (child.ended() && WIFEXITED(*child.ended())) outcome.code = WEXITSTATUS(*child.ended());
-  return outcome;
-}
-
-}  // namespace
+using testing::type;
 
 TEST_CASE("command line: --help lists every command and is no error") {
   // Oracle: the commands of the design.

@@ -60,7 +60,7 @@ TEST_CASE("status line: one line with time, speed, volume, force, rates and trou
 
 TEST_CASE("summary: one screen with what the session was and what failed") {
   // Oracle: the numbers given.
-  SessionEnd end{"stomach_probe", 12, 12.1, {{"haptics", "[haptics] info: bye"}}, {}};
+  SessionEnd end{"stomach_probe", 12, 12.1, {{"haptics", "[haptics] info: bye"}}, {}, false};
   end.failures["collision"] = "killed by signal 9 (Killed)";
   const auto text = summary(some_tally(), end);
   CHECK(std::count(text.begin(), text.end(), '\n') <= 24);
@@ -75,6 +75,14 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
   CHECK_THAT(text, Contains("degraded for a while: deformation: slower than real time") &&
                        Contains("[haptics] info: bye") &&
                        Contains("FAILED: collision: killed by signal 9 (Killed)"));
+}
+
+TEST_CASE("summary: in lockstep speed is simulated over wall time, and nobody is late") {
+  // Oracle: the numbers given.
+  const auto text = summary(some_tally(), {"stomach_probe", 12, 4, {}, {}, true});
+  CHECK_THAT(text, Contains("12.0 s in 4.0 s") && Contains("real-time factor 3.000") &&
+                       Contains("haptics      11994 cycles\n") && Contains("3000 taken"));
+  CHECK_THAT(text, !Contains("on time") && !Contains("lateness"));
 }
 
 TEST_CASE("limit names: all bits have one") {

@@ -1,43 +1,15 @@
 // `palpate WORD` becomes the program of a measurement.
 #include "palpate/study_command.h"
 
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
 #include <fstream>
 
 #include "modules/core/error.h"
-#include "palpate/child_process.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/palpate/typed_command.h"
 
 using namespace palpate;
 using Catch::Contains;
-
-namespace {
-
-const std::filesystem::path kPrograms = PALPATE_BIN_DIR;
-
-struct Outcome {
-  int code = -1;
-  std::string said;
-};
-
-Outcome type(const std::vector<std::string>& arguments) {
-  launcher::ChildProcess child(kPrograms / "palpate", arguments);
-  Outcome outcome;
-  const auto listen = [&] {
-    for (const auto& line : child.take_lines()) outcome.said += line + "\n";
-  };
-  testing::wait_until([&] {
-    listen();
-    return child.ended().has_value();
-  });
-  listen();
-  if (child.ended() && WIFEXITED(*child.ended())) outcome.code = WEXITSTATUS(*child.ended());
-  return outcome;
-}
-
-}  // namespace
+using testing::type;
 
 TEST_CASE("study command: a program that is missing is named") {
   // Oracle: the message text.
@@ -57,17 +29,17 @@ TEST_CASE("study command: a program that cannot be started is named") {
 
 TEST_CASE("study command: typed, it passes options on and the exit code back") {
   // Oracle: the programs' own help and the exit codes of core/error.h.
-  const auto own_help = type({"--help"});
+  const auto own_help = type("palpate", {"--help"});
   CHECK(own_help.code == kExitDone);
   for (const auto& study : launcher::studies()) {
     INFO(study.word);
     CHECK_THAT(own_help.said, Contains(study.word) && Contains(study.meaning));
-    const auto help = type({study.word, "--help"});
+    const auto help = type("palpate", {study.word, "--help"});
     CHECK(help.code == kExitDone);
     CHECK_THAT(help.said, Contains(std::string("palpate ") + study.word));
   }
-  CHECK(type({"paper", "--only", "5"}).code == kExitBadInput);
-  CHECK(type({"chart", "--case", "cone"}).code == kExitBadInput);
-  CHECK(type({"plan"}).code == kExitBadInput);
-  CHECK(type({"stability", "--only", "weather"}).code == kExitBadInput);
+  CHECK(type("palpate", {"paper", "--only", "5"}).code == kExitBadInput);
+  CHECK(type("palpate", {"chart", "--case", "cone"}).code == kExitBadInput);
+  CHECK(type("palpate", {"plan"}).code == kExitBadInput);
+  CHECK(type("palpate", {"stability", "--only", "weather"}).code == kExitBadInput);
 }

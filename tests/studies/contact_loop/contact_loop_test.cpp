@@ -5,7 +5,7 @@
 #include "modules/core/data_folder.h"
 #include "modules/geometry/primitives.h"
 #include "modules/scene/scene_reader.h"
-#include "studies/contact_loop/closed_surface.h"
+#include "studies/contact_loop/winding_number.h"
 
 namespace palpate::contact_loop {
 

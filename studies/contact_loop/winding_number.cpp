@@ -1,4 +1,4 @@
-#include "studies/contact_loop/closed_surface.h"
+#include "studies/contact_loop/winding_number.h"
 
 #include <cmath>
 #include <numbers>
