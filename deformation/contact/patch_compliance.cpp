@@ -1,53 +1,82 @@
 #include "deformation/contact/patch_compliance.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace palpate::deformation {
 namespace {
 
-struct Shares {
-  double mass, damping, stiffness;
-};
-
-Shares shares_of(const PeriodSteps& steps, double drag) {
+SpringShares shares_of(const PeriodSteps& steps, double drag) {
   const double T = steps.period;
-  return {(1 + T * drag * steps.moving()) / (T * T), steps.moving() / T, steps.displaced()};
+  return {.mass = (1 + T * drag * steps.moving()) / (T * T),
+          .damping = steps.moving() / T,
+          .stiffness = steps.displaced()};
 }
 
 }  // namespace
 
-PatchCompliance::PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes)
-    : body_(body), neighbours_(std::move(neighbours)), most_nodes_(nodes) {}
+PatchCompliance::PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes,
+                                 const PatchSprings* springs)
+    : body_(body), neighbours_(std::move(neighbours)), most_nodes_(nodes) {
+  if (springs != nullptr) far_.emplace(body, *springs);
+}
 
-Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
-                                       std::span<const ComplianceRow> rows,
-                                       const PeriodSteps& steps, std::span<const Vec3> gradient,
-                                       const AddStiffness& add_stiffness) {
-  std::vector<std::uint32_t> touched;
+Vec3 PatchCompliance::find_touched(const std::vector<Vec3>& positions,
+                                   std::span<const ComplianceRow> rows) {
+  touched_.clear();
   Vec3 centre = Vec3::Zero();
   double total = 0;
   for (const ComplianceRow& row : rows) {
     for (const auto& [node, weight] : row.weights) {
       if (weight == 0) continue;
-      touched.push_back(node);
+      touched_.push_back(node);
       centre += weight * positions[node];
       total += weight;
     }
   }
-  centre /= total;
-  grow_patch(body_, neighbours_, positions, touched, centre, most_nodes_, patch_);
+  std::ranges::sort(touched_);
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  return centre / total;
+}
 
-  const Shares shares = shares_of(steps, body_.drag);
+Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
+                                       std::span<const ComplianceRow> rows,
+                                       const PeriodSteps& steps, std::span<const Vec3> gradient,
+                                       const AddStiffness& add_stiffness) {
+  const Vec3 centre = find_touched(positions, rows);
+  grow_patch(body_, neighbours_, positions, touched_, centre, most_nodes_, patch_);
+  const SpringShares shares = shares_of(steps, body_.drag);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
-  const auto count = static_cast<Eigen::Index>(rows.size());
   Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
   if (shares.stiffness > 0) add_stiffness(patch_, shares.stiffness, shares.damping, A);
-  // A column a row of C, and one for the volume.
-  Eigen::MatrixXf loads = Eigen::MatrixXf::Zero(size, count + 1);
+  double mass = 0;
+  const double springs = A.trace();
   for (const std::uint32_t node : patch_.nodes) {
-    const Eigen::Index at = 3 * patch_.place(node);
-    A.diagonal().segment<3>(at).array() += static_cast<float>(shares.mass * body_.masses[node]);
-    if (node < gradient.size()) loads.col(count).segment<3>(at) = gradient[node].cast<float>();
+    const double own = shares.mass * body_.masses[node];
+    A.diagonal().segment<3>(3 * patch_.place(node)).array() += static_cast<float>(own);
+    mass += 3 * own;
+  }
+  Eigen::Index far = 0;
+  const std::size_t reach = std::min(kFarNodes, nodes_in_reach(touched_.size(), springs / mass));
+  if (far_ && reach > 2 * most_nodes_) {
+    far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
+    far = 3;
+    A.conservativeResize(size + far, size + far);
+    A.bottomLeftCorner(far, size) = far_->near_block().transpose();
+    A.bottomRightCorner(far, far) = far_->own_block();
+  }
+  return answers(A, far, shares.mass, rows, gradient);
+}
+
+Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index far,
+                                         double mass_share, std::span<const ComplianceRow> rows,
+                                         std::span<const Vec3> gradient) const {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  // A column a row of C, and one for the volume.
+  Eigen::MatrixXf loads = Eigen::MatrixXf::Zero(A.rows(), count + 1);
+  for (const std::uint32_t node : patch_.nodes) {
+    if (node >= gradient.size()) continue;
+    loads.col(count).segment<3>(3 * patch_.place(node)) = gradient[node].cast<float>();
   }
   Eigen::MatrixXd alone = Eigen::MatrixXd::Zero(count, count);
   for (Eigen::Index r = 0; r < count; ++r) {
@@ -57,13 +86,15 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
       if (place >= 0) {
         loads.col(r).segment<3>(3 * place) += (weight * row.axis).cast<float>();
       } else {
-        alone(r, r) += weight * weight * body_.inverse_masses[node] / shares.mass;
+        alone(r, r) += weight * weight * body_.inverse_masses[node] / mass_share;
       }
+      if (far > 0) loads.col(r).tail<3>() += far_->load(node, weight * row.axis);
     }
   }
   const Eigen::LLT<Eigen::MatrixXf> factor(A);
-  if (factor.info() != Eigen::Success)
+  if (factor.info() != Eigen::Success) {
     return Eigen::MatrixXd::Zero(count, count);  // no law from a bad state
+  }
   // W = (L⁻¹Cᵀ)ᵀ(L⁻¹Cᵀ): symmetric and positive however it is rounded.
   const Eigen::MatrixXd half = factor.matrixL().solve(loads).cast<double>();
   Eigen::MatrixXd answers = half.leftCols(count).transpose() * half.leftCols(count) + alone;
@@ -72,7 +103,7 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   double inverse_mass = half.col(count).squaredNorm();  // gᵀA⁻¹g
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     if (patch_.place(static_cast<std::uint32_t>(i)) < 0) {
-      inverse_mass += gradient[i].squaredNorm() * body_.inverse_masses[i] / shares.mass;
+      inverse_mass += gradient[i].squaredNorm() * body_.inverse_masses[i] / mass_share;
     }
   }
   if (!(inverse_mass > 0)) return answers;

@@ -5,17 +5,21 @@
 // as if every node moved there evenly. With n steps explicit in the elastic forces d = (n − 1)/n
 // and k = (n − 1)/2n, with implicit ones d = 1 and k = (n + 1)/2n: the means over the steps of the
 // velocities and displacements their forces are taken at. Within T a wave of shear in soft tissue
-// makes its way of some millimetres; the patch is that large, and what is beyond is held. Contents
-// whose volume is kept take their share at once, wherever they are: a rank-one less.
+// makes its way of some millimetres; the patch is that large, and what is beyond is held. On a mesh
+// so fine that many nodes go along, the patch answers by its near nodes and, beyond them, as a
+// whole (far_answers.h). Contents whose volume is kept take their share at once, wherever they are:
+// a rank-one less.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "deformation/contact/compliance_row.h"
+#include "deformation/contact/far_answers.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/patch.h"
 
@@ -28,8 +32,10 @@ using AddStiffness = std::function<void(const Patch& patch, double stiffness_sha
 class PatchCompliance {
  public:
   /// @param body   outlives this
-  /// @param nodes  of a patch, at most
-  PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes);
+  /// @param nodes    of a patch, at most
+  /// @param springs  of a body of springs, outlives this; none: nothing answers beyond the patch
+  PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes,
+                  const PatchSprings* springs = nullptr);
 
   /// C A⁻¹ Cᵀ [m/N], symmetric. Nodes that are touched but do not fit the patch answer alone.
   /// @param gradient  of a kept volume (volume_gradient.h), empty: none is kept
@@ -38,10 +44,21 @@ class PatchCompliance {
                         const AddStiffness& add_stiffness);
 
  private:
+  static constexpr std::size_t kFarNodes = 800;
+
+  /// @returns the middle of the rows [m]
+  Vec3 find_touched(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows);
+  /// @param A    lower triangle: of the patch, and of `far` directions beyond
+  Eigen::MatrixXd answers(const Eigen::MatrixXf& A, Eigen::Index far, double mass_share,
+                          std::span<const ComplianceRow> rows,
+                          std::span<const Vec3> gradient) const;
+
   const Body& body_;
   Neighbours neighbours_;
   std::size_t most_nodes_;
+  std::vector<std::uint32_t> touched_;
   Patch patch_;
+  std::optional<FarAnswers> far_;
 };
 
 }  // namespace palpate::deformation

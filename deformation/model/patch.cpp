@@ -1,6 +1,8 @@
 #include "deformation/model/patch.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace palpate::deformation {
 
@@ -40,13 +42,10 @@ void grow_patch(const Body& body, const Neighbours& neighbours, const std::vecto
     std::erase_if(ring, [&](std::uint32_t node) {
       return patch.places[node] >= 0 || body.inverse_masses[node] == 0;
     });
-    const std::size_t fits = std::min(ring.size(), most - patch.nodes.size());
-    if (fits < ring.size()) {
-      std::stable_sort(ring.begin(), ring.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return (positions[a] - centre).squaredNorm() < (positions[b] - centre).squaredNorm();
-      });
-      ring.resize(fits);
-    }
+    std::stable_sort(ring.begin(), ring.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return (positions[a] - centre).squaredNorm() < (positions[b] - centre).squaredNorm();
+    });
+    ring.resize(std::min(ring.size(), most - patch.nodes.size()));
     for (const std::uint32_t node : ring) {
       patch.places[node] = static_cast<std::int32_t>(patch.nodes.size());
       patch.nodes.push_back(node);
@@ -57,6 +56,14 @@ void grow_patch(const Body& body, const Neighbours& neighbours, const std::vecto
       ring.insert(ring.end(), next.begin(), next.end());
     }
   }
+}
+
+std::size_t nodes_in_reach(std::size_t touched, double stiffness) {
+  // Of equilateral triangles: N nodes in a circle of √(N/c) edges, c = 2π/√3; a node's six springs
+  // resist with 3 k, and a motion decays over √(k/m) edges.
+  const double c = 2 * std::numbers::pi / std::sqrt(3.0);
+  const double radius = std::sqrt(static_cast<double>(touched) / c) + 2 * std::sqrt(stiffness / 3);
+  return static_cast<std::size_t>(std::ceil(c * radius * radius));
 }
 
 }  // namespace palpate::deformation

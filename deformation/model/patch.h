@@ -32,9 +32,16 @@ class Neighbours {
 };
 
 /// Fills the patch with the free ones of `touched` and, ring by ring, of their neighbours, at most
-/// `most` in all; of a ring that does not fit the nearest to `centre` [m].
+/// `most` in all. A ring stands from the nearest to `centre` [m] to the furthest, so that a smaller
+/// patch about the same nodes is the beginning of a larger one.
 void grow_patch(const Body& body, const Neighbours& neighbours, const std::vector<Vec3>& positions,
                 std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t most,
                 Patch& patch);
+
+/// How many nodes of a surface go along when some are moved within a step: those that twice the
+/// length over which the motion falls to 1/e reaches beyond.
+/// @param touched    nodes that are moved
+/// @param stiffness  what a node's springs resist with, over what its mass does
+std::size_t nodes_in_reach(std::size_t touched, double stiffness);
 
 }  // namespace palpate::deformation

@@ -1,6 +1,34 @@
 #include "deformation/springs/patch_springs.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace palpate::deformation {
+
+namespace {
+
+constexpr float kTinySquare = 1e-20f;  // [m²]: no direction, no force
+
+/// What moving an end of a spring is resisted with; d from end to end [m].
+Block4f block_of(const Spring& spring, double spring_damping, const Vec4f& d, double stiffness,
+                 double damping) {
+  const float square = d.squaredNorm();
+  if (square < kTinySquare) return {Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
+  const auto k = static_cast<float>(stiffness * spring.stiffness);
+  const float stretch = 1 - static_cast<float>(spring.rest_length) / std::sqrt(square);
+  const float across = k * std::max(stretch, 0.0f);
+  const float along = (k + static_cast<float>(damping * spring_damping) - across) / square;
+  const Vec4f scaled = along * d;
+  Block4f block{scaled.x() * d, scaled.y() * d, scaled.z() * d};
+  for (int axis = 0; axis < 3; ++axis) block[static_cast<std::size_t>(axis)][axis] += across;
+  return block;
+}
+
+void add_block(float sign, const Block4f& block, Block4f& sum) {
+  for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += sign * block[axis];
+}
+
+}  // namespace
 
 PatchSprings::PatchSprings(const SpringNetwork& network, std::size_t node_count)
     : network_(network), starts_(node_count + 1, 0) {
@@ -24,20 +52,40 @@ void PatchSprings::add(const std::vector<Vec3>& positions, const Patch& patch,
     for (auto at = starts_[node]; at < starts_[node + 1]; ++at) {
       const Spring& spring = network_.springs[springs_[at]];
       const std::uint32_t other = spring.node_a == node ? spring.node_b : spring.node_a;
-      const Vec3 along = positions[other] - positions[node];
-      const double length = along.norm();
-      if (length == 0) continue;
-      const Vec3 u = along / length;
-      const double stretch = 1 - spring.rest_length / length;
-      const double across = stiffness_share * spring.stiffness * std::max(stretch, 0.0);
-      const double own = stiffness_share * spring.stiffness +
-                         damping_share * network_.damping[springs_[at]] - across;
-      const Eigen::Matrix3f block =
-          (own * u * u.transpose() + across * Mat3::Identity()).cast<float>();
-      sum.block<3, 3>(3 * i, 3 * i) += block;
+      const Block4f block =
+          block_of(spring, network_.damping[springs_[at]], wide(positions[other] - positions[node]),
+                   stiffness_share, damping_share);
       const int j = patch.place(other);
-      if (j >= 0 && j < i) sum.block<3, 3>(3 * i, 3 * j) -= block;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto column = block[static_cast<std::size_t>(axis)].head<3>();
+        sum.block<3, 1>(3 * i, 3 * i + axis) += column;
+        if (j >= 0 && j < i) sum.block<3, 1>(3 * i, 3 * j + axis) -= column;
+      }
     }
+  }
+}
+
+void PatchSprings::assemble(const std::vector<Vec3>& positions, std::span<const double> masses,
+                            const Patch& patch, const SpringShares& shares,
+                            PatchMatrix& matrix) const {
+  matrix.clear();
+  for (const std::uint32_t node : patch.nodes) {
+    const auto mass = static_cast<float>(shares.mass * masses[node]);
+    Block4f own{mass * Vec4f::UnitX(), mass * Vec4f::UnitY(), mass * Vec4f::UnitZ()};
+    for (auto at = starts_[node]; at < starts_[node + 1]; ++at) {
+      const Spring& spring = network_.springs[springs_[at]];
+      const std::uint32_t other = spring.node_a == node ? spring.node_b : spring.node_a;
+      const Block4f block =
+          block_of(spring, network_.damping[springs_[at]], wide(positions[other] - positions[node]),
+                   shares.stiffness, shares.damping);
+      add_block(1, block, own);
+      if (patch.place(other) < 0) continue;
+      Block4f coupling{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
+      add_block(-1, block, coupling);
+      matrix.add(static_cast<std::uint32_t>(patch.place(other)), coupling);
+    }
+    matrix.add(static_cast<std::uint32_t>(patch.place(node)), own);
+    matrix.end_row();
   }
 }
 

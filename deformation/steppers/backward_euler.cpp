@@ -18,6 +18,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
       volume_(volume),
       max_iterations_(iterations),
       springs_(model, model.network(), volume.is_kept),
+      contacts_(model),
       kernel_(model, model.network(), volume.is_kept) {
   for (const double mass : model.masses) total_mass_ += mass;
   for (auto* buffer : {&change_, &residual_, &trial_}) {
@@ -35,14 +36,14 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   linearise_springs(h, state);
   report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
 
-  // 2.-4. contacts, springs and volume
+  // 2.-5. contacts, springs and volume
   solve(h, rows, state);
   if (std::abs(volume_impulse_) > h * state.pressure_limit) {
     push_with(std::copysign(h * state.pressure_limit, volume_impulse_), h, rows, state);
     report.pressure_capped = true;
   }
 
-  // 5. the new state, and what the linearisation of the volume left
+  // 6. the new state, and what the linearisation of the volume left
   add(1, change_, state.velocities);
   add(h, state.velocities, state.positions);
   for (int k = 0; volume_row_ && k < volume_.corrections; ++k) correct_volume(h, rows, state);
@@ -53,6 +54,7 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
 void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   // 2. which contacts close, which slide
   volume_impulse_ = 0;
+  forces_ = residual_;
   solve_impulses(h, rows, state, WarmStart::kToApply);
 
   // 3. springs, with those contacts and the volume held
@@ -61,6 +63,9 @@ void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState
 
   // 4. what opened, closed or began to slide meanwhile
   solve_impulses(h, rows, state, WarmStart::kApplied);
+
+  // 5. the springs about the contacts
+  relax_contacts(h, rows, state);
   keep_momentum(h, rows, state);
 }
 
@@ -138,7 +143,7 @@ void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
   for (std::size_t i = 0; i < change_.size(); ++i) nodes[i].vector = wide(change_[i]);
   springs_.apply(product_);
   for (std::size_t i = 0; i < change_.size(); ++i) {
-    residual_[i] -= product_[i].head<3>().cast<double>();
+    residual_[i] = forces_[i] - product_[i].head<3>().cast<double>();
   }
   for (const ContactRow& row : rows) {
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
@@ -179,6 +184,19 @@ void BackwardEuler::conjugate_gradients() {
         projection_.descend(step, nodes, product_, inner_change_, inner_residual_, projected_);
     if (++iterations_used_ < max_iterations_) projection_.turn(descent / last, projected_, nodes);
   }
+}
+
+void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state) {
+  if (rows.empty()) return;
+  update_residual(rows);
+  if (!contacts_.solve(h, predicted_.positions, springs_.diagonal(), residual_, rows)) return;
+  trial_ = state.velocities;
+  add(1, change_, trial_);
+  for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
+    trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
+  }
+  hold_rows(h, rows, WarmStart::kApplied);
+  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
 }
 
 /// Truncated iterations leave a little of the total momentum undone. An organ that nothing holds

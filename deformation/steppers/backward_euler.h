@@ -14,9 +14,11 @@
 //              contacts are closed and which slide.
 //   springs    conjugate gradients with closed contacts and the volume held in every iterate
 //              (constraint_projection.h), at most `iterations` of them.
-// and the impulses once more, so that every condition holds at the step's end, however few
-// iterations were made. What they leave of the residual acts on in the next step: an organ at rest
-// is at the equilibrium of symplectic Euler, one that moves lags and is damped a little more.
+// and the impulses once more; then the springs about the contacts to the end, with what has closed
+// by now (contact_relaxation.h), so that every condition holds at the step's end, however few
+// iterations were made, and a probe feels the step it is in. What they leave of the residual acts
+// on in the next step: an organ at rest is at the equilibrium of symplectic Euler, one that moves
+// lags and is damped a little more.
 //
 // A mode of frequency ω loses by this the part 1 − 1/√(1 + h²ω²) of its amplitude per step.
 #pragma once
@@ -29,6 +31,7 @@
 #include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/springs/spring_hessian_product.h"
+#include "deformation/steppers/contact_relaxation.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -69,10 +72,11 @@ class BackwardEuler : public OrganDynamics {
                       WarmStart start);
   /// Turns the unconstrained velocities in trial_ into v⁺, and adds σ to the volume's impulse.
   void hold_rows(double h, std::span<ContactRow> rows, WarmStart start);
-  /// r −= A Δv + Bᵀ (impulses)
+  /// r = h F − A Δv − Bᵀ (impulses)
   void update_residual(std::span<const ContactRow> rows);
   void relax_springs(std::span<ContactRow> rows);
   void conjugate_gradients();
+  void relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state);
   void keep_momentum(double h, std::span<const ContactRow> rows, const OrganState& state);
   void correct_volume(double h, std::span<ContactRow> rows, OrganState& state);
 
@@ -82,6 +86,7 @@ class BackwardEuler : public OrganDynamics {
   double total_mass_ = 0;
   SpringHessianProduct springs_;
   ConstraintProjection projection_;
+  ContactRelaxation contacts_;
   SpringKernel kernel_;
   OrganState predicted_;                   ///< x̃, v
   FreeStep free_;                          ///< what the springs do there in h, and the volume
@@ -90,6 +95,7 @@ class BackwardEuler : public OrganDynamics {
   std::vector<Mat3> inverse_mass_blocks_;  ///< W [1/kg]
   std::vector<Vec3> volume_answers_;       ///< W g [m²/kg]
   std::vector<Vec3> change_;               ///< Δv [m/s]
+  std::vector<Vec3> forces_;               ///< h F, of springs and gravity [N·s]
   std::vector<Vec3> residual_;             ///< r [N·s]
   std::vector<Vec3> trial_;
   std::vector<Vec4f> inner_change_, inner_residual_, projected_, product_;
