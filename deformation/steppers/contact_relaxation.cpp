@@ -45,14 +45,14 @@ bool ContactRelaxation::solve(double h, const std::vector<Vec3>& positions,
   if (!grow(h, positions, diagonal, rows)) return false;
   springs_.assemble(positions, model_.masses, patch_, {1 + h * model_.drag, h, h * h}, matrix_);
   const std::size_t count = patch_.nodes.size();
-  mobilities_.assign(count + 1, Mat3::Zero());
+  inverse_mass_blocks_.assign(count + 1, Mat3::Zero());
   for (auto* buffer : {&residual_, &change_, &projected_, &product_}) {
     buffer->assign(count + 1, Vec4f::Zero());
   }
   double mass = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t node = patch_.nodes[i];
-    mobilities_[i] = diagonal[node].inverse();
+    inverse_mass_blocks_[i] = diagonal[node].inverse();
     residual_[i] = wide(residual[node]);
     mass += model_.masses[node];
   }
@@ -64,7 +64,7 @@ bool ContactRelaxation::solve(double h, const std::vector<Vec3>& positions,
     }
   }
   matrix_.end_row();  // of the held node
-  projection_.prepare(mobilities_, {}, rows_);
+  projection_.prepare(inverse_mass_blocks_, {}, rows_);
   conjugate_gradients(mass * kNegligibleVelocity * kNegligibleVelocity);
   double no_volume = 0;
   projection_.take_impulses(rows_, no_volume, residual_);

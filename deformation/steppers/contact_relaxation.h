@@ -54,7 +54,7 @@ class ContactRelaxation {
   PatchMatrix matrix_;
   ConstraintProjection projection_;
   // Of the patch, and last a node that is held: it stands for all others.
-  std::vector<Mat3> mobilities_;
+  std::vector<Mat3> inverse_mass_blocks_;
   std::vector<Vec4f> residual_, change_, projected_, product_;
   std::vector<ContactRow> rows_;
 };
