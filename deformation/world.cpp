@@ -18,7 +18,7 @@ constexpr double kLeastStep = 1e-6;  // [s]
 /// same.
 constexpr double kValidityOfEdge = 0.5;
 /// Nodes that a law's compliance is taken from. Nearly incompressible tissue reaches further.
-constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 72;
+constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
 /// Forces that change faster than this part of themselves in a period are not taken to go on so.
 constexpr double kMostGrowth = 0.5;
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
