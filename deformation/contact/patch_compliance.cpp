@@ -57,7 +57,8 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
     mass += 3 * own;
   }
   Eigen::Index far = 0;
-  const std::size_t reach = std::min(kFarNodes, nodes_in_reach(touched_.size(), springs / mass));
+  const std::size_t reach =
+      std::min(kFarNodes, nodes_in_reach(touched_.size(), edges_in_reach(springs / mass)));
   if (far_ && reach > 2 * most_nodes_) {
     far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
     far = 3;

@@ -58,11 +58,14 @@ void grow_patch(const Body& body, const Neighbours& neighbours, const std::vecto
   }
 }
 
-std::size_t nodes_in_reach(std::size_t touched, double stiffness) {
-  // Of equilateral triangles: N nodes in a circle of √(N/c) edges, c = 2π/√3; a node's six springs
-  // resist with 3 k, and a motion decays over √(k/m) edges.
+// Of equilateral triangles: a node's six springs k resist with 3 k, and a motion decays over √(k/m)
+// edges; N nodes fill a circle of √(N/c) edges, c = 2π/√3.
+
+double edges_in_reach(double stiffness) { return 2 * std::sqrt(stiffness / 3); }
+
+std::size_t nodes_in_reach(std::size_t touched, double edges) {
   const double c = 2 * std::numbers::pi / std::sqrt(3.0);
-  const double radius = std::sqrt(static_cast<double>(touched) / c) + 2 * std::sqrt(stiffness / 3);
+  const double radius = std::sqrt(static_cast<double>(touched) / c) + edges;
   return static_cast<std::size_t>(std::ceil(c * radius * radius));
 }
 

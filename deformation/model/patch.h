@@ -38,10 +38,12 @@ void grow_patch(const Body& body, const Neighbours& neighbours, const std::vecto
                 std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t most,
                 Patch& patch);
 
-/// How many nodes of a surface go along when some are moved within a step: those that twice the
-/// length over which the motion falls to 1/e reaches beyond.
-/// @param touched    nodes that are moved
+/// How many edges of a surface away from what is moved within a step something goes along: twice
+/// the length over which the motion falls to 1/e.
 /// @param stiffness  what a node's springs resist with, over what its mass does
-std::size_t nodes_in_reach(std::size_t touched, double stiffness);
+double edges_in_reach(double stiffness);
+
+/// How many nodes of a surface lie so many edges about some that are moved, and these.
+std::size_t nodes_in_reach(std::size_t touched, double edges);
 
 }  // namespace palpate::deformation

@@ -14,11 +14,11 @@
 //              contacts are closed and which slide.
 //   springs    conjugate gradients with closed contacts and the volume held in every iterate
 //              (constraint_projection.h), at most `iterations` of them.
-// and the impulses once more; then the springs about the contacts to the end, with what has closed
-// by now (contact_relaxation.h), so that every condition holds at the step's end, however few
-// iterations were made, and a probe feels the step it is in. What they leave of the residual acts
-// on in the next step: an organ at rest is at the equilibrium of symplectic Euler, one that moves
-// lags and is damped a little more.
+// and the impulses once more; then, on a fine wall, the springs about the contacts to the end, with
+// what has closed by now (contact_relaxation.h), so that every condition holds at the step's end,
+// however few iterations were made, and a probe feels the step it is in. What they leave of the
+// residual acts on in the next step: an organ at rest is at the equilibrium of symplectic Euler,
+// one that moves lags and is damped a little more.
 //
 // A mode of frequency ω loses by this the part 1 − 1/√(1 + h²ω²) of its amplitude per step.
 #pragma once

@@ -34,7 +34,9 @@ bool ContactRelaxation::grow(double h, const std::vector<Vec3>& positions,
     mass += 3 * (1 + h * model_.drag) * model_.masses[node];
     whole += diagonal[node].trace();
   }
-  const std::size_t reach = nodes_in_reach(touched.size(), whole / mass - 1);
+  const double edges = edges_in_reach(whole / mass - 1);
+  if (edges < kEdges) return false;
+  const std::size_t reach = nodes_in_reach(touched.size(), edges);
   grow_patch(model_, neighbours_, positions, touched, centre, std::min(reach, kNodes), patch_);
   return !patch_.nodes.empty();
 }

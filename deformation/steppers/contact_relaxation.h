@@ -25,6 +25,8 @@ class ContactRelaxation {
   /// At most. A touch of more is not local, and left to the whole organ's iterations.
   static constexpr std::size_t kNodes = 800;
   static constexpr int kIterations = 40;
+  /// Where no more edges than these go along, a dozen iterations of the whole organ are enough.
+  static constexpr double kEdges = 6;
 
   /// @param model  of springs, outlives this
   explicit ContactRelaxation(const OrganModel& model);
@@ -34,7 +36,7 @@ class ContactRelaxation {
   /// @param diagonal   3×3 blocks of A [kg]  (node_count)
   /// @param residual   r [N·s]  (node_count)
   /// @param rows       get what their impulses lack
-  /// @returns false: the touch is not local, nothing was done
+  /// @returns false: there is no need, or the touch is not local; nothing was done
   bool solve(double h, const std::vector<Vec3>& positions, std::span<const Mat3> diagonal,
              const std::vector<Vec3>& residual, std::span<ContactRow> rows);
 

@@ -67,7 +67,8 @@ TEST_CASE("patch: beyond the nodes in reach little moves") {
       }
     }
     const double edges = 2 * std::numbers::pi / std::sqrt(3.0);
-    const double radius = std::sqrt(static_cast<double>(nodes_in_reach(1, stiffness)) / edges);
+    const double radius =
+        std::sqrt(static_cast<double>(nodes_in_reach(1, edges_in_reach(stiffness))) / edges);
     for (int i = 0; i < kSide; ++i) {
       for (int j = 0; j < kSide; ++j) {
         const double x = (i - middle) + 0.5 * (j - middle), y = std::sqrt(0.75) * (j - middle);
