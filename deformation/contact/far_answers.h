@@ -23,7 +23,7 @@ namespace palpate::deformation {
 class FarAnswers {
  public:
   /// As many as springs between the middle and the rim of that.
-  static constexpr int kIterations = 16;
+  static constexpr int kIterations = 10;
 
   /// @param body, springs  outlive this
   FarAnswers(const Body& body, const PatchSprings& springs) : body_(body), springs_(springs) {}

@@ -44,7 +44,7 @@ class PatchCompliance {
                         const AddStiffness& add_stiffness);
 
  private:
-  static constexpr std::size_t kFarNodes = 800;
+  static constexpr std::size_t kFarNodes = 400;
 
   /// @returns the middle of the rows [m]
   Vec3 find_touched(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows);

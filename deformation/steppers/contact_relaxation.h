@@ -1,4 +1,4 @@
-// The springs about the contacts solved to the end.
+// The springs about the contacts solved further than the rest.
 //
 // A truncated step of backward Euler (backward_euler.h) carries what changed at a contact as many
 // springs further as it has iterations. On a fine mesh that is less far than the tissue moves
@@ -23,8 +23,8 @@ namespace palpate::deformation {
 class ContactRelaxation {
  public:
   /// At most. A touch of more is not local, and left to the whole organ's iterations.
-  static constexpr std::size_t kNodes = 800;
-  static constexpr int kIterations = 40;
+  static constexpr std::size_t kNodes = 400;
+  static constexpr int kIterations = 20;
   /// Where no more edges than these go along, a dozen iterations of the whole organ are enough.
   static constexpr double kEdges = 6;
 

@@ -177,7 +177,7 @@ TEST_CASE("patch compliance: what goes along beyond a small patch is counted on 
   }
   const PeriodSteps steps{0.15, 1, true};
   PatchCompliance alone(model, neighbours, 32), with_far(model, neighbours, 32, &springs),
-      dense(model, neighbours, 800);
+      dense(model, neighbours, 400);
   const double exact = dense.solve(positions, rows, steps, {}, add).sum(),
                found = with_far.solve(positions, rows, steps, {}, add).sum(),
                small = alone.solve(positions, rows, steps, {}, add).sum();

@@ -10,7 +10,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kStep = 1;  // so long that all of a small ball goes along
+constexpr double kStep = 0.06;  // so long that all of a small ball goes along
 
 /// Rows on two triangles, pressing.
 std::vector<ContactRow> some_rows(const OrganModel& model) {
