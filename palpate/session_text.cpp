@@ -51,6 +51,10 @@ std::string module_lines(const SessionTally& tally, bool lockstep) {
         "{:<12} {} cycles{}\n"
         "             samples: {} taken, {} lost or overtaken by newer ones, {} refused\n",
         name, module.cycles(), lockstep ? "" : timing(module), received, dropped, rejected);
+    if (module.newest.packets_refused > 0) {
+      text += fmt::format("             {} packets from a stranger refused\n",
+                          module.newest.packets_refused);
+    }
   }
   return text;
 }

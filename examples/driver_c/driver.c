@@ -19,13 +19,17 @@ static const int64_t kForceHolds = 100000000;  // [ns]
 static const double kMaxForce = 3.3;           // of the device [N]
 static const double kOmega = 2 * M_PI / 4;     // of the stand-in below [rad/s]
 
-// Palpate talks on 127.0.0.1 (PALPATE_INTERFACES changes that); Cyclone would take another card.
+// Palpate talks on 127.0.0.1 (PALPATE_INTERFACES changes that), without multicast: participants look for
+// each other at the ports that the domain gives to the first hundred of a host.
 // The lease is the longest that Cyclone takes: Fast DDS 2.9.1, which looks at each participant once
 // per lease, may abort if that is just leaving. Nobody needs it: who is silent is told by the age
 // of samples.
 static const char* kConfiguration =
-    "<General><Interfaces><NetworkInterface address=\"127.0.0.1\" multicast=\"true\"/></Interfaces>"
-    "</General><Discovery><LeaseDuration>1 hr</LeaseDuration></Discovery>";
+    "<General><Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"
+    "<AllowMulticast>false</AllowMulticast></General>"
+    "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
+    "<MaxAutoParticipantIndex>99</MaxAutoParticipantIndex>"
+    "<Peers><Peer address=\"127.0.0.1\"/></Peers><LeaseDuration>1 hr</LeaseDuration></Discovery>";
 
 // Stand in for your device: its handle goes 15 mm down and up again every 4 s, and nobody feels its
 // motors. Positions in metres from its own origin, axes as the scene's (z up).

@@ -25,6 +25,12 @@ struct BusOptions {
   bool every_sample = false;
 };
 
+/// Packets that were not sound, or in another participant's name.
+struct Refusals {
+  std::uint64_t count = 0;
+  const char* last = nullptr;  ///< why the last one was refused
+};
+
 /// Writes messages of one topic. Fills header.sequence; where header.source_time_ns is 0, the
 /// bus's time of writing is sent (the message keeps its 0 and may be used again). Not thread-safe.
 template <class Message>
@@ -94,6 +100,9 @@ class Bus {
   /// All readers alive, in the order they were made.
   std::span<Input* const> inputs() const { return inputs_; }
   std::span<Output* const> outputs() const { return outputs_; }  ///< the same of writers
+
+  /// Packets from outside that were not let in; none on a bus that has no outside.
+  virtual Refusals packets_refused() const { return {}; }
 
   /// What stamps messages, in ns; CLOCK_MONOTONIC unless set.
   void set_clock(std::function<std::int64_t()> now_ns) { clock_ = std::move(now_ns); }

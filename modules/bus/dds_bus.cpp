@@ -106,4 +106,6 @@ std::unique_ptr<RawReader> DdsBus::raw_reader(const TopicInfo& topic, Keep keep)
   return std::make_unique<DdsReader>(*participant_, topic, keep);
 }
 
+Refusals DdsBus::packets_refused() const { return participant_->packets_refused(); }
+
 }  // namespace palpate::bus

@@ -12,13 +12,15 @@ class Participant;
 class DdsBus : public Bus {
  public:
   /// @throws InputError for a domain outside 0 to 200, or a session that is not 1 to 64 letters,
-  /// digits, '_', '-', '.', or an address in PALPATE_INTERFACES that this host does not have
+  /// digits, '_', '-', '.', or an address in
+  /// PALPATE_INTERFACES that this host does not have, or one in PALPATE_PEERS that is none
   /// @throws std::runtime_error if DDS cannot start (domain in use up, no loopback, …)
   explicit DdsBus(const BusOptions& options);
   ~DdsBus() override;
 
   std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) override;
   std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) override;
+  Refusals packets_refused() const override;
 
  private:
   std::unique_ptr<Participant> participant_;

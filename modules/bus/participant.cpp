@@ -11,7 +11,8 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "modules/bus/interfaces.h"
+#include "modules/bus/addresses.h"
+#include "modules/bus/filtered_transport.h"
 #include "modules/bus/payload_type.h"
 #include "modules/bus/qos.h"
 #include "modules/core/error.h"
@@ -50,7 +51,9 @@ Entity* demand_created(Entity* entity, const char* what) {
 Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
   check(options);
   dds::DomainParticipantQos qos;
-  apply_transport(interfaces_from(std::getenv("PALPATE_INTERFACES")), qos);
+  packets_ = apply_transport(
+      addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS")),
+      options.domain, qos);
   qos.name(options.participant_name);
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(options.domain), qos);
@@ -72,6 +75,10 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
 }
 
 Participant::~Participant() { close(); }
+
+Refusals Participant::packets_refused() const {
+  return {packets_->refused, text_of(packets_->last)};
+}
 
 void Participant::close() {
   participant_->delete_contained_entities();

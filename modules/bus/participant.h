@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -18,10 +19,13 @@ class Topic;
 
 namespace palpate::bus {
 
+struct PacketTally;
+
 /// A participant with one publisher and one subscriber in the session's partition.
 class Participant {
  public:
-  /// @throws InputError if the session name, the domain or PALPATE_INTERFACES is not acceptable
+  /// @throws InputError if the session name, the domain or an address (addresses.h) is not
+  /// acceptable
   /// @throws std::runtime_error if DDS cannot start
   explicit Participant(const BusOptions& options);
   ~Participant();
@@ -34,11 +38,14 @@ class Participant {
   void remove(eprosima::fastdds::dds::DataWriter* writer);
   void remove(eprosima::fastdds::dds::DataReader* reader);
 
+  Refusals packets_refused() const;  ///< by the filter in front of DDS
+
  private:
   eprosima::fastdds::dds::Topic* topic(const TopicInfo& topic);
   void close();
 
   bool every_sample_;
+  std::shared_ptr<const PacketTally> packets_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

@@ -1,11 +1,14 @@
 #include "modules/bus/qos.h"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 
 #include <memory>
+
+#include "modules/bus/filtered_transport.h"
 
 namespace palpate::bus {
 namespace {
@@ -19,6 +22,9 @@ constexpr std::uint32_t kSocketBufferBytes = 4u << 20;  // a 19 000 node message
 constexpr std::uint32_t kMaxDatagramBytes = 65'500;     // larger samples travel in fragments
 constexpr std::uint32_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr int kUnlimited = -1;
+// Participants of a domain on a host: each has the first free ones of so many pairs of ports, for
+// that often does 2.9.1 look for them (mutation_tries).
+constexpr std::uint32_t kMaxParticipants = 100;
 
 Duration_t milliseconds(std::uint32_t ms) { return {0, ms * kNanosecondsPerMillisecond}; }
 
@@ -53,19 +59,34 @@ void apply_common(const Profile& profile, Qos& qos) {
   qos.data_sharing().off();
 }
 
-}  // namespace
+// RTPS 2.5, 9.6.2.4: where the first participant of a domain listens for others, and for users'
+// data.
+constexpr int kPortBase = 7400, kPortsPerDomain = 250, kDiscoveryPort = 10, kUserPort = 11;
 
-void apply_transport(const std::vector<std::string>& interfaces, dds::DomainParticipantQos& qos) {
-  auto udp = std::make_shared<UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = interfaces;
-  udp->sendBufferSize = kSocketBufferBytes;
-  udp->receiveBufferSize = kSocketBufferBytes;
-  udp->maxMessageSize = kMaxDatagramBytes;
-  qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+rtps::Locator_t locator(const std::string& address, int port) {
+  rtps::Locator_t made;
+  rtps::IPLocator::createLocator(LOCATOR_KIND_UDPv4, address, static_cast<std::uint32_t>(port),
+                                 made);
+  return made;
+}
+
+// Each takes the first free ports of its own addresses, whatever its number in its process, and is
+// sought at all that it may have taken. What is sent to a multicast group instead comes in from
+// every network on which any program of this host has joined it.
+void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolConfigQos& wire) {
+  constexpr int kAnyPort = 0;
+  const int first = kPortBase + kPortsPerDomain * domain;
+  for (const std::string& own : addresses.own) {
+    wire.builtin.metatrafficUnicastLocatorList.push_back(locator(own, first + kDiscoveryPort));
+    wire.default_unicast_locator_list.push_back(locator(own, first + kUserPort));
+    wire.builtin.initialPeersList.push_back(locator(own, kAnyPort));
+  }
+  for (const std::string& peer : addresses.peers) {
+    wire.builtin.initialPeersList.push_back(locator(peer, kAnyPort));
+  }
 
   // With the defaults one join in five took more than 1.5 s.
-  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  auto& discovery = wire.builtin.discovery_config;
   discovery.initial_announcements.count = 20;
   discovery.initial_announcements.period = milliseconds(50);
   discovery.leaseDuration_announcementperiod = milliseconds(250);
@@ -74,6 +95,24 @@ void apply_transport(const std::vector<std::string>& interfaces, dds::DomainPart
   // it in seconds): so not while a session lasts. Nobody waits for the lease: a silent process is
   // told by the age of its samples.
   discovery.leaseDuration = {86'400, 0};
+}
+
+}  // namespace
+
+std::shared_ptr<const PacketTally> apply_transport(const Addresses& addresses, int domain,
+                                                   dds::DomainParticipantQos& qos) {
+  auto udp = std::make_shared<UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = addresses.own;
+  udp->sendBufferSize = kSocketBufferBytes;
+  udp->receiveBufferSize = kSocketBufferBytes;
+  udp->maxMessageSize = kMaxDatagramBytes;
+  udp->maxInitialPeersRange = kMaxParticipants;
+  auto tally = std::make_shared<PacketTally>();
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(filtered(udp, tally));
+  apply_discovery(addresses, domain, qos.wire_protocol());
+  qos.allocation().participants = {0, PacketSenders::kMaxParticipants, 1};
+  return tally;
 }
 
 void apply_profile(const Profile& profile, dds::DataWriterQos& qos) {

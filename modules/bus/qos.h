@@ -1,9 +1,9 @@
 // All of the delivery rules (QoS) in one place, as named profiles: transport, stream, state.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <memory>
 
+#include "modules/bus/addresses.h"
 #include "modules/bus/raw_bus.h"
 
 namespace eprosima::fastdds::dds {
@@ -14,12 +14,16 @@ class DataReaderQos;
 
 namespace palpate::bus {
 
+struct PacketTally;
+
 /// Keys (organs, probes, modules) a topic may carry at a time.
 inline constexpr int kMaxKeys = 256;
 
-/// UDP on these interfaces only, no shared memory; quick discovery, a lease of a day.
-void apply_transport(const std::vector<std::string>& interfaces,
-                     eprosima::fastdds::dds::DomainParticipantQos& qos);
+/// UDP on our own addresses only, through the packet filter, without multicast or shared memory;
+/// quick discovery, a lease of a day.
+/// @returns what the filter will have done
+std::shared_ptr<const PacketTally> apply_transport(
+    const Addresses& addresses, int domain, eprosima::fastdds::dds::DomainParticipantQos& qos);
 
 /// stream: best effort, volatile; state: reliable, transient local. Both: newest sample per key (a
 /// reader may ask for more), written in the calling thread, no data sharing, memory grows to the

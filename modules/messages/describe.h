@@ -27,7 +27,7 @@ inline constexpr double kStiffnessTolerance = 1e-6;
 inline constexpr std::size_t kMaxNameBytes = 64;  ///< of a module and a topic
 
 /// What a field must satisfy beside its type. Whatever the rule, floating-point numbers are finite
-/// (but kAge), words are listed ones and texts hold at most kMaxTextBytes and no zero byte.
+/// and at most kMaxMagnitude (but kAge), words are listed ones and texts hold at most kMaxTextBytes and no zero byte.
 enum class Rule {
   kPlain,
   kFromOne,      ///< ≥ 1
@@ -256,6 +256,7 @@ void describe(V& v, M& m) {
   v.field("busy_fraction", m.busy_fraction, Rule::kAtLeastZero);
   v.field("real_time_factor", m.real_time_factor, Rule::kAtLeastZero);
   v.field("realtime_priority", m.realtime_priority, Rule::kPlain);
+  v.field("packets_refused", m.packets_refused, Rule::kPlain);
   v.field("last_error", m.last_error, Rule::kPlain);
   v.list("inputs", m.inputs, kMaxInputs, nullptr);
 }

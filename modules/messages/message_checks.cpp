@@ -1,6 +1,6 @@
 #include "modules/messages/message_checks.h"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
 
 #include "modules/core/tolerances.h"
@@ -13,26 +13,32 @@ bool is_symmetric(const Mat3& k) {
   return (k - k.transpose()).cwiseAbs().maxCoeff() <= kStiffnessTolerance * k.cwiseAbs().maxCoeff();
 }
 
+bool sensible(double x) { return std::abs(x) <= kMaxMagnitude; }  // false for NaN
+template <class Matrix>
+bool all_sensible(const Matrix& m) {
+  return (m.array().abs() <= kMaxMagnitude).all();
+}
+
 bool holds(Rule rule, double x) {
   switch (rule) {
     case Rule::kAtLeastZero:
-      return std::isfinite(x) && x >= 0;
+      return sensible(x) && x >= 0;
     case Rule::kAge:
       return x >= 0;
     case Rule::kFraction:
       return x >= 0 && x <= 1;
     default:
-      return std::isfinite(x);
+      return sensible(x);
   }
 }
 bool holds(Rule rule, const Vec3& v) {
-  if (!v.allFinite()) return false;
+  if (!all_sensible(v)) return false;
   if (rule == Rule::kUnit) return is_unit(v);
   if (rule != Rule::kWeights) return true;
   return v.minCoeff() >= -kUnitTolerance && std::abs(v.sum() - 1) <= kUnitTolerance;
 }
 bool holds(Rule, const Quat& q) { return is_unit(q); }
-bool holds(Rule, const Mat3& k) { return k.allFinite() && is_symmetric(k); }
+bool holds(Rule, const Mat3& k) { return all_sensible(k) && is_symmetric(k); }
 bool holds(Rule, bool) { return true; }
 bool holds(Rule rule, std::uint64_t x) { return rule != Rule::kFromOne || x >= 1; }
 bool holds(Rule rule, std::int64_t x) {
@@ -52,18 +58,13 @@ bool holds(Rule, E value) {
   return is_word(value);
 }
 
-// By the exponent's bits: unlike std::isfinite in a search, this loop vectorizes.
 bool all_hold(const std::vector<float>& values) {
-  constexpr std::uint32_t kExponent = 0x7f800000;
-  std::uint32_t not_finite = 0;
-  for (const float x : values) {
-    not_finite |= (std::bit_cast<std::uint32_t>(x) & kExponent) == kExponent ? 1u : 0u;
-  }
-  return not_finite == 0;
+  // Counted, not sought: this loop vectorizes.
+  std::uint32_t bad = 0;
+  for (const float x : values) bad += std::abs(x) <= float{kMaxMagnitude} ? 0u : 1u;
+  return bad == 0;
 }
-bool all_hold(const std::vector<double>& values) {
-  return std::ranges::all_of(values, [](double x) { return std::isfinite(x); });
-}
+bool all_hold(const std::vector<double>& values) { return std::ranges::all_of(values, sensible); }
 template <class List>
 bool all_hold(const List&) {
   return true;

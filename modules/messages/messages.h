@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 4;
+inline constexpr std::uint32_t kProtocolVersion = 5;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
@@ -117,8 +117,9 @@ struct ModuleStatus {
   double busy_fraction = 0;     ///< of the period spent working, mean since the last status
   double real_time_factor = 0;  ///< simulated per wall time, 0 where it has no meaning
   bool realtime_priority = false;
-  std::string last_error;     ///< empty if none
-  std::vector<Input> inputs;  ///< at most kMaxInputs
+  std::uint64_t packets_refused = 0;  ///< not sound, or in another's name, since start
+  std::string last_error;             ///< empty if none
+  std::vector<Input> inputs;          ///< at most kMaxInputs
 };
 
 /// The resolved scene, for late joiners and recordings.

@@ -41,6 +41,7 @@ bool StatusReporter::poll(std::int64_t now_ns, double session_time, const LoopSt
 void StatusReporter::publish(std::int64_t now_ns, double session_time, const LoopStatistics& loop) {
   count_cycles(now_ns, loop);
   fill_inputs(now_ns);
+  status_.packets_refused = bus_.packets_refused().count;
   status_.header.sim_time_ns = ns_from_seconds(session_time);
   status_.header.source_time_ns = now_ns;
   writer_.write(status_);

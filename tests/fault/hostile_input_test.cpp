@@ -14,7 +14,8 @@ namespace {
 
 /// ProbeState in little-endian CDR: encapsulation, three 8-byte header fields, key, padding, 13
 /// doubles, buttons. Written by hand, because our own writer refuses what is not finite.
-std::vector<std::uint8_t> probe_state_payload(std::uint32_t probe, const double (&pose)[7]) {
+std::vector<std::uint8_t> probe_state_payload(std::uint32_t probe, const double (&pose)[7],
+                                              double speed = 0) {
   std::vector<std::uint8_t> bytes(4 + 140);
   bytes[1] = 0x01;  // CDR, little-endian
   std::size_t at = 4;
@@ -28,7 +29,7 @@ std::vector<std::uint8_t> probe_state_payload(std::uint32_t probe, const double 
   append(probe);
   append(std::uint32_t{0});
   for (const double value : pose) append(value);
-  for (int i = 0; i < 6; ++i) append(0.0);
+  for (int i = 0; i < 6; ++i) append(speed);
   append(std::uint32_t{0});
   return bytes;
 }
@@ -69,6 +70,33 @@ TEST_CASE("hostile input: a pose that is not a number is refused, counted and go
   CHECK(finite);
   CHECK(session.wait([&](const Heard& heard) { return heard.force.force.norm() > 0.05; }));
   CHECK(all_finite(session.heard()));
+}
+
+TEST_CASE("hostile input: finite numbers that no probe has end nobody") {
+  // Oracle: the processes go on. A speed of 1e308 overflowed into an assertion of the search.
+  const BallScene scene;
+  RunningSession session(scene);
+  REQUIRE(session.start());
+  REQUIRE(session.press(0.05));
+  bus::DdsBus attackers(session.options());
+  const auto to_collision = attackers.raw_writer(bus::info_of(bus::kProbeState));
+  const auto to_haptics = attackers.raw_writer(bus::info_of(bus::kProbeInput));
+  const std::uint64_t then = session.heard().nodes.header.sequence;
+  bool finite = true;
+  CHECK(session.wait([&](const Heard& heard) {
+    for (const double size : {1e308, 1e200, 1.1e12, 1e12, 1e6, 1e3}) {
+      for (const double speed : {size, -size}) {
+        to_collision->write(probe_state_payload(0, {0, 0, 0.05, 0, 0, 0, 1}, speed));
+        to_haptics->write(probe_state_payload(0, {speed, 0, 0.05, 0, 0, 0, 1}, speed));
+      }
+    }
+    finite = finite && all_finite(heard);
+    return heard.nodes.header.sequence > then + 250;
+  }));
+  CHECK(finite);
+  for (const char* name : {"deformation", "collision", "haptics"}) {
+    CHECK_FALSE(session.child(name).ended().has_value());
+  }
 }
 
 TEST_CASE("hostile input: the same bytes with finite numbers do move the probe") {

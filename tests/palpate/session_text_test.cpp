@@ -35,6 +35,7 @@ SessionTally some_tally() {
   haptics.overruns = 6;
   haptics.worst_lateness = 2.5e-3;
   haptics.realtime_priority = true;
+  haptics.packets_refused = 23;
   haptics.inputs.push_back({"contact_model", 0.002, 3000, 17, 1});
   tally.receive(haptics);
   ModuleStatus deformation;
@@ -71,7 +72,8 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
   CHECK_THAT(text, Contains("11994 cycles, 99.950 % on time") &&
                        Contains("worst lateness 2.50 ms since its start") &&
                        Contains("real-time priority") &&
-                       Contains("3000 taken, 17 lost or overtaken by newer ones, 1 refused"));
+                       Contains("3000 taken, 17 lost or overtaken by newer ones, 1 refused") &&
+                       Contains("23 packets from a stranger refused"));
   CHECK_THAT(text, Contains("degraded for a while: deformation: slower than real time") &&
                        Contains("[haptics] info: bye") &&
                        Contains("FAILED: collision: killed by signal 9 (Killed)"));

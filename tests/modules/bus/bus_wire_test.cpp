@@ -44,7 +44,7 @@ class ForeignWriter {
   ForeignWriter(const BusOptions& options, std::string_view topic)
       : corrupted_(new CorruptedSupport<Support>), support_(corrupted_) {
     dds::DomainParticipantQos qos;
-    apply_transport({"127.0.0.1"}, qos);
+    apply_transport({{"127.0.0.1"}, {}}, options.domain, qos);
     auto* factory = dds::DomainParticipantFactory::get_instance();
     participant_ = factory->create_participant(static_cast<std::uint32_t>(options.domain), qos);
     participant_->register_type(support_);

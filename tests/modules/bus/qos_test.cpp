@@ -1,6 +1,7 @@
 // The delivery rules, read back from the DDS entities that exist, not from what was asked for.
 #include "modules/bus/qos.h"
 
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <catch2/catch.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -17,6 +18,7 @@ namespace palpate::bus {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
+using eprosima::fastdds::rtps::ChainingTransportDescriptor;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 
 template <class Qos>
@@ -87,12 +89,17 @@ TEST_CASE("qos: a participant uses UDP on loopback only, and finds others quickl
   CHECK(std::string(qos.name().c_str()) == options.participant_name);
   CHECK_FALSE(qos.transport().use_builtin_transports);
   REQUIRE(qos.transport().user_transports.size() == 1);
+  const auto* filter =
+      dynamic_cast<const ChainingTransportDescriptor*>(qos.transport().user_transports[0].get());
+  REQUIRE(filter != nullptr);
   const auto* udp =
-      dynamic_cast<const UDPv4TransportDescriptor*>(qos.transport().user_transports[0].get());
+      dynamic_cast<const UDPv4TransportDescriptor*>(filter->low_level_descriptor.get());
   REQUIRE(udp != nullptr);
   CHECK(udp->interfaceWhiteList == std::vector<std::string>{"127.0.0.1"});
   CHECK(udp->receiveBufferSize == 4u << 20);
   CHECK(udp->sendBufferSize == 4u << 20);
+  CHECK(qos.wire_protocol().builtin.metatrafficMulticastLocatorList.empty());
+  CHECK(qos.wire_protocol().builtin.initialPeersList.size() == 1);
   const auto& discovery = qos.wire_protocol().builtin.discovery_config;
   CHECK(discovery.initial_announcements.count == 20);
   CHECK(discovery.leaseDuration.seconds == 86'400);

@@ -110,7 +110,7 @@ TEST_CASE("csv: values stand under their names") {
   status.rate_hz = 250;
   status.last_error = "late, very";
   CHECK(csv_columns(status).starts_with("state,process_id,rate_hz,nominal_rate_hz,cycles,"));
-  CHECK(values_of(status) == "degraded,-4,250,0,0,0,0,0,0,0,\"late, very\"");
+  CHECK(values_of(status) == "degraded,-4,250,0,0,0,0,0,0,0,0,\"late, very\"");
 
   const ModuleStatus::Input input{"contacts", 0.5, 1, 2, 3};
   std::ostringstream row;

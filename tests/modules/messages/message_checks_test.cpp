@@ -29,7 +29,7 @@ std::string named(const Change& change) {
 // Each value that is not finite must be refused in each place.
 template <class Message, class Place>
 void check_finite(const std::string& field, const Place& place) {
-  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+  for (const double bad : {kNan, kInfinity, -kInfinity, 1.1 * kMaxMagnitude, -1e308}) {
     CHECK(named<Message>([&](Message& m) { place(m) = bad; }) == field);
   }
 }
@@ -199,14 +199,15 @@ TEST_CASE("message checks: NodePositions", "[messages]") {
   CHECK(named<M>([](M& m) { m.positions.resize(4); }) == "positions_m");
   CHECK(named<M>([](M& m) { m.positions.resize(3 * kMaxNodes + 3); }) == "positions_m");
   CHECK(named<M>([](M& m) { m.positions.resize(3 * kMaxNodes); }).empty());
-  // One not finite value anywhere is found, however the loop is vectorized.
+  // One value that is not finite, or too large, is found anywhere, however the loop is vectorized.
   Random random(22);
   for (std::size_t place = 0; place < 3 * 20; ++place) {
     M m = random_message<M>(random);
-    m.positions.assign(3 * 20, std::numeric_limits<float>::max());
+    m.positions.assign(3 * 20, 0.999f * float{kMaxMagnitude});
     REQUIRE(first_invalid_field(m) == nullptr);
-    m.positions[place] = place % 2 == 0 ? std::numeric_limits<float>::infinity()
-                                        : std::numeric_limits<float>::quiet_NaN();
+    m.positions[place] = std::array{std::numeric_limits<float>::infinity(),
+                                    std::numeric_limits<float>::quiet_NaN(),
+                                    -1.001f * float{kMaxMagnitude}}[place % 3];
     CHECK(first_invalid_field(m) != nullptr);
   }
 }

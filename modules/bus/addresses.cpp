@@ -1,4 +1,4 @@
-#include "modules/bus/interfaces.h"
+#include "modules/bus/addresses.h"
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
@@ -36,17 +36,30 @@ void check_is_of_this_host(const std::string& address) {
   throw InputError(message);
 }
 
-}  // namespace
+void check_is_address(const std::string& address) {
+  in_addr ignored;
+  if (inet_pton(AF_INET, address.c_str(), &ignored) == 1) return;
+  throw InputError("PALPATE_PEERS: \"" + address +
+                   "\": allowed are IPv4 addresses such as 10.0.0.6");
+}
 
-std::vector<std::string> interfaces_from(const char* comma_separated) {
+template <class Check>
+std::vector<std::string> list_of(const char* comma_separated, const Check& check) {
   std::vector<std::string> addresses;
   std::istringstream list(comma_separated == nullptr ? "" : comma_separated);
   for (std::string address; std::getline(list, address, ',');) {
     if (address.empty()) continue;
-    check_is_of_this_host(address);
+    check(address);
     addresses.push_back(address);
   }
-  if (addresses.empty()) addresses.emplace_back("127.0.0.1");
+  return addresses;
+}
+
+}  // namespace
+
+Addresses addresses_from(const char* interfaces, const char* peers) {
+  Addresses addresses{list_of(interfaces, check_is_of_this_host), list_of(peers, check_is_address)};
+  if (addresses.own.empty()) addresses.own.emplace_back("127.0.0.1");
   return addresses;
 }
 

@@ -1,0 +1,21 @@
+// Where a process listens, and where it looks for others.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace palpate::bus {
+
+/// IPv4 addresses in dotted form.
+struct Addresses {
+  std::vector<std::string> own;    ///< of this host's interfaces, at least one
+  std::vector<std::string> peers;  ///< of other hosts
+};
+
+/// From the environment of a process: PALPATE_INTERFACES, loopback if null or empty, and
+/// PALPATE_PEERS. Each is a comma-separated list.
+/// @throws InputError for an address of PALPATE_INTERFACES that this host does not have, and one of
+/// PALPATE_PEERS that is none
+Addresses addresses_from(const char* interfaces, const char* peers);
+
+}  // namespace palpate::bus

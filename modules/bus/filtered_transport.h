@@ -1,0 +1,28 @@
+// A transport whose packets pass the filter before the DDS library reads them.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "modules/bus/packet_filter.h"
+#include "modules/bus/packet_senders.h"
+
+namespace eprosima::fastdds::rtps {
+struct TransportDescriptorInterface;
+}
+
+namespace palpate::bus {
+
+/// What a participant's filter did. Written by its receiving threads.
+struct PacketTally {
+  std::atomic<std::uint64_t> refused{0};  ///< packets with a fault
+  std::atomic<PacketFault> last{PacketFault::kNone};
+};
+
+/// Describes a filter over the transport that `under` describes.
+std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> filtered(
+    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> under,
+    std::shared_ptr<PacketTally> tally);
+
+}  // namespace palpate::bus

@@ -1,0 +1,364 @@
+#include "modules/bus/packet_filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+
+namespace palpate::bus {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::size_t kHeaderBytes = 20, kSubmessageHeaderBytes = 4;
+constexpr std::size_t kPrefixAt = 8, kPrefixBytes = 12;
+constexpr std::array<std::uint8_t, 5> kMagic{'R', 'T', 'P', 'S', 2};
+constexpr std::uint8_t kFirstVendorKind = 0x80;
+constexpr std::uint32_t kMaxSetBits = 256;  // of sequence and fragment numbers, by the standard
+constexpr std::size_t kLocatorBytes = 24;
+
+enum Kind : std::uint8_t {
+  kPad = 0x01,
+  kAckNack = 0x06,
+  kHeartbeat = 0x07,
+  kGap = 0x08,
+  kInfoTimestamp = 0x09,
+  kInfoReplyIp4 = 0x0d,
+  kInfoDestination = 0x0e,
+  kInfoReply = 0x0f,
+  kNackFrag = 0x12,
+  kHeartbeatFrag = 0x13,
+  kData = 0x15,
+  kDataFrag = 0x16,
+};
+
+enum Flag : std::uint8_t {
+  kLittleEndian = 1,
+  kSecond = 2,  // inline QoS in data; no time in INFO_TS; a second locator in replies
+  kPayload = 4,
+  kKey = 8,
+};
+
+/// Reads a sub-message's content; what is not there reads as 0 and is remembered.
+class Cursor {
+ public:
+  Cursor(Bytes bytes, bool little) : bytes_(bytes), little_(little) {}
+
+  void skip(std::size_t count) {
+    if (count > bytes_.size()) missing_ = true;
+    bytes_ = bytes_.subspan(std::min(count, bytes_.size()));
+  }
+  std::uint32_t number(std::size_t size) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 0; i < size && i < bytes_.size(); ++i) {
+      value |= std::uint32_t{bytes_[i]} << 8 * (little_ ? i : size - 1 - i);
+    }
+    skip(size);
+    return value;
+  }
+  std::uint16_t two() { return static_cast<std::uint16_t>(number(2)); }
+  std::uint32_t four() { return number(4); }
+  std::int64_t sequence() {
+    const auto high = static_cast<std::int32_t>(four());
+    return std::int64_t{high} * (std::int64_t{1} << 32) + four();
+  }
+  Bytes left() const { return bytes_; }
+  bool missing() const { return missing_; }
+
+ private:
+  Bytes bytes_;
+  bool little_;
+  bool missing_ = false;
+};
+
+struct Submessage {
+  std::uint8_t kind = 0, flags = 0;
+  Bytes content;
+  Bytes owner;  ///< prefix of the packet's participant
+  bool has(Flag flag) const { return (flags & flag) != 0; }
+  Cursor cursor() const { return {content, has(kLittleEndian)}; }
+};
+
+PacketFault checked(const Cursor& cursor) {
+  return cursor.missing() ? PacketFault::kLength : PacketFault::kNone;
+}
+
+// Bits after their base: the bound of the set, and its words.
+bool set_fits(Cursor& cursor) {
+  const std::uint32_t bits = cursor.four();
+  cursor.skip((bits + 31) / 32 * 4);
+  return bits <= kMaxSetBits;
+}
+
+// What a parameter list may say of its owner; a user's list has none.
+using Owner = Bytes;  // 12 bytes, or none
+
+bool owned(std::uint16_t parameter, Bytes value, Owner owner) {
+  constexpr std::uint16_t kParticipantGuid = 0x50, kEndpointGuid = 0x5a, kKeyHash = 0x70;
+  const bool guid =
+      parameter == kParticipantGuid || parameter == kEndpointGuid || parameter == kKeyHash;
+  return !guid || owner.empty() || std::equal(owner.begin(), owner.end(), value.begin());
+}
+
+bool length_fits(std::uint16_t parameter, std::size_t length) {
+  switch (parameter) {
+    case 0x50:  // PID_PARTICIPANT_GUID
+    case 0x5a:  // PID_ENDPOINT_GUID
+    case 0x70:
+      return length == 16;  // PID_KEY_HASH
+    case 0x71:
+      return length == 4;  // PID_STATUS_INFO
+    default:
+      return length % 4 == 0;
+  }
+}
+
+// Moves the cursor behind the list.
+PacketFault check_parameters(Cursor& cursor, Owner owner) {
+  constexpr std::uint16_t kSentinel = 1;
+  while (!cursor.left().empty()) {
+    const std::uint16_t id = cursor.two(), length = cursor.two();
+    if (id == kSentinel) return checked(cursor);
+    if (!length_fits(id, length) || length > cursor.left().size()) return PacketFault::kParameters;
+    if (!owned(id, cursor.left().first(length), owner)) return PacketFault::kIdentity;
+    cursor.skip(length);
+  }
+  return PacketFault::kParameters;
+}
+
+std::uint32_t entity(Cursor& cursor) {  // big-endian whatever the flags say
+  std::uint32_t id = 0;
+  for (std::size_t i = 0; i < 4 && i < cursor.left().size(); ++i) id = id << 8 | cursor.left()[i];
+  cursor.skip(4);
+  return id;
+}
+
+bool built_in(std::uint32_t writer) { return (writer & 0xc0) == 0xc0; }
+
+bool carries_parameters(std::uint32_t writer) {
+  switch (writer) {
+    case 0x000100c2:  // SPDP: participants
+    case 0x000002c2:  // SEDP: topics, writers, readers
+    case 0x000003c2:
+    case 0x000004c2:
+      return true;
+    default:
+      return false;
+  }
+}
+
+PacketFault check_payload(const Submessage& message, std::uint32_t writer, Bytes payload) {
+  if (!message.has(kPayload) && !message.has(kKey)) return PacketFault::kNone;
+  if (payload.size() < 4) return PacketFault::kLength;  // encapsulation
+  if (!carries_parameters(writer)) return PacketFault::kNone;
+  const std::uint8_t encapsulation = payload[1];
+  if (payload[0] != 0 || (encapsulation != 2 && encapsulation != 3)) {
+    return PacketFault::kParameters;
+  }
+  Cursor parameters(payload.subspan(4), encapsulation == 3);
+  return check_parameters(parameters, message.owner);
+}
+
+PacketFault check_data(const Submessage& message) {
+  constexpr std::uint16_t kToInlineQos = 16;  // at least: what lies between may grow
+  Cursor cursor = message.cursor();
+  cursor.skip(2);  // extra flags
+  const std::uint16_t to_qos = cursor.two();
+  entity(cursor);
+  const std::uint32_t writer = entity(cursor);
+  const std::int64_t sequence = cursor.sequence();
+  if (to_qos < kToInlineQos) return PacketFault::kLength;
+  cursor.skip(to_qos - kToInlineQos);
+  if (cursor.missing()) return PacketFault::kLength;
+  if (sequence <= 0) return PacketFault::kSequence;
+  if (message.has(kSecond)) {
+    const PacketFault fault = check_parameters(cursor, built_in(writer) ? message.owner : Owner());
+    if (fault != PacketFault::kNone) return fault;
+  }
+  return check_payload(message, writer, cursor.left());
+}
+
+PacketFault check_data_frag(const Submessage& message) {
+  constexpr std::uint16_t kToInlineQos = 28;
+  Cursor cursor = message.cursor();
+  cursor.skip(2);
+  const std::uint16_t to_qos = cursor.two();
+  entity(cursor);
+  const std::uint32_t writer = entity(cursor);
+  const std::int64_t sequence = cursor.sequence();
+  const std::uint64_t first = cursor.four(), count = cursor.two(), size = cursor.two(),
+                      sample = cursor.four();
+  if (to_qos < kToInlineQos) return PacketFault::kLength;
+  cursor.skip(to_qos - kToInlineQos);
+  if (cursor.missing()) return PacketFault::kLength;
+  if (sequence <= 0) return PacketFault::kSequence;
+  if (built_in(writer)) return PacketFault::kFragment;  // theirs are small
+  if (message.has(kSecond)) {
+    const PacketFault fault = check_parameters(cursor, Owner());
+    if (fault != PacketFault::kNone) return fault;
+  }
+  if (first == 0 || count == 0 || size == 0 || sample > kMaxSampleBytes ||
+      (first + count - 2) * size >= sample) {
+    return PacketFault::kFragment;
+  }
+  const std::uint64_t bytes = std::min(count * size, sample - (first - 1) * size);
+  return cursor.left().size() < bytes ? PacketFault::kLength : PacketFault::kNone;
+}
+
+PacketFault check_gap(const Submessage& message) {
+  Cursor cursor = message.cursor();
+  cursor.skip(8);
+  const std::int64_t start = cursor.sequence(), base = cursor.sequence();
+  const bool fits = set_fits(cursor);
+  if (cursor.missing() || !fits) return PacketFault::kLength;
+  if (start <= 0 || base < start) return PacketFault::kSequence;
+  return base - start > kMaxGap ? PacketFault::kGap : PacketFault::kNone;
+}
+
+PacketFault check_heartbeat(const Submessage& message) {
+  Cursor cursor = message.cursor();
+  cursor.skip(8);
+  const std::int64_t first = cursor.sequence(), last = cursor.sequence();
+  cursor.skip(4);
+  if (cursor.missing()) return PacketFault::kLength;
+  return first <= 0 || last < first - 1 ? PacketFault::kSequence : PacketFault::kNone;
+}
+
+PacketFault check_acknack(const Submessage& message) {
+  Cursor cursor = message.cursor();
+  cursor.skip(8);
+  const std::int64_t base = cursor.sequence();
+  const bool fits = set_fits(cursor);
+  cursor.skip(4);
+  if (cursor.missing() || !fits) return PacketFault::kLength;
+  return base < 0 ? PacketFault::kSequence : PacketFault::kNone;  // 0: "I know nothing yet"
+}
+
+PacketFault check_fragment_words(const Submessage& message) {
+  Cursor cursor = message.cursor();
+  cursor.skip(8);
+  const std::int64_t sequence = cursor.sequence();
+  const std::uint32_t number = cursor.four();
+  const bool fits = message.kind != kNackFrag || set_fits(cursor);
+  cursor.skip(4);
+  if (cursor.missing() || !fits) return PacketFault::kLength;
+  if (sequence <= 0) return PacketFault::kSequence;
+  return number == 0 ? PacketFault::kFragment : PacketFault::kNone;
+}
+
+PacketFault check_reply(const Submessage& message) {
+  Cursor cursor = message.cursor();
+  for (int list = 0; list < (message.has(kSecond) ? 2 : 1); ++list) {
+    const std::uint32_t locators = cursor.four();
+    if (locators > cursor.left().size() / kLocatorBytes) return PacketFault::kLength;
+    cursor.skip(locators * kLocatorBytes);
+  }
+  return checked(cursor);
+}
+
+PacketFault at_least(const Submessage& message, std::size_t bytes) {
+  return message.content.size() < bytes ? PacketFault::kLength : PacketFault::kNone;
+}
+
+PacketFault check(const Submessage& message) {
+  switch (message.kind) {
+    case kPad:
+      return PacketFault::kNone;
+    case kAckNack:
+      return check_acknack(message);
+    case kHeartbeat:
+      return check_heartbeat(message);
+    case kGap:
+      return check_gap(message);
+    case kInfoTimestamp:
+      return at_least(message, message.has(kSecond) ? 0 : 8);
+    case kInfoReplyIp4:
+      return at_least(message, message.has(kSecond) ? 16 : 8);
+    case kInfoDestination:
+      return at_least(message, 12);
+    case kInfoReply:
+      return check_reply(message);
+    case kNackFrag:
+    case kHeartbeatFrag:
+      return check_fragment_words(message);
+    case kData:
+      return check_data(message);
+    case kDataFrag:
+      return check_data_frag(message);
+    default:
+      return PacketFault::kKind;
+  }
+}
+
+// The bytes that a sub-message with this header takes; none if it ends beyond the packet.
+std::optional<std::size_t> size_of(Bytes rest) {
+  if (rest.size() < kSubmessageHeaderBytes) return {};
+  const bool little = (rest[1] & kLittleEndian) != 0;
+  const std::size_t length = Cursor(rest.subspan(2, 2), little).two();
+  const bool to_the_end = length == 0 && rest[0] != kPad && rest[0] != kInfoTimestamp;
+  const std::size_t size = to_the_end ? rest.size() : kSubmessageHeaderBytes + length;
+  if (size > rest.size()) return {};
+  return size;
+}
+
+bool is_rtps(Bytes packet) {
+  return packet.size() >= kHeaderBytes && std::equal(kMagic.begin(), kMagic.end(), packet.begin());
+}
+
+}  // namespace
+
+const char* text_of(PacketFault fault) {
+  switch (fault) {
+    case PacketFault::kNone:
+      return "sound";
+    case PacketFault::kHeader:
+      return "not RTPS 2";
+    case PacketFault::kLength:
+      return "a sub-message ends beyond its packet";
+    case PacketFault::kKind:
+      return "a sub-message of unknown kind";
+    case PacketFault::kSequence:
+      return "sequence numbers that cannot be";
+    case PacketFault::kGap:
+      return "a gap of more than a million samples";
+    case PacketFault::kFragment:
+      return "fragments that do not fit their sample";
+    case PacketFault::kParameters:
+      return "a broken list of parameters";
+    case PacketFault::kIdentity:
+      return "words in another participant's name";
+  }
+  return "unknown";
+}
+
+FilteredPacket filter_packet(Bytes packet, std::vector<std::uint8_t>& kept) {
+  if (!is_rtps(packet)) return {{}, PacketFault::kHeader};
+  PacketFault last = PacketFault::kNone;
+  kept.clear();
+  std::size_t sound = kHeaderBytes;  // bytes from the beginning that lost nothing
+  for (Bytes rest = packet.subspan(kHeaderBytes); !rest.empty();) {
+    const std::optional<std::size_t> size = size_of(rest);
+    if (!size) return {{}, PacketFault::kLength};
+    const bool vendor = rest[0] >= kFirstVendorKind;
+    const Submessage message{rest[0], rest[1],
+                             rest.subspan(kSubmessageHeaderBytes, *size - kSubmessageHeaderBytes),
+                             packet.subspan(kPrefixAt, kPrefixBytes)};
+    const PacketFault fault = vendor ? PacketFault::kNone : check(message);
+    if (fault != PacketFault::kNone) last = fault;
+    if (fault != PacketFault::kNone && fault != PacketFault::kGap) return {{}, fault};
+    if (!vendor && fault == PacketFault::kNone) {
+      const std::size_t at = packet.size() - rest.size();
+      if (at == sound) {
+        sound += *size;
+      } else {
+        if (kept.empty()) kept.assign(packet.begin(), packet.begin() + std::ptrdiff_t(sound));
+        kept.insert(kept.end(), rest.begin(), rest.begin() + std::ptrdiff_t(*size));
+      }
+    }
+    rest = rest.subspan(*size);
+  }
+  const Bytes passed = kept.empty() ? packet.first(sound) : Bytes(kept);
+  return {passed.size() > kHeaderBytes ? passed : Bytes(), last};
+}
+
+}  // namespace palpate::bus
