@@ -1,6 +1,7 @@
 #include "deformation/world.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -21,6 +22,9 @@ constexpr double kValidityOfEdge = 0.5;
 constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
 /// Forces that change faster than this part of themselves in a period are not taken to go on so.
 constexpr double kMostGrowth = 0.5;
+/// A law is used for up to a period and a half more: a change over fewer periods than that, which a
+/// chatter of contacts may be, it would make larger.
+constexpr std::size_t kGrowthPeriods = 3;
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
 constexpr double kFarthestContact = 10;
 
@@ -99,10 +103,8 @@ struct DeformationWorld::Impl {
   std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
   std::vector<Contact> accepted;  ///< buffer of set_contacts()
-  /// Mean force on a probe over the last advance and the one before [N].
-  struct Forces {
-    Vec3 now = Vec3::Zero(), before = Vec3::Zero();
-  };
+  /// Mean forces on a probe over the last advances, the newest first [N].
+  using Forces = std::array<Vec3, kGrowthPeriods + 1>;
   std::vector<Forces> forces;
   double time = 0, period = 0;   ///< simulated; of the last advance [s]
   bool contact_refused = false;  ///< since the last advance
@@ -190,13 +192,25 @@ struct DeformationWorld::Impl {
     return lower;
   }
 
-  /// How fast the force on a probe grew over the last two advances [1/s].
+  void forget_forces() {
+    Forces none;
+    none.fill(Vec3::Zero());
+    forces.assign(probes.size(), none);
+  }
+
+  void note_force(std::size_t probe) {
+    Forces& of_probe = forces[probe];
+    std::shift_right(of_probe.begin(), of_probe.end(), 1);
+    of_probe[0] = probes[probe].impulse() / period;
+  }
+
+  /// How fast the force on a probe grew over the last kGrowthPeriods advances, in the mean [1/s].
   double growth(std::size_t probe) const {
-    const Vec3 now = forces[probe].now, before = forces[probe].before;
+    const Vec3 &now = forces[probe].front(), &then = forces[probe].back();
     const double strength = now.norm();
-    if (!(strength > 0) || before.isZero(0) || !(period > 0)) return 0;
-    return std::clamp((now - before).dot(now) / (strength * strength), -kMostGrowth, kMostGrowth) /
-           period;
+    if (!(strength > 0) || forces[probe][1].isZero(0) || !(period > 0)) return 0;
+    const double grown = (now - then).dot(now) / (strength * strength) / kGrowthPeriods;
+    return std::clamp(grown, -kMostGrowth, kMostGrowth) / period;
   }
 };
 
@@ -210,7 +224,7 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
                                        rest_shapes[i], runner, guarding));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
-  impl_->forces.resize(scene.probes.size());
+  impl_->forget_forces();
 }
 
 DeformationWorld::~DeformationWorld() = default;
@@ -257,9 +271,7 @@ AdvanceReport DeformationWorld::advance(double period) {
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     if (impl_->organs[i].replaced) impl_->drop_contacts(i);
   }
-  for (std::size_t i = 0; i < impl_->probes.size(); ++i) {
-    impl_->forces[i] = {impl_->probes[i].impulse() / period, impl_->forces[i].now};
-  }
+  for (std::size_t i = 0; i < impl_->probes.size(); ++i) impl_->note_force(i);
   impl_->time += period;
   return report;
 }
@@ -270,7 +282,7 @@ void DeformationWorld::reset() {
     ++organ.generation;
   }
   for (auto& probe : impl_->probes) probe.reset();
-  impl_->forces.assign(impl_->probes.size(), {});
+  impl_->forget_forces();
   impl_->time = impl_->period = 0;
 }
 
@@ -307,7 +319,9 @@ std::span<const Vec3> DeformationWorld::positions(std::size_t organ) const {
   return impl_->organs.at(organ).simulated.state().positions;
 }
 
-const Vec3& DeformationWorld::force(std::size_t probe) const { return impl_->forces.at(probe).now; }
+const Vec3& DeformationWorld::force(std::size_t probe) const {
+  return impl_->forces.at(probe).front();
+}
 
 LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {
   const ProbeContacts& probe = impl_->probes.at(probe_index);

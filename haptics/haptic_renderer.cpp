@@ -31,7 +31,8 @@ HapticRenderer::HapticRenderer(const scene::Haptics& limits, double period)
       period_(period),
       force_limiter_(limits.max_force, limits.max_force_rate * period),
       torque_limiter_(limits.max_force * kTorqueArm, limits.max_force_rate * period * kTorqueArm),
-      passivity_(limits.device_damping, period) {
+      passivity_(limits.device_damping, period),
+      credit_(period) {
   PALPATE_DEMAND(period > 0);
   for (Received* received : {&current_, &next_}) {  // so that taking a law allocates nothing
     received->law.rows.reserve(kMaxLawRows);
@@ -43,6 +44,7 @@ void HapticRenderer::reset() {
   current_.valid = next_.valid = false;
   solver_.clear();
   passivity_.clear();
+  credit_.clear();
   cross_fade_left_ = 0;
   pressed_ = 0;
   refused_laws_ = 0;
@@ -80,12 +82,15 @@ void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce
   Wrench passive_wrench = passive(wanted, device, limits);
   // Who has nothing to go by lets go: a debt must not hold the hand.
   if (present == 0 || freshness(age(current_, time), limits_) == 0) passive_wrench = {};
+  const Vec3 damping = contact_damping(passive_wrench.force, device);
+  passive_wrench.force += damping;
   out.force = force_limiter_.limit(passive_wrench.force, limits);
   // What cuts the force cuts the torque it exerts.
   const double length = passive_wrench.force.stableNorm();
   const double cut = length > 0 ? std::min(1.0, out.force.norm() / length) : 1;
   out.torque = torque_limiter_.limit(cut * passive_wrench.torque, limits);
-  passivity_.held({out.force, out.torque});
+  // What the damping takes in is lost and pays for nothing.
+  passivity_.held({out.force - damping, out.torque});
   out.limits = limits;
   out.passivity_energy = passivity_.energy();
   out.contact_model_age = age(next_.valid ? next_ : current_, time);
@@ -133,19 +138,24 @@ double HapticRenderer::presence(double silence) {
   return presence_;
 }
 
-/// A stiffness K on a device of damping b is stable up to b/(T/2 + t_d), T the tick and t_d the
-/// device's delay. A law that is stiffer is softened to that from its anchor on. The tissue meets
-/// the device's own pose: told the far end of a spring in series, with which it agrees only a
-/// period later, it would be pressed and let go in turn under a hand at rest. Rows that do not
-/// press yet tell no stiffness: what held before holds for them, too.
+/// b/(T/2 + t_d), T the tick, b and t_d the device's damping and delay: the largest stiffness that
+/// it can hold [N/m]; 0: nobody holds it.
+double HapticRenderer::stable_stiffness(const DeviceSample& device) const {
+  return device.delay ? limits_.device_damping / (period_ / 2 + *device.delay) : 0;
+}
+
+/// A law that is stiffer than the device can hold is softened to that from its anchor on. The
+/// tissue meets the device's own pose: told the far end of a spring in series, with which it agrees
+/// only a period later, it would be pressed and let go in turn under a hand at rest. Rows that do
+/// not press yet tell no stiffness: what held before holds for them, too.
 /// @returns the compliance that it gains [m/N]; 0: it is not capped, or nobody holds the device
 double HapticRenderer::softening_of(const LocalLaw& law, const DeviceSample& device) const {
-  if (!device.delay || !(limits_.device_damping > 0)) return 0;
+  const double stable = stable_stiffness(device);
+  if (!(stable > 0)) return 0;
   Eigen::SelfAdjointEigenSolver<Mat3> solver;
   solver.computeDirect(law.stiffness, Eigen::EigenvaluesOnly);
   const double stiffness = solver.eigenvalues().maxCoeff();
   if (!law.rows.empty() && !(stiffness > 0)) return softening_;
-  const double stable = limits_.device_damping / (period_ / 2 + *device.delay);
   return stiffness > stable ? 1 / stable - 1 / stiffness : 0;
 }
 
@@ -154,11 +164,10 @@ double HapticRenderer::softening_of(const LocalLaw& law, const DeviceSample& dev
 void HapticRenderer::begin_cross_fade(const DeviceSample& device, double time) {
   std::uint32_t ignored = 0;
   const Wrench before = wrench_at(device.pose, time, ignored);
-  const double since_last = current_.valid ? std::abs(next_.time - current_.time) : kCrossFadeTime;
-  cross_fade_ticks_ =
-      std::max(1, static_cast<int>(std::lround(std::min(since_last, kCrossFadeTime) / period_)));
   std::swap(current_, next_);
   next_.valid = false;
+  const double spread = std::min(current_.law.period, kLongestCrossFade);
+  cross_fade_ticks_ = std::max(1, static_cast<int>(std::lround(spread / period_)));
   softening_ = softening_of(current_.law, device);
   solver_.take(current_.law, softening_);
   cross_fade_left_ = 0;
@@ -180,18 +189,46 @@ double HapticRenderer::returnable_energy(const Pose& pose, const Vec3& force) {
   return energy < kMost ? energy : kMost;
 }
 
+/// In contact a held device is damped beyond its own, along the force: on soft tissue that lets it
+/// swing for seconds.
+Vec3 HapticRenderer::contact_damping(const Vec3& force, const DeviceSample& device) const {
+  const double strength = force.stableNorm();
+  if (!(stable_stiffness(device) > 0) || !(strength > 0) || !is_finite(device)) {
+    return Vec3::Zero();
+  }
+  const Vec3 along = force / strength;
+  const double most = kMostDamped * strength;
+  const double loss = kContactDamping * device.twist.linear.dot(along);
+  return -std::clamp(loss, -most, most) * along;
+}
+
+/// Of a softened law, no more than its spring has been loaded for (energy_credit.h).
+Wrench HapticRenderer::paid_for(const Wrench& wanted, const DeviceSample& device) {
+  const double stable = stable_stiffness(device);
+  if (!(softening_ > 0) || !(stable > 0)) {
+    credit_.clear();
+    return wanted;
+  }
+  const double strength = wanted.force.stableNorm();
+  const double most =
+      credit_.limit(strength, stable, passivity_.energy(), device.twist.linear.stableNorm());
+  return strength > most ? most / strength * wanted : wanted;
+}
+
 Wrench HapticRenderer::passive(const Wrench& wanted, const DeviceSample& device,
                                std::uint32_t& limits) {
   const bool apart = wanted.is_zero() && force_limiter_.output().isZero(0);
   if (apart || !is_finite(device)) {
     passivity_.clear();
+    credit_.clear();
     pressed_ = 0;
     pressed_at_ = device.pose.position;
     return wanted;
   }
   passivity_.observe(device.pose, returnable_energy(device.pose, wanted.force));
-  const Wrench wrench = passivity_.controlled(wanted, device.twist);
-  if (wrench != wanted) limits |= kForcePassivity;
+  const Wrench paid = paid_for(wanted, device);
+  const Wrench wrench = passivity_.controlled(paid, device.twist);
+  if (wrench != paid) limits |= kForcePassivity;
   return wrench;
 }
 

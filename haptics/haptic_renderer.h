@@ -1,14 +1,15 @@
 // The force law of one probe, evaluated every haptic tick.
 //
 // read device → evaluate the local law at the current pose → cross-fade from the law before
-// → stale fade → presence of the driver → passivity → finite check → slew limit → saturation →
-// command. The law only proposes; limits are ours. docs/haptic_safety.md says what each stage
-// promises.
+// → stale fade → presence of the driver → credit of a softened law → passivity → contact damping →
+// finite check → slew limit → saturation → command. The law only proposes; limits are ours.
+// docs/haptic_safety.md says what each stage promises.
 #pragma once
 
 #include <cstdint>
 
 #include "haptics/devices/device.h"
+#include "haptics/energy_credit.h"
 #include "haptics/force_limits.h"
 #include "haptics/local_law.h"
 #include "haptics/passivity.h"
@@ -19,9 +20,12 @@ namespace palpate::haptics {
 
 class HapticRenderer {
  public:
-  /// A new law's difference to the one before is spread over this time, or over the time since
-  /// the one before if that is shorter [s].
-  static constexpr double kCrossFadeTime = 0.004;
+  /// A new law's difference to the one before is spread over its period, at most over this [s].
+  static constexpr double kLongestCrossFade = 0.025;
+  /// Of a held device in contact [N·s/m]. With it 0.1 kg on 0.2 N·s/m loses a swing by exp(−2.5
+  /// t/s); a hand that holds it has 3 N·s/m and more.
+  static constexpr double kContactDamping = 0.3;
+  static constexpr double kMostDamped = 0.5;  ///< of a force, at most: it never pulls
   /// A torque is limited to what the limited force gives at this arm [m].
   static constexpr double kTorqueArm = 0.1;
 
@@ -48,17 +52,21 @@ class HapticRenderer {
   };
   double age(const Received& received, double time) const;
   double presence(double silence);
+  double stable_stiffness(const DeviceSample& device) const;
   double softening_of(const LocalLaw& law, const DeviceSample& device) const;
   Wrench propose(const DeviceSample& device, double time, std::uint32_t& limits);
   Wrench wrench_at(const Pose& pose, double time, std::uint32_t& limits);
   void begin_cross_fade(const DeviceSample& device, double time);
   double returnable_energy(const Pose& pose, const Vec3& force);
+  Vec3 contact_damping(const Vec3& force, const DeviceSample& device) const;
+  Wrench paid_for(const Wrench& wanted, const DeviceSample& device);
   Wrench passive(const Wrench& wanted, const DeviceSample& device, std::uint32_t& limits);
 
   scene::Haptics limits_;
   double period_;
   ForceLimiter force_limiter_, torque_limiter_;
   Passivity passivity_;
+  EnergyCredit credit_;
 
   Received current_, next_;  ///< `next_` takes over at the coming tick
   LawSolver solver_;         ///< of the current law

@@ -16,7 +16,7 @@ struct LawStiffness {
 /// anew for each.
 std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going);
 
-/// In the median and at worst. Where the organ's own is not positive nothing can be said.
+/// In the median and at worst, of |law − organ|/|organ|; infinite where the organ's own is 0.
 std::vector<Line> law_lines(const std::vector<LawStiffness>& stiffness);
 
 }  // namespace palpate::certify

@@ -26,6 +26,7 @@ runtime::Health WallStage::cycle(const runtime::Cycle& now) {
     model_.rows[0].gap = std::max(0.0, z);
     model_.rows[0].force.z() = std::max(0.0, -stiffness_ * z);
   }
+  model_.period = now.advance;
   model_.header = now.header();
   models_.write(model_);
   return {};

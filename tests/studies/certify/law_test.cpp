@@ -8,8 +8,9 @@ using namespace palpate;
 using namespace palpate::testing;
 using namespace palpate::certify;
 
-TEST_CASE("certify law: median and worst, and silence where the organ's own is not positive") {
-  // Oracle: definition.
+TEST_CASE("certify law: median and worst, of an organ that gives way or yields too") {
+  // Oracle: definition, |law − organ|/|organ|: of −50 N/m beside 100 N/m it is 300 %; of 0 nothing
+  // is within any limit.
   const auto at = [](double law, double organ) { return LawStiffness{1e-3, law, organ}; };
   const auto lines = law_lines({at(105, 100), at(92, 100), at(130, 100)});
   REQUIRE(lines.size() == 2);
@@ -17,9 +18,13 @@ TEST_CASE("certify law: median and worst, and silence where the organ's own is n
   CHECK(lines[0].verdict == Verdict::kPass);
   CHECK(lines[1].value == Approx(30));
   CHECK(lines[1].verdict == Verdict::kFail);
-  for (const Line& line : law_lines({at(105, 100), at(92, -1), at(130, 0)})) {
-    CHECK(line.verdict == Verdict::kNotMeasured);
-  }
+  const auto yielding = law_lines({at(105, 100), at(100, -50), at(92, 100)});
+  CHECK(yielding[0].value == Approx(8));
+  CHECK(yielding[1].value == Approx(300));
+  const auto none = law_lines({at(105, 100), at(0, 0), at(92, 100)});
+  CHECK(none[0].value == Approx(8));
+  CHECK(none[0].verdict == Verdict::kPass);
+  CHECK(none[1].verdict == Verdict::kFail);
 }
 
 TEST_CASE("certify law: it finds the stiffness of a ball") {

@@ -21,14 +21,16 @@ Subject without_passivity() {
 
 TEST_CASE("certify press: a lossless wall gives back what the formula allows, no more") {
   // Oracle: analytic, K v D (T + 2 t_d) (docs/haptic_safety.md). With nothing to control it the
-  // leak is there: between a tenth of the limit and the limit, for v is the largest speed of a
-  // minimum-jerk motion and D the depth of the hand's target.
+  // leak is there, beside what contact damping takes: between a tenth of the limit and the limit,
+  // for v is the largest speed of a minimum-jerk motion and D the depth of the hand's target.
   const Subject subject = without_passivity();
   const auto ticks = press_and_release(loop_on_wall(subject.scene, 200), subject, kGoOn);
   const Line line = energy_line("g", "n", ticks, subject);
   INFO(text_of(line));
   CHECK(line.verdict == Verdict::kPass);
-  CHECK(line.value > 0.1 * line.limit);
+  const double leak = line.value + 1e3 * taken_by_damping(ticks, 1e-3);
+  CHECK(leak > 0.1 * line.limit);
+  CHECK(leak < line.limit);
 }
 
 TEST_CASE("certify press: a delay that nobody was told of fails the line of energy") {

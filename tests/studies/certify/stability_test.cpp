@@ -10,9 +10,10 @@ using namespace palpate;
 using namespace palpate::testing;
 using namespace palpate::certify;
 
-TEST_CASE("certify stability: the critical stiffness of a wall is found where the formula says") {
-  // Oracle: analytic, b/(T/2 + t_d). 5 %: the bisection's 2 %, and a vibration counts as bounded
-  // when it has lost less than 2 % in five seconds.
+TEST_CASE("certify stability: a wall is stable to the formula's stiffness, softened also beyond") {
+  // Oracle: analytic, b/(T/2 + t_d) at least: what is stiffer is softened to that. 5 %: the
+  // bisection's 2 %, and a vibration counts as bounded when it has lost less than 2 % in five
+  // seconds.
   for (const double transport : {0.0, 2e-3}) {
     Subject subject = wall_subject();
     subject.device.transport_delay = transport;
@@ -21,18 +22,19 @@ TEST_CASE("certify stability: the critical stiffness of a wall is found where th
     const auto found = critical_stiffness(subject, kGoOn);
     REQUIRE(found.has_value());
     std::cout << "certify stability: formula " << formula << " N/m, found " << *found << " N/m\n";
-    CHECK(*found / formula == Approx(1).margin(0.05));
+    CHECK(*found > 0.95 * formula);
   }
 }
 
 TEST_CASE("certify stability: a scene that claims a damping which the device lacks fails") {
-  // Oracle: the formula: 2 N·s/m would hold 4000 N/m, the device's 0.2 hold 400.
+  // Oracle: the formula: 2 N·s/m would hold 4000 N/m, the device's 0.2 and the 0.3 of contact
+  // damping hold 1000; its velocity is 2 ms old, which costs some per cent.
   Subject subject = wall_subject();
   subject.scene.haptics.device_damping = 2;
   const Line line = critical_line(subject, kGoOn);
   INFO(text_of(line));
   CHECK(line.verdict == Verdict::kFail);
-  CHECK(line.value == Approx(400).epsilon(0.05));
+  CHECK(line.value == Approx(1000).epsilon(0.05));
   CHECK(stiff_wall_line(subject, kGoOn).verdict == Verdict::kFail);
   CHECK(stiff_wall_line(wall_subject(), kGoOn).verdict == Verdict::kPass);
 }

@@ -1,7 +1,8 @@
 // A ball that a finger touches from above, and walls, for tests of certificates.
 #pragma once
 
-#include "studies/certify/subject.h"
+#include "haptics/haptic_renderer.h"
+#include "studies/certify/loop.h"
 #include "tests/palpate/ball_scene.h"
 
 namespace palpate::testing {
@@ -17,6 +18,18 @@ inline certify::Subject wall_subject() {
   certify::Subject subject;
   subject.scene.probes.push_back({"tip", scene::SphereShape{}, 0, scene::ScriptedDevice{}});
   return subject;
+}
+
+/// What contact damping takes from a motion along the force [J].
+inline double taken_by_damping(const std::vector<certify::Tick>& ticks, double period) {
+  double sum = 0;
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    const double moved = ticks[i].depth - ticks[i - 1].depth;
+    if (ticks[i].motor > 0) {
+      sum += haptics::HapticRenderer::kContactDamping * moved * moved / period;
+    }
+  }
+  return sum;
 }
 
 }  // namespace palpate::testing
