@@ -203,8 +203,8 @@ TEST_CASE("closed loop: beyond the critical stiffness limits and passivity bound
 
 TEST_CASE("closed loop: a held device comes to rest on soft tissue") {
   // Oracle: analytic. Pushed by 0.16 N from rest at the skin of 8 N/m it comes to rest 20 mm deep,
-  // after a swing of 20 mm exp(−t (b + B)/2m), B = 0.3 N·s/m: after 2 s 0.13 mm to either side. Without B
-  // 2.7 mm, of which half at least must be there. 10 % for the hand-over and the tick.
+  // after a swing of 20 mm exp(−t (b + B)/2m), B = 0.3 N·s/m: after 2 s 0.13 mm to either side.
+  // Without B 2.7 mm, of which half at least must be there. 10 % for the hand-over and the tick.
   for (const bool held : {true, false}) {
     Mass mass{0.2};
     mass.held = held;
