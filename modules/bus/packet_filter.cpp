@@ -5,6 +5,8 @@
 #include <cstring>
 #include <optional>
 
+#include "modules/bus/byte_cursor.h"
+
 namespace palpate::bus {
 namespace {
 
@@ -39,38 +41,6 @@ enum Flag : std::uint8_t {
   kKey = 8,
 };
 
-/// Reads a sub-message's content; what is not there reads as 0 and is remembered.
-class Cursor {
- public:
-  Cursor(Bytes bytes, bool little) : bytes_(bytes), little_(little) {}
-
-  void skip(std::size_t count) {
-    if (count > bytes_.size()) missing_ = true;
-    bytes_ = bytes_.subspan(std::min(count, bytes_.size()));
-  }
-  std::uint32_t number(std::size_t size) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 0; i < size && i < bytes_.size(); ++i) {
-      value |= std::uint32_t{bytes_[i]} << 8 * (little_ ? i : size - 1 - i);
-    }
-    skip(size);
-    return value;
-  }
-  std::uint16_t two() { return static_cast<std::uint16_t>(number(2)); }
-  std::uint32_t four() { return number(4); }
-  std::int64_t sequence() {
-    const auto high = static_cast<std::int32_t>(four());
-    return std::int64_t{high} * (std::int64_t{1} << 32) + four();
-  }
-  Bytes left() const { return bytes_; }
-  bool missing() const { return missing_; }
-
- private:
-  Bytes bytes_;
-  bool little_;
-  bool missing_ = false;
-};
-
 struct Submessage {
   std::uint8_t kind = 0, flags = 0;
   Bytes content;
@@ -93,24 +63,19 @@ bool set_fits(Cursor& cursor) {
 // What a parameter list may say of its owner; a user's list has none.
 using Owner = Bytes;  // 12 bytes, or none
 
+bool is_guid(std::uint16_t parameter) {
+  return parameter == 0x50 || parameter == 0x5a || parameter == 0x70;  // participant, endpoint, key
+}
+
 bool owned(std::uint16_t parameter, Bytes value, Owner owner) {
-  constexpr std::uint16_t kParticipantGuid = 0x50, kEndpointGuid = 0x5a, kKeyHash = 0x70;
-  const bool guid =
-      parameter == kParticipantGuid || parameter == kEndpointGuid || parameter == kKeyHash;
-  return !guid || owner.empty() || std::equal(owner.begin(), owner.end(), value.begin());
+  return !is_guid(parameter) || owner.empty() ||
+         std::equal(owner.begin(), owner.end(), value.begin());
 }
 
 bool length_fits(std::uint16_t parameter, std::size_t length) {
-  switch (parameter) {
-    case 0x50:  // PID_PARTICIPANT_GUID
-    case 0x5a:  // PID_ENDPOINT_GUID
-    case 0x70:
-      return length == 16;  // PID_KEY_HASH
-    case 0x71:
-      return length == 4;  // PID_STATUS_INFO
-    default:
-      return length % 4 == 0;
-  }
+  constexpr std::uint16_t kStatusInfo = 0x71;
+  if (parameter == kStatusInfo) return length == 4;
+  return is_guid(parameter) ? length == 16 : length % 4 == 0;
 }
 
 // Moves the cursor behind the list.
@@ -124,13 +89,6 @@ PacketFault check_parameters(Cursor& cursor, Owner owner) {
     cursor.skip(length);
   }
   return PacketFault::kParameters;
-}
-
-std::uint32_t entity(Cursor& cursor) {  // big-endian whatever the flags say
-  std::uint32_t id = 0;
-  for (std::size_t i = 0; i < 4 && i < cursor.left().size(); ++i) id = id << 8 | cursor.left()[i];
-  cursor.skip(4);
-  return id;
 }
 
 bool built_in(std::uint32_t writer) { return (writer & 0xc0) == 0xc0; }
@@ -164,8 +122,8 @@ PacketFault check_data(const Submessage& message) {
   Cursor cursor = message.cursor();
   cursor.skip(2);  // extra flags
   const std::uint16_t to_qos = cursor.two();
-  entity(cursor);
-  const std::uint32_t writer = entity(cursor);
+  cursor.entity();
+  const std::uint32_t writer = cursor.entity();
   const std::int64_t sequence = cursor.sequence();
   if (to_qos < kToInlineQos) return PacketFault::kLength;
   cursor.skip(to_qos - kToInlineQos);
@@ -183,8 +141,8 @@ PacketFault check_data_frag(const Submessage& message) {
   Cursor cursor = message.cursor();
   cursor.skip(2);
   const std::uint16_t to_qos = cursor.two();
-  entity(cursor);
-  const std::uint32_t writer = entity(cursor);
+  cursor.entity();
+  const std::uint32_t writer = cursor.entity();
   const std::int64_t sequence = cursor.sequence();
   const std::uint64_t first = cursor.four(), count = cursor.two(), size = cursor.two(),
                       sample = cursor.four();
@@ -308,27 +266,16 @@ bool is_rtps(Bytes packet) {
 }  // namespace
 
 const char* text_of(PacketFault fault) {
-  switch (fault) {
-    case PacketFault::kNone:
-      return "sound";
-    case PacketFault::kHeader:
-      return "not RTPS 2";
-    case PacketFault::kLength:
-      return "a sub-message ends beyond its packet";
-    case PacketFault::kKind:
-      return "a sub-message of unknown kind";
-    case PacketFault::kSequence:
-      return "sequence numbers that cannot be";
-    case PacketFault::kGap:
-      return "a gap of more than a million samples";
-    case PacketFault::kFragment:
-      return "fragments that do not fit their sample";
-    case PacketFault::kParameters:
-      return "a broken list of parameters";
-    case PacketFault::kIdentity:
-      return "words in another participant's name";
-  }
-  return "unknown";
+  constexpr std::array kTexts{"sound",
+                              "not RTPS 2",
+                              "a sub-message ends beyond its packet",
+                              "a sub-message of unknown kind",
+                              "sequence numbers that cannot be",
+                              "a gap of more than a million samples",
+                              "fragments that do not fit their sample",
+                              "a broken list of parameters",
+                              "words in another participant's name"};
+  return kTexts.at(static_cast<std::size_t>(fault));
 }
 
 FilteredPacket filter_packet(Bytes packet, std::vector<std::uint8_t>& kept) {
