@@ -37,6 +37,10 @@ constexpr std::array<Text, kGuardCodes> kTexts{{
      "tissue is squeezed inside out in places: forces there are not to be believed"},
     {GuardCode::kContactRefused, "a contact metres away from its tissue was not believed"},
     {GuardCode::kProbeJumped, "a probe jumped: its contacts were dropped"},
+    {GuardCode::kOrganMotionCut,
+     "organs would have passed through each other or themselves: they were held for a step"},
+    {GuardCode::kOrganContactsUnsolved,
+     "contacts between organs were not solved to the end in a step"},
     {GuardCode::kStepReduced,
      "an organ held more energy than it was given: its steps are shortened"},
 }};

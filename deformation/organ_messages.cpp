@@ -42,6 +42,7 @@ void write_node_positions(const DeformationWorld& world, std::size_t organ, Node
   out.pressure = reading.pressure;
   out.kinetic_energy = reading.kinetic_energy;
   out.elastic_energy = reading.elastic_energy;
+  out.organ_contacts = static_cast<std::uint32_t>(reading.organ_contacts);
   write_float32(reading.positions, out.positions);
 }
 

@@ -81,6 +81,16 @@ void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
   advances_ = kThoroughCheckEvery;
 }
 
+void SimulatedOrgan::correct_step(double h, std::span<const Vec3> surface, double volume_impulse,
+                                  std::span<const ContactRow> rows) {
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    state_.velocities[i] += (surface[i] - state_.positions[i]) / h;
+    state_.positions[i] = surface[i];
+  }
+  state_.pressure -= volume_impulse / h;
+  detector_.add_work(0, rows, 0, state_);
+}
+
 bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   if (guarding_ == Guarding::kOff) return true;
   const bool thorough = ++advances_ >= kThoroughCheckEvery;

@@ -60,6 +60,14 @@ class SimulatedOrgan {
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
 
+  /// Changes the end of the last step, of h [s], as if contacts with organs had been in it: the
+  /// velocities with the surface's way.
+  /// @param surface         where its nodes come to [m]  (surface_node_count)
+  /// @param volume_impulse  of the contents, to keep the volume meanwhile [Pa·s]
+  /// @param rows            each other surface as a probe
+  void correct_step(double h, std::span<const Vec3> surface, double volume_impulse,
+                    std::span<const ContactRow> rows);
+
   /// Ends an advance of `period` [s]. @returns false if the state was replaced: impulses of the
   /// rows of this advance mean nothing
   bool finish(double period, AdvanceReport& report);

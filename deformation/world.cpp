@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "deformation/contact/contact_law.h"
+#include "deformation/organ_contacts.h"
 #include "deformation/springs/patch_springs.h"
 #include "deformation/springs/spring_forces.h"
 #include "modules/core/error.h"
+#include "modules/scene/models.h"
 
 namespace palpate::deformation {
 namespace {
@@ -65,6 +68,16 @@ struct WorldOrgan {
   }
 };
 
+/// The organ as it is stepped: contacts with organs take symplectic Euler alone.
+scene::Organ stepped_organ(const scene::Scene& scene, std::size_t index) {
+  scene::Organ organ = scene.organs[index];
+  const bool is_free = organ.integrator == scene::Integrator::kAutomatic;
+  if (scene.contacts.any() && is_free && scene::format_of(organ.model).has_integrator) {
+    organ.integrator = scene::Integrator::kSymplecticEuler;
+  }
+  return organ;
+}
+
 WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double period,
                       const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding) {
   auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
@@ -102,7 +115,8 @@ WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double per
 struct DeformationWorld::Impl {
   std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
-  std::vector<Contact> accepted;  ///< buffer of set_contacts()
+  std::optional<OrganContacts> organ_contacts;  ///< none: the scene has them off
+  std::vector<Contact> accepted;                ///< buffer of set_contacts()
   /// Mean forces on a probe over the last advances, the newest first [N].
   using Forces = std::array<Vec3, kGrowthPeriods + 1>;
   std::vector<Forces> forces;
@@ -132,28 +146,72 @@ struct DeformationWorld::Impl {
     return near;
   }
 
-  /// One organ through one advance, all probes moving along.
-  void advance_organ(std::uint32_t index, AdvanceReport& report) {
+  /// The `step`th of the equal steps of an advance of one organ, all probes moving along.
+  void step_organ(std::uint32_t index, int step, int substeps, AdvanceReport& report) {
     WorldOrgan& organ = organs[index];
-    const int substeps = organ.simulated.substeps(period);
-    const double h = period / substeps;
-    for (int step = 1; step <= substeps; ++step) {
-      const double fraction = static_cast<double>(step) / substeps;
-      organ.rows.clear();
-      const bool contacts_suspended = organ.simulated.contacts_suspended();
-      for (auto& probe : probes) {
-        if (contacts_suspended) break;
-        probe.append_rows(index, organ.simulated.model(), organ.simulated.state(), h, fraction,
-                          organ.rows);
-      }
-      organ.simulated.step(time + fraction * period, h, organ.rows, report);
-      std::size_t first = 0;
-      for (auto& probe : probes) {
-        if (contacts_suspended) break;
-        first += probe.take_rows(index, organ.rows.data() + first);
+    const double h = period / substeps, fraction = static_cast<double>(step) / substeps;
+    organ.rows.clear();
+    const bool contacts_suspended = organ.simulated.contacts_suspended();
+    for (auto& probe : probes) {
+      if (contacts_suspended) break;
+      probe.append_rows(index, organ.simulated.model(), organ.simulated.state(), h, fraction,
+                        organ.rows);
+    }
+    organ.simulated.step(time + fraction * period, h, organ.rows, report);
+  }
+
+  void take_rows(std::uint32_t index) {
+    WorldOrgan& organ = organs[index];
+    std::size_t first = 0;
+    for (auto& probe : probes) {
+      if (organ.simulated.contacts_suspended()) break;
+      first += probe.take_rows(index, organ.rows.data() + first);
+    }
+  }
+
+  /// Organs that do not touch each other, each in its own steps.
+  void advance_apart(AdvanceReport& report) {
+    for (std::uint32_t i = 0; i < organs.size(); ++i) {
+      const int substeps = organs[i].simulated.substeps(period);
+      for (int step = 1; step <= substeps; ++step) {
+        step_organ(i, step, substeps, report);
+        take_rows(i);
       }
     }
-    organ.replaced = !organ.simulated.finish(period, report);
+  }
+
+  /// Organs that may touch each other or themselves, all in the same steps.
+  void advance_together(AdvanceReport& report) {
+    int substeps = 1;
+    for (const WorldOrgan& organ : organs)
+      substeps = std::max(substeps, organ.simulated.substeps(period));
+    std::vector<std::span<ContactRow>> rows(organs.size());
+    for (int step = 1; step <= substeps; ++step) {
+      organ_contacts->begin_step();
+      for (std::uint32_t i = 0; i < organs.size(); ++i) {
+        step_organ(i, step, substeps, report);
+        rows[i] = organs[i].rows;
+      }
+      organ_contacts->end_step(period / substeps, rows, report);
+      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i);
+    }
+  }
+
+  /// Judges all organs at the end of an advance. One that was put elsewhere may cross another.
+  void finish(AdvanceReport& report) {
+    bool any_replaced = false;
+    for (WorldOrgan& organ : organs) {
+      organ.replaced = !organ.simulated.finish(period, report);
+      any_replaced |= organ.replaced;
+    }
+    if (!organ_contacts || !any_replaced) return;
+    organ_contacts->reset();
+    if (!organ_contacts->are_crossed()) return;
+    report.back_to_rest = true;
+    for (WorldOrgan& organ : organs) {
+      organ.simulated.put(rest_state(organ.simulated.model()));
+      organ.replaced = true;
+    }
   }
 
   /// Impulses that a state not believed gave are no force on anybody.
@@ -220,8 +278,16 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
-    impl_->organs.push_back(make_organ(scene.organs[i], scene.gravity, 1 / scene.rates.deformation,
-                                       rest_shapes[i], runner, guarding));
+    impl_->organs.push_back(make_organ(stepped_organ(scene, i), scene.gravity,
+                                       1 / scene.rates.deformation, rest_shapes[i], runner,
+                                       guarding));
+  }
+  if (scene.contacts.any()) {
+    const scene::Misfit misfit = scene::misfit_of_contacts(scene);
+    if (!misfit.none()) throw InputError("scene: key '" + misfit.key + "' " + misfit.why);
+    std::vector<SimulatedOrgan*> simulated;
+    for (WorldOrgan& organ : impl_->organs) simulated.push_back(&organ.simulated);
+    impl_->organ_contacts.emplace(scene, std::move(simulated));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
   impl_->forget_forces();
@@ -264,9 +330,12 @@ AdvanceReport DeformationWorld::advance(double period) {
   report.contact_refused = std::exchange(impl_->contact_refused, false);
   impl_->period = period;
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
-  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
-    impl_->advance_organ(i, report);
+  if (impl_->organ_contacts) {
+    impl_->advance_together(report);
+  } else {
+    impl_->advance_apart(report);
   }
+  impl_->finish(report);
   for (auto& probe : impl_->probes) probe.end();
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     if (impl_->organs[i].replaced) impl_->drop_contacts(i);
@@ -283,6 +352,7 @@ void DeformationWorld::reset() {
   }
   for (auto& probe : impl_->probes) probe.reset();
   impl_->forget_forces();
+  if (impl_->organ_contacts) impl_->organ_contacts->reset();
   impl_->time = impl_->period = 0;
 }
 
@@ -312,6 +382,7 @@ OrganReading DeformationWorld::read(std::size_t organ_index) const {
   reading.kinetic_energy = kinetic_energy(model, state.velocities);
   // A difference of large sums may come out a little below its least value, rest.
   reading.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
+  if (impl_->organ_contacts) reading.organ_contacts = impl_->organ_contacts->count(organ_index);
   return reading;
 }
 

@@ -23,6 +23,7 @@ struct OrganReading {
   double pressure = 0;              ///< of the contents over the outside, p = −λ [Pa]
   double kinetic_energy = 0;        ///< [J]
   double elastic_energy = 0;        ///< [J]
+  std::size_t organ_contacts = 0;   ///< places where it presses on another organ or on itself
 };
 
 class DeformationWorld {

@@ -22,7 +22,7 @@ double ModuleTally::on_time_fraction() const {
 }
 
 SessionTally::SessionTally(const scene::Scene& scene) {
-  for (const auto& organ : scene.organs) organs_.push_back({organ.name, 0, 0, 0, 0});
+  for (const auto& organ : scene.organs) organs_.push_back({organ.name});
   for (const auto& probe : scene.probes) probes_.push_back({probe.name, 0, 0, 0});
 }
 
@@ -59,6 +59,7 @@ void SessionTally::receive(const NodePositions& positions) {
   organ.worst_volume_error = std::max(organ.worst_volume_error, std::abs(organ.volume_ratio - 1));
   organ.lowest_pressure = std::min(organ.lowest_pressure, positions.pressure);
   organ.highest_pressure = std::max(organ.highest_pressure, positions.pressure);
+  organ.most_contacts = std::max(organ.most_contacts, positions.organ_contacts);
 }
 
 void SessionTally::receive(const HapticForce& force) {

@@ -15,6 +15,7 @@ struct OrganTally {
   double volume_ratio = 0;                           ///< newest V/V*; 0 before the first
   double worst_volume_error = 0;                     ///< largest |V−V*|/V* since the start
   double lowest_pressure = 0, highest_pressure = 0;  ///< since the start [Pa]
+  std::uint32_t most_contacts = 0;  ///< with other organs and itself at a time, since the start
 };
 
 struct ProbeTally {

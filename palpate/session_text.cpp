@@ -11,9 +11,13 @@ namespace {
 std::string organ_lines(const SessionTally& tally) {
   std::string text;
   for (const auto& organ : tally.organs()) {
-    text += fmt::format("organ {:<14} |V-V0|/V0 at most {:.2e}   pressure {:.1f} to {:.1f} Pa\n",
+    text += fmt::format("organ {:<14} |V-V0|/V0 at most {:.2e}   pressure {:.1f} to {:.1f} Pa",
                         organ.name, organ.worst_volume_error, organ.lowest_pressure,
                         organ.highest_pressure);
+    if (organ.most_contacts > 0) {
+      text += fmt::format("   contacts with organs at most {}", organ.most_contacts);
+    }
+    text += '\n';
   }
   return text;
 }

@@ -18,17 +18,19 @@ enum class Violation : std::uint8_t {
 
 /// What an advance had to do beyond stepping. Never silent: the process publishes it.
 struct AdvanceReport {
-  bool diverged = false;                ///< a state was implausible and replaced
-  Violation reason = Violation::kNone;  ///< of that
-  bool back_to_rest = false;            ///< replaced by the rest state, not the last good one
-  bool step_reduced = false;            ///< steps are shorter than stability should need
-  bool pressure_capped = false;         ///< the cap was met: V* goes on from V
-  bool volume_released = false;         ///< V was far from V*: V* follows V from there
-  bool volume_skipped = false;          ///< gᵀM⁻¹g vanished: volume not corrected there
-  bool contacts_suspended = false;      ///< of an organ put back to rest, for kQuietTime
-  bool tissue_inverted = false;         ///< some tetrahedra of a solid are turned inside out
-  bool contact_refused = false;         ///< it was too far from its tissue to be one
-  bool probe_jumped = false;            ///< a probe moved faster than is plausible: no contacts
+  bool diverged = false;                 ///< a state was implausible and replaced
+  Violation reason = Violation::kNone;   ///< of that
+  bool back_to_rest = false;             ///< replaced by the rest state, not the last good one
+  bool step_reduced = false;             ///< steps are shorter than stability should need
+  bool pressure_capped = false;          ///< the cap was met: V* goes on from V
+  bool volume_released = false;          ///< V was far from V*: V* follows V from there
+  bool volume_skipped = false;           ///< gᵀM⁻¹g vanished: volume not corrected there
+  bool contacts_suspended = false;       ///< of an organ put back to rest, for kQuietTime
+  bool tissue_inverted = false;          ///< some tetrahedra of a solid are turned inside out
+  bool contact_refused = false;          ///< it was too far from its tissue to be one
+  bool probe_jumped = false;             ///< a probe moved faster than is plausible: no contacts
+  bool organ_motion_cut = false;         ///< surfaces about to cross were held for a step
+  bool organ_contacts_unsolved = false;  ///< of organs: their sweeps were cut
 };
 
 }  // namespace palpate::deformation

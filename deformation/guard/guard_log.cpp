@@ -34,6 +34,10 @@ bool acted(GuardCode code, const AdvanceReport& r) {
       return r.contact_refused;
     case GuardCode::kProbeJumped:
       return r.probe_jumped;
+    case GuardCode::kOrganMotionCut:
+      return r.organ_motion_cut;
+    case GuardCode::kOrganContactsUnsolved:
+      return r.organ_contacts_unsolved;
     case GuardCode::kStepReduced:
       return r.step_reduced;
     case GuardCode::kNone:

@@ -25,6 +25,8 @@ enum class GuardCode : std::uint8_t {
   kTissueInverted,
   kContactRefused,
   kProbeJumped,
+  kOrganMotionCut,
+  kOrganContactsUnsolved,
   kStepReduced,
   kNone
 };

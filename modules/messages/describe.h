@@ -184,6 +184,7 @@ void describe(V& v, M& m) {
   v.field("pressure_pa", m.pressure, Rule::kPlain);
   v.field("kinetic_energy_j", m.kinetic_energy, Rule::kAtLeastZero);
   v.field("elastic_energy_j", m.elastic_energy, Rule::kAtLeastZero);
+  v.field("organ_contacts", m.organ_contacts, Rule::kPlain);
   v.numbers("positions_m", m.positions, Bounds{3, 1, kMaxNodes, "node_count"});
 }
 

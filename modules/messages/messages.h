@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 5;
+inline constexpr std::uint32_t kProtocolVersion = 6;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
@@ -53,14 +53,15 @@ struct ContactModel : LocalLaw {
 /// Deformed nodes of one organ: surface nodes first, then virtual nodes.
 struct NodePositions {
   Header header;
-  std::uint32_t organ = 0;       ///< (key)
-  std::uint32_t generation = 0;  ///< of the SurfaceTopology these belong to
-  double volume = 0;             ///< enclosed [m³]
-  double target_volume = 0;      ///< V* [m³]
-  double pressure = 0;           ///< of the contents over the outside, p = −λ [Pa]
-  double kinetic_energy = 0;     ///< [J]
-  double elastic_energy = 0;     ///< in all springs [J]
-  std::vector<float> positions;  ///< x, y, z per node, in W [m]  (node_count × 3)
+  std::uint32_t organ = 0;           ///< (key)
+  std::uint32_t generation = 0;      ///< of the SurfaceTopology these belong to
+  double volume = 0;                 ///< enclosed [m³]
+  double target_volume = 0;          ///< V* [m³]
+  double pressure = 0;               ///< of the contents over the outside, p = −λ [Pa]
+  double kinetic_energy = 0;         ///< [J]
+  double elastic_energy = 0;         ///< in all springs [J]
+  std::uint32_t organ_contacts = 0;  ///< places where it presses on another organ or on itself
+  std::vector<float> positions;      ///< x, y, z per node, in W [m]  (node_count × 3)
 };
 
 /// What does not change while an organ deforms.

@@ -16,19 +16,36 @@ constexpr const char* kPasses = "passes over the constraints";
 constexpr const char* kGradients = "conjugate gradients at most";
 
 constexpr std::array<ModelFormat, 16> kFormats{{
-    {.word = "mass_spring", .meaning = "springs alone", .has_integrator = true},
+    {.word = "mass_spring",
+     .meaning = "springs alone",
+     .has_integrator = true,
+     .takes_organ_contacts = true},
     {.word = "implicit_volume",
      .meaning = "springs and one implicit volume constraint",
      .has_integrator = true,
+     .takes_organ_contacts = true,
      .has_volume_corrections = true},
-    {.word = "penalty", .meaning = "pressure proportional to the volume lost"},
-    {.word = "baumgarte", .meaning = "volume constraint on accelerations, stabilised"},
-    {.word = "promayon", .meaning = "projection along the volume's gradient after the step"},
+    {.word = "penalty",
+     .meaning = "pressure proportional to the volume lost",
+     .takes_organ_contacts = true},
+    {.word = "baumgarte",
+     .meaning = "volume constraint on accelerations, stabilised",
+     .takes_organ_contacts = true},
+    {.word = "promayon",
+     .meaning = "projection along the volume's gradient after the step",
+     .takes_organ_contacts = true},
     {.word = "post_stabilisation",
-     .meaning = "volume constraint on velocities, positions projected afterwards"},
-    {.word = "bourguignon_cani", .meaning = "springs to the barycentre"},
-    {.word = "zordan", .meaning = "pressures of pyramids over the triangles"},
-    {.word = "element_volume", .meaning = "one volume constraint per pyramid"},
+     .meaning = "volume constraint on velocities, positions projected afterwards",
+     .takes_organ_contacts = true},
+    {.word = "bourguignon_cani",
+     .meaning = "springs to the barycentre",
+     .takes_organ_contacts = true},
+    {.word = "zordan",
+     .meaning = "pressures of pyramids over the triangles",
+     .takes_organ_contacts = true},
+    {.word = "element_volume",
+     .meaning = "one volume constraint per pyramid",
+     .takes_organ_contacts = true},
     {.word = "chainmail", .meaning = "3D ChainMail: links with bounds, no forces"},
     {.word = "xpbd_springs",
      .meaning = "springs and volume by extended position-based dynamics",
@@ -152,6 +169,23 @@ Misfit ignored_by_model(const Organ& organ) {
     if (key.is_read(format) || key.is_default(organ)) continue;
     return {key.key, "is not read by model " + organ.model +
                          "; leave it out, or take one of: " + words_where(key.is_read)};
+  }
+  return {};
+}
+
+Misfit misfit_of_contacts(const Scene& scene) {
+  if (!scene.contacts.any()) return {};
+  const std::string key = scene.contacts.organs ? "contacts.organs" : "contacts.self";
+  for (const Organ& organ : scene.organs) {
+    if (!format_of(organ.model).takes_organ_contacts) {
+      return {key, "does not go with model " + organ.model + " of organ '" + organ.name +
+                       "'; contacts of organs take " +
+                       words_where([](const ModelFormat& f) { return f.takes_organ_contacts; })};
+    }
+    if (organ.integrator == Integrator::kBackwardEuler) {
+      return {key, "does not go with integrator backward_euler of organ '" + organ.name +
+                       "'; contacts of organs take symplectic_euler, which automatic then is"};
+    }
   }
   return {};
 }

@@ -11,6 +11,7 @@
 namespace palpate::scene {
 
 struct Organ;
+struct Scene;
 
 /// What joins an organ's nodes.
 enum class MeshKind { kSurfaceSprings, kLinearTetrahedra, kQuadraticTetrahedra };
@@ -19,7 +20,9 @@ struct ModelFormat {
   const char* word = "";     ///< value of the key `model`
   const char* meaning = "";  ///< law and method, for tables
   MeshKind mesh = MeshKind::kSurfaceSprings;
-  bool has_integrator = false;          ///< reads `integrator`: has no steps of its own
+  bool has_integrator = false;  ///< reads `integrator`: has no steps of its own
+  /// Goes with `contacts`: springs that symplectic Euler can step.
+  bool takes_organ_contacts = false;
   bool has_volume_corrections = false;  ///< reads `volume_corrections`
   std::size_t iterations = 0;           ///< of `iterations` the model's own; 0: it has no such key
   const char* iterates = "";            ///< what those are
@@ -62,6 +65,9 @@ inline Misfit misfit_of_model(const Organ& organ) {
   const Misfit impossible = impossible_for_model(organ);
   return impossible.none() ? ignored_by_model(organ) : impossible;
 }
+
+/// What the scene's `contacts` ask of an organ whose steps do not take them.
+Misfit misfit_of_contacts(const Scene& scene);
 
 /// Gives keys that the organ's model ignores their defaults.
 void drop_ignored_keys(Organ& organ);

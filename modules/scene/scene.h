@@ -140,6 +140,15 @@ struct Probe {
   Device device;
 };
 
+/// What organs touch beside probes (docs/decisions/0012-organ-contact.md).
+struct OrganContacts {
+  bool organs = false;    ///< `organs`: each with each other
+  bool self = false;      ///< `self`: each with itself
+  double friction = 0.1;  ///< `friction`, Coulomb coefficient [0 … 2]
+
+  bool any() const { return organs || self; }
+};
+
 struct Haptics {
   double max_force = 3.3;       ///< `max_force_n` [0.1 … 100]
   double max_force_rate = 200;  ///< `max_force_rate_n_per_s` [1 … 1e5]
@@ -174,10 +183,11 @@ struct Camera {
 };
 
 struct Scene {
-  std::filesystem::path file;   ///< where it was read from
-  std::string name;             ///< default: file name without extension
-  std::vector<Organ> organs;    ///< `organs`, at least one
-  std::vector<Probe> probes;    ///< `probes`, at least one
+  std::filesystem::path file;  ///< where it was read from
+  std::string name;            ///< default: file name without extension
+  std::vector<Organ> organs;   ///< `organs`, at least one
+  std::vector<Probe> probes;   ///< `probes`, at least one
+  OrganContacts contacts;
   Vec3 gravity = Vec3::Zero();  ///< `gravity_m_per_s2`; the rest shape is free of it
   double duration = 0;          ///< `duration_s`: 0 = until stopped [0 … 1e6]
   Rates rates;

@@ -323,6 +323,14 @@ void describe(V& v, Probe& probe) {
 }
 
 template <class V>
+void describe(V& v, OrganContacts& contacts) {
+  v.field("organs", contacts.organs, plain("organs touch each other"));
+  v.field("self", contacts.self, plain("an organ touches itself"));
+  v.field("friction", contacts.friction,
+          ranged("", 0, 2, "Coulomb coefficient of tissue on tissue"));
+}
+
+template <class V>
 void describe(V& v, Rates& rates) {
   v.field("haptics_hz", rates.haptics, ranged("Hz", 500, 4000, "haptic ticks"));
   v.field("collision_hz", rates.collision, ranged("Hz", 10, 2000, "contact searches"));
@@ -388,6 +396,8 @@ void describe(V& v, Scene& scene) {
   v.field("probes", scene.probes, plain("instruments").needed());
   name_by_index("probe_", scene.probes);
   v.unique_names("probes", scene.probes);
+  v.field("contacts", scene.contacts, plain("what organs touch beside probes"));
+  v.fits("contacts need models of springs, stepped by symplectic_euler", misfit_of_contacts(scene));
   v.field("gravity_m_per_s2", scene.gravity,
           ranged("m/s²", -100, 100, "acceleration; the rest shape is free of it"));
   v.field("duration_s", scene.duration, ranged("s", 0, 1e6, "of a run; 0 = until stopped"));

@@ -50,11 +50,15 @@ ModuleStatus status(const char* module, std::uint64_t cycles, std::uint64_t over
 TEST_CASE("session tally: extremes are of both signs and begin with the session") {
   // Oracle: by hand.
   auto tally = some_tally();
-  tally.receive(positions(1.0, -900));
+  NodePositions early = positions(1.0, -900);
+  early.organ_contacts = 99;
+  tally.receive(early);
   tally.receive(force(0, 9, kForceNotFinite));
   tally.start();
   tally.receive(positions(2.002, 40));
-  tally.receive(positions(1.99, -10));
+  NodePositions touching = positions(1.99, -10);
+  touching.organ_contacts = 7;
+  tally.receive(touching);
   tally.receive(positions(2.0, 5));
   tally.receive(force(0, -0.5, kForceSaturated));
   tally.receive(force(0, 0.2, kForceStaleFade));
@@ -63,6 +67,7 @@ TEST_CASE("session tally: extremes are of both signs and begin with the session"
   CHECK(organ.volume_ratio == Approx(1));
   CHECK(organ.worst_volume_error == Approx(0.005));
   CHECK(organ.lowest_pressure == -10);
+  CHECK(organ.most_contacts == 7);
   CHECK(organ.highest_pressure == 40);
   CHECK(tally.probes()[0].force == Approx(0.2));
   CHECK(tally.probes()[0].greatest_force == Approx(0.5));

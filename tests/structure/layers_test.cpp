@@ -36,7 +36,7 @@ std::map<std::string, Names> allowed_layers() {
           {"bus", scene + Names{"messages"}},
           {"runtime", scene + Names{"messages", "bus"}},
           {"recording", runtime},
-          {"deformation", scene},
+          {"deformation", scene + Names{"collision"}},
           {"collision", scene},
           {"haptics", scene},
           {"visualizer", runtime},

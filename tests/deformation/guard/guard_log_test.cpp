@@ -30,7 +30,8 @@ TEST_CASE("guard log: every guard has a code of its own, and every code a guard"
        {&AdvanceReport::back_to_rest, &AdvanceReport::step_reduced, &AdvanceReport::pressure_capped,
         &AdvanceReport::volume_released, &AdvanceReport::volume_skipped,
         &AdvanceReport::contacts_suspended, &AdvanceReport::tissue_inverted,
-        &AdvanceReport::contact_refused, &AdvanceReport::probe_jumped}) {
+        &AdvanceReport::contact_refused, &AdvanceReport::probe_jumped,
+        &AdvanceReport::organ_motion_cut, &AdvanceReport::organ_contacts_unsolved}) {
     reports.emplace_back();
     reports.back().*flag = true;
   }

@@ -78,10 +78,11 @@ TEST_CASE("csv: values stand under their names") {
   nodes.pressure = -3;
   nodes.kinetic_energy = 4;
   nodes.elastic_energy = 5;
+  nodes.organ_contacts = 6;
   CHECK(csv_columns(nodes) ==
         "generation,volume_m3,target_volume_m3,pressure_pa,kinetic_energy_j,elastic_energy_j,"
-        "node_count");
-  CHECK(values_of(nodes) == "2,0.5,0.25,-3,4,5,3");
+        "organ_contacts,node_count");
+  CHECK(values_of(nodes) == "2,0.5,0.25,-3,4,5,6,3");
 
   HapticForce force;
   force.force = {1, 2, 3};

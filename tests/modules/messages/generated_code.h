@@ -134,6 +134,7 @@ inline void check_same(const idl::NodePositions& w, const NodePositions& m) {
   REQUIRE(w.pressure_pa() == m.pressure);
   REQUIRE(w.kinetic_energy_j() == m.kinetic_energy);
   REQUIRE(w.elastic_energy_j() == m.elastic_energy);
+  REQUIRE(w.organ_contacts() == m.organ_contacts);
   REQUIRE(w.positions_m() == m.positions);
 }
 

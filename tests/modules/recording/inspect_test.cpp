@@ -128,11 +128,11 @@ TEST_CASE("inspect: writes one CSV file per topic and key") {
   summarize(folder / "a.mcap", folder / "csv");
   CHECK(text_of(folder / "csv/node_positions_0.csv") ==
         "time_s,sim_time_s,latency_s,sequence,generation,volume_m3,target_volume_m3,"
-        "pressure_pa,kinetic_energy_j,elastic_energy_j,node_count\n"
-        "0.04025,0.04,0.00025,10,0,0.001,0.001,100,0,0,1\n"
-        "0.04425,0.044,0.00025,11,0,0.001,0.001,100,0,0,1\n"
-        "0.05625,0.056,0.00025,14,0,0.001,0.001,100,0,0,1\n"
-        "0.06025,0.06,0.00025,15,0,0.001,0.001,100,0,0,1\n");
+        "pressure_pa,kinetic_energy_j,elastic_energy_j,organ_contacts,node_count\n"
+        "0.04025,0.04,0.00025,10,0,0.001,0.001,100,0,0,0,1\n"
+        "0.04425,0.044,0.00025,11,0,0.001,0.001,100,0,0,0,1\n"
+        "0.05625,0.056,0.00025,14,0,0.001,0.001,100,0,0,0,1\n"
+        "0.06025,0.06,0.00025,15,0,0.001,0.001,100,0,0,0,1\n");
   const std::string inputs = text_of(folder / "csv/module_inputs_haptics.csv");
   CHECK_THAT(inputs, Catch::StartsWith("time_s,sim_time_s,latency_s,sequence,topic,age_s,received,"
                                        "dropped,rejected\n0.07,0,"));

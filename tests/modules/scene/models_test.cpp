@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <set>
+#include <string>
 
 #include "modules/scene/scene.h"
 
@@ -39,6 +40,33 @@ TEST_CASE("scene models: dropping what a model ignores leaves it nothing to refu
     CHECK((organ.solid.modes == 12) == format.has_modes);
     CHECK((organ.tissue.wall_thickness == 0.01) != format.is_solid());
   }
+}
+
+TEST_CASE("scene models: contacts of organs are refused where a step does not take them") {
+  // Oracle: the table, and the names in the message.
+  Scene scene;
+  scene.organs.resize(2);
+  scene.organs[1].name = "liver";
+  for (const ModelFormat& format : model_formats()) {
+    INFO(format.word);
+    scene.organs[1].model = format.word;
+    scene.contacts = {};
+    CHECK(misfit_of_contacts(scene).none());
+    scene.contacts.self = true;
+    const Misfit misfit = misfit_of_contacts(scene);
+    CHECK(misfit.none() == format.takes_organ_contacts);
+    CHECK_FALSE((format.takes_organ_contacts && format.is_solid()));
+    if (misfit.none()) continue;
+    CHECK(misfit.key == "contacts.self");
+    CHECK(misfit.why.find("'liver'") != std::string::npos);
+    CHECK(misfit.why.find(format.word) != std::string::npos);
+  }
+  scene.organs[1].model = "implicit_volume";
+  scene.organs[1].integrator = Integrator::kBackwardEuler;
+  scene.contacts.organs = true;
+  CHECK(misfit_of_contacts(scene).key == "contacts.organs");
+  scene.organs[1].integrator = Integrator::kSymplecticEuler;
+  CHECK(misfit_of_contacts(scene).none());
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ TEST_CASE("object reader: an unknown key is refused with the nearest and all all
         "file, unit, nodes");
   CHECK(refusal("rates: {", "rate: {") ==
         "scene.yaml:86: key 'rate' is not known; did you mean 'rates'? Allowed: palpate_scene, "
-        "name, organs, probes, gravity_m_per_s2, duration_s, rates, deformation_threads, "
-        "haptics, needs, camera");
+        "name, organs, probes, contacts, gravity_m_per_s2, duration_s, rates, "
+        "deformation_threads, haptics, needs, camera");
   CHECK(refusal("capsule: {", "cylinder: {") ==
         "scene.yaml:47: key 'probes[1].shape.cylinder' is not known. "
         "Allowed: sphere, capsule, box, plane, mesh");

@@ -150,6 +150,8 @@ TEST_CASE("scene reader: every key of the scene itself arrives in its field") {
   CHECK(scene.haptics.stale_after == 0.06);
   CHECK(scene.haptics.fade_time == 0.07);
   CHECK(scene.deformation_threads == 3);
+  CHECK_FALSE(scene.contacts.any());
+  CHECK(scene.contacts.friction == 0.25);
   REQUIRE(scene.camera.position);
   CHECK(*scene.camera.position == Vec3(0, -1, 0));
   REQUIRE(scene.camera.target);

@@ -184,6 +184,7 @@ haptics:
   fade_time_s: 0.07
 camera: {position_m: [0, -1, 0], target_m: [0, 0, 0.1]}
 deformation_threads: 3
+contacts: {organs: false, self: false, friction: 0.25}
 )";
 
 /// kFullScene with one place changed; a text that is not there exactly once is a broken test.

@@ -144,6 +144,9 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.haptics.stale_after == b.haptics.stale_after);
   CHECK(a.haptics.fade_time == b.haptics.fade_time);
   CHECK(a.deformation_threads == b.deformation_threads);
+  CHECK(a.contacts.organs == b.contacts.organs);
+  CHECK(a.contacts.self == b.contacts.self);
+  CHECK(a.contacts.friction == b.contacts.friction);
   CHECK(a.camera.position == b.camera.position);
   CHECK(a.camera.target == b.camera.target);
 }

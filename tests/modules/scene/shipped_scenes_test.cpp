@@ -117,7 +117,8 @@ TEST_CASE("shipped scenes: are the ones promised, and every one loads") {
     CHECK(scene.duration > 0);
     CHECK(parse_scene(resolved_text(scene), scene.file).organs.size() == scene.organs.size());
   }
-  CHECK(found == std::set<std::string>{"ball_squeeze", "liver_probe", "liver_solid", "own_mesh",
+  CHECK(found == std::set<std::string>{"ball_squeeze", "liver_on_stomach", "liver_probe",
+                                       "liver_solid", "own_mesh", "stomach_folded",
                                        "stomach_insufflated", "stomach_probe",
                                        "stomach_probe_refined"});
 }

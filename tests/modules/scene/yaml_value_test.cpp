@@ -107,6 +107,7 @@ TEST_CASE("yaml value: every number has its range, whose ends belong to it") {
       {"25", "breathing_amplitude: 0.1", "-0.1", "0", "0.5", "0.6", "0 and 0.5"},
       {"26", "breathing_hz: 0.4", "0", "0.01", "5", "6", "0.01 and 5 Hz"},
       {"94", "deformation_threads: 3", "0", "1", "16", "17", "1 and 16"},
+      {"95", "friction: 0.25", "-0.1", "0", "2", "2.1", "0 and 2"},
       {"27", "max_rate_per_s: 0.7", "0", "0.001", "10", "11", "0.001 and 10 1/s"}};
   const SceneFolder folder;
   for (const auto& range : ranges) {
