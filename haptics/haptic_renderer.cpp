@@ -31,8 +31,7 @@ HapticRenderer::HapticRenderer(const scene::Haptics& limits, double period)
       period_(period),
       force_limiter_(limits.max_force, limits.max_force_rate * period),
       torque_limiter_(limits.max_force * kTorqueArm, limits.max_force_rate * period * kTorqueArm),
-      passivity_(limits.device_damping, period),
-      credit_(period) {
+      passivity_(limits.device_damping, period) {
   PALPATE_DEMAND(period > 0);
   for (Received* received : {&current_, &next_}) {  // so that taking a law allocates nothing
     received->law.rows.reserve(kMaxLawRows);
@@ -44,7 +43,6 @@ void HapticRenderer::reset() {
   current_.valid = next_.valid = false;
   solver_.clear();
   passivity_.clear();
-  credit_.clear();
   cross_fade_left_ = 0;
   pressed_ = 0;
   refused_laws_ = 0;
@@ -202,33 +200,18 @@ Vec3 HapticRenderer::contact_damping(const Vec3& force, const DeviceSample& devi
   return -std::clamp(loss, -most, most) * along;
 }
 
-/// Of a softened law, no more than its spring has been loaded for (energy_credit.h).
-Wrench HapticRenderer::paid_for(const Wrench& wanted, const DeviceSample& device) {
-  const double stable = stable_stiffness(device);
-  if (!(softening_ > 0) || !(stable > 0)) {
-    credit_.clear();
-    return wanted;
-  }
-  const double strength = wanted.force.stableNorm();
-  const double most =
-      credit_.limit(strength, stable, passivity_.energy(), device.twist.linear.stableNorm());
-  return strength > most ? most / strength * wanted : wanted;
-}
-
 Wrench HapticRenderer::passive(const Wrench& wanted, const DeviceSample& device,
                                std::uint32_t& limits) {
   const bool apart = wanted.is_zero() && force_limiter_.output().isZero(0);
   if (apart || !is_finite(device)) {
     passivity_.clear();
-    credit_.clear();
     pressed_ = 0;
     pressed_at_ = device.pose.position;
     return wanted;
   }
   passivity_.observe(device.pose, returnable_energy(device.pose, wanted.force));
-  const Wrench paid = paid_for(wanted, device);
-  const Wrench wrench = passivity_.controlled(paid, device.twist);
-  if (wrench != paid) limits |= kForcePassivity;
+  const Wrench wrench = passivity_.controlled(wanted, device.twist);
+  if (wrench != wanted) limits |= kForcePassivity;
   return wrench;
 }
 

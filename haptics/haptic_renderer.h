@@ -1,15 +1,14 @@
 // The force law of one probe, evaluated every haptic tick.
 //
 // read device → evaluate the local law at the current pose → cross-fade from the law before
-// → stale fade → presence of the driver → credit of a softened law → passivity → contact damping →
-// finite check → slew limit → saturation → command. The law only proposes; limits are ours.
+// → stale fade → presence of the driver → passivity → contact damping → finite check → slew
+// limit → saturation → command. The law only proposes; limits are ours.
 // docs/haptic_safety.md says what each stage promises.
 #pragma once
 
 #include <cstdint>
 
 #include "haptics/devices/device.h"
-#include "haptics/energy_credit.h"
 #include "haptics/force_limits.h"
 #include "haptics/local_law.h"
 #include "haptics/passivity.h"
@@ -59,14 +58,12 @@ class HapticRenderer {
   void begin_cross_fade(const DeviceSample& device, double time);
   double returnable_energy(const Pose& pose, const Vec3& force);
   Vec3 contact_damping(const Vec3& force, const DeviceSample& device) const;
-  Wrench paid_for(const Wrench& wanted, const DeviceSample& device);
   Wrench passive(const Wrench& wanted, const DeviceSample& device, std::uint32_t& limits);
 
   scene::Haptics limits_;
   double period_;
   ForceLimiter force_limiter_, torque_limiter_;
   Passivity passivity_;
-  EnergyCredit credit_;
 
   Received current_, next_;  ///< `next_` takes over at the coming tick
   LawSolver solver_;         ///< of the current law

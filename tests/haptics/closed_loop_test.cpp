@@ -229,7 +229,7 @@ TEST_CASE("closed loop: a held device comes to rest on soft tissue") {
 
 TEST_CASE("closed loop: on a wall ten times too stiff a push comes to rest, its laws 10 ms apart") {
   // Oracle: analytic. b 0.2 and T 1 ms hold 400 N/m; undamped on that, a push of 0.5 N swings by
-  // twice 0.5 N/400 N/m = 2.5 mm. Without the credit (energy_credit.h) it was 4.7 mm for ever.
+  // twice 0.5 N/400 N/m = 2.5 mm. Without contact damping 4.5 mm for ever.
   Mass mass{0.2};
   mass.held = true;
   HapticRenderer renderer(scene::Haptics{}, kTick);

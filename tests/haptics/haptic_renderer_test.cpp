@@ -336,12 +336,11 @@ TEST_CASE("haptic renderer: of what is stiffer than the device can hold the chan
   // Oracle: analytic. b 0.2 N·s/m, T 1 ms, t_d 2 ms hold 0.2/(T/2 + t_d) = 80 N/m; of a wall of
   // 200 N/m that gives 2 N where the law was made, 1 mm is then felt as 0.08 N. Without delay 400
   // N/m are held. A law that says of no row that it presses keeps the cap of the one before.
-  // (It came about a resting probe: the force is granted within 0.2 s, energy_credit.h.)
   Bench bench;
   REQUIRE(scene::Haptics{}.device_damping == 0.2);
   DeviceSample held = resting_at(kPressed), deeper = resting_at(kPressed - Vec3(0, 0, 1e-3));
   held.delay = deeper.delay = 0.002;
-  const RenderedForce capped = bench.hold(wall_model(kPressed), held, 240);
+  const RenderedForce capped = bench.hold(wall_model(kPressed), held, 40);
   CHECK(capped.force.z() == Approx(2).epsilon(1e-9));
   CHECK(capped.limits == kStiffnessCapped);
   CHECK(bench.hold(wall_model(kPressed), deeper, 40).force.z() == Approx(2.08).epsilon(1e-9));
