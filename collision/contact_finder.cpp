@@ -9,16 +9,11 @@
 #include "collision/node_contacts.h"
 #include "collision/probe_model.h"
 #include "modules/core/error.h"
+#include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
 
 namespace palpate::collision {
 namespace {
-
-template <typename T>
-void sort_unique(std::vector<T>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
 
 /// A vertex of the probe and a candidate triangle near it.
 using VertexPair = std::pair<std::uint32_t, std::size_t>;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "collision/continuous_collision.h"
+#include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
 #include "modules/geometry/closest_points.h"
 
@@ -19,11 +20,6 @@ geometry::TriangleCorners corners_of(const geometry::TriangleSurface& mesh,
                                      std::uint32_t triangle) {
   const geometry::Triangle& t = mesh.triangles[triangle];
   return {mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]]};
-}
-
-void sort_unique(std::vector<std::uint32_t>& indices) {
-  std::sort(indices.begin(), indices.end());
-  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
 }
 
 double angle_between(const Vec3& a, const Vec3& b) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/core/rotation_vector.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/vector_checks.h"
 
@@ -117,7 +118,7 @@ void LawSolver::place_rows(const Pose& pose, double time, bool& beyond_validity)
     const bool is_normal = i % per_row_ == 0;
     // A core at the tissue's very place has no direction from it: the last one stays.
     if (is_normal && row.radius > 0 && length > kLeastDistance * row.radius) {
-      row.basis = Quat::FromTwoVectors(row.basis.col(0), apart / length) * row.basis;
+      row.basis = rotation_between(row.basis.col(0), apart / length) * row.basis;
     }
     double distance = axis(i).dot(apart) - (is_normal ? row.radius : 0);
     for (std::size_t j = 0; j < static_cast<std::size_t>(directions_); ++j) {

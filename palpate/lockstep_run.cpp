@@ -27,7 +27,7 @@ namespace palpate::launcher {
 namespace {
 
 constexpr double kConductorRate = 1000;  // [Hz]
-constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
+constexpr std::int64_t kProgressEveryNs = kNanosecondsPerSecond;
 constexpr std::int64_t kGoodbyeNs = 10 * kNanosecondsPerSecond;
 
 double duration_of(const RunOptions& options, const scene::Scene& scene) {
@@ -45,7 +45,7 @@ class Progress {
   /// @param note  what is waited for; may be empty
   void tell(double simulated, const std::string& note) {
     const std::int64_t now_ns = runtime::monotonic_now_ns();
-    if (now_ns - told_ns_ < kLineEveryNs) return;
+    if (now_ns - told_ns_ < kProgressEveryNs) return;
     told_ns_ = now_ns;
     const double wall = seconds_from_ns(now_ns - began_ns_);
     out_ << fmt::format("{:8.2f} of {:g} s, {:.2f} times real time{}{}", simulated, duration_,

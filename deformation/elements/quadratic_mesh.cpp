@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "modules/core/error.h"
+#include "modules/core/sort_unique.h"
 
 namespace palpate::deformation {
 namespace {
@@ -40,8 +41,7 @@ QuadraticMesh make_quadratic(const geometry::TetMesh& mesh) {
   for (const auto& corners : mesh.tetrahedra) {
     for (int e = 0; e < 6; ++e) edges.push_back(edge_of(corners, e));
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
   for (const auto& [a, b] : edges) result.nodes.push_back((mesh.nodes[a] + mesh.nodes[b]) / 2);
   for (const auto& corners : mesh.tetrahedra) {
     auto& element = result.elements.emplace_back();

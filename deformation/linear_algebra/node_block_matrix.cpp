@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "modules/core/sort_unique.h"
+
 namespace palpate::deformation {
 namespace {
 
-std::vector<std::vector<std::uint32_t>> neighbours_of(
+std::vector<std::vector<std::uint32_t>> nodes_sharing_elements(
     std::size_t node_count, std::span<const std::array<std::uint32_t, 4>> elements) {
   std::vector<std::vector<std::uint32_t>> neighbours(node_count);
   for (std::uint32_t i = 0; i < node_count; ++i) neighbours[i].push_back(i);
@@ -14,10 +16,7 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(
       for (const auto b : nodes) neighbours[a].push_back(b);
     }
   }
-  for (auto& row : neighbours) {
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-  }
+  for (auto& row : neighbours) sort_unique(row);
   return neighbours;
 }
 
@@ -26,7 +25,7 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(
 NodePairs::NodePairs(std::size_t node_count,
                      std::span<const std::array<std::uint32_t, 4>> elements) {
   row_starts.push_back(0);
-  for (const auto& row : neighbours_of(node_count, elements)) {
+  for (const auto& row : nodes_sharing_elements(node_count, elements)) {
     columns.insert(columns.end(), row.begin(), row.end());
     row_starts.push_back(static_cast<std::uint32_t>(columns.size()));
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "modules/core/sort_unique.h"
+
 namespace palpate::deformation {
 
 Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_t, 4>> tetrahedra) {
@@ -22,8 +24,7 @@ Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_
   }
   starts_.push_back(0);
   for (auto& list : lists) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+    sort_unique(list);
     neighbours_.insert(neighbours_.end(), list.begin(), list.end());
     starts_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
   }
@@ -37,8 +38,7 @@ void grow_patch(const Body& body, const Neighbours& neighbours, const std::vecto
   patch.nodes.clear();
   std::vector<std::uint32_t> ring(touched.begin(), touched.end());
   for (std::size_t first = 0; !ring.empty() && patch.nodes.size() < most;) {
-    std::sort(ring.begin(), ring.end());
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    sort_unique(ring);
     std::erase_if(ring, [&](std::uint32_t node) {
       return patch.places[node] >= 0 || body.inverse_masses[node] == 0;
     });

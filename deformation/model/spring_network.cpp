@@ -5,26 +5,17 @@
 #include <limits>
 
 #include "modules/core/error.h"
+#include "modules/core/sort_unique.h"
+#include "modules/geometry/edge_uses.h"
 
 namespace palpate::deformation {
 namespace {
 
 using NodePair = std::array<std::uint32_t, 2>;
 
-std::vector<std::vector<std::uint32_t>> neighbours_of(std::size_t node_count,
-                                                      const std::vector<NodePair>& edges) {
-  std::vector<std::vector<std::uint32_t>> neighbours(node_count);
-  for (const auto& [a, b] : edges) {
-    neighbours[a].push_back(b);
-    neighbours[b].push_back(a);
-  }
-  for (auto& list : neighbours) std::sort(list.begin(), list.end());
-  return neighbours;
-}
-
 /// Pairs of nodes joined by a path of two edges but by no edge, each once, sorted.
 std::vector<NodePair> secondary_pairs(std::size_t node_count, const std::vector<NodePair>& edges) {
-  const auto neighbours = neighbours_of(node_count, edges);
+  const auto neighbours = geometry::neighbours_of(node_count, edges);
   std::vector<NodePair> pairs;
   std::vector<std::uint32_t> second_ring;
   for (std::uint32_t a = 0; a < node_count; ++a) {
@@ -36,8 +27,7 @@ std::vector<NodePair> secondary_pairs(std::size_t node_count, const std::vector<
         }
       }
     }
-    std::sort(second_ring.begin(), second_ring.end());
-    second_ring.erase(std::unique(second_ring.begin(), second_ring.end()), second_ring.end());
+    sort_unique(second_ring);
     for (const std::uint32_t b : second_ring) pairs.push_back({a, b});
   }
   return pairs;

@@ -28,4 +28,6 @@ Vec3 vector_from_rotation(const Quat& q) {
   return (sign * 2 * std::atan2(sine, cosine) / sine) * q.vec();
 }
 
+Quat rotation_between(const Vec3& a, const Vec3& b) { return Quat::FromTwoVectors(a, b); }
+
 }  // namespace palpate

@@ -12,4 +12,7 @@ Quat rotation_from_vector(const Vec3& v);
 /// exactly half a turn, where the axis' sign is arbitrary.
 Vec3 vector_from_rotation(const Quat& q);
 
+/// The shortest rotation that turns direction `a` into direction `b`; any lengths but zero.
+Quat rotation_between(const Vec3& a, const Vec3& b);
+
 }  // namespace palpate

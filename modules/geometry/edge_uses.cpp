@@ -21,6 +21,16 @@ std::vector<EdgeUse> edge_uses_of(std::span<const Triangle> triangles) {
   return uses;
 }
 
+std::vector<std::vector<std::uint32_t>> neighbours_of(
+    std::size_t node_count, std::span<const std::array<std::uint32_t, 2>> edges) {
+  std::vector<std::vector<std::uint32_t>> neighbours(node_count);
+  for (const auto& [a, b] : edges) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  }
+  return neighbours;
+}
+
 DisjointSets::DisjointSets(std::size_t count) : parent_(count) {
   std::iota(parent_.begin(), parent_.end(), 0u);
 }

@@ -1,4 +1,4 @@
-// Lists which triangles use each edge, and in which direction.
+// Lists which triangles use each edge, and in which direction; which nodes edges join.
 #pragma once
 
 #include "modules/geometry/triangle_surface.h"
@@ -27,6 +27,10 @@ void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
     begin = end;
   }
 }
+
+/// The other ends of each node's edges, ascending if the edges are sorted as by edges_of().
+std::vector<std::vector<std::uint32_t>> neighbours_of(
+    std::size_t node_count, std::span<const std::array<std::uint32_t, 2>> edges);
 
 /// Sets joined together, for components and fans.
 class DisjointSets {

@@ -17,7 +17,7 @@ namespace {
 /// Gmsh's numbers of element kinds.
 constexpr int kLine = 1, kTriangle = 2, kTetrahedron = 4, kPoint = 15;
 /// A tetrahedron below this part of its longest edge cubed is flat.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatVolume = 1e-9;
 
 std::string quoted(const std::string& text) {
   std::string result(1, '"');
@@ -191,7 +191,7 @@ void check_shape(const LineReader& lines, const FileTetrahedron& tetrahedron,
     for (int b = 0; b < a; ++b) longest = std::max(longest, (x[a] - x[b]).norm());
   }
   const double volume = tetrahedron_volume(x[0], x[1], x[2], x[3]);
-  if (volume > kFlat * longest * longest * longest) return;
+  if (volume > kFlatVolume * longest * longest * longest) return;
   lines.refuse_at(tetrahedron.line,
                   "the tetrahedron is flat or inside out; allowed: positive volume");
 }

@@ -3,23 +3,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "modules/geometry/edge_uses.h"
+
 namespace palpate::geometry {
 namespace {
 
 constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
 
-std::vector<std::vector<std::uint32_t>> neighbours_of(const TriangleSurface& surface) {
-  std::vector<std::vector<std::uint32_t>> neighbours(surface.nodes.size());
-  for (const auto& [a, b] : edges_of(surface.triangles)) {
-    neighbours[a].push_back(b);
-    neighbours[b].push_back(a);
-  }
-  return neighbours;
-}
-
 /// The old indices in their new order.
 std::vector<std::uint32_t> breadth_first(const TriangleSurface& surface) {
-  const auto neighbours = neighbours_of(surface);
+  const auto neighbours = neighbours_of(surface.nodes.size(), edges_of(surface.triangles));
   std::vector<std::uint32_t> order;
   std::vector<bool> seen(surface.nodes.size(), false);
   std::size_t next = 0;

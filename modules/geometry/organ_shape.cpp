@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "modules/core/error.h"
+#include "modules/core/sort_unique.h"
 #include "modules/geometry/mesh_check.h"
 
 namespace palpate::geometry {
@@ -35,8 +36,7 @@ std::vector<Edge> edges_inside(const OrganShape& shape, const EdgeNumbers& outsi
       if (outside.at(edge[0], edge[1]) == kNone) edges.push_back(edge);
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
   return edges;
 }
 

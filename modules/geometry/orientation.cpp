@@ -17,7 +17,7 @@ struct Neighbours {
   std::vector<std::uint8_t> counts;        // of the links in use
 };
 
-Neighbours neighbours_of(const TriangleSurface& surface) {
+Neighbours links_of(const TriangleSurface& surface) {
   const std::size_t count = surface.triangles.size();
   Neighbours result{std::vector<std::array<Link, 3>>(count), std::vector<std::uint8_t>(count, 0)};
   const std::vector<EdgeUse> uses = edge_uses_of(surface.triangles);
@@ -68,7 +68,7 @@ double shell_volume(const TriangleSurface& surface, const std::vector<std::uint3
 
 OrientationLog orient_outward(TriangleSurface& surface) {
   OrientationLog log;
-  const Neighbours neighbours = neighbours_of(surface);
+  const Neighbours neighbours = links_of(surface);
   std::vector<bool> visited(surface.triangles.size(), false),
       turned(surface.triangles.size(), false);
   for (std::uint32_t seed = 0; seed < surface.triangles.size(); ++seed) {

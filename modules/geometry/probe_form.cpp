@@ -2,6 +2,8 @@
 
 #include "modules/geometry/primitives.h"
 
+#include "modules/core/rotation_vector.h"
+
 namespace palpate::geometry {
 namespace {
 
@@ -17,7 +19,7 @@ TriangleSurface rounded(const RoundedSegment& core) {
   const Vec3 axis = core.b - core.a;
   TriangleSurface surface =
       core.is_ball() ? make_ball(core.radius, 3) : make_capsule(core.radius, axis.norm(), 32);
-  const Quat turn = core.is_ball() ? Quat::Identity() : Quat::FromTwoVectors(Vec3::UnitZ(), axis);
+  const Quat turn = core.is_ball() ? Quat::Identity() : rotation_between(Vec3::UnitZ(), axis);
   for (Vec3& node : surface.nodes) node = turn * node + 0.5 * (core.a + core.b);
   return surface;
 }

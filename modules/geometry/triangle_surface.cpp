@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "modules/core/sort_unique.h"
+
 namespace palpate::geometry {
 namespace {
 
@@ -96,8 +98,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(std::span<const Triangle> tri
       if (a != b) edges.push_back({a, b});
     }
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  sort_unique(edges);
   return edges;
 }
 

@@ -9,12 +9,12 @@
 namespace palpate::geometry {
 namespace {
 
-constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNotKept = std::numeric_limits<std::uint32_t>::max();
 
 /// Keeps the nodes that stand for themselves in `stands_for` and renumbers the triangles.
 std::size_t keep_representatives(TriangleSurface& surface,
                                  const std::vector<std::uint32_t>& stands_for) {
-  std::vector<std::uint32_t> new_index(surface.nodes.size(), kUnset);
+  std::vector<std::uint32_t> new_index(surface.nodes.size(), kNotKept);
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < stands_for.size(); ++i) {
     if (stands_for[i] != i) continue;
@@ -75,7 +75,7 @@ std::size_t weld_cracks(TriangleSurface& surface, double tolerance) {
 }
 
 std::size_t drop_unused_nodes(TriangleSurface& surface) {
-  std::vector<std::uint32_t> stands_for(surface.nodes.size(), kUnset);
+  std::vector<std::uint32_t> stands_for(surface.nodes.size(), kNotKept);
   for (const Triangle& triangle : surface.triangles) {
     for (const std::uint32_t node : triangle) stands_for[node] = node;
   }

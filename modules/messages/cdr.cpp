@@ -11,7 +11,6 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they lie");
 
-constexpr std::size_t kEncapsulationBytes = 4;
 constexpr std::array<std::uint8_t, kEncapsulationBytes> kLittleEndian{0, 1, 0, 0};
 constexpr std::size_t kMaxPadding = 3;  // of a payload to whole words
 

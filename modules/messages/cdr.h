@@ -6,6 +6,8 @@
 
 namespace palpate::messages {
 
+constexpr std::size_t kEncapsulationBytes = 4;
+
 /// Replaces `payload` by the message in little endian, checked by nobody. No allocation once a
 /// message of that size has been written.
 template <class Message>

@@ -10,7 +10,6 @@
 namespace palpate::messages {
 namespace {
 
-constexpr std::size_t kEncapsulationBytes = 4;
 constexpr std::size_t kHeaderBytes = 24;
 
 // Finds out what the key is.

@@ -25,8 +25,8 @@ namespace palpate::certify {
 namespace {
 
 constexpr double kPressed = 0.3;  // of the force at rest, that the real processes must give
-constexpr double kReady = 60, kPress = 0.5, kHeld = 5.1;  // [s]
-constexpr double kWallShare = 0.5;                        // of the formula's stiffness: well within
+constexpr double kFeltWithin = 60, kPress = 0.5, kHoldFor = 5.1;  // [s]
+constexpr double kWallShare = 0.5;  // of the formula's stiffness: well within
 
 class Certifying {
  public:
@@ -127,7 +127,7 @@ class Certifying {
     const bool ready = processes.start();
     processes.hold(pressing_hand());
     const auto feels = [&](const Heard& heard) { return heard.force.force.norm() > pressed; };
-    if (!ready || !processes.wait(feels, kReady)) {
+    if (!ready || !processes.wait(feels, kFeltWithin)) {
       add({not_measured("timing", "the real processes", "they did not press within a minute")});
       return;
     }
@@ -146,7 +146,7 @@ class Certifying {
   void hold_over_dds(Processes& processes) {
     begin("held over DDS");
     processes.hold(pushing_hand(subject_.device, subject_.place, push_));
-    processes.wait([](const Heard&) { return false; }, kHeld);
+    processes.wait([](const Heard&) { return false; }, kHoldFor);
     const auto& held = processes.heard().held;
     add({swing_line("over DDS", "swing of a held contact", held),
          limit_cycle_line("over DDS", held)});

@@ -12,7 +12,7 @@
 namespace palpate::certify {
 namespace {
 
-constexpr double kSpeed = 0.02, kAbove = 1e-3, kOff = 2e-5;  // [m/s], [m], [m]
+constexpr double kSpeed = 0.02, kApproach = 1e-3, kOff = 2e-5;  // [m/s], [m], [m]
 constexpr double kDepths[] = {1. / 12, 1. / 6, 1. / 3, 2. / 3, 1, 4. / 3};
 constexpr double kMedian = 10, kWorst = 20;  // [%]
 
@@ -23,14 +23,14 @@ double force(const Subject& subject, double depth, double off, LocalLaw& law,
   scene.organs = {subject.scene.organs[subject.place.organ]};
   const auto at = [&](double below) { return pose_below(subject.place, below); };
   const double way = kSpeed / scene.rates.deformation;
-  const int periods = static_cast<int>((depth + kAbove) / way);
-  rigs::PressedOrgan organ(scene, subject.assets.organs[subject.place.organ], {at(-kAbove)});
+  const int periods = static_cast<int>((depth + kApproach) / way);
+  rigs::PressedOrgan organ(scene, subject.assets.organs[subject.place.organ], {at(-kApproach)});
   for (int i = 1; i <= periods; ++i) {
     keep_going();
-    organ.advance({at(i * way - kAbove)});
+    organ.advance({at(i * way - kApproach)});
   }
   law = organ.law(0);
-  organ.advance({at((periods + 1) * way - kAbove + off)});
+  organ.advance({at((periods + 1) * way - kApproach + off)});
   return -organ.force(0).dot(subject.place.into);
 }
 

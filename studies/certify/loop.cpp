@@ -10,9 +10,9 @@
 namespace palpate::certify {
 namespace {
 
-constexpr double kLeft = 0.2;     // [m]
-constexpr double kOnTime = 1e-9;  // what sums of periods may be off [s]
-constexpr int kAskEvery = 50;     // ticks
+constexpr double kLeft = 0.2;           // [m]
+constexpr double kTimeRounding = 1e-9;  // what sums of periods may be off [s]
+constexpr int kAskEvery = 50;           // ticks
 
 }  // namespace
 
@@ -48,7 +48,7 @@ std::vector<Tick> run_loop(const Loop& loop, const scene::EmulatedDevice& device
   Vec3 at = device.start, rendered = Vec3::Zero();
   std::uint64_t heard = 0;
   double work = 0;
-  for (int i = 0; session.time() < end - kOnTime; ++i) {
+  for (int i = 0; session.time() < end - kTimeRounding; ++i) {
     if (i % kAskEvery == 0) keep_going();
     const double time = session.time();
     session.tick();

@@ -11,8 +11,8 @@ namespace palpate::certify {
 namespace {
 
 constexpr double kOnTheWay = 0.010;  // the last sample's way and a late tick [s]
-constexpr double kLongest = 20, kReleased = 5, kCalm = 1;  // [s]
-constexpr double kStill = 0.2;                             // a force may pass through zero [s]
+constexpr double kTouchWithin = 20, kReleased = 5, kCalm = 1;  // [s]
+constexpr double kStill = 0.2;                                 // a force may pass through zero [s]
 const std::string kDriver = "driver", kHaptics = "haptics";
 const std::string kAll[] = {kDriver, "deformation", "collision", kHaptics};
 
@@ -40,7 +40,7 @@ bool is_let_go(const std::string& who, const Heard& heard) {
 
 Release release(Processes& processes, const std::string& who, double pressed) {
   Release found{who};
-  found.came = presses(processes, pressed, kLongest);
+  found.came = presses(processes, pressed, kTouchWithin);
   processes.heard().largest_step = 0;
   if (who == kDriver) {
     processes.drive(false);
@@ -57,7 +57,7 @@ Release release(Processes& processes, const std::string& who, double pressed) {
   } else {
     processes.start_again(who);
   }
-  found.back = presses(processes, pressed, kLongest);
+  found.back = presses(processes, pressed, kTouchWithin);
   found.step = heard.largest_step;
   return found;
 }

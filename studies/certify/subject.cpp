@@ -12,7 +12,7 @@
 namespace palpate::certify {
 namespace {
 
-constexpr double kLongest = 30;       // [s]
+constexpr double kReachWithin = 30;   // [s]
 constexpr double kStraightAt = 0.03;  // [m/s]
 
 /// Of the probe's contacts that touch: one of them, turned by all.
@@ -77,12 +77,13 @@ Subject load_subject(const std::filesystem::path& file, const KeepGoing& keep_go
   subject.assets = session::load_assets(subject.scene);
   scene::Probe& probe = subject.scene.probes[0];
   const double duration = subject.scene.duration;
-  auto place = first_touch(subject.scene, subject.assets,
-                           duration > 0 ? std::min(duration, kLongest) : kLongest, keep_going);
+  auto place =
+      first_touch(subject.scene, subject.assets,
+                  duration > 0 ? std::min(duration, kReachWithin) : kReachWithin, keep_going);
   if (!place) {
     scene::Scene straight = subject.scene;
     straight.probes[0].device = straight_to_an_organ(subject.scene, subject.assets);
-    place = first_touch(straight, subject.assets, kLongest, keep_going);
+    place = first_touch(straight, subject.assets, kReachWithin, keep_going);
   }
   if (!place) {
     throw InputError(fmt::format("{}: probe '{}' comes to no organ: nothing can be certified",

@@ -14,9 +14,9 @@ namespace palpate::chart {
 namespace {
 
 constexpr double kRadius = rigs::kBallRadius;
-constexpr double kPlateSpeed = 0.02;  // [m/s]
+constexpr double kBallPlateSpeed = 0.02;  // [m/s]
 /// About critical for the ball's slowest mode, the one the plates excite [1/s].
-constexpr double kDrag = 60;
+constexpr double kBallDrag = 60;
 
 }  // namespace
 
@@ -74,14 +74,14 @@ double frequency_of(const std::vector<double>& swing, double h) {
 Measurement measure_ball(const Setting& setting, const KeepGoing& keep_going) {
   const ReferenceTable reference(data_file("reference/A_ball_plates.csv"));
   const auto shape = ball_shape(setting);
-  scene::Scene scene = ball_scene(setting, kDrag);
+  scene::Scene scene = ball_scene(setting, kBallDrag);
   const auto plates = rigs::add_plates(scene);
   rigs::PressedOrgan pressed(scene, shape, plates);
   const double rest_radius = equatorial_radius(pressed);
   std::vector<Sample> samples;
   for (const double compression : {0.1, 0.2, 0.3, 0.4}) {
     const double height = kRadius * (1 - compression);
-    pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
+    pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kBallPlateSpeed, keep_going);
     const std::size_t row = reference.row_of("compression_d_over_2R", compression);
     Sample sample;
     sample.load = compression;

@@ -1,6 +1,5 @@
 // A block with bonded ends, compressed: force and bulge against reference solutions, and the beads
 // of the Truth Cube. The same block bends as a beam, and is indented by a sphere.
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "modules/core/data_folder.h"
@@ -19,8 +18,8 @@ namespace palpate::chart {
 namespace {
 
 constexpr double kHalf = rigs::kBlockHalfWidth, kHeight = rigs::kBlockHeight;  // [m]
-constexpr double kPlateSpeed = 0.01;                                           // [m/s]
-constexpr double kDrag = 60;                                                   // [1/s]
+constexpr double kBlockPlateSpeed = 0.01;                                      // [m/s]
+constexpr double kBlockDrag = 60;                                              // [1/s]
 /// No less than the largest a scene takes: the plate holds the tissue as if bonded.
 constexpr double kBondFriction = 2;
 const double kEqualRadius = std::cbrt(3 * 8 * kHalf * kHalf * kHalf / (4 * M_PI));
@@ -43,7 +42,7 @@ geometry::OrganShape block_shape(const Setting& setting) {
 scene::Scene block_scene(const Setting& setting) {
   scene::Scene scene;
   scene.organs.push_back(solid_organ(setting, kEqualRadius, 1, kYoungsModulus, kDensity));
-  scene.organs[0].tissue.drag = kDrag;
+  scene.organs[0].tissue.drag = kBlockDrag;
   scene.organs[0].fixed.push_back(rigs::block_base());
   scene.rates.deformation = setting.rate;
   return scene;
@@ -76,7 +75,7 @@ Measurement compress(const Setting& setting, const std::vector<double>& compress
   rigs::PressedOrgan pressed(scene, shape, {rigs::plate_pose(kHeight, false)});
   std::vector<Sample> samples;
   for (const double compression : compressions) {
-    pressed.move_and_settle({{0, 0, kHeight * (1 - compression)}}, kPlateSpeed, keep_going);
+    pressed.move_and_settle({{0, 0, kHeight * (1 - compression)}}, kBlockPlateSpeed, keep_going);
     samples.push_back(answer(pressed, compression));
     if (pressed.diverged()) break;
   }

@@ -39,14 +39,14 @@ std::vector<std::uint32_t> faces_near(const TaylorHoodElements& solid, const Vec
 }
 
 /// A point of the surface: its face and the shape functions there.
-struct SurfacePoint {
+struct FacePoint {
   std::uint32_t face = 0;
   Eigen::Matrix<double, deformation::kFaceNodes, 1> shape;
 };
 
-SurfacePoint nearest_point(const TaylorHoodElements& solid, const Vec3& mark) {
+FacePoint nearest_point(const TaylorHoodElements& solid, const Vec3& mark) {
   const auto& mesh = solid.mesh();
-  SurfacePoint nearest;
+  FacePoint nearest;
   double least = std::numeric_limits<double>::infinity();
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     geometry::TriangleCorners corners;
@@ -67,7 +67,7 @@ std::vector<Vec3> displacements(const TaylorHoodElements& solid, const SolidStat
   const auto& mesh = solid.mesh();
   std::vector<Vec3> found;
   for (const Vec3& mark : marks) {
-    const SurfacePoint point = nearest_point(solid, mark);
+    const FacePoint point = nearest_point(solid, mark);
     Vec3& sum = found.emplace_back(Vec3::Zero());
     for (int k = 0; k < deformation::kFaceNodes; ++k) {
       const auto node = mesh.face_node(mesh.faces[point.face], k);

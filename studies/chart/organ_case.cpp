@@ -20,7 +20,7 @@ using rigs::PokedPlace;
 using rigs::surface_of;
 
 constexpr double kSpeed = 5e-3, kBeside = 0.02;  // [m/s], [m]
-constexpr double kDrag = 40;                     // [1/s]
+constexpr double kOrganDrag = 40;                // [1/s]
 constexpr std::array kDepths{3e-3, 6e-3, 9e-3};  // [m]
 
 constexpr std::array<std::size_t, 3> kNodes{150, 550, 2000};
@@ -43,7 +43,7 @@ Measurement press_organ(const PokedPlace& place, const Setting& setting,
   scene::Scene scene;
   scene.organs.push_back(solid_organ(setting, std::cbrt(3 * volume / (4 * M_PI)), kVirtualNodes,
                                      kYoungsModulus, kDensity));
-  scene.organs[0].tissue.drag = kDrag;
+  scene.organs[0].tissue.drag = kOrganDrag;
   scene.organs[0].fixed = shown.fixed;
   rigs::add_poker(scene);
   scene.rates.deformation = setting.rate;

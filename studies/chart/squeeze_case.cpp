@@ -12,7 +12,7 @@ constexpr double kCompression = 0.2, kClosing = 0.06, kDuration = 0.3;  // [1], 
 /// What a force is the mean over: the longest period there is, for a period has no finer answer
 /// [s].
 constexpr double kWindow = 0.02;
-constexpr double kDrag = 10;  // [1/s]; no other damping: its laws differ between models
+constexpr double kSqueezeDrag = 10;  // [1/s]; no other damping: its laws differ between models
 
 /// Height of the upper plate at `time` [s], above the middle [m].
 double height_at(double time) {
@@ -23,7 +23,7 @@ double height_at(double time) {
 
 Measurement measure_squeeze(const Setting& setting, const KeepGoing& keep_going) {
   const auto shape = ball_shape(setting);
-  scene::Scene scene = ball_scene(setting, kDrag);
+  scene::Scene scene = ball_scene(setting, kSqueezeDrag);
   scene.organs[0].tissue.damping_ratio = 0;
   auto poses = rigs::add_plates(scene);
   rigs::PressedOrgan pressed(scene, shape, poses);

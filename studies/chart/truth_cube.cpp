@@ -1,7 +1,6 @@
 #include "studies/chart/truth_cube.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/polar_decomposition.h"
 
 namespace palpate::chart {
 namespace {
@@ -98,9 +98,7 @@ double distance_after_fit(const std::vector<Vec3>& moved, const std::vector<Vec3
   for (std::size_t i = 0; i < moved.size(); ++i) {
     spread += (measured[i] - to) * (moved[i] - from).transpose();
   }
-  const Eigen::JacobiSVD<Mat3> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double mirrored = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  const Mat3 turn = svd.matrixU() * Vec3(1, 1, mirrored).asDiagonal() * svd.matrixV().transpose();
+  const Mat3 turn = nearest_rotation(spread);
   double sum = 0;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     sum += (to + turn * (moved[i] - from) - measured[i]).squaredNorm();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "modules/core/rotation_vector.h"
+
 namespace palpate::fuzz {
 namespace {
 
@@ -61,7 +63,7 @@ void add_plates(RandomStream& random, const Vec3& center, double size, RandomSce
   const double thickness = 0.05 * size;
   for (const double side : {1.0, -1.0}) {
     scene::ScriptedDevice way;
-    way.rotation = Quat::FromTwoVectors(Vec3::UnitZ(), axis);
+    way.rotation = rotation_between(Vec3::UnitZ(), axis);
     way.start = center + side * 0.7 * size * axis;
     way.moves.push_back({center + side * (thickness / 2 + 0.01 * size) * axis, time});
     scene.scene.probes.push_back(

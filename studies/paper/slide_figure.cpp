@@ -13,7 +13,7 @@
 namespace palpate::paper {
 namespace {
 
-constexpr double kQuickDuration = 6;  // [s]: first contact, the first rest and some sliding
+constexpr double kQuickSlide = 6;  // [s]: first contact, the first rest and some sliding
 
 /// Ends of the probe's rests [s].
 std::vector<double> rests_of(const scene::Probe& probe) {
@@ -102,7 +102,7 @@ scene::Scene slide_scene(const FigureOptions& options) {
 
 Findings make_slide_figure(const FigureOptions& options, report::Progress& progress) {
   const auto scene = slide_scene(options);
-  const double wanted = options.quick ? kQuickDuration : scene.duration;
+  const double wanted = options.quick ? kQuickSlide : scene.duration;
   const double radius = std::get<scene::SphereShape>(scene.probes[0].shape).radius;
   progress.begin("Figure 4: probe slides through the refined stomach");
   Moments moments(options, rests_of(scene.probes[0]));

@@ -8,7 +8,7 @@
 namespace palpate::paper {
 namespace {
 
-constexpr double kQuickDuration = 4;  // [s]: both probes have touched by then
+constexpr double kQuickPress = 4;  // [s]: both probes have touched by then
 
 }  // namespace
 
@@ -20,7 +20,7 @@ Findings make_volume_figure(const FigureOptions& options, report::Progress& prog
       const std::string run = organ + ", " + model_key(model);
       progress.begin("Figure 3: volume over time, " + run);
       scene.organs[0].model = model;
-      const double seconds = options.quick ? kQuickDuration : scene.duration;
+      const double seconds = options.quick ? kQuickPress : scene.duration;
       const auto samples = run_scene(scene, seconds, progress);
       write_samples(samples, options.out / ("figure3_" + organ + "_" + model_key(model) + ".csv"));
       findings.push_back({"Figure 3", run + ": |V-V0|/V0 largest", "",

@@ -15,7 +15,7 @@ namespace palpate::stability {
 namespace {
 
 /// Of what is stored; raised when a map or a measure changes.
-constexpr int kVersion = 1;
+constexpr int kAtlasVersion = 1;
 
 const std::vector<std::string>& store_columns() {
   static const std::vector<std::string> kColumns{
@@ -82,8 +82,8 @@ ColumnStore::ColumnStore(std::filesystem::path folder) : folder_(std::move(folde
 
 std::filesystem::path ColumnStore::file_of(const Map& map, const std::string& series,
                                            double x) const {
-  return folder_ /
-         fmt::format("{}-{}-{:g}-{:016x}-v{}.csv", map.name, series, x, grid_key(map), kVersion);
+  return folder_ / fmt::format("{}-{}-{:g}-{:016x}-v{}.csv", map.name, series, x, grid_key(map),
+                               kAtlasVersion);
 }
 
 bool ColumnStore::read(const Map& map, const std::string& series, double x, Column& out) const {

@@ -18,10 +18,10 @@
 namespace palpate::stability {
 namespace {
 
-constexpr int kVersion = 1;           // of what is stored
+constexpr int kLockingVersion = 1;    // of what is stored
 constexpr double kDensity = 1060;     // [kg/m³]
 constexpr double kPlateSpeed = 0.02;  // [m/s]
-constexpr double kDrag = 60;          // about critical for the slowest mode [1/s]
+constexpr double kCriticalDrag = 60;  // about critical for the slowest mode [1/s]
 constexpr double kRate = 100;         // steps asked for per second [Hz]
 constexpr double kPenalty = 3e4 * kLockingModulus / kBallRadius;  // as in studies/elements [Pa/m]
 constexpr double kStride = 0.025;                                 // of compression
@@ -41,7 +41,7 @@ scene::Scene ball_scene(const std::string& model, double poisson_ratio) {
   const chart::Setting setting{model, 0, kRate};
   scene.organs.push_back(chart::solid_organ(setting, kBallRadius, 1, kLockingModulus, kDensity));
   scene.organs[0].solid.poisson_ratio = poisson_ratio;
-  scene.organs[0].tissue.drag = kDrag;
+  scene.organs[0].tissue.drag = kCriticalDrag;
   scene.rates.deformation = kRate;
   return scene;
 }
@@ -147,7 +147,7 @@ std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
     const std::string model = format.word;
     for (const double ratio : ratios) {
       const auto file = [&](const char* what) {
-        return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kVersion);
+        return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kLockingVersion);
       };
       const double reference = kept(file("reference"), [&] {
                                  LockingPoint known;

@@ -1,12 +1,12 @@
 #include "studies/stability/runs.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "deformation/guard/divergence_detector.h"
 #include "deformation/springs/spring_forces.h"
+#include "modules/core/polar_decomposition.h"
 
 namespace palpate::stability {
 namespace {
@@ -38,9 +38,7 @@ Mat3 best_rotation(const OrganModel& model, const std::vector<Vec3>& x) {
     covariance += (x[i] - mean) * (rest[i] - rest_mean).transpose();
   }
   if (!covariance.allFinite()) return Mat3::Identity();
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double turn = svd.matrixU().determinant() * svd.matrixV().determinant();
-  return svd.matrixU() * Vec3(1, 1, turn < 0 ? -1 : 1).asDiagonal() * svd.matrixV().transpose();
+  return nearest_rotation(covariance);
 }
 
 Tolerance driven(const Scheme& scheme, const TestBody& body, double speed) {

@@ -29,3 +29,15 @@ TEST_CASE("rotation vector: logarithm inverts the exponential up to half a turn,
     CHECK((vector_from_rotation(q) - v).norm() <= 1e-14 * angle);
   }
 }
+
+TEST_CASE("rotation between: turns one direction into the other the short way") {
+  // Oracle: invariants: b is met, and the angle is that between a and b, up to half a turn.
+  // Tolerance: a few roundings; half a turn's axis comes from a singular value decomposition.
+  const Vec3 a(1, -2, 3);
+  for (const Vec3& b : {Vec3(2, 1, 0.5), Vec3(3, -6, 9), Vec3(-1, 2, -3), Vec3(0, 0, 1e-3)}) {
+    const Quat turn = rotation_between(a, b);
+    CHECK((turn * a.normalized() - b.normalized()).norm() < 1e-14);
+    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
+    CHECK(vector_from_rotation(turn).norm() == Approx(angle).margin(1e-7));
+  }
+}

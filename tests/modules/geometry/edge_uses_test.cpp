@@ -27,6 +27,24 @@ TEST_CASE("edge uses: a side from a node to itself is left out") {
   CHECK(edge_uses_of(triangles).size() == 2);
 }
 
+TEST_CASE("neighbours: the other ends of each node's edges, in order") {
+  // Oracle: brute force over all edges of a ball, and a node of none.
+  const TriangleSurface ball = make_ball(1, 1);
+  const auto edges = edges_of(ball.triangles);
+  const auto neighbours = neighbours_of(ball.nodes.size() + 1, edges);
+  REQUIRE(neighbours.size() == ball.nodes.size() + 1);
+  CHECK(neighbours.back().empty());
+  for (std::uint32_t node = 0; node < ball.nodes.size(); ++node) {
+    std::vector<std::uint32_t> expected;
+    for (const auto& [a, b] : edges) {
+      if (a == node) expected.push_back(b);
+      if (b == node) expected.push_back(a);
+    }
+    std::sort(expected.begin(), expected.end());
+    CHECK(neighbours[node] == expected);
+  }
+}
+
 TEST_CASE("disjoint sets: joined items share a root, the lowest of them") {
   // Oracle: hand-made.
   DisjointSets sets(6);
