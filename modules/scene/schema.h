@@ -7,15 +7,16 @@
 //   option<T>(key, variant, about) one alternative of a variant; exactly one key is given
 //   require(holds, rule)           a rule across fields of the object
 //   unique_names(key, list)        the rule that no two entries of a list share a name
+// What is told of a key is in about.h; the keys of devices are in device_schema.h.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <string>
-#include <type_traits>
 
 #include "modules/core/organ_limits.h"
+#include "modules/scene/about.h"
+#include "modules/scene/device_schema.h"
 #include "modules/scene/models.h"
 #include "modules/scene/scene.h"
 
@@ -25,57 +26,14 @@ namespace palpate::scene {
 inline constexpr std::size_t kSceneFormat = 1;
 inline constexpr const char* kFormatKey = "palpate_scene";
 
-/// The words for the values of an enumeration, in its order.
-template <class Enum>
-struct Words;
 template <>
 struct Words<Integrator> {
   static constexpr std::array texts{"automatic", "symplectic_euler", "backward_euler"};
 };
 template <>
-struct Words<EmulatedDevice::Kind> {
-  static constexpr std::array texts{"touch", "omega"};
-};
-template <>
 struct Words<Needs::Contents> {
   static constexpr std::array texts{"fluid", "solid"};
 };
-template <class Enum>
-const char* word_of(Enum value) {
-  return Words<Enum>::texts[static_cast<std::size_t>(value)];
-}
-template <class T>
-concept Enumeration = std::is_enum_v<T>;
-
-/// What is known of a key beside its type.
-struct About {
-  const char* meaning = "";
-  const char* unit = "";  ///< of the number or of each number of a list
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool required = false;
-  const char* default_text = nullptr;  ///< said instead of the value, where none can be shown
-  bool is_length_unit = false;         ///< a text naming a unit of length
-  bool is_model = false;               ///< a text that is the word of a model
-
-  About needed() const {
-    About copy = *this;
-    copy.required = true;
-    return copy;
-  }
-  About otherwise(const char* text) const {
-    About copy = *this;
-    copy.default_text = text;
-    return copy;
-  }
-};
-
-inline About ranged(const char* unit, double min, double max, const char* meaning) {
-  return {.meaning = meaning, .unit = unit, .min = min, .max = max};
-}
-inline About plain(const char* meaning) { return {.meaning = meaning}; }
-/// A point of W. Bounded, because positions cross the wire as float32: 8 µm at 100 m.
-inline About point(const char* meaning) { return ranged("m", -100, 100, meaning); }
 
 template <class V>
 void describe(V& v, Mesh& mesh) {
@@ -86,13 +44,6 @@ void describe(V& v, Mesh& mesh) {
   v.field("unit", mesh.unit, unit);
   v.field("nodes", mesh.nodes,
           ranged("", 0, double(kMaxNodes), "resample to this many nodes; 0 = as the file is"));
-}
-
-/// Keys of a pose, among those of the object that has it.
-template <class V>
-void describe_pose(V& v, Pose& pose, const char* position, const char* rotation) {
-  v.field("position_m", pose.position, point(position));
-  v.field("rotation_xyzw", pose.rotation, plain(rotation));
 }
 
 template <class V>
@@ -224,94 +175,6 @@ void describe(V& v, ProbeShape& shape) {
   v.template option<BoxShape>("box", shape, plain("a box"));
   v.template option<PlaneShape>("plane", shape, plain("solid where the probe's z ≤ 0; write {}"));
   v.template option<MeshShape>("mesh", shape, plain("any closed surface, in the probe's frame"));
-}
-
-template <class V>
-void describe(V& v, TrajectoryDevice& device) {
-  v.field("file", device.file,
-          plain("CSV with columns t,x,y,z,qx,qy,qz,qw[,fx,fy,fz] in s, m, N").needed());
-  describe_pose(v, device.offset, "where the recording's origin is in W",
-                "unit quaternion, of the recording's frame");
-  v.field("loop", device.loop, plain("start again at the end; else hold the last pose"));
-}
-
-/// Either `to_m` and `duration_s`, or `wait_s`.
-template <class V>
-void describe(V& v, ScriptedDevice::Move& move) {
-  std::optional<double> duration, wait;
-  (move.to ? duration : wait) = move.duration;
-  v.field("to_m", move.to, point("where the move ends").otherwise("a wait"));
-  v.field("duration_s", duration,
-          ranged("s", 1e-3, 3600, "of the move; highest speed is 1.875 × distance / duration")
-              .otherwise("a wait"));
-  v.field("wait_s", wait, ranged("s", 1e-3, 3600, "stay where it is").otherwise("a move"));
-  v.require(move.to ? duration && !wait : wait && !duration,
-            "must hold either to_m and duration_s, or wait_s alone");
-  move.duration = duration ? *duration : wait.value_or(move.duration);
-}
-
-template <class V>
-void describe(V& v, ScriptedDevice& device) {
-  v.field("start_m", device.start, point("where it starts").needed());
-  v.field("rotation_xyzw", device.rotation, plain("unit quaternion, kept throughout"));
-  v.field("moves", device.moves,
-          plain("minimum-jerk moves, one after the other; ends holding the last point").needed());
-}
-
-template <class V>
-void describe(V& v, TopicDevice& device) {
-  v.field("start_m", device.start, point("where it is until the first sample").needed());
-  v.field("rotation_xyzw", device.rotation, plain("unit quaternion until the first sample"));
-}
-
-template <class V>
-void describe(V& v, MouseDevice& device) {
-  v.field("start_m", device.start, point("where it is until it is first dragged").needed());
-  v.field("rotation_xyzw", device.rotation, plain("unit quaternion until it is first dragged"));
-}
-
-template <class V>
-void describe(V& v, EmulatedDevice::Hand& hand) {
-  v.field("mass_kg", hand.mass, ranged("kg", 0, 5, "moves along with the device"));
-  v.field("damping_n_s_per_m", hand.damping, ranged("N·s/m", 0, 100, "to its target's velocity"));
-  v.field("stiffness_n_per_m", hand.stiffness, ranged("N/m", 0, 5000, "to its target"));
-  v.field("push_n", hand.push, ranged("N", -100, 100, "constant force on the device, in W"));
-  v.field("moves", hand.moves, plain("minimum-jerk moves of its target, which begins at start_m"));
-}
-
-template <class V>
-void describe(V& v, EmulatedDevice& device) {
-  v.field("kind", device.kind, plain("whose sizes it has where they are not given"));
-  v.field("start_m", device.start, point("where it starts").needed());
-  v.field("rotation_xyzw", device.rotation, plain("unit quaternion, kept throughout"));
-  v.field("axis", device.axis,
-          ranged("", -1, 1, "in W: moves along it only, as on a rail").otherwise("moves freely"));
-  v.require(!device.axis || device.axis->norm() > 0.1, "axis must be a direction");
-  v.field("mass_kg", device.mass,
-          ranged("kg", 0.01, 10, "at the grip").otherwise("0.1 of a touch, 0.2 of an omega"));
-  v.field("damping_n_s_per_m", device.damping,
-          ranged("N·s/m", 0, 100, "of the device itself").otherwise("0.2"));
-  v.field("max_force_n", device.max_force,
-          ranged("N", 0.1, 100, "of its motors").otherwise("3.3 of a touch, 12 of an omega"));
-  v.field("encoder_step_m", device.encoder_step,
-          ranged("m", 0, 0.01, "in which positions are read; 0 = exact")
-              .otherwise("55e-6 of a touch, 1e-5 of an omega"));
-  v.field("rate_hz", device.rate, ranged("Hz", 100, 10000, "of its own loop"));
-  v.field("transport_delay_s", device.transport_delay,
-          ranged("s", 0, 0.1, "of poses and of forces, each; in whole periods of its loop"));
-  v.field("hand", device.hand, plain("what holds it"));
-}
-
-template <class V>
-void describe(V& v, Device& device) {
-  v.template option<ScriptedDevice>("scripted", device, plain("moves written in the scene"));
-  v.template option<TrajectoryDevice>("trajectory", device, plain("a recorded pose over time"));
-  v.template option<TopicDevice>("topic", device,
-                                 plain("a real one: its driver writes topic probe_input"));
-  v.template option<MouseDevice>("mouse", device,
-                                 plain("dragged in the live window, followed smoothly"));
-  v.template option<EmulatedDevice>("emulated", device,
-                                    plain("a haptic device and a hand, by numbers"));
 }
 
 template <class V>
