@@ -30,6 +30,9 @@ target_compile_options(palpate_warnings INTERFACE
   -ffp-contract=off
   # GCC 12 (bug 105651) takes short strings inlined from precompiled headers for overruns.
   -Wno-array-bounds -Wno-restrict -Wno-stringop-overread -Wno-stringop-overflow)
+# Sources compiled together look like headers with types of their own.
+target_compile_options(palpate_warnings INTERFACE
+  $<$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>:-Wno-subobject-linkage>)
 if(PALPATE_SANITIZE)  # GCC 12 takes the sanitizers' code around <regex> for uninitialised variables
   target_compile_options(palpate_warnings INTERFACE -Wno-maybe-uninitialized)
 endif()
@@ -45,6 +48,7 @@ function(palpate_precompile target kind)
       file(WRITE ${source} "")
     endif()
     add_library(palpate_precompiled_${kind} OBJECT ${source})
+    set_target_properties(palpate_precompiled_${kind} PROPERTIES UNITY_BUILD OFF)
     target_link_libraries(palpate_precompiled_${kind} PRIVATE palpate_warnings Eigen3::Eigen)
     set(headers <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <filesystem> <functional> <map>
                 <memory> <optional> <span> <sstream> <string> <variant> <vector>)
@@ -74,10 +78,11 @@ function(palpate_sources result recurse)
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-# palpate_library(NAME [RECURSE] [INSTALLED] [EXCEPT pattern …] [DEPENDS …] [PRIVATE_DEPENDS …])
-# All sources of the folder but main.cpp. INSTALLED: part of the package for other projects.
+# palpate_library(NAME [RECURSE] [INSTALLED] [APART] [EXCEPT pattern …] [DEPENDS …] [PRIVATE_DEPENDS …])
+# All sources of the folder but main.cpp. INSTALLED: part of the package for other projects. APART:
+# each file compiled alone, for code whose speed is measured.
 function(palpate_library name)
-  cmake_parse_arguments(ARG "RECURSE;INSTALLED" "" "SOURCES;EXCEPT;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "RECURSE;INSTALLED;APART" "" "SOURCES;EXCEPT;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   if(NOT ARG_SOURCES)
     palpate_sources(ARG_SOURCES ${ARG_RECURSE} main.cpp ${ARG_EXCEPT})
   endif()
@@ -87,6 +92,9 @@ function(palpate_library name)
   target_link_libraries(palpate_${name} PUBLIC ${ARG_DEPENDS}
                         PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:palpate_warnings>)
   palpate_precompile(palpate_${name} core)
+  if(ARG_APART)
+    set_target_properties(palpate_${name} PROPERTIES UNITY_BUILD OFF)
+  endif()
   if(ARG_INSTALLED)
     palpate_install_library(${name})
   endif()
@@ -136,6 +144,7 @@ function(palpate_tests name)
   # A test's own code is compiled often and run once; what it judges keeps the preset's optimization.
   target_compile_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name}_tests PRIVATE ${ARG_DEPENDS} Catch2::Catch2WithMain palpate_warnings)
+  set_target_properties(${name}_tests PROPERTIES UNITY_BUILD OFF)
   palpate_precompile(${name}_tests tests)
   target_compile_definitions(${name}_tests PRIVATE
     PALPATE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PALPATE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
