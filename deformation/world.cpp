@@ -105,8 +105,7 @@ WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double per
     made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
   }
   made.compliance = std::make_unique<PatchCompliance>(
-      kept, Neighbours(kept, tetrahedra), kept.is_solid() ? kPatchOfSolid : kPatchOfSprings,
-      made.springs.get());
+      kept, Neighbours(kept, tetrahedra), kept.is_solid() ? kPatchOfSolid : kPatchOfSprings);
   return made;
 }
 

@@ -197,11 +197,6 @@ void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double&
   volume_impulse += all_volume_mu_;
 }
 
-Vec4f ConstraintProjection::apply_inverse_mass(std::size_t node, const Vec4f& impulse) const {
-  const auto& w = inverse_mass_blocks_[node];
-  return w[0] * impulse[0] + w[1] * impulse[1] + w[2] * impulse[2];
-}
-
 Eigen::VectorXd ConstraintProjection::times_rows(const std::vector<Vec4f>& v) const {
   Eigen::VectorXd out(static_cast<Eigen::Index>(rows_.size()));
   for (std::size_t r = 0; r < rows_.size(); ++r) {

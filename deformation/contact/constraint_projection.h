@@ -77,7 +77,11 @@ class ConstraintProjection {
   /// Takes from r and z = W r what the contacts take, and finds μ.
   /// @returns r·z, the volume's part taken
   double hold_rows(const Sums& sums, std::vector<Vec4f>& r, std::vector<Vec4f>& z);
-  Vec4f apply_inverse_mass(std::size_t node, const Vec4f& impulse) const;  ///< W impulse
+  /// W impulse
+  Vec4f apply_inverse_mass(std::size_t node, const Vec4f& impulse) const {
+    const auto& w = inverse_mass_blocks_[node];
+    return w[0] * impulse[0] + w[1] * impulse[1] + w[2] * impulse[2];
+  }
   Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;           ///< C v
   /// r −= Cᵀ μ and z −= W Cᵀ μ
   void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r, std::vector<Vec4f>& z) const;
@@ -93,6 +97,24 @@ class ConstraintProjection {
   // Since prepare():
   Eigen::VectorXd all_mu_;  ///< without the volume row's shares
   double all_volume_mu_ = 0;
+};
+
+/// A x = r on the rows, for conjugate_gradients.h.
+/// @tparam Product  of A and the vectors p of its nodes(): apply(q), q = A p, returns p·q
+template <class Product>
+struct ProjectedSystem {
+  ConstraintProjection& projection;
+  Product& A;
+  std::vector<Vec4f>&x, &r, &z, &q;
+
+  double begin() {
+    const double descent = projection.project(r, z);
+    for (std::size_t i = 0; i < z.size(); ++i) A.nodes()[i].vector = z[i];
+    return descent;
+  }
+  double curvature() { return A.apply(q); }
+  double descend(double a) { return projection.descend(a, A.nodes(), q, x, r, z); }
+  void turn(double b) { projection.turn(b, z, A.nodes()); }
 };
 
 }  // namespace palpate::deformation

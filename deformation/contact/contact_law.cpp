@@ -1,6 +1,6 @@
 #include "deformation/contact/contact_law.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +9,15 @@
 
 namespace palpate::deformation {
 namespace {
+
+/// A row whose friction is nearer to its cone than this slides.
+constexpr double kSlidingFraction = 0.99;
+
+bool slides(const LawRow& row, double friction) {
+  const double pressing = row.normal.dot(row.force);
+  const Vec3 dragging = row.force - pressing * row.normal;
+  return dragging.norm() >= kSlidingFraction * friction * pressing;
+}
 
 bool presses(const CondensedContact& contact) { return !contact.row.force.isZero(0); }
 
@@ -140,35 +149,42 @@ void append_compliance_rows(const CondensedContact& contact, std::size_t directi
 
 Mat3 stiffness_of(const LocalLaw& law) {
   const std::size_t per_row = law.directions();
-  std::vector<std::size_t> pressing;
-  std::vector<Vec3> axes;
-  for (std::size_t i = 0; i < per_row * law.rows.size(); ++i) {
-    const LawRow& row = law.rows[i / per_row];
-    if (row.force.isZero(0)) continue;
-    pressing.push_back(i);
-    axes.push_back(contact_basis(row.normal).col(static_cast<int>(i % per_row)));
-  }
-  const auto count = static_cast<Eigen::Index>(pressing.size());
-  if (count == 0) return Mat3::Zero();
-  Eigen::MatrixXd W(count, count), motion(count, 3);
-  for (Eigen::Index a = 0; a < count; ++a) {
-    const std::size_t i = pressing[static_cast<std::size_t>(a)];
-    motion.row(a) = axes[static_cast<std::size_t>(a)];
-    for (Eigen::Index b = 0; b <= a; ++b) {
-      const std::size_t j = pressing[static_cast<std::size_t>(b)];
-      W(a, b) = W(b, a) = law.compliance[i * (i + 1) / 2 + j];
+  const auto size = static_cast<Eigen::Index>(per_row * law.rows.size());
+  // W; a row's place moves along axes; a force of 1 along a free direction, in all directions.
+  Eigen::MatrixXd W(size, size), axes(size, 3), forces = Eigen::MatrixXd::Zero(size, size);
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    const LawRow& row = law.rows[static_cast<std::size_t>(i) / per_row];
+    const Eigen::Index k = i % static_cast<Eigen::Index>(per_row);
+    const Mat3 basis = contact_basis(row.normal);
+    axes.row(i) = basis.col(k);
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      W(i, j) = W(j, i) = law.compliance[static_cast<std::size_t>(i * (i + 1) / 2 + j)];
     }
+    const bool sliding = slides(row, law.friction_coefficient);
+    if (row.force.isZero(0) || (k > 0 && sliding)) continue;
+    const auto column = static_cast<Eigen::Index>(free.size());
+    forces(i, column) = 1;
+    for (Eigen::Index t = 1; sliding && t < static_cast<Eigen::Index>(per_row); ++t) {
+      forces(i + t, column) = basis.col(t).dot(row.force) / basis.col(0).dot(row.force);
+    }
+    free.push_back(i);
   }
+  if (free.empty()) return Mat3::Zero();
+  forces.conservativeResize(size, static_cast<Eigen::Index>(free.size()));
   // Rows on the same nodes depend on each other: what they share is counted once.
   constexpr double kRegular = 1e-6;
-  W.diagonal() *= 1 + kRegular;
-  Mat3 stiffness = motion.transpose() * W.ldlt().solve(motion);
-  // Without friction the forces on a round probe turn as it slides over the tissue.
+  Eigen::MatrixXd answers = (W * forces)(free, Eigen::all);
+  answers.diagonal() *= 1 + kRegular;
+  const Eigen::MatrixXd motion = axes(free, Eigen::all);
+  Mat3 stiffness = axes.transpose() * forces * answers.partialPivLu().solve(motion);
+  // The forces on a round probe turn as it slides over the tissue.
   for (const LawRow& row : law.rows) {
-    if (row.radius == 0 || per_row > 1) continue;
+    if (row.radius == 0 || !slides(row, law.friction_coefficient)) continue;
     const double force = row.normal.dot(row.force);
     stiffness -= force / row.radius * (Mat3::Identity() - row.normal * row.normal.transpose());
   }
+  if (!stiffness.allFinite()) return Mat3::Zero();  // of a bad state's W
   return 0.5 * (stiffness + stiffness.transpose());
 }
 

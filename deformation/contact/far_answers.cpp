@@ -10,78 +10,50 @@ namespace {
 /// Of r·W r: directions need not be more exact.
 constexpr double kEnough = 1e-3;
 
-Vec4f times(const Eigen::Matrix3f& matrix, const Vec4f& v) {
-  Vec4f out = Vec4f::Zero();
-  out.head<3>() = matrix * v.head<3>();
-  return out;
-}
-
-/// A x = r with the patch's nodes as vectors of A.
-struct System {
-  PatchMatrix& A;
-  const std::vector<Eigen::Matrix3f>& preconditioner;
-  std::vector<Vec4f>&x, &r, &z, &q;
-
-  double begin() {
-    precondition();
-    for (std::size_t i = 0; i < z.size(); ++i) A.nodes()[i].vector = z[i];
-    return dot(r, z);
-  }
-  double curvature() { return A.apply(q); }
-  double descend(double a) {
-    const auto step = static_cast<float>(a);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += step * A.nodes()[i].vector;
-    add(-a, q, r);
-    precondition();
-    return dot(r, z);
-  }
-  void turn(double b) {
-    const auto kept = static_cast<float>(b);
-    for (std::size_t i = 0; i < z.size(); ++i) {
-      A.nodes()[i].vector = z[i] + kept * A.nodes()[i].vector;
-    }
-  }
-  void precondition() {
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] = times(preconditioner[i], r[i]);
-  }
-};
-
 }  // namespace
+
+FarAnswers::FarAnswers(const OrganModel& model)
+    : model_(model), springs_(model, model.network(), false), product_(springs_) {}
 
 void FarAnswers::find(const std::vector<Vec3>& positions, const Neighbours& neighbours,
                       std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t near,
                       std::size_t nodes, std::span<const ComplianceRow> rows,
                       const SpringShares& shares) {
-  grow_patch(body_, neighbours, positions, touched, centre, nodes, patch_);
-  near_ = std::min(near, patch_.nodes.size());
-  springs_.assemble(positions, body_.masses, patch_, shares, matrix_);
+  grow_patch(model_, neighbours, positions, touched, centre, nodes, patch_);
   const std::size_t count = patch_.nodes.size();
-  preconditioner_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    preconditioner_[i] = matrix_.diagonal(i).inverse();
+  near_ = std::min(near, count);
+  springs_.find_slices(patch_.nodes, slices_);
+  springs_.linearise(positions, shares, slices_);
+  product_.take(patch_, slices_);
+  inverse_blocks_.clear();
+  for (const std::uint32_t node : patch_.nodes) {
+    inverse_blocks_.push_back(springs_.diagonal()[node].inverse());
   }
-  for (auto* buffer : {&residual_, &preconditioned_, &product_}) {
-    buffer->assign(count, Vec4f::Zero());
-  }
+  for (auto* buffer : {&preconditioned_, &step_}) buffer->assign(count, Vec4f::Zero());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     answers_[axis].assign(count, Vec4f::Zero());
     residual_.assign(count, Vec4f::Zero());
     for (const ComplianceRow& row : rows) {
       for (const auto& [node, weight] : row.weights) {
         const int place = patch_.place(node);
-        if (place >= 0) residual_[static_cast<std::size_t>(place)][axis] += weight;
+        if (place >= 0) {
+          residual_[static_cast<std::size_t>(place)][static_cast<int>(axis)] +=
+              static_cast<float>(weight);
+        }
       }
     }
-    System system{matrix_, preconditioner_, answers_[axis], residual_, preconditioned_, product_};
-    conjugate_gradients(system, kIterations, kEnough * system.begin());
+    preconditioner_.prepare(inverse_blocks_, {}, {});
+    ProjectedSystem<PatchProduct> system{preconditioner_, product_,        answers_[axis],
+                                         residual_,       preconditioned_, step_};
+    conjugate_gradients(system, kIterations, 0, kEnough);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < count; ++i) {
       if (i < near_) answers_[axis][i].setZero();
-      matrix_.nodes()[i].vector = answers_[axis][i];
+      product_.nodes()[i].vector = answers_[axis][i];
     }
     products_[axis].resize(count);
-    matrix_.apply(products_[axis]);
+    product_.apply(products_[axis]);
   }
 }
 

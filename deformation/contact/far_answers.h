@@ -13,20 +13,20 @@
 #include <vector>
 
 #include "deformation/contact/compliance_row.h"
-#include "deformation/linear_algebra/patch_matrix.h"
-#include "deformation/model/body.h"
+#include "deformation/contact/constraint_projection.h"
+#include "deformation/model/organ_model.h"
 #include "deformation/model/patch.h"
-#include "deformation/springs/patch_springs.h"
+#include "deformation/springs/patch_product.h"
 
 namespace palpate::deformation {
 
 class FarAnswers {
  public:
-  /// As many as springs between the middle and the rim of that.
-  static constexpr int kIterations = 10;
+  /// Directions that are a little too stiff: a touch grows within the period it is asked for.
+  static constexpr int kIterations = 6;
 
-  /// @param body, springs  outlive this
-  FarAnswers(const Body& body, const PatchSprings& springs) : body_(body), springs_(springs) {}
+  /// @param model  of springs, outlives this
+  explicit FarAnswers(const OrganModel& model);
 
   /// Finds X, and keeps its part beyond the first `near` nodes, the small patch.
   /// @param touched, centre  as the small patch was grown (patch.h)
@@ -38,18 +38,26 @@ class FarAnswers {
 
   Eigen::MatrixXf near_block() const;  ///< A between the small patch and X  (3 near, 3)
   Eigen::Matrix3f own_block() const;   ///< Xᵀ A X
+  /// How far a push of 1 N moves a node of the large patch while all others are held; none: it is
+  /// not among them [m/N]
+  const Mat3* alone(std::uint32_t node) const {
+    const int place = patch_.place(node);
+    return place < 0 ? nullptr : &inverse_blocks_[static_cast<std::size_t>(place)];
+  }
   /// Xᵀ of a push at a node; zero of nodes in the small patch and beyond the large one.
   Eigen::Vector3f load(std::uint32_t node, const Vec3& push) const;
 
  private:
-  const Body& body_;
-  const PatchSprings& springs_;
+  const OrganModel& model_;
+  SpringHessianProduct springs_;
+  PatchProduct product_;
+  ConstraintProjection preconditioner_;  ///< without rows: 3×3 diagonal blocks
   std::size_t near_ = 0;
   Patch patch_;
-  PatchMatrix matrix_;
-  std::vector<Eigen::Matrix3f> preconditioner_;
+  std::vector<std::uint32_t> slices_;
+  std::vector<Mat3> inverse_blocks_;
   std::array<std::vector<Vec4f>, 3> answers_, products_;  ///< X, and A X  (of the patch)
-  std::vector<Vec4f> residual_, preconditioned_, product_;
+  std::vector<Vec4f> residual_, preconditioned_, step_;
 };
 
 }  // namespace palpate::deformation

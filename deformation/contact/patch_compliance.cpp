@@ -15,11 +15,8 @@ SpringShares shares_of(const PeriodSteps& steps, double drag) {
 
 }  // namespace
 
-PatchCompliance::PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes,
-                                 const PatchSprings* springs)
-    : body_(body), neighbours_(std::move(neighbours)), most_nodes_(nodes) {
-  if (springs != nullptr) far_.emplace(body, *springs);
-}
+PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes)
+    : model_(model), neighbours_(std::move(neighbours)), most_nodes_(nodes) {}
 
 Vec3 PatchCompliance::find_touched(const std::vector<Vec3>& positions,
                                    std::span<const ComplianceRow> rows) {
@@ -44,22 +41,23 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
                                        const PeriodSteps& steps, std::span<const Vec3> gradient,
                                        const AddStiffness& add_stiffness) {
   const Vec3 centre = find_touched(positions, rows);
-  grow_patch(body_, neighbours_, positions, touched_, centre, most_nodes_, patch_);
-  const SpringShares shares = shares_of(steps, body_.drag);
+  grow_patch(model_, neighbours_, positions, touched_, centre, most_nodes_, patch_);
+  const SpringShares shares = shares_of(steps, model_.drag);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
   Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
   if (shares.stiffness > 0) add_stiffness(patch_, shares.stiffness, shares.damping, A);
   double mass = 0;
   const double springs = A.trace();
   for (const std::uint32_t node : patch_.nodes) {
-    const double own = shares.mass * body_.masses[node];
+    const double own = shares.mass * model_.masses[node];
     A.diagonal().segment<3>(3 * patch_.place(node)).array() += static_cast<float>(own);
     mass += 3 * own;
   }
   Eigen::Index far = 0;
   const std::size_t reach =
-      std::min(kFarNodes, nodes_in_reach(touched_.size(), edges_in_reach(springs / mass)));
-  if (far_ && reach > 2 * most_nodes_) {
+      std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(springs / mass)));
+  if (!model_.is_solid() && reach > 2 * most_nodes_) {
+    if (!far_) far_.emplace(model_);
     far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
     far = 3;
     A.conservativeResize(size + far, size + far);
@@ -86,8 +84,10 @@ Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index 
       const int place = patch_.place(node);
       if (place >= 0) {
         loads.col(r).segment<3>(3 * place) += (weight * row.axis).cast<float>();
+      } else if (const Mat3* own = far > 0 ? far_->alone(node) : nullptr) {
+        alone(r, r) += weight * weight * row.axis.dot(*own * row.axis);
       } else {
-        alone(r, r) += weight * weight * body_.inverse_masses[node] / mass_share;
+        alone(r, r) += weight * weight * model_.inverse_masses[node] / mass_share;
       }
       if (far > 0) loads.col(r).tail<3>() += far_->load(node, weight * row.axis);
     }
@@ -104,7 +104,7 @@ Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index 
   double inverse_mass = half.col(count).squaredNorm();  // gᵀA⁻¹g
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     if (patch_.place(static_cast<std::uint32_t>(i)) < 0) {
-      inverse_mass += gradient[i].squaredNorm() * body_.inverse_masses[i] / mass_share;
+      inverse_mass += gradient[i].squaredNorm() * model_.inverse_masses[i] / mass_share;
     }
   }
   if (!(inverse_mass > 0)) return answers;

@@ -31,11 +31,9 @@ using AddStiffness = std::function<void(const Patch& patch, double stiffness_sha
 
 class PatchCompliance {
  public:
-  /// @param body   outlives this
-  /// @param nodes    of a patch, at most
-  /// @param springs  of a body of springs, outlives this; none: nothing answers beyond the patch
-  PatchCompliance(const Body& body, Neighbours neighbours, std::size_t nodes,
-                  const PatchSprings* springs = nullptr);
+  /// @param model  outlives this
+  /// @param nodes  of a patch, at most
+  PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes);
 
   /// C A⁻¹ Cᵀ [m/N], symmetric. Nodes that are touched but do not fit the patch answer alone.
   /// @param gradient  of a kept volume (volume_gradient.h), empty: none is kept
@@ -44,8 +42,6 @@ class PatchCompliance {
                         const AddStiffness& add_stiffness);
 
  private:
-  static constexpr std::size_t kFarNodes = 400;
-
   /// @returns the middle of the rows [m]
   Vec3 find_touched(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows);
   /// @param A    lower triangle: of the patch, and of `far` directions beyond
@@ -53,12 +49,12 @@ class PatchCompliance {
                           std::span<const ComplianceRow> rows,
                           std::span<const Vec3> gradient) const;
 
-  const Body& body_;
+  const OrganModel& model_;
   Neighbours neighbours_;
   std::size_t most_nodes_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
-  std::optional<FarAnswers> far_;
+  std::optional<FarAnswers> far_;  ///< of springs, once they reach beyond the patch
 };
 
 }  // namespace palpate::deformation

@@ -17,6 +17,9 @@ struct Patch {
   int place(std::uint32_t node) const { return places[node]; }
 };
 
+/// Of what goes along with a touch no more nodes are looked at one by one.
+inline constexpr std::size_t kMostInReach = 400;
+
 /// Neighbours in a body: nodes that share an edge of its triangles or tetrahedra.
 class Neighbours {
  public:

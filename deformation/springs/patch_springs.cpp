@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/linear_algebra/node_block_matrix.h"
+
 namespace palpate::deformation {
 
 namespace {
@@ -22,10 +24,6 @@ Block4f block_of(const Spring& spring, double spring_damping, const Vec4f& d, do
   Block4f block{scaled.x() * d, scaled.y() * d, scaled.z() * d};
   for (int axis = 0; axis < 3; ++axis) block[static_cast<std::size_t>(axis)][axis] += across;
   return block;
-}
-
-void add_block(float sign, const Block4f& block, Block4f& sum) {
-  for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += sign * block[axis];
 }
 
 }  // namespace
@@ -62,30 +60,6 @@ void PatchSprings::add(const std::vector<Vec3>& positions, const Patch& patch,
         if (j >= 0 && j < i) sum.block<3, 1>(3 * i, 3 * j + axis) -= column;
       }
     }
-  }
-}
-
-void PatchSprings::assemble(const std::vector<Vec3>& positions, std::span<const double> masses,
-                            const Patch& patch, const SpringShares& shares,
-                            PatchMatrix& matrix) const {
-  matrix.clear();
-  for (const std::uint32_t node : patch.nodes) {
-    const auto mass = static_cast<float>(shares.mass * masses[node]);
-    Block4f own{mass * Vec4f::UnitX(), mass * Vec4f::UnitY(), mass * Vec4f::UnitZ()};
-    for (auto at = starts_[node]; at < starts_[node + 1]; ++at) {
-      const Spring& spring = network_.springs[springs_[at]];
-      const std::uint32_t other = spring.node_a == node ? spring.node_b : spring.node_a;
-      const Block4f block =
-          block_of(spring, network_.damping[springs_[at]], wide(positions[other] - positions[node]),
-                   shares.stiffness, shares.damping);
-      add_block(1, block, own);
-      if (patch.place(other) < 0) continue;
-      Block4f coupling{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
-      add_block(-1, block, coupling);
-      matrix.add(static_cast<std::uint32_t>(patch.place(other)), coupling);
-    }
-    matrix.add(static_cast<std::uint32_t>(patch.place(node)), own);
-    matrix.end_row();
   }
 }
 

@@ -4,16 +4,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "deformation/linear_algebra/patch_matrix.h"
 #include "deformation/model/patch.h"
 #include "deformation/model/spring_network.h"
 
 namespace palpate::deformation {
-
-/// A matrix: mass M + damping D + stiffness K.
-struct SpringShares {
-  double mass = 0, damping = 0, stiffness = 0;
-};
 
 class PatchSprings {
  public:
@@ -25,11 +19,6 @@ class PatchSprings {
   /// as in projected_spring_stiffness.h.
   void add(const std::vector<Vec3>& positions, const Patch& patch, double stiffness_share,
            double damping_share, Eigen::MatrixXf& sum) const;
-
-  /// The same with mass_share M beside it, as a sparse matrix.
-  /// @param masses  (node_count) [kg]
-  void assemble(const std::vector<Vec3>& positions, std::span<const double> masses,
-                const Patch& patch, const SpringShares& shares, PatchMatrix& matrix) const;
 
  private:
   const SpringNetwork& network_;

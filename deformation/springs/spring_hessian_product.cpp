@@ -1,6 +1,9 @@
 #include "deformation/springs/spring_hessian_product.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 
 #include "modules/core/error.h"
 
@@ -46,6 +49,8 @@ SpringHessianProduct::SpringHessianProduct(const Body& body, const SpringNetwork
   nodes_.resize(body.node_count());
   dots_.resize(layout.chunk_count * kLanes);
   diagonal_.assign(body.node_count(), Mat3::Zero());
+  all_slices_.resize(layout.slice_count);
+  std::iota(all_slices_.begin(), all_slices_.end(), 0u);
   const std::size_t virtual_parts = layout.virtual_node_count * layout.chunk_count * kLanes;
   blocks_.resize(kBlockNumbers * rows);
   virtual_blocks_.resize(kBlockNumbers * virtual_parts);
@@ -53,8 +58,8 @@ SpringHessianProduct::SpringHessianProduct(const Body& body, const SpringNetwork
 }
 
 kernel::Couplings SpringHessianProduct::couplings() {
-  return {h_, nodes_.data()->position.data(), pairs_.data(), inner_along_.data(),
-          inner_across_.data()};
+  return {h_,           damping_,           nodes_.data()->position.data(),
+          pairs_.data(), inner_along_.data(), inner_across_.data()};
 }
 
 void SpringHessianProduct::run(ChunkBody body) {
@@ -62,20 +67,65 @@ void SpringHessianProduct::run(ChunkBody body) {
   (runner_ == nullptr ? serial : *runner_).run(layout_.view().chunk_count, body);
 }
 
-void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double h) {
+kernel::SliceList SpringHessianProduct::slices_of(std::size_t chunk) const {
+  const std::size_t most = layout_.view().slices_per_chunk, first = chunk * most;
+  return {&all_slices_[first], std::min(most, all_slices_.size() - first)};
+}
+
+void SpringHessianProduct::find_slices(std::span<const std::uint32_t> nodes,
+                                       std::vector<std::uint32_t>& slices) const {
+  slices.clear();
+  for (const std::uint32_t node : nodes) {
+    slices.push_back(node / static_cast<std::uint32_t>(kLanes));
+  }
+  std::ranges::sort(slices);
+  slices.erase(std::unique(slices.begin(), slices.end()), slices.end());
+}
+
+void SpringHessianProduct::take_positions(const std::vector<Vec3>& positions) {
   PALPATE_DEMAND(positions.size() == body_.node_count());
-  h_ = static_cast<float>(h);
   for (std::size_t i = 0; i < positions.size(); ++i) {
     nodes_[i].position = wide(positions[i] - positions[0]);
   }
+}
+
+// With h = √k and c times d/h, h (c + h k) is d c + k k.
+void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, const SpringShares& shares,
+                                     std::span<const std::uint32_t> slices) {
+  const double h = std::sqrt(shares.stiffness);
+  h_ = static_cast<float>(h);
+  damping_ = static_cast<float>(shares.damping / h);
+  take_positions(positions);
+  functions_.linearise(layout_.view(), couplings(), {slices.data(), slices.size()}, blocks_.data(),
+                       virtual_blocks_.data());
+  for (const std::uint32_t slice : slices) {
+    const std::size_t first = slice * kLanes, end = first + kLanes;
+    for (std::size_t i = first; i < std::min(end, body_.surface_node_count); ++i) {
+      take_row_diagonal(i, shares.mass);
+    }
+  }
+}
+
+void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double h) {
+  h_ = static_cast<float>(h);
+  damping_ = 1;
+  take_positions(positions);
   const kernel::Layout layout = layout_.view();
   const kernel::Couplings out = couplings();
   const std::size_t stride = kBlockNumbers * kLanes * layout.virtual_node_count;
   run([&](std::size_t chunk) {
-    functions_.linearise(layout, out, chunk, blocks_.data(),
+    functions_.linearise(layout, out, slices_of(chunk), blocks_.data(),
                          virtual_blocks_.data() + stride * chunk);
   });
   take_diagonal(h);
+}
+
+void SpringHessianProduct::take_row_diagonal(std::size_t node, double mass_share) {
+  std::array<double, kBlockNumbers> numbers;
+  const float* const block = &blocks_[kBlockNumbers * kLanes * (node / kLanes) + node % kLanes];
+  for (std::size_t n = 0; n < kBlockNumbers; ++n) numbers[n] = block[n * kLanes];
+  masses_[node] = static_cast<float>(mass_share * body_.masses[node]);
+  diagonal_[node] = symmetric(numbers, mass_share * body_.masses[node]);
 }
 
 void SpringHessianProduct::take_diagonal(double h) {
@@ -83,13 +133,8 @@ void SpringHessianProduct::take_diagonal(double h) {
   const std::size_t surface_count = layout.surface_node_count;
   const std::size_t rows = layout.slice_count * kLanes;
   const double mass_factor = 1 + h * body_.drag;
+  for (std::size_t i = 0; i < surface_count; ++i) take_row_diagonal(i, mass_factor);
   std::array<double, kBlockNumbers> numbers;
-  for (std::size_t i = 0; i < surface_count; ++i) {
-    const float* const block = &blocks_[kBlockNumbers * kLanes * (i / kLanes) + i % kLanes];
-    for (std::size_t n = 0; n < kBlockNumbers; ++n) numbers[n] = block[n * kLanes];
-    masses_[i] = static_cast<float>(mass_factor * body_.masses[i]);
-    diagonal_[i] = symmetric(numbers, mass_factor * body_.masses[i]);
-  }
   for (std::size_t k = 0; k < layout.virtual_node_count; ++k) {
     numbers.fill(0);
     for (std::size_t chunk = 0; chunk < layout.chunk_count; ++chunk) {
@@ -110,7 +155,7 @@ double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
   const kernel::Couplings in = couplings();
   const std::size_t stride = 3 * kLanes * layout.virtual_node_count;
   run([&](std::size_t chunk) {
-    functions_.apply(layout, in, chunk, masses_.data(), out.data()->data(),
+    functions_.apply(layout, in, slices_of(chunk), masses_.data(), out.data()->data(),
                      virtual_sums_.data() + stride * chunk, dots_.data() + kLanes * chunk);
   });
   double dot = 0;
@@ -131,6 +176,12 @@ double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
     dot += static_cast<double>(p.dot(sum));
   }
   return dot;
+}
+
+double SpringHessianProduct::apply(std::span<const std::uint32_t> slices, std::vector<Vec4f>& out) {
+  functions_.apply(layout_.view(), couplings(), {slices.data(), slices.size()}, masses_.data(),
+                   out.data()->data(), virtual_sums_.data(), dots_.data());
+  return std::accumulate(dots_.begin(), dots_.begin() + kLanes, 0.0);
 }
 
 }  // namespace palpate::deformation

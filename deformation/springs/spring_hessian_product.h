@@ -3,9 +3,11 @@
 // they are kept here (spring_hessian_product_arrays.h). The matrix stays symmetric and positive.
 //
 // Each node gathers from its neighbours, sixteen nodes side by side in the slices of the spring
-// kernel (spring_kernel_arrays.h). Any number of threads gives the same bits.
+// kernel (spring_kernel_arrays.h). Any number of threads gives the same bits. What is local is
+// found from the slices of a patch's nodes alone.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "deformation/springs/kernel/spring_hessian_product_arrays.h"
@@ -15,6 +17,11 @@
 #include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
+
+/// A matrix: mass M + damping D + stiffness K.
+struct SpringShares {
+  double mass = 0, damping = 0, stiffness = 0;
+};
 
 class SpringHessianProduct {
  public:
@@ -27,6 +34,12 @@ class SpringHessianProduct {
 
   /// Takes A at these positions [m] (node_count) for a step of h [s].
   void linearise(const std::vector<Vec3>& positions, double h);
+  /// The same in some slices, of any shares of M, D and K with some K among them.
+  void linearise(const std::vector<Vec3>& positions, const SpringShares& shares,
+                 std::span<const std::uint32_t> slices);
+
+  /// Slices that hold these surface nodes, rising.
+  void find_slices(std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& slices) const;
 
   const std::vector<Mat3>& diagonal() const { return diagonal_; }  ///< D [kg]  (node_count)
 
@@ -37,17 +50,23 @@ class SpringHessianProduct {
   /// @param out  [N·s]  (node_count)
   /// @returns p·A p
   double apply(std::vector<Vec4f>& out);
+  /// The same of the surface nodes in some slices.
+  double apply(std::span<const std::uint32_t> slices, std::vector<Vec4f>& out);
 
  private:
   kernel::Couplings couplings();
   void run(ChunkBody body);
+  kernel::SliceList slices_of(std::size_t chunk) const;
+  void take_positions(const std::vector<Vec3>& positions);
+  void take_row_diagonal(std::size_t node, double mass_share);
   void take_diagonal(double h);
 
   const Body& body_;
   ChunkRunner* runner_;
   const kernel::ProductFunctions& functions_;
   SpringKernelLayout layout_;
-  float h_ = 0;
+  float h_ = 0, damping_ = 1;
+  std::vector<std::uint32_t> all_slices_;
   AlignedVector<WideNode> nodes_;  ///< positions from the first node
   AlignedVector<float> masses_;    ///< (1 + h·drag) M; of rows, then of virtual nodes
   AlignedVector<float> pairs_, inner_along_, inner_across_;

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "deformation/linear_algebra/conjugate_gradients.h"
+
 namespace palpate::deformation {
 namespace {
 
@@ -18,7 +20,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
       volume_(volume),
       max_iterations_(iterations),
       springs_(model, model.network(), volume.is_kept),
-      contacts_(model),
+      contacts_(model, springs_),
       kernel_(model, model.network(), volume.is_kept) {
   for (const double mass : model.masses) total_mass_ += mass;
   for (auto* buffer : {&change_, &residual_, &trial_}) {
@@ -145,13 +147,28 @@ void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
   for (std::size_t i = 0; i < change_.size(); ++i) {
     residual_[i] = forces_[i] - product_[i].head<3>().cast<double>();
   }
+  take_impulses_from(rows);
+  if (!volume_row_) return;
+  const auto& gradient = volume_row_->at.gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) residual_[i] -= volume_impulse_ * gradient[i];
+}
+
+void BackwardEuler::update_local_residual(std::span<const ContactRow> rows) {
+  auto& nodes = springs_.nodes();
+  for (std::size_t i = 0; i < change_.size(); ++i) nodes[i].vector = wide(change_[i]);
+  springs_.apply(contacts_.slices(), product_);
+  for (const std::uint32_t i : contacts_.nodes()) {
+    residual_[i] = forces_[i] - product_[i].head<3>().cast<double>();
+    if (volume_row_) residual_[i] -= volume_impulse_ * volume_row_->at.gradient[i];
+  }
+  take_impulses_from(rows);
+}
+
+void BackwardEuler::take_impulses_from(std::span<const ContactRow> rows) {
   for (const ContactRow& row : rows) {
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
     for (int k = 0; k < 3; ++k) residual_[row.nodes[k]] += row.weights[k] * impulse;
   }
-  if (!volume_row_) return;
-  const auto& gradient = volume_row_->at.gradient;
-  for (std::size_t i = 0; i < gradient.size(); ++i) residual_[i] -= volume_impulse_ * gradient[i];
 }
 
 void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
@@ -162,7 +179,11 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
     inner_residual_[i] = wide(residual_[i]);
     inner_change_[i].setZero();
   }
-  conjugate_gradients();
+  // Until nothing worth the name is left to gain.
+  ProjectedSystem<SpringHessianProduct> system{projection_,     springs_,   inner_change_,
+                                               inner_residual_, projected_, product_};
+  const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
+  iterations_used_ = conjugate_gradients(system, max_iterations_, negligible).iterations;
   projection_.take_impulses(rows, volume_impulse_, inner_residual_);
   for (std::size_t i = 0; i < residual_.size(); ++i) {
     change_[i] += inner_change_[i].head<3>().cast<double>();
@@ -170,28 +191,10 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
   }
 }
 
-void BackwardEuler::conjugate_gradients() {
-  const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
-  auto& nodes = springs_.nodes();  // their vectors are the direction
-  double descent = projection_.project(inner_residual_, projected_);
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].vector = projected_[i];
-  // Stops after max_iterations_, or when nothing worth the name is left to gain.
-  iterations_used_ = 0;
-  while (iterations_used_ < max_iterations_ && descent > negligible) {
-    const double step = descent / springs_.apply(product_);
-    const double last = descent;
-    descent =
-        projection_.descend(step, nodes, product_, inner_change_, inner_residual_, projected_);
-    if (++iterations_used_ < max_iterations_) projection_.turn(descent / last, projected_, nodes);
-  }
-}
-
 void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state) {
-  if (rows.empty()) return;
-  update_residual(rows);
-  if (!contacts_.solve(h, predicted_.positions, springs_.diagonal(), residual_, rows)) return;
-  trial_ = state.velocities;
-  add(1, change_, trial_);
+  if (rows.empty() || !contacts_.choose(h, predicted_.positions, rows)) return;
+  update_local_residual(rows);
+  contacts_.solve(inverse_mass_blocks_, residual_, rows);
   for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
     trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
   }

@@ -74,8 +74,10 @@ class BackwardEuler : public OrganDynamics {
   void hold_rows(double h, std::span<ContactRow> rows, WarmStart start);
   /// r = h F − A Δv − Bᵀ (impulses)
   void update_residual(std::span<const ContactRow> rows);
+  /// The same of the nodes of contacts_ alone.
+  void update_local_residual(std::span<const ContactRow> rows);
+  void take_impulses_from(std::span<const ContactRow> rows);
   void relax_springs(std::span<ContactRow> rows);
-  void conjugate_gradients();
   void relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state);
   void keep_momentum(double h, std::span<const ContactRow> rows, const OrganState& state);
   void correct_volume(double h, std::span<ContactRow> rows, OrganState& state);

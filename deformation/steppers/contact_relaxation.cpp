@@ -1,8 +1,8 @@
 #include "deformation/steppers/contact_relaxation.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 
+#include "deformation/linear_algebra/conjugate_gradients.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -13,11 +13,11 @@ constexpr double kEnough = 1e-4;
 
 }  // namespace
 
-ContactRelaxation::ContactRelaxation(const OrganModel& model)
-    : model_(model), neighbours_(model, {}), springs_(model.network(), model.node_count()) {}
+ContactRelaxation::ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs)
+    : model_(model), springs_(springs), neighbours_(model, {}), product_(springs) {}
 
-bool ContactRelaxation::grow(double h, const std::vector<Vec3>& positions,
-                             std::span<const Mat3> diagonal, std::span<const ContactRow> rows) {
+bool ContactRelaxation::choose(double h, const std::vector<Vec3>& positions,
+                               std::span<const ContactRow> rows) {
   std::vector<std::uint32_t> touched;
   for (const ContactRow& row : rows) {
     for (int k = 0; k < 3; ++k) {
@@ -26,35 +26,34 @@ bool ContactRelaxation::grow(double h, const std::vector<Vec3>& positions,
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  if (touched.empty() || touched.size() > kNodes) return false;
+  if (touched.empty() || touched.size() > kMostInReach) return false;
   Vec3 centre = Vec3::Zero();
   double mass = 0, whole = 0;
   for (const std::uint32_t node : touched) {
     centre += positions[node] / static_cast<double>(touched.size());
     mass += 3 * (1 + h * model_.drag) * model_.masses[node];
-    whole += diagonal[node].trace();
+    whole += springs_.diagonal()[node].trace();
   }
   const double edges = edges_in_reach(whole / mass - 1);
   if (edges < kEdges) return false;
-  const std::size_t reach = nodes_in_reach(touched.size(), edges);
-  grow_patch(model_, neighbours_, positions, touched, centre, std::min(reach, kNodes), patch_);
+  const std::size_t reach = std::min(nodes_in_reach(touched.size(), edges), kMostInReach);
+  grow_patch(model_, neighbours_, positions, touched, centre, reach, patch_);
+  springs_.find_slices(patch_.nodes, slices_);
   return !patch_.nodes.empty();
 }
 
-bool ContactRelaxation::solve(double h, const std::vector<Vec3>& positions,
-                              std::span<const Mat3> diagonal, const std::vector<Vec3>& residual,
-                              std::span<ContactRow> rows) {
-  if (!grow(h, positions, diagonal, rows)) return false;
-  springs_.assemble(positions, model_.masses, patch_, {1 + h * model_.drag, h, h * h}, matrix_);
+void ContactRelaxation::solve(std::span<const Mat3> inverse_mass_blocks,
+                              const std::vector<Vec3>& residual, std::span<ContactRow> rows) {
   const std::size_t count = patch_.nodes.size();
+  product_.take(patch_, slices_);
   inverse_mass_blocks_.assign(count + 1, Mat3::Zero());
-  for (auto* buffer : {&residual_, &change_, &projected_, &product_}) {
+  for (auto* buffer : {&residual_, &change_, &projected_, &products_}) {
     buffer->assign(count + 1, Vec4f::Zero());
   }
   double mass = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t node = patch_.nodes[i];
-    inverse_mass_blocks_[i] = diagonal[node].inverse();
+    inverse_mass_blocks_[i] = inverse_mass_blocks[node];
     residual_[i] = wide(residual[node]);
     mass += model_.masses[node];
   }
@@ -65,29 +64,16 @@ bool ContactRelaxation::solve(double h, const std::vector<Vec3>& positions,
       node = static_cast<std::uint32_t>(place < 0 ? static_cast<int>(count) : place);
     }
   }
-  matrix_.end_row();  // of the held node
   projection_.prepare(inverse_mass_blocks_, {}, rows_);
-  conjugate_gradients(mass * kNegligibleVelocity * kNegligibleVelocity);
+  ProjectedSystem<PatchProduct> system{projection_, product_,   change_,
+                                       residual_,   projected_, products_};
+  const double negligible = mass * kNegligibleVelocity * kNegligibleVelocity;
+  conjugate_gradients(system, kIterations, negligible, kEnough);
   double no_volume = 0;
   projection_.take_impulses(rows_, no_volume, residual_);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].normal_impulse = rows_[i].normal_impulse;
     rows[i].tangential_impulse = rows_[i].tangential_impulse;
-  }
-  return true;
-}
-
-void ContactRelaxation::conjugate_gradients(double negligible) {
-  auto& nodes = matrix_.nodes();
-  nodes.resize(residual_.size());
-  double descent = projection_.project(residual_, projected_);
-  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i].vector = projected_[i];
-  const double enough = std::max(negligible, kEnough * descent);
-  for (int k = 0; k < kIterations && descent > enough; ++k) {
-    const double last = descent;
-    const double step = descent / matrix_.apply(product_);
-    descent = projection_.descend(step, nodes, product_, change_, residual_, projected_);
-    projection_.turn(descent / last, projected_, nodes);
   }
 }
 

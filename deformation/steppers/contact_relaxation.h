@@ -13,51 +13,50 @@
 #include <vector>
 
 #include "deformation/contact/constraint_projection.h"
-#include "deformation/linear_algebra/patch_matrix.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/patch.h"
-#include "deformation/springs/patch_springs.h"
+#include "deformation/springs/patch_product.h"
 
 namespace palpate::deformation {
 
 class ContactRelaxation {
  public:
-  /// At most. A touch of more is not local, and left to the whole organ's iterations.
-  static constexpr std::size_t kNodes = 400;
-  static constexpr int kIterations = 20;
+  /// At most.
+  static constexpr int kIterations = 12;
   /// Where no more edges than these go along, a dozen iterations of the whole organ are enough.
   static constexpr double kEdges = 6;
 
-  /// @param model  of springs, outlives this
-  explicit ContactRelaxation(const OrganModel& model);
+  /// @param model    of springs, outlives this
+  /// @param springs  A, linearised before each step; outlives this
+  ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs);
 
-  /// Solves A Δ = r, B Δ = 0 among the nodes that go along with the rows'; B of those that press.
+  /// Chooses the nodes that go along with the rows', at most kMostInReach.
   /// @param positions  where A is taken [m]  (node_count)
-  /// @param diagonal   3×3 blocks of A [kg]  (node_count)
+  /// @returns false: there is no need, or a touch of more is not local
+  bool choose(double h, const std::vector<Vec3>& positions, std::span<const ContactRow> rows);
+  const std::vector<std::uint32_t>& nodes() const { return patch_.nodes; }
+  const std::vector<std::uint32_t>& slices() const { return slices_; }
+
+  /// Solves A Δ = r, B Δ = 0 among these nodes; B of the rows that press.
+  /// @param inverse_mass_blocks  W [1/kg]  (node_count)
   /// @param residual   r [N·s]  (node_count)
   /// @param rows       get what their impulses lack
-  /// @returns false: there is no need, or the touch is not local; nothing was done
-  bool solve(double h, const std::vector<Vec3>& positions, std::span<const Mat3> diagonal,
-             const std::vector<Vec3>& residual, std::span<ContactRow> rows);
-
-  const std::vector<std::uint32_t>& nodes() const { return patch_.nodes; }
+  void solve(std::span<const Mat3> inverse_mass_blocks, const std::vector<Vec3>& residual,
+             std::span<ContactRow> rows);
   /// Δ of these nodes [m/s]
   const std::vector<Vec4f>& change() const { return change_; }
 
  private:
-  bool grow(double h, const std::vector<Vec3>& positions, std::span<const Mat3> diagonal,
-            std::span<const ContactRow> rows);
-  void conjugate_gradients(double negligible);
-
   const OrganModel& model_;
+  const SpringHessianProduct& springs_;
   Neighbours neighbours_;
-  PatchSprings springs_;
   Patch patch_;
-  PatchMatrix matrix_;
+  std::vector<std::uint32_t> slices_;
+  PatchProduct product_;
   ConstraintProjection projection_;
-  // Of the patch, and last a node that is held: it stands for all others.
+  // Of the patch, and last the node that is held.
   std::vector<Mat3> inverse_mass_blocks_;
-  std::vector<Vec4f> residual_, change_, projected_, product_;
+  std::vector<Vec4f> residual_, change_, projected_, products_;
   std::vector<ContactRow> rows_;
 };
 

@@ -14,7 +14,8 @@ inline constexpr std::size_t kBlockNumbers = 7;
 
 /// h J = along d dᵀ + across I of every half-spring, and where nodes are.
 struct Couplings {
-  float h = 0;  ///< [s]
+  float h = 0;        ///< [s]
+  float damping = 1;  ///< what counts of c
   /// Positions [m], and vectors the matrix is to be applied to, packed.
   const float* nodes = nullptr;
   /// Both of a spring in the place of one float: the upper halves of their bits, rounded to eight
@@ -23,16 +24,22 @@ struct Couplings {
   float *inner_along = nullptr, *inner_across = nullptr;  ///< (row_count)
 };
 
-/// The code of one instruction set, for one chunk.
+/// Some of the slices, by their indices.
+struct SliceList {
+  const std::uint32_t* slices = nullptr;
+  std::size_t count = 0;
+};
+
+/// The code of one instruction set, for some slices.
 struct ProductFunctions {
   /// Fills the couplings and adds up the blocks of the rows (kBlockNumbers × kLanes per slice) and,
   /// zeroed here, of the virtual nodes (kBlockNumbers × kLanes each).
-  void (*linearise)(const Layout&, const Couplings&, std::size_t chunk, float* blocks,
+  void (*linearise)(const Layout&, const Couplings&, const SliceList&, float* blocks,
                     float* virtual_blocks);
   /// out = masses p + Σ h J (p − p_j) of the surface nodes, four floats each; virtual_sums
   /// (3 × kLanes each), zeroed here, get what the inner springs add to the virtual nodes; dots
   /// (kLanes) get p·out of the rows.
-  void (*apply)(const Layout&, const Couplings&, std::size_t chunk, const float* masses, float* out,
+  void (*apply)(const Layout&, const Couplings&, const SliceList&, const float* masses, float* out,
                 float* virtual_sums, float* dots);
 };
 

@@ -71,7 +71,7 @@ struct Product {
   static void linearise_slots(const Layout& layout, const Couplings& couplings, std::size_t from,
                               std::size_t to, std::size_t lane, float stiffness, float time,
                               const Nodes& x, Block& block) {
-    const Pack k = Set::broadcast(stiffness), c = Set::broadcast(time) * k;
+    const Pack k = Set::broadcast(stiffness), c = Set::broadcast(couplings.damping * time) * k;
     for (std::size_t slot = from; slot < to; ++slot) {
       const std::size_t at = slot * kLanes + lane;
       const Nodes d = Set::load_nodes(couplings.nodes, layout.neighbours + at) - x;
@@ -86,9 +86,10 @@ struct Product {
                               std::size_t first, std::size_t lane, const Nodes& x,
                               float* virtual_blocks, Block& block) {
     const Nodes d = Set::load_nodes(couplings.nodes, layout.inner_nodes + first) - x;
+    const Pack damping = Set::broadcast(couplings.damping);
     const Coupling c = coupling_of(d, Set::load(layout.inner_rest_lengths + first),
                                    Set::load(layout.inner_stiffnesses + first),
-                                   Set::load(layout.inner_dampings + first), couplings.h);
+                                   damping * Set::load(layout.inner_dampings + first), couplings.h);
     Set::store(couplings.inner_along + first, c.along);
     Set::store(couplings.inner_across + first, c.across);
     block.add(d, c.along, c.across);
@@ -186,27 +187,25 @@ struct Product {
     }
   }
 
-  static void linearise(const Layout& layout, const Couplings& couplings, std::size_t chunk,
+  static void linearise(const Layout& layout, const Couplings& couplings, const SliceList& list,
                         float* blocks, float* virtual_blocks) {
     for (std::size_t i = 0; i < kBlockNumbers * kLanes * layout.virtual_node_count; ++i) {
       virtual_blocks[i] = 0;
     }
-    const auto [begin, end] = slices_of(layout, chunk);
-    for (std::size_t slice = begin; slice < end; ++slice) {
+    for (std::size_t i = 0; i < list.count; ++i) {
       for (std::size_t lane = 0; lane < kLanes; lane += kWidth) {
-        linearise_part(layout, couplings, slice, lane, blocks, virtual_blocks);
+        linearise_part(layout, couplings, list.slices[i], lane, blocks, virtual_blocks);
       }
     }
   }
 
-  static void apply(const Layout& layout, const Couplings& couplings, std::size_t chunk,
+  static void apply(const Layout& layout, const Couplings& couplings, const SliceList& list,
                     const float* masses, float* out, float* virtual_sums, float* dots) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) dots[lane] = 0;
     for (std::size_t i = 0; i < 3 * kLanes * layout.virtual_node_count; ++i) virtual_sums[i] = 0;
-    const auto [begin, end] = slices_of(layout, chunk);
-    for (std::size_t slice = begin; slice < end; ++slice) {
+    for (std::size_t i = 0; i < list.count; ++i) {
       for (std::size_t lane = 0; lane < kLanes; lane += kWidth) {
-        apply_part(layout, couplings, slice, lane, masses, out, virtual_sums, dots);
+        apply_part(layout, couplings, list.slices[i], lane, masses, out, virtual_sums, dots);
       }
     }
   }

@@ -99,6 +99,29 @@ TEST_CASE("contact law: the stiffness of rows is that of springs beside each oth
   CHECK(stiffness_of(law)(2, 2) == Approx(100).epsilon(1e-5));
 }
 
+TEST_CASE("contact law: a row that slides resists along its normal, and friction grows with it") {
+  // Oracle: by hand. W diagonal, 100 N/m along n = z and 50 across; on its cone of 0.1 the row
+  // gives f = 100 d (z + 0.1 x) against d along z; within it 50 N/m across as well. Round, the
+  // force of 1 N turns about a radius of 8 mm.
+  LocalLaw law;
+  law.friction_coefficient = 0.1;
+  law.rows.resize(1);
+  law.compliance = {0.01, 0, 0.02, 0, 0, 0.02};
+  law.rows[0].force = Vec3(0.05, 0, 1);
+  const Mat3 sticking = stiffness_of(law);
+  CHECK((sticking - Mat3(Vec3(50, 50, 100).asDiagonal())).norm() < 1e-3);
+  law.rows[0].force = Vec3(0.1, 0, 1);
+  Mat3 sliding = Mat3::Zero();
+  sliding(2, 2) = 100;
+  sliding(0, 2) = sliding(2, 0) = 5;  // the symmetric part
+  CHECK((stiffness_of(law) - sliding).norm() < 1e-3);
+  law.rows[0].radius = 0.008;
+  sliding(0, 0) = sliding(1, 1) = -1 / 0.008;
+  CHECK((stiffness_of(law) - sliding).norm() < 1e-3);
+  law.compliance.assign(6, 0);
+  CHECK(stiffness_of(law).isZero(0));
+}
+
 /// A ball of 642 nodes on its lower part, pressed by a fingertip.
 struct PressedBall {
   static constexpr double kSpeed = 0.02, kStart = -0.001;
