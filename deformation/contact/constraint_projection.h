@@ -82,7 +82,7 @@ class ConstraintProjection {
     const auto& w = inverse_mass_blocks_[node];
     return w[0] * impulse[0] + w[1] * impulse[1] + w[2] * impulse[2];
   }
-  Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;           ///< C v
+  Eigen::VectorXd times_rows(const std::vector<Vec4f>& v) const;  ///< C v
   /// r −= Cᵀ μ and z −= W Cᵀ μ
   void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r, std::vector<Vec4f>& z) const;
 

@@ -29,8 +29,8 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
 void append_compliance_rows(const CondensedContact& contact, std::size_t directions,
                             std::vector<ComplianceRow>& rows);
 
-/// −∂f/∂x of the law's rows that press, symmetric part; friction of those that slide is the same part
-/// of what presses them [N/m]. Zero where W is not regular.
+/// −∂f/∂x of the law's rows that press, symmetric part; friction of those that slide is the same
+/// part of what presses them [N/m]. Zero where W is not regular.
 Mat3 stiffness_of(const LocalLaw& law);
 
 }  // namespace palpate::deformation

@@ -22,8 +22,8 @@ namespace palpate::deformation {
 
 class FarAnswers {
  public:
-  /// Directions that are a little too stiff: a touch grows within the period it is asked for.
-  static constexpr int kIterations = 6;
+  /// At most. What more of them find is less than a touch grows by within the period.
+  static constexpr int kIterations = 8;
 
   /// @param model  of springs, outlives this
   explicit FarAnswers(const OrganModel& model);

@@ -58,8 +58,12 @@ SpringHessianProduct::SpringHessianProduct(const Body& body, const SpringNetwork
 }
 
 kernel::Couplings SpringHessianProduct::couplings() {
-  return {h_,           damping_,           nodes_.data()->position.data(),
-          pairs_.data(), inner_along_.data(), inner_across_.data()};
+  return {h_,
+          damping_,
+          nodes_.data()->position.data(),
+          pairs_.data(),
+          inner_along_.data(),
+          inner_across_.data()};
 }
 
 void SpringHessianProduct::run(ChunkBody body) {
