@@ -4,8 +4,8 @@
 #include "haptics/devices/device.h"
 #include "haptics/haptic_renderer.h"
 #include "tests/counted_allocations.h"
-#include "tests/haptics/temporary_file.h"
 #include "tests/haptics/wall_law.h"
+#include "tests/scratch_folder.h"
 
 using namespace palpate;
 using namespace palpate::haptics;
@@ -55,11 +55,12 @@ TEST_CASE("allocation: the counter counts") {
 
 TEST_CASE("allocation: 10,000 ticks of each device allocate nothing") {
   // Oracle: counting.
-  const TemporaryFile file("short.csv",
-                           "t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.05,0,0,0.01,0,0,1,0\n"
-                           "0.1,0,0,0.02,0,0,0,1\n");
+  const ScratchFolder folder;
+  const auto file = folder.write("short.csv",
+                                 "t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n0.05,0,0,0.01,0,0,1,0\n"
+                                 "0.1,0,0,0.02,0,0,0,1\n");
   scene::TrajectoryDevice trajectory;
-  trajectory.file = file.path();
+  trajectory.file = file;
   trajectory.loop = true;
   scene::ScriptedDevice script;
   script.moves = {{Vec3(0, 0, 0.01), 2.0}, {std::nullopt, 1.0}, {Vec3(0, 0, 0), 2.0}};

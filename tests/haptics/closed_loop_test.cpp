@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "haptics/haptic_renderer.h"
+#include "tests/haptics/critical_stiffness.h"
 #include "tests/haptics/wall_law.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using namespace palpate::haptics;
 
 namespace {
 
-constexpr double kTick = 1e-3;
 constexpr double kMass = 0.1;
 
 /// One degree of freedom along z, moved exactly over a tick under a held force.
@@ -134,14 +135,11 @@ bool grows(const Motion& motion) {
   return motion.left || largest(motion.path, 0.9, 1) > largest(motion.path, 0.3, 0.4);
 }
 
-/// Smallest stiffness at which the bare law's motion grows, by bisection to 1 %.
-double critical_stiffness(const Link& link, double damping) {
-  double low = 1, high = 4000;
-  while (high / low > 1.01) {
-    const double middle = std::sqrt(low * high);
-    (grows(motion(link, {middle}, damping, bare_law())) ? high : low) = middle;
-  }
-  return low;
+/// At which the bare law's motion grows.
+double bare_border(const Link& link, double damping) {
+  return critical_stiffness(4000, [&](double stiffness) {
+    return grows(motion(link, {stiffness}, damping, bare_law()));
+  });
 }
 
 }  // namespace
@@ -163,7 +161,7 @@ TEST_CASE("closed loop: stability ends where the formula says") {
            Case{"bare force, 40 Hz + one frame", {25, 25, false}, 0.5, 25 * kTick, 25 * kTick},
        }) {
     const double formula = c.damping / (c.hold / 2 + c.delay);
-    const double measured = critical_stiffness(c.link, c.damping);
+    const double measured = bare_border(c.link, c.damping);
     std::cout << "critical stiffness, " << c.what << ", b = " << c.damping << ": formula "
               << formula << " N/m, simulated " << measured << " N/m\n";
     CHECK(measured > 0.98 * formula);

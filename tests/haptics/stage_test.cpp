@@ -4,13 +4,12 @@
 
 #include "modules/bus/memory_bus.h"
 #include "tests/haptics/wall_law.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using haptics::HapticsStage;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 struct Session {
   scene::Scene scene;

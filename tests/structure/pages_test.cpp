@@ -10,18 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "tests/scratch_folder.h"
+
 namespace {
 
+using palpate::text_in;
 namespace fs = std::filesystem;
 
 const fs::path kRoot = PALPATE_SOURCE_DIR;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::stringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 /// All files of the tree, not of build folders or what a demo left behind.
 std::vector<fs::path> files() {
@@ -63,7 +59,7 @@ struct Link {
 std::vector<Link> links_of(const fs::path& page) {
   static const std::regex kLink(R"(\[([^\]]*)\]\(([^)#\s]+)(#[^)]*)?\))");
   static const std::regex kForeign("^[a-z]+:.*");
-  const std::string text = text_of(page);
+  const std::string text = text_in(page);
   std::vector<Link> links;
   for (std::sregex_iterator it(text.begin(), text.end(), kLink), end; it != end; ++it) {
     if (!std::regex_match((*it)[2].str(), kForeign)) links.push_back({page, (*it)[1], (*it)[2]});
@@ -101,7 +97,7 @@ TEST_CASE("pages: a linked source file declares the name it is linked from") {
       if (kind != ".h" && kind != ".cpp" && kind != ".py") continue;
       if (link.text.size() < 3 || link.text.front() != '`' || !fs::exists(file)) continue;
       INFO(fs::relative(page, kRoot).string() << ": " << link.text << " in " << link.target);
-      CHECK(declares(text_of(file), link.text.substr(1, link.text.size() - 2)));
+      CHECK(declares(text_in(file), link.text.substr(1, link.text.size() - 2)));
       ++checked;
     }
   }
@@ -116,7 +112,7 @@ TEST_CASE("pages: source files they name exist") {
   for (const auto& page : pages()) {
     // The changelog tells of what was; the pipeline page has a test of its own.
     if (page.filename() == "CHANGELOG.md" || page.filename() == "pipeline.md") continue;
-    const std::string text = text_of(page);
+    const std::string text = text_in(page);
     for (std::sregex_iterator it(text.begin(), text.end(), kPath), end; it != end; ++it, ++named) {
       const std::string path = (*it)[1];
       INFO(fs::relative(page, kRoot).string() << ": " << path);
@@ -132,13 +128,13 @@ TEST_CASE("pages: functions, fields and keys they quote exist") {
   static const std::regex kQuoted("`((?:[A-Za-z]\\w*::)*[A-Za-z]\\w*)(\\(\\))?`");
   std::set<std::string> words;
   for (const auto& file : files()) {
-    if (file.extension() != ".md") add_words(text_of(file), words);
+    if (file.extension() != ".md") add_words(text_in(file), words);
     words.insert(file.stem().string());
   }
   std::size_t quoted = 0;
   for (const auto& page : pages()) {
     if (page.filename() == "CHANGELOG.md") continue;  // it tells of what was
-    const std::string text = text_of(page);
+    const std::string text = text_in(page);
     for (std::sregex_iterator it(text.begin(), text.end(), kQuoted), end; it != end; ++it) {
       const std::string name = (*it)[1];
       if (name.find_first_of("_:") == std::string::npos && !(*it)[2].matched) continue;
@@ -175,11 +171,11 @@ TEST_CASE("pages: the tests they name exist") {
   static const std::regex kTest(R"re(\*"([^"]+: [^"]+)"\*)re");
   std::string tests;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {
-    if (entry.path().extension() == ".cpp") tests += text_of(entry.path());
+    if (entry.path().extension() == ".cpp") tests += text_in(entry.path());
   }
   std::size_t named = 0;
   for (const auto& page : pages()) {
-    const std::string text = std::regex_replace(text_of(page), std::regex("\\s+"), " ");
+    const std::string text = std::regex_replace(text_in(page), std::regex("\\s+"), " ");
     for (std::sregex_iterator it(text.begin(), text.end(), kTest), end; it != end; ++it, ++named) {
       INFO(fs::relative(page, kRoot).string() << ": " << (*it)[1]);
       CHECK(tests.find("TEST_CASE(\"" + (*it)[1].str() + "\"") != std::string::npos);

@@ -5,7 +5,7 @@
 #include "haptics/devices/mouse_device.h"
 #include "haptics/devices/topic_device.h"
 #include "modules/core/error.h"
-#include "tests/haptics/temporary_file.h"
+#include "tests/scratch_folder.h"
 
 using namespace palpate;
 using haptics::make_device;
@@ -33,11 +33,12 @@ TEST_CASE("make_device: builds the device the scene names") {
 
 TEST_CASE("make_device: a recording is placed in the world by its offset, twist included") {
   // Oracle: analytic. R is turned by a quarter about z and shifted: x of the recording is y of W.
-  const TemporaryFile file("line.csv",
-                           "t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\nbad\n11,0.1,0,0,0,0,0,1\n"
-                           "12,0.2,0,0,0,0,0,1\n13,0.3,0,0,0,0,0,1\n");
+  const ScratchFolder folder;
+  const auto file = folder.write("line.csv",
+                                 "t,x,y,z,qx,qy,qz,qw\n10,0,0,0,0,0,0,1\nbad\n11,0.1,0,0,0,0,0,1\n"
+                                 "12,0.2,0,0,0,0,0,1\n13,0.3,0,0,0,0,0,1\n");
   scene::TrajectoryDevice config;
-  config.file = file.path();
+  config.file = file;
   config.offset = {Vec3(0, 0, 1), Quat(Eigen::AngleAxisd(1.5707963267948966, Vec3::UnitZ()))};
   std::vector<std::string> warnings;
   const auto device = make_device(config, {}, warnings);

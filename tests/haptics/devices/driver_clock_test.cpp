@@ -3,12 +3,13 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "tests/times.h"
+
 using namespace palpate;
 using haptics::DriverClock;
 
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kSecond = 1'000 * kMs;
 constexpr std::int64_t kBegin = 50'000 * kSecond;  ///< this host's clock
 
 }  // namespace

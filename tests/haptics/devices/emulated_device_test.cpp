@@ -4,13 +4,14 @@
 #include <cmath>
 #include <iostream>
 
+#include "tests/haptics/critical_stiffness.h"
+#include "tests/times.h"
+
 using namespace palpate;
 using haptics::DeviceSample;
 using haptics::EmulatedDevice;
 
 namespace {
-
-constexpr double kTick = 1e-3;
 
 scene::EmulatedDevice plain(double mass, double damping) {
   scene::EmulatedDevice config;
@@ -170,13 +171,9 @@ double growth(const scene::EmulatedDevice& config, double stiffness) {
   return late / early;
 }
 
-double critical_stiffness(const scene::EmulatedDevice& config) {
-  double low = 1, high = 40'000;
-  while (high / low > 1.01) {
-    const double middle = std::sqrt(low * high);
-    (growth(config, middle) > 1 ? high : low) = middle;
-  }
-  return low;
+double rendered_border(const scene::EmulatedDevice& config) {
+  return critical_stiffness(40'000,
+                            [&](double stiffness) { return growth(config, stiffness) > 1; });
 }
 
 }  // namespace
@@ -191,7 +188,7 @@ TEST_CASE("emulated device: a rendered spring is stable to b/(T/2 + t_d)") {
       auto config = plain(damping > 1 ? 1.0 : 0.1, damping);
       config.transport_delay = cycles * kTick;
       const double formula = damping / (kTick / 2 + 2 * cycles * kTick);
-      const double measured = critical_stiffness(config);
+      const double measured = rendered_border(config);
       std::cout << "emulated device, b = " << damping << ", t_d = " << 2 * cycles
                 << " ms: critical stiffness by the formula " << formula << " N/m, measured "
                 << measured << " N/m\n";

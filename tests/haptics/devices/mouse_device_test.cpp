@@ -4,14 +4,13 @@
 
 #include "haptics/devices/mouse_device.h"
 #include "modules/core/rotation_vector.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using haptics::DeviceSample;
 using haptics::MouseDevice;
 
 namespace {
-
-constexpr double kTick = 1e-3;
 
 Pose at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
   return {position, rotation};

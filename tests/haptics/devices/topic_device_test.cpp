@@ -5,15 +5,13 @@
 #include <limits>
 
 #include "modules/core/rotation_vector.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using haptics::DeviceSample;
 using haptics::TopicDevice;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
-constexpr double kTick = 1e-3;
 
 /// A device with its driver, whose clock is the host's.
 struct Driven {

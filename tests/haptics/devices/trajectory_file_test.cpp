@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "modules/core/error.h"
-#include "tests/haptics/temporary_file.h"
+#include "tests/scratch_folder.h"
 
 using namespace palpate;
 using namespace palpate::haptics;
@@ -22,9 +22,10 @@ struct Outcome {
 };
 
 Outcome read(const std::string& text) {
-  const TemporaryFile file("recording.csv", text);
+  const ScratchFolder folder;
+  const auto file = folder.write("recording.csv", text);
   Outcome outcome;
-  outcome.samples = read_trajectory(file.path(), outcome.warnings);
+  outcome.samples = read_trajectory(file, outcome.warnings);
   return outcome;
 }
 

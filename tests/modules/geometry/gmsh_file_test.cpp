@@ -1,11 +1,9 @@
 #include "modules/geometry/gmsh_file.h"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
-#include <fstream>
 
 #include "modules/core/error.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::geometry {
 namespace {
@@ -13,31 +11,14 @@ namespace {
 const std::string kFormat = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
 const std::string kNodes = "$Nodes\n5\n9 7 7 7\n2 0 0 0\n3 1 0 0\n5 0 1 0\n8 0 0 1\n$EndNodes\n";
 
-class MeshText {
- public:
-  explicit MeshText(const std::string& text) {
-    std::string name = (std::filesystem::temp_directory_path() / "palpate_msh_XXXXXX").string();
-    const int file = ::mkstemp(name.data());
-    REQUIRE(file >= 0);
-    ::close(file);
-    path_ = name;
-    std::ofstream(path_) << text;
-  }
-  ~MeshText() { std::filesystem::remove(path_); }
-  MeshText(const MeshText&) = delete;
-  MeshText& operator=(const MeshText&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 TEST_CASE("gmsh file: tetrahedra are read, other elements and unused nodes left out") {
   // Oracle: the text, read by eye.
-  const MeshText text(kFormat + "$Comments\nanything\n$EndComments\n" + kNodes +
+  const ScratchFolder folder;
+  const auto text = folder.write(
+      "mesh.msh", kFormat + "$Comments\nanything\n$EndComments\n" + kNodes +
                       "$Elements\n3\n1 15 2 0 1 9\n2 2 2 0 1 2 3 5\n3 4 2 0 1 2 3 5 8\n"
                       "$EndElements\n");
-  const auto mesh = read_gmsh(text.path());
+  const auto mesh = read_gmsh(text);
   REQUIRE(mesh.nodes.size() == 4);
   CHECK(mesh.nodes[3] == Vec3(0, 0, 1));
   REQUIRE(mesh.tetrahedra.size() == 1);
@@ -67,10 +48,10 @@ TEST_CASE("gmsh file: what is wrong is named with its line") {
        ":15: element 1 stands twice"},
       {kFormat + kNodes, "no tetrahedra"},
   }));
-  const MeshText file(text);
-  CHECK_THROWS_AS(read_gmsh(file.path()), InputError);
-  CHECK_THROWS_WITH(read_gmsh(file.path()),
-                    Catch::StartsWith(file.path().string()) && Catch::Contains(message));
+  const ScratchFolder folder;
+  const auto file = folder.write("mesh.msh", text);
+  CHECK_THROWS_AS(read_gmsh(file), InputError);
+  CHECK_THROWS_WITH(read_gmsh(file), Catch::StartsWith(file.string()) && Catch::Contains(message));
 }
 
 TEST_CASE("gmsh file: a missing file is named") {

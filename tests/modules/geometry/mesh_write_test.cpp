@@ -41,7 +41,7 @@ TEST_CASE("write: the bytes of a binary PLY and STL are as the formats say") {
   const ScratchFolder folder;
   const TriangleSurface surface = make_tetrahedron(0.2);
   write_surface(surface, folder / "a.ply");
-  const std::string ply = content_of(folder / "a.ply");
+  const std::string ply = text_in(folder / "a.ply");
   CHECK_THAT(ply, Catch::StartsWith("ply\nformat binary_little_endian 1.0\n"));
   const std::size_t body = ply.find("end_header\n") + 11;
   CHECK(ply.size() - body == 4 * 12 + 4 * 13);
@@ -49,7 +49,7 @@ TEST_CASE("write: the bytes of a binary PLY and STL are as the formats say") {
   std::memcpy(&x, ply.data() + body, sizeof x);
   CHECK(x == static_cast<float>(surface.nodes[0].x()));
   write_surface(surface, folder / "a.stl");
-  CHECK(content_of(folder / "a.stl").size() == 80 + 4 + 4 * 50);
+  CHECK(text_in(folder / "a.stl").size() == 80 + 4 + 4 * 50);
 }
 
 TEST_CASE("write: the same surface gives the same bytes, and an old file is replaced") {
@@ -58,7 +58,7 @@ TEST_CASE("write: the same surface gives the same bytes, and an old file is repl
   folder.write("a.obj", "old");
   write_surface(make_ball(1, 1), folder / "a.obj");
   write_surface(make_ball(1, 1), folder / "b.obj");
-  CHECK(content_of(folder / "a.obj") == content_of(folder / "b.obj"));
+  CHECK(text_in(folder / "a.obj") == text_in(folder / "b.obj"));
 }
 
 TEST_CASE("write: an unknown extension is refused with what is allowed") {

@@ -1,12 +1,11 @@
 #include "modules/geometry/ply_bytes.h"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <filesystem>
 
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::geometry {
 namespace {
@@ -32,11 +31,10 @@ TEST_CASE("ply bytes: only a line end that is the first byte of binary data is c
 TEST_CASE("ply bytes: a box whose first coordinate begins with 0x0a comes back") {
   // Oracle: round trip; −0.02f is 0xbca3d70a. One part in 10⁷ of 2 cm.
   const auto box = make_box(Vec3(0.04, 0.06, 0.08));
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("palpate_ply_bytes_" + std::to_string(::getpid()) + ".ply");
+  const ScratchFolder folder;
+  const auto file = folder / "box.ply";
   write_surface(box, file);
   const auto again = read_surface(file, "m");
-  std::filesystem::remove(file);
   REQUIRE(again.nodes.size() == box.nodes.size());
   for (std::size_t i = 0; i < box.nodes.size(); ++i) {
     CHECK((again.nodes[i] - box.nodes[i]).norm() < 1e-8);

@@ -22,8 +22,6 @@ void check_quality(const TriangleSurface& result, std::size_t node_count, double
   CHECK(report.worst_aspect < 3);
 }
 
-double volume_of(const TriangleSurface& s) { return enclosed_volume(s.nodes, s.triangles); }
-
 }  // namespace
 
 TEST_CASE("resample: exact counts down and up, closed, even, with the volume kept") {

@@ -44,7 +44,7 @@ void check_organ(const std::string& name, std::size_t nodes, double volume_cm3) 
   CHECK(coarse.worst_aspect < 3);
 }
 
-std::string refusal(const std::filesystem::path& file) {
+std::string organ_refusal(const std::filesystem::path& file) {
   return message_of<InputError>([&] { load_organ_surface(file, "m", 0); });
 }
 
@@ -65,9 +65,9 @@ TEST_CASE("third-party meshes: open and non-manifold, the inner wall goes, the h
   CHECK(raw.border_edges.size() == 20);
   CHECK_FALSE(raw.non_manifold_edges.empty());
   CHECK_FALSE(raw.duplicate_triangles.empty());
-  CHECK_THAT(refusal(*file), Contains("sofa_c_open.obj: cannot hold a volume") &&
-                                 Contains("20 open edges, the first: nodes") &&
-                                 Contains("fill its holes"));
+  CHECK_THAT(organ_refusal(*file), Contains("sofa_c_open.obj: cannot hold a volume") &&
+                                       Contains("20 open edges, the first: nodes") &&
+                                       Contains("fill its holes"));
 }
 
 TEST_CASE("third-party meshes: VTK and Gmsh files are refused, saying what to convert to") {
@@ -77,8 +77,8 @@ TEST_CASE("third-party meshes: VTK and Gmsh files are refused, saying what to co
                            "organs/gallbladder_tets.vtk", "organs/sofa_liver2_tets.msh"}) {
     const auto file = data_file(name);
     if (!file) return;
-    CHECK_THAT(refusal(*file), Contains(file->filename().string()) && Contains("allowed: ply") &&
-                                   Contains("VTK or Gmsh"));
+    CHECK_THAT(organ_refusal(*file), Contains(file->filename().string()) &&
+                                         Contains("allowed: ply") && Contains("VTK or Gmsh"));
   }
 }
 
@@ -86,8 +86,8 @@ TEST_CASE("third-party meshes: a triangle soup is open and in a hundred pieces")
   // Oracle: 100 triangles without common nodes.
   const auto file = data_file("hard-meshes/trimesh_soup.stl");
   if (!file) return;
-  CHECK_THAT(refusal(*file), Contains("300 open edges") && Contains("100 separate shells") &&
-                                 Contains("pass through each other"));
+  CHECK_THAT(organ_refusal(*file), Contains("300 open edges") && Contains("100 separate shells") &&
+                                       Contains("pass through each other"));
 }
 
 TEST_CASE("third-party meshes: cracks of a CAD file close, without that it crosses itself") {

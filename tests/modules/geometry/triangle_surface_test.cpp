@@ -21,8 +21,6 @@ TriangleSurface crumpled_ball() {
   return surface;
 }
 
-double volume_of(const TriangleSurface& s) { return enclosed_volume(s.nodes, s.triangles); }
-
 }  // namespace
 
 TEST_CASE("enclosed volume: exact for a tetrahedron and a box") {

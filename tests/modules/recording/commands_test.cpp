@@ -11,8 +11,6 @@
 namespace palpate::recording {
 namespace {
 
-const auto kNeverStop = [] { return false; };
-
 void write_recording(const std::filesystem::path& file, bool close) {
   SampleFile writer(file, {});
   writer.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 1'000));
@@ -25,7 +23,7 @@ void write_recording(const std::filesystem::path& file, bool close) {
 
 TEST_CASE("commands: inspect prints the table and warns of a torn file") {
   // Oracle: exit codes of core/error.h and the texts by hand.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_recording(folder / "whole.mcap", true);
   write_recording(folder / "torn.mcap", false);
   std::ostringstream out, err;
@@ -39,7 +37,7 @@ TEST_CASE("commands: inspect prints the table and warns of a torn file") {
 
 TEST_CASE("commands: diff warns of a torn file, whichever of the two it is") {
   // Oracle: the same samples in both; the torn one's name.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_recording(folder / "whole.mcap", true);
   write_recording(folder / "torn.mcap", false);
   for (const auto& [a, b] : {std::pair{"whole.mcap", "torn.mcap"}, {"torn.mcap", "whole.mcap"}}) {
@@ -55,7 +53,7 @@ TEST_CASE("commands: diff warns of a torn file, whichever of the two it is") {
 
 TEST_CASE("commands: a bad recording is bad input, an unwritable CSV folder a failure") {
   // Oracle: exit codes of core/error.h.
-  TempFolder folder;
+  const ScratchFolder folder;
   std::ostringstream out, err;
   CHECK(run_inspect_command({folder / "none.mcap", {}}, out, err) == kExitBadInput);
   CHECK_THAT(err.str(), Catch::EndsWith("none.mcap: no such recording\n"));
@@ -70,7 +68,7 @@ TEST_CASE("commands: a bad recording is bad input, an unwritable CSV folder a fa
 
 TEST_CASE("commands: replay waits for a reader, plays, and says what it played") {
   // Oracle: the bus's own reader, of a topic that reaches late joiners too.
-  TempFolder folder;
+  const ScratchFolder folder;
   {
     SampleFile writer(folder / "torn.mcap", {});
     ModuleStatus status;
@@ -96,7 +94,7 @@ TEST_CASE("commands: replay waits for a reader, plays, and says what it played")
 
 TEST_CASE("commands: replay plays although nobody listens, and says so") {
   // Oracle: the text by hand.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_recording(folder / "a.mcap", true);
   const auto options = bus::testing::own_options();
   std::ostringstream out, err;
@@ -107,7 +105,7 @@ TEST_CASE("commands: replay plays although nobody listens, and says so") {
 
 TEST_CASE("commands: a stopped replay is done") {
   // Oracle: exit codes of core/error.h.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_recording(folder / "a.mcap", true);
   std::ostringstream out, err;
   CHECK(run_replay_command(

@@ -37,7 +37,7 @@ std::filesystem::path record(const std::filesystem::path& file, const Changes& c
 
 TEST_CASE("diff: a recording equals itself, whoever wrote it and whenever it arrived") {
   // Oracle: the same samples by another writer.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto a = record(folder / "a.mcap", {});
   const auto b = record(folder / "b.mcap", {.other_writer = true});
   const RecordingDifference difference = compare({.a = a, .b = b});
@@ -49,7 +49,7 @@ TEST_CASE("diff: a recording equals itself, whoever wrote it and whenever it arr
 TEST_CASE("diff: names the first tick, key, field and values that differ") {
   // Oracle: the pressure of organ 1, 0.5 Pa more from its sample 6 on, at 6 · 4 ms; one coordinate
   // 0.25 m off in sample 8.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto a = record(folder / "a.mcap", {});
   const auto b = record(folder / "b.mcap", {.other_pressure_at = 6});
   const RecordingDifference difference =
@@ -70,14 +70,14 @@ TEST_CASE("diff: names the first tick, key, field and values that differ") {
   CHECK(topic.fields.at("positions_m").samples == 1);
   CHECK(topic.fields.at("positions_m").largest == Approx(0.25));
   CHECK(topic.fields.at("positions_m").largest_sim_time_ns == 32'000'000);
-  const std::string csv = text_of(folder / "differences.csv");
+  const std::string csv = text_in(folder / "differences.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6);
   CHECK(csv.find("0.024,node_positions,1,pressure_pa,0.5\n") != std::string::npos);
 }
 
 TEST_CASE("diff: samples that one recording lacks are counted") {
   // Oracle: 10 and 7 samples of two organs.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto a = record(folder / "a.mcap", {});
   const auto b = record(folder / "b.mcap", {.samples = 7});
   const RecordingDifference difference = compare({.a = a, .b = b});
@@ -89,7 +89,7 @@ TEST_CASE("diff: samples that one recording lacks are counted") {
 
 TEST_CASE("diff: what is to be ignored makes no difference, and must exist") {
   // Oracle: the fields and topics that differ.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto a = record(folder / "a.mcap", {});
   const auto b = record(folder / "b.mcap", {.other_pressure_at = 6});
   CHECK(compare({.a = a, .b = b, .ignore = {"node_positions"}}).equal());
@@ -101,7 +101,7 @@ TEST_CASE("diff: what is to be ignored makes no difference, and must exist") {
 
 TEST_CASE("diff: the command's exit code says equal, different or bad input") {
   // Oracle: 0, 1 and 2.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto a = record(folder / "a.mcap", {});
   const auto b = record(folder / "b.mcap", {.other_pressure_at = 6});
   std::ostringstream out, err;

@@ -38,7 +38,7 @@ TEST_CASE("independent reader: decodes recordings from their own schemas") {
     std::cout << "SKIPPED: node or PALPATE_NODE_MODULES with @mcap/core is missing\n";
     return;
   }
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {.domain = 0, .session = "judged"});
   file.add(raw_sample(bus::kNodePositions, node_positions(41, 0.5, -3), 1'000));
   file.add(raw_sample(bus::kProbeState, probe_state(7, 9, 2, {0.25, -1, 8}), 2'000));

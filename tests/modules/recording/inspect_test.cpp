@@ -5,15 +5,15 @@
 
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
+#include "tests/times.h"
 
 namespace palpate::recording {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000;
 constexpr std::int64_t kStart = 5'000'000'000;
 
 // Node positions every 4 ms with two of them missing, two modules' statuses, one broken sample.
-void write_recording(const std::filesystem::path& file, bool close = true) {
+void write_session(const std::filesystem::path& file, bool close = true) {
   SampleFile writer(file, {.domain = 3, .session = "bench"});
   SceneDescription scene;
   scene.header = {1, 0, 1};
@@ -22,9 +22,8 @@ void write_recording(const std::filesystem::path& file, bool close = true) {
   writer.add(raw_sample(bus::kScene, scene, kStart));
   for (const std::uint64_t sequence : {10, 11, 14, 15}) {
     NodePositions nodes = node_positions(sequence, 1e-3, 100);
-    nodes.header.source_time_ns = kStart + static_cast<std::int64_t>(sequence) * 4 * kMillisecond;
-    writer.add(
-        raw_sample(bus::kNodePositions, nodes, nodes.header.source_time_ns + kMillisecond / 4));
+    nodes.header.source_time_ns = kStart + static_cast<std::int64_t>(sequence) * 4 * kMs;
+    writer.add(raw_sample(bus::kNodePositions, nodes, nodes.header.source_time_ns + kMs / 4));
   }
   std::uint8_t id = 0;
   for (const char* module : {"haptics", "../collision"}) {
@@ -32,11 +31,11 @@ void write_recording(const std::filesystem::path& file, bool close = true) {
     status.header = {1, 0, 1};
     status.module = module;
     status.inputs = {{"probe_state", 0.5, 10, 1, 0}, {"contacts", 0.25, 20, 0, 2}};
-    writer.add(raw_sample(bus::kModuleStatus, status, kStart + 70 * kMillisecond, ++id));
+    writer.add(raw_sample(bus::kModuleStatus, status, kStart + 70 * kMs, ++id));
   }
   HapticForce force;
   force.header = {1, 0, 1};
-  TopicSample broken = raw_sample(bus::kHapticForce, force, kStart + 80 * kMillisecond);
+  TopicSample broken = raw_sample(bus::kHapticForce, force, kStart + 80 * kMs);
   broken.payload.resize(30);
   writer.add(broken);
   writer.flush();
@@ -46,15 +45,15 @@ void write_recording(const std::filesystem::path& file, bool close = true) {
 }  // namespace
 
 TEST_CASE("inspect: counts samples, bytes, rates, gaps and writers of each topic") {
-  // Oracle: counted by hand from write_recording().
-  TempFolder folder;
-  write_recording(folder / "a.mcap");
+  // Oracle: counted by hand from write_session().
+  const ScratchFolder folder;
+  write_session(folder / "a.mcap");
   const RecordingSummary summary = summarize(folder / "a.mcap");
   CHECK_FALSE(summary.torn);
   CHECK(summary.session.at("session") == "bench");
   CHECK(summary.scene.at("name") == "ball_squeeze");
   CHECK(summary.first_ns == kStart);
-  CHECK(summary.last_ns == kStart + 80 * kMillisecond);
+  CHECK(summary.last_ns == kStart + 80 * kMs);
   REQUIRE(summary.topics.size() == 4);
 
   const TopicSummary& force = summary.topics[0];
@@ -74,14 +73,14 @@ TEST_CASE("inspect: counts samples, bytes, rates, gaps and writers of each topic
   CHECK(nodes.bytes == 4 * cdr_of(node_positions(1, 1e-3, 1)).size());
   CHECK(nodes.missing == 2);
   CHECK(nodes.invalid == 0);
-  CHECK(nodes.longest_spacing_ns == 12 * kMillisecond);
+  CHECK(nodes.longest_spacing_ns == 12 * kMs);
   CHECK(nodes.rate_hz() == Approx(3 / 0.020));  // three spacings in 20 ms
 }
 
 TEST_CASE("inspect: the table names what matters on one screen") {
   // Oracle: the row of node_positions, written by hand.
-  TempFolder folder;
-  write_recording(folder / "a.mcap");
+  const ScratchFolder folder;
+  write_session(folder / "a.mcap");
   std::ostringstream out;
   print_summary(summarize(folder / "a.mcap"), out);
   using Catch::Contains;
@@ -98,7 +97,7 @@ TEST_CASE("inspect: the table names what matters on one screen") {
 
 TEST_CASE("inspect: an empty recording has no topics and no scene") {
   // Oracle: by hand.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile(folder / "a.mcap", {}).close();
   const RecordingSummary summary = summarize(folder / "a.mcap", folder / "csv");
   CHECK(summary.topics.empty());
@@ -110,8 +109,8 @@ TEST_CASE("inspect: an empty recording has no topics and no scene") {
 
 TEST_CASE("inspect: a torn recording says so and counts what is whole") {
   // Oracle: the same file closed and not closed.
-  TempFolder folder;
-  write_recording(folder / "torn.mcap", false);
+  const ScratchFolder folder;
+  write_session(folder / "torn.mcap", false);
   const RecordingSummary summary = summarize(folder / "torn.mcap");
   CHECK(summary.torn);
   CHECK_THAT(summary.torn_warning, Catch::Contains("not closed by its writer"));
@@ -123,17 +122,17 @@ TEST_CASE("inspect: a torn recording says so and counts what is whole") {
 
 TEST_CASE("inspect: writes one CSV file per topic and key") {
   // Oracle: rows written by hand.
-  TempFolder folder;
-  write_recording(folder / "a.mcap");
+  const ScratchFolder folder;
+  write_session(folder / "a.mcap");
   summarize(folder / "a.mcap", folder / "csv");
-  CHECK(text_of(folder / "csv/node_positions_0.csv") ==
+  CHECK(text_in(folder / "csv/node_positions_0.csv") ==
         "time_s,sim_time_s,latency_s,sequence,generation,volume_m3,target_volume_m3,"
         "pressure_pa,kinetic_energy_j,elastic_energy_j,organ_contacts,node_count\n"
         "0.04025,0.04,0.00025,10,0,0.001,0.001,100,0,0,0,1\n"
         "0.04425,0.044,0.00025,11,0,0.001,0.001,100,0,0,0,1\n"
         "0.05625,0.056,0.00025,14,0,0.001,0.001,100,0,0,0,1\n"
         "0.06025,0.06,0.00025,15,0,0.001,0.001,100,0,0,0,1\n");
-  const std::string inputs = text_of(folder / "csv/module_inputs_haptics.csv");
+  const std::string inputs = text_in(folder / "csv/module_inputs_haptics.csv");
   CHECK_THAT(inputs, Catch::StartsWith("time_s,sim_time_s,latency_s,sequence,topic,age_s,received,"
                                        "dropped,rejected\n0.07,0,"));
   CHECK_THAT(inputs, Catch::Contains(",probe_state,0.5,10,1,0\n"));
@@ -145,8 +144,8 @@ TEST_CASE("inspect: writes one CSV file per topic and key") {
 
 TEST_CASE("inspect: a module's name cannot lead out of the CSV folder") {
   // Oracle: by hand: every letter that is not plain becomes an underscore.
-  TempFolder folder;
-  write_recording(folder / "a.mcap");
+  const ScratchFolder folder;
+  write_session(folder / "a.mcap");
   summarize(folder / "a.mcap", folder / "csv");
   CHECK(std::filesystem::exists(folder / "csv/module_status____collision.csv"));
 }

@@ -46,7 +46,7 @@ Contents read_all(const std::filesystem::path& file) {
 
 TEST_CASE("mcap reader: reads back what the writer was given") {
   // Oracle: round trip — the values given to the writer in write_sample_file().
-  TempFolder folder;
+  const ScratchFolder folder;
   write_sample_file(folder / "a.mcap", kMessages);
   const Contents contents = read_all(folder / "a.mcap");
   CHECK_FALSE(contents.torn);
@@ -74,7 +74,7 @@ TEST_CASE("mcap reader: reads back what the writer was given") {
 
 TEST_CASE("mcap reader: gives the header and the summary's statistics") {
   // Oracle: round trip with the writer; counts by hand.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_sample_file(folder / "a.mcap", kMessages);
   McapReader reader(folder / "a.mcap");
   CHECK(reader.header().library == "palpate");
@@ -93,7 +93,7 @@ TEST_CASE("mcap reader: gives the header and the summary's statistics") {
 
 TEST_CASE("mcap reader: a file cut at any byte opens up to its last whole record") {
   // Oracle: the record ends noted by the writer; everything before the cut must be there.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto ends = write_sample_file(folder / "whole.mcap", kMessages);
   const auto bytes = bytes_of(folder / "whole.mcap");
   for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
@@ -114,7 +114,7 @@ TEST_CASE("mcap reader: a file cut at any byte opens up to its last whole record
 
 TEST_CASE("mcap reader: a file that was flushed but never closed is torn and complete") {
   // Oracle: invariant of the writer's flush.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_sample_file(folder / "open.mcap", kMessages, false);
   const Contents contents = read_all(folder / "open.mcap");
   CHECK(contents.torn);
@@ -123,7 +123,7 @@ TEST_CASE("mcap reader: a file that was flushed but never closed is torn and com
 
 TEST_CASE("mcap reader: bad files are refused with the file and the offset") {
   // Oracle: bytes corrupted at known places; the message each rule must give.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto file = folder / "bad.mcap";
   const auto ends = write_sample_file(file, kMessages);
   auto bytes = bytes_of(file);
@@ -194,7 +194,7 @@ TEST_CASE("mcap reader: bad files are refused with the file and the offset") {
 
 TEST_CASE("mcap reader: a length beyond the file counts as torn there") {
   // Oracle: the record before the corrupted length is the last that must be read.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto ends = write_sample_file(folder / "a.mcap", kMessages);
   auto bytes = bytes_of(folder / "a.mcap");
   bytes[ends[7] + 7] = 0x7F;
@@ -207,7 +207,7 @@ TEST_CASE("mcap reader: a length beyond the file counts as torn there") {
 
 TEST_CASE("mcap reader: records of kinds it does not know are skipped") {
   // Oracle: the specification — readers ignore unknown opcodes.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto ends = write_sample_file(folder / "a.mcap", kMessages, false);
   auto bytes = bytes_of(folder / "a.mcap");
   bytes[ends[6]] = 0x80;

@@ -60,7 +60,7 @@ void write_hand_laid_file(const std::filesystem::path& file) {
 
 TEST_CASE("mcap writer: replaces a recording, and nothing else") {
   // Oracle: the message, and the bytes that stay.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_bytes(folder / "scene.yaml", {'p', 'a', 'l', 'p', 'a', 't', 'e', ':', ' ', '1'});
   CHECK_THROWS_WITH(McapWriter(folder / "scene.yaml"),
                     Catch::EndsWith("scene.yaml: is no recording, and is not replaced by one"));
@@ -73,7 +73,7 @@ TEST_CASE("mcap writer: replaces a recording, and nothing else") {
 
 TEST_CASE("mcap writer: the data section has the bytes of the specification") {
   // Oracle: bytes laid out by hand from the specification.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_hand_laid_file(folder / "hand.mcap");
   const auto bytes = bytes_of(folder / "hand.mcap");
   auto expected = kDataSection;
@@ -84,7 +84,7 @@ TEST_CASE("mcap writer: the data section has the bytes of the specification") {
 
 TEST_CASE("mcap writer: the summary section has the bytes of the specification") {
   // Oracle: bytes laid out by hand from the specification; CRC by its definition.
-  TempFolder folder;
+  const ScratchFolder folder;
   write_hand_laid_file(folder / "hand.mcap");
   const auto bytes = bytes_of(folder / "hand.mcap");
   const std::uint8_t start = static_cast<std::uint8_t>(kDataSection.size() + kClosing.size());
@@ -122,7 +122,7 @@ TEST_CASE("mcap writer: the summary section has the bytes of the specification")
 
 TEST_CASE("mcap writer: what flush() has written is in the file before close()") {
   // Oracle: invariant — the file's size is the writer's own count.
-  TempFolder folder;
+  const ScratchFolder folder;
   McapWriter writer(folder / "open.mcap");
   writer.add_metadata({"session", {{"name", "x"}}});
   writer.flush();
@@ -131,7 +131,7 @@ TEST_CASE("mcap writer: what flush() has written is in the file before close()")
 
 TEST_CASE("mcap writer: statistics count messages per channel and span the log times") {
   // Oracle: counted by hand: of messages 0 … 6 every third is a pose.
-  TempFolder folder;
+  const ScratchFolder folder;
   McapWriter writer(folder / "s.mcap");
   const auto schema = writer.add_schema({0, "S", "omgidl", ""});
   const auto a = writer.add_channel({0, schema, "a", "cdr", {}});
@@ -153,7 +153,7 @@ TEST_CASE("mcap writer: a full disk is reported with the file and the system's r
 
 TEST_CASE("mcap writer: a file that cannot be opened is named") {
   // Oracle: the system's reason for a folder that does not exist.
-  TempFolder folder;
+  const ScratchFolder folder;
   CHECK_THROWS_WITH(McapWriter(folder / "missing/a.mcap"),
                     Catch::EndsWith("missing/a.mcap: cannot open: No such file or directory"));
 }

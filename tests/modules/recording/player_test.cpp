@@ -10,6 +10,7 @@
 #include "tests/modules/messages/random_messages.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
+#include "tests/times.h"
 
 namespace palpate::recording {
 namespace {
@@ -17,12 +18,8 @@ namespace {
 using bus::testing::own_options;
 using bus::testing::wait_until;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-
-const auto kNeverStop = [] { return false; };
-
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
-  std::istringstream text(text_of(file));
+  std::istringstream text(text_in(file));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
@@ -33,16 +30,16 @@ std::vector<std::string> lines_of(const std::filesystem::path& file) {
 TEST_CASE("player: a replay sends the recorded bytes with the recorded spacing") {
   // Oracle: the recording itself; 20 samples 5 ms apart cannot take less than 95 ms.
   constexpr int kSamples = 20;
-  TempFolder folder;
+  const ScratchFolder folder;
   messages::testing::Random random(11);
   std::vector<TopicSample> recorded;
   for (int i = 0; i < kSamples; ++i) {
     recorded.push_back(raw_sample(bus::kHapticForce,
                                   messages::testing::random_message<HapticForce>(random),
-                                  1000 + 5 * i * kMillisecond));
+                                  1000 + 5 * i * kMs));
     recorded.push_back(raw_sample(bus::kModuleStatus,
                                   messages::testing::random_message<ModuleStatus>(random),
-                                  1000 + 5 * i * kMillisecond));
+                                  1000 + 5 * i * kMs));
   }
   SampleFile file(folder / "a.mcap", {});
   for (const TopicSample& sample : recorded) file.add(sample);
@@ -82,11 +79,11 @@ TEST_CASE("player: a replay sends the recorded bytes with the recorded spacing")
 
 TEST_CASE("player: stops when asked to") {
   // Oracle: the second sample lies an hour ahead; stopping must not wait for it.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {});
   const auto state = probe_state(1, 0, 0, Vec3::Zero());
   file.add(raw_sample(bus::kProbeState, state, 0));
-  file.add(raw_sample(bus::kProbeState, state, 3600 * 1000 * kMillisecond));
+  file.add(raw_sample(bus::kProbeState, state, 3600 * 1000 * kMs));
   file.close();
   bus::MemoryBus bus;
   SessionWriter writer(bus);
@@ -99,13 +96,13 @@ TEST_CASE("player: stops when asked to") {
 
 TEST_CASE("player: extracts one trajectory per probe in session time") {
   // Oracle: rows written by hand; numbers chosen to be exact in decimal and binary.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {});
   for (int i = 0; i < 3; ++i) {
-    ProbeState state = probe_state(1, i * 500 * kMillisecond, 0, {0.25 * i, 0, -1});
+    ProbeState state = probe_state(1, i * 500 * kMs, 0, {0.25 * i, 0, -1});
     state.pose.rotation = Quat(0, 1, 0, 0);  // half a turn about x
     file.add(raw_sample(bus::kProbeState, state, i));
-    file.add(raw_sample(bus::kProbeState, probe_state(1, i * 500 * kMillisecond, 2, {0, 0, 1}), i));
+    file.add(raw_sample(bus::kProbeState, probe_state(1, i * 500 * kMs, 2, {0, 0, 1}), i));
     file.add(raw_sample(bus::kProbeInput, probe_state(1, 0, 5, Vec3::Zero()), i));
   }
   file.close();
@@ -125,12 +122,12 @@ TEST_CASE("player: extracts one trajectory per probe in session time") {
 
 TEST_CASE("player: before the start and while paused the newest pose of a time holds") {
   // Oracle: times must increase strictly; the last of equal ones by hand.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {});
   const std::int64_t times_ms[] = {0, 0, 250, 250, 500};
   for (int i = 0; i < 5; ++i) {
-    file.add(raw_sample(bus::kProbeState,
-                        probe_state(1, times_ms[i] * kMillisecond, 0, {1.0 * i, 0, 0}), i));
+    file.add(
+        raw_sample(bus::kProbeState, probe_state(1, times_ms[i] * kMs, 0, {1.0 * i, 0, 0}), i));
   }
   file.close();
   std::vector<std::string> warnings;
@@ -143,12 +140,12 @@ TEST_CASE("player: before the start and while paused the newest pose of a time h
 
 TEST_CASE("player: after a reset only the last stretch counts, torn and invalid are told") {
   // Oracle: rows and warnings by hand.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto name = folder / "a.mcap";
   {
     SampleFile file(name, {});
     for (const int ms : {0, 250, 500, 0, 125}) {
-      file.add(raw_sample(bus::kProbeState, probe_state(1, ms * kMillisecond, 0, {1, 0, 0}), ms));
+      file.add(raw_sample(bus::kProbeState, probe_state(1, ms * kMs, 0, {1, 0, 0}), ms));
     }
     auto broken = raw_sample(bus::kProbeState, probe_state(1, 0, 0, {1, 0, 0}), 600);
     broken.payload.resize(40);
@@ -168,7 +165,7 @@ TEST_CASE("player: after a reset only the last stretch counts, torn and invalid 
 
 TEST_CASE("player: a recording without probes cannot drive a scene") {
   // Oracle: the message the rule must give.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile(folder / "a.mcap", {}).close();
   std::vector<std::string> warnings;
   CHECK_THROWS_WITH(extract_probe_trajectories(folder / "a.mcap", folder / "out", warnings),

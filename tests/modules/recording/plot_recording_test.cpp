@@ -42,7 +42,7 @@ TEST_CASE("plot recording: draws the curves of an inspected recording") {
   // Oracle: the file is a PNG of the size asked for (9 × 12 inches at 110 dpi, cut to content).
   const std::string program = python();
   if (program.empty()) return;
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {});
   for (std::uint64_t i = 1; i <= 50; ++i) {
     file.add(raw_sample(bus::kNodePositions, node_positions(i, 1e-3, 10), 4'000'000 * long(i)));
@@ -52,7 +52,7 @@ TEST_CASE("plot recording: draws the curves of an inspected recording") {
   const auto picture = folder / "plots.png";
   CHECK(run_script(program, "plots " + (folder / "csv").string() + " " + picture.string(),
                    folder / "log") == 0);
-  CHECK(text_of(folder / "log").empty());
+  CHECK(text_in(folder / "log").empty());
   CHECK(png_size(picture).first > 800);
   CHECK(png_size(picture).second > 800);
 
@@ -71,16 +71,16 @@ TEST_CASE("plot recording: folders without content are bad input, told in one li
   // Oracle: exit code 2 and the texts by hand.
   const std::string program = python();
   if (program.empty()) return;
-  TempFolder folder;
+  const ScratchFolder folder;
   std::filesystem::create_directory(folder / "empty");
   const std::string empty = (folder / "empty").string();
   CHECK(run_script(program, "plots " + empty + " " + empty + "/a.png", folder / "log") == 2);
-  CHECK(text_of(folder / "log") ==
+  CHECK(text_in(folder / "log") ==
         "error: " + empty + ": holds no samples from after the start of a session\n");
   CHECK(run_script(program, "strip " + empty + " " + empty + "/a.png", folder / "log") == 2);
-  CHECK(text_of(folder / "log") == "error: " + empty + ": holds no frame_<seconds>.png\n");
+  CHECK(text_in(folder / "log") == "error: " + empty + ": holds no frame_<seconds>.png\n");
   CHECK(run_script(program, "plots " + empty + "/no a.png", folder / "log") == 2);
-  CHECK(text_of(folder / "log") == "error: " + empty + "/no: no such folder\n");
+  CHECK(text_in(folder / "log") == "error: " + empty + "/no: no such folder\n");
 }
 
 }  // namespace palpate::recording

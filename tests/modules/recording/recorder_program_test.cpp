@@ -82,7 +82,7 @@ Reading read(const std::filesystem::path& file) {
 TEST_CASE("recorder program: on SIGTERM, Ctrl-C and SIGHUP it ends the file and says done") {
   // Oracle: the reader's verdict on the file; the number of samples written by the test.
   const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto options = own_options();
   bus::DdsBus bus(options);
   auto writer = bus.writer(bus::kNodePositions);
@@ -100,7 +100,7 @@ TEST_CASE("recorder program: on SIGTERM, Ctrl-C and SIGHUP it ends the file and 
 
 TEST_CASE("recorder program: killed hard, what it had written can be read") {
   // Oracle: the reader; the file had grown by 20 KB of 92-byte payloads before the kill.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto options = own_options();
   bus::DdsBus bus(options);
   auto writer = bus.writer(bus::kNodePositions);
@@ -121,7 +121,7 @@ TEST_CASE("recorder program: a full disk is a failure, a bad domain bad input") 
   REQUIRE(wait_until([&] { return full.ended(); }));
   CHECK(full.exit_code() == kExitFailed);
 
-  TempFolder folder;
+  const ScratchFolder folder;
   bus::BusOptions bad;
   bad.domain = 999;
   RecorderProcess refused(folder / "a.mcap", bad);

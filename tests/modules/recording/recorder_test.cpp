@@ -27,7 +27,7 @@ std::map<std::string_view, std::vector<std::vector<std::uint8_t>>> payloads_of(
 TEST_CASE("recorder: writes every sample of a session, byte for byte") {
   // Oracle: the codec's bytes of the messages that were sent.
   constexpr int kSamples = 60;
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto options = own_options();
   messages::testing::Random random(5);
   bus::DdsBus bus(options);
@@ -76,7 +76,7 @@ TEST_CASE("recorder: writes every sample of a session, byte for byte") {
 
 TEST_CASE("recorder: the file says which session it is of and how its clock relates to the day") {
   // Oracle: the options given; both clocks read around the recorder's start.
-  TempFolder folder;
+  const ScratchFolder folder;
   bus::BusOptions session;
   session.session = "ward_3";
   session.domain = 12;
@@ -99,7 +99,7 @@ TEST_CASE("recorder: the file says which session it is of and how its clock rela
 
 TEST_CASE("recorder: message records carry receive time, source time and sequence") {
   // Oracle: the values given.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {});
   ProbeState state = probe_state(41, 5, 0, Vec3::Zero());
   state.header.source_time_ns = 900;
@@ -118,7 +118,7 @@ TEST_CASE("recorder: message records carry receive time, source time and sequenc
 
 TEST_CASE("recorder: the scene is noted once, and again when another is loaded") {
   // Oracle: counted metadata records.
-  TempFolder folder;
+  const ScratchFolder folder;
   SampleFile file(folder / "a.mcap", {});
   SceneDescription scene;
   scene.name = "ball";

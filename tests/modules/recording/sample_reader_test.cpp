@@ -41,7 +41,7 @@ McapSchema probe_schema() {
 
 TEST_CASE("sample reader: gives each sample with its topic, its channel and its time") {
   // Oracle: round trip with SampleFile; one channel per writer.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto file = folder / "a.mcap";
   const auto first = raw_sample(bus::kProbeState, probe_state(1, 0, 0, {1, 2, 3}), 1000, 1);
   const auto second = raw_sample(bus::kProbeState, probe_state(1, 0, 1, {4, 5, 6}), 2000, 2);
@@ -68,7 +68,7 @@ TEST_CASE("sample reader: gives each sample with its topic, its channel and its 
 TEST_CASE("sample reader: other types, other versions and other encodings are refused") {
   // Oracle: the message each rule must give, and the record's place: the schema record follows
   // magic and header, 8 + 24 bytes.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto file = folder / "a.mcap";
   const std::string schema_place = file.string() + ": offset 32: ";
   CHECK(message_of(file, probe_schema(), "probe_state") == "no error");
@@ -96,7 +96,7 @@ TEST_CASE("sample reader: other types, other versions and other encodings are re
 
 TEST_CASE("sample reader: comments of an IDL file may change between versions") {
   // Oracle: the rule of same_idl().
-  TempFolder folder;
+  const ScratchFolder folder;
   McapSchema schema = probe_schema();
   schema.data = "// Reworded.\n" + schema.data;
   CHECK(message_of(folder / "a.mcap", schema, "probe_state") == "no error");
@@ -104,7 +104,7 @@ TEST_CASE("sample reader: comments of an IDL file may change between versions") 
 
 TEST_CASE("sample reader: a torn file says where it ends") {
   // Oracle: the sizes of the files, cut in the middle of the last message.
-  TempFolder folder;
+  const ScratchFolder folder;
   const auto file = folder / "torn.mcap";
   std::uint64_t whole = 0;
   {

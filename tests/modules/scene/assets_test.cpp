@@ -15,7 +15,7 @@ namespace {
 // Mesh files are read as floats: 6e-8 relative, at 0.1 m.
 constexpr double kFileRounding = 1e-8;
 
-Organ box_organ(const Folder& folder) {
+Organ box_organ(const ScratchFolder& folder) {
   Organ organ;
   organ.name = "cube";
   organ.mesh.file = folder.path() / "cube.off";
@@ -37,7 +37,7 @@ std::array<Vec3, 2> extent(const geometry::TriangleSurface& surface) {
 
 TEST_CASE("assets: an organ is loaded and placed by its pose") {
   // Oracle: by hand; a quarter turn about z swaps the box's x and y extents.
-  const Folder folder;
+  const ScratchFolder folder;
   Organ organ = box_organ(folder);
   organ.pose.position = Vec3(1, 2, 3);
   organ.pose.rotation = Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitZ());
@@ -50,7 +50,7 @@ TEST_CASE("assets: an organ is loaded and placed by its pose") {
 
 TEST_CASE("assets: a mesh in millimetres is a thousandth of the same in metres") {
   // Oracle: the definition of the unit.
-  const Folder folder;
+  const ScratchFolder folder;
   Organ organ = box_organ(folder);
   organ.mesh.unit = "mm";
   const auto surface = load_organ(organ).surface;
@@ -59,7 +59,7 @@ TEST_CASE("assets: a mesh in millimetres is a thousandth of the same in metres")
 
 TEST_CASE("assets: a probe's mesh stays in the probe's frame, other shapes have none") {
   // Oracle: the file's own numbers.
-  const Folder folder;
+  const ScratchFolder folder;
   Probe probe;
   probe.shape = MeshShape{box_organ(folder).mesh};
   CHECK((extent(load_probe_mesh(probe))[1] - Vec3(0.02, 0.03, 0.04)).norm() < kFileRounding);
@@ -72,7 +72,7 @@ TEST_CASE("assets: a probe's mesh stays in the probe's frame, other shapes have 
 
 TEST_CASE("assets: what is wrong with a mesh is said of the organ or probe by name") {
   // Oracle: an open surface holds no volume; the message begins with the owner.
-  const Folder folder;
+  const ScratchFolder folder;
   Organ organ = box_organ(folder);
   auto open = geometry::make_box(Vec3(0.04, 0.06, 0.08));
   open.triangles.pop_back();

@@ -8,14 +8,7 @@ using namespace palpate;
 using namespace palpate::scene;
 using namespace palpate::scene::test;
 
-namespace {
-
-std::string refusal(const std::string& from, const std::string& to) {
-  const SceneFolder folder;
-  return folder.refusal(changed(from, to));
-}
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("object reader: an unknown key is refused with the nearest and all allowed ones") {
   // Oracle: the nearest key by eye, at each depth of the scene.

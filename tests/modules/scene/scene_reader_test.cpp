@@ -263,7 +263,7 @@ TEST_CASE("scene reader: a scene is loaded from its file, and files are found be
 TEST_CASE("scene reader: an absolute file name is taken as it is") {
   // Oracle: the path given.
   const SceneFolder folder;
-  const Folder elsewhere;
+  const ScratchFolder elsewhere;
   const auto mesh = elsewhere.write("other.ply", "");
   const Scene scene = folder.parse(changed("organ.ply", mesh.string(), kMinimalScene));
   CHECK(scene.organs[0].mesh.file == mesh);

@@ -5,38 +5,13 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::scene::test {
-
-/// A folder of its own that is removed in the end.
-class Folder {
- public:
-  Folder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("palpate_scene_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// While it lives, files are opened with the rights of a user who owns none of them: the
 /// superuser may read everything.
@@ -56,9 +31,12 @@ class AsNobody {
 };
 
 /// A folder with the files that the scenes below name. Their contents are not read here.
-class SceneFolder : public Folder {
+class SceneFolder : public ScratchFolder {
  public:
   SceneFolder() {
+    using std::filesystem::perms;
+    std::filesystem::permissions(  // so that AsNobody may enter
+        path(), perms::owner_all | perms::group_exec | perms::others_exec);
     write("organ.ply", "an organ");
     write("tool.stl", "a tool");
     write("press.csv", "t,x,y,z,qx,qy,qz,qw\n");
@@ -194,6 +172,11 @@ inline std::string changed(const std::string& from, const std::string& to,
   REQUIRE(at != std::string::npos);
   REQUIRE(text.find(from, at + 1) == std::string::npos);
   return text.replace(at, from.size(), to);
+}
+
+/// What kFullScene is told with one place changed.
+inline std::string refusal(const std::string& from, const std::string& to) {
+  return SceneFolder().refusal(changed(from, to));
 }
 
 }  // namespace palpate::scene::test

@@ -15,11 +15,6 @@ using namespace palpate::scene::test;
 
 namespace {
 
-std::string refusal(const std::string& from, const std::string& to) {
-  const SceneFolder folder;
-  return folder.refusal(changed(from, to));
-}
-
 /// The numbers on both sides of the first " … " of a text.
 std::pair<double, double> range_in(const std::string& text) {
   const auto at = text.find(" … ");

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "modules/core/error.h"
 #include "studies/calibration/report.h"
 #include "studies/report/progress.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::calibration {
 namespace {
@@ -18,17 +18,12 @@ using Catch::Matchers::Contains;
 
 const ReferenceColumns kColumns{"c", "f", "p", "r"};
 
-/// Cases run side by side: each writes a file of its own name.
-std::filesystem::path table(const std::string& name, const std::string& text) {
-  const auto file = std::filesystem::temp_directory_path() / ("palpate_calibration_" + name);
-  std::ofstream(file) << text;
-  return file;
-}
-
 TEST_CASE("calibration: a reference table is read by its columns' names") {
   // Oracle: the numbers written.
-  const auto rows = read_reference(
-      table("good.csv", "r,c,other,p,f\n50,0.05,x,1,2\n60,0.5,y,988.4,6.25\n"), kColumns, 0.1);
+  const ScratchFolder folder;
+  const auto table =
+      folder.write("table.csv", "r,c,other,p,f\n50,0.05,x,1,2\n60,0.5,y,988.4,6.25\n");
+  const auto rows = read_reference(table, kColumns, 0.1);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].compression == 0.5);
   CHECK(rows[0].force == 6.25);
@@ -38,8 +33,9 @@ TEST_CASE("calibration: a reference table is read by its columns' names") {
 
 TEST_CASE("calibration: a bad reference table is refused with its place") {
   // Oracle: the message text.
-  const auto read = [](const std::string& text) {
-    return read_reference(table("bad.csv", text), kColumns, 0.1);
+  const ScratchFolder folder;
+  const auto read = [&](const std::string& text) {
+    return read_reference(folder.write("table.csv", text), kColumns, 0.1);
   };
   CHECK_THROWS_WITH(read("c,f,r\n"), Contains(":1: has no column 'p'"));
   CHECK_THROWS_WITH(read("c,f,p,r\n0.1,1,1,50\n0.2,-1,1,50\n"),

@@ -6,25 +6,24 @@
 #include <cmath>
 #include <sstream>
 
-#include "tests/studies/paper/temporary_folder.h"
+#include "tests/scratch_folder.h"
+#include "tests/studies/paper/numbers.h"
 
 namespace palpate::paper {
 namespace {
 
 using testing::numbers_in;
-using testing::TemporaryFolder;
 
 /// A quick run of one figure into a folder of its own.
 struct Run {
   explicit Run(double budget = 240)
-      : folder("figures"),
-        options{data_file("scenes"), folder.path(), true, budget},
+      : options{data_file("scenes"), folder.path(), true, budget},
         progress(log, [] { return false; }) {}
 
   std::vector<std::vector<double>> table(const std::string& name) const {
-    return numbers_in(folder.path() / (name + ".csv"));
+    return numbers_in(folder / (name + ".csv"));
   }
-  TemporaryFolder folder;
+  ScratchFolder folder;
   FigureOptions options;
   std::ostringstream log;
   report::Progress progress;
@@ -107,7 +106,7 @@ TEST_CASE("figure 4: the sliding probe leaves its moments and the far field move
     deepest = std::max(deepest, std::hypot(n[0] - n[3], n[1] - n[4], n[2] - n[5]));
   }
   CHECK(deepest > 5e-3);
-  CHECK(std::filesystem::exists(run.folder.path() / "figure4_first_contact_nodes.csv"));
+  CHECK(std::filesystem::exists(run.folder / "figure4_first_contact_nodes.csv"));
 }
 
 TEST_CASE("figure 4: without the time for it, it is cut short and says so") {

@@ -11,25 +11,23 @@
 #include "palpate/child_process.h"
 #include "studies/report/progress.h"
 #include "tests/modules/runtime/waiting.h"
-#include "tests/studies/paper/temporary_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::paper {
 namespace {
-
-using testing::TemporaryFolder;
 
 const std::filesystem::path kProgram = std::filesystem::path(PALPATE_BIN_DIR) / "palpate-paper";
 
 TEST_CASE("paper command: a figure alone leaves its picture, its tables and the summary") {
   // Oracle: the folder. Pictures need matplotlib, which the tests' machine is to have.
-  const TemporaryFolder folder("paper");
+  const ScratchFolder folder;
   std::ostringstream out, log;
   const PaperOptions options{folder.path(), {"1"}, false, 240};
   CHECK(run_paper(options, out, log) == kExitDone);
   INFO(log.str());
-  CHECK(std::filesystem::file_size(folder.path() / "figure1.png") > 50'000);
-  CHECK_FALSE(std::filesystem::exists(folder.path() / "figure2.png"));
-  CHECK_THAT(testing::text_in(folder.path() / "summary.csv"), Catch::Contains("550"));
+  CHECK(std::filesystem::file_size(folder / "figure1.png") > 50'000);
+  CHECK_FALSE(std::filesystem::exists(folder / "figure2.png"));
+  CHECK_THAT(text_in(folder / "summary.csv"), Catch::Contains("550"));
   CHECK_THAT(out.str(), Catch::Contains("paper: 550 nodes, 1,084 triangles"));
 }
 
@@ -41,7 +39,7 @@ TEST_CASE("paper command: a folder that cannot be written is bad input") {
 
 TEST_CASE("paper command: Ctrl-C ends it at once, with 130 and nothing half written") {
   // Oracle: the exit code of shells for SIGINT, and the folder.
-  const TemporaryFolder folder("paper");
+  const ScratchFolder folder;
   launcher::ChildProcess child(kProgram, {"--only", "4", "--out", folder.path().string()});
   std::string said;
   palpate::testing::wait_until([&] {

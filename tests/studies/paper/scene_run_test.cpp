@@ -7,12 +7,11 @@
 #include "modules/scene/scene_reader.h"
 #include "studies/paper/findings.h"
 #include "studies/paper/shape_files.h"
-#include "tests/studies/paper/temporary_folder.h"
+#include "tests/scratch_folder.h"
+#include "tests/studies/paper/numbers.h"
 
 namespace palpate::paper {
 namespace {
-
-using testing::TemporaryFolder;
 
 const std::filesystem::path kScenes = data_file("scenes");
 
@@ -73,9 +72,9 @@ TEST_CASE("scene run: the extremes are those of the samples, and the file holds 
   high.force = 2;
   CHECK(worst_volume_error({low, high}) == Approx(0.1));
   CHECK(greatest_force({low, high}) == 2);
-  const TemporaryFolder folder("samples");
-  write_samples({low, high}, folder.path() / "s.csv");
-  const auto rows = testing::numbers_in(folder.path() / "s.csv");
+  const ScratchFolder folder;
+  write_samples({low, high}, folder / "s.csv");
+  const auto rows = testing::numbers_in(folder / "s.csv");
   REQUIRE(rows.size() == 2);
   CHECK(rows[0][1] == Approx(0.9));
   CHECK(rows[0][2] == Approx(-0.1));
@@ -85,13 +84,13 @@ TEST_CASE("scene run: the extremes are those of the samples, and the file holds 
 
 TEST_CASE("shape files: nodes with their kinds, triangles and springs") {
   // Oracle: by hand.
-  const TemporaryFolder folder("shape");
+  const ScratchFolder folder;
   const auto topology = row_of_nodes();
   write_topology(topology, folder.path(), "row", /*springs=*/true);
   write_nodes(topology, topology.rest_positions, folder.path(), "row");
-  CHECK(testing::text_in(folder.path() / "row_triangles.csv") == "a,b,c\n0,1,2\n");
-  CHECK(testing::text_in(folder.path() / "row_springs.csv") == "family,a,b\n2,0,5\n");
-  const auto nodes = testing::numbers_in(folder.path() / "row_nodes.csv");
+  CHECK(text_in(folder / "row_triangles.csv") == "a,b,c\n0,1,2\n");
+  CHECK(text_in(folder / "row_springs.csv") == "family,a,b\n2,0,5\n");
+  const auto nodes = testing::numbers_in(folder / "row_nodes.csv");
   REQUIRE(nodes.size() == 6);
   for (std::size_t i = 0; i < 6; ++i) CHECK(nodes[i][6] == (i == 3 ? 1 : i == 5 ? 2 : 0));
 }
@@ -102,9 +101,9 @@ TEST_CASE("findings: printed beside the paper's value, and written") {
   std::ostringstream out;
   print(findings, out);
   CHECK(out.str() == "Figure 9  speed [m/s]  4   (paper: >= 3)\nFigure 9  size         5\n");
-  const TemporaryFolder folder("findings");
-  write(findings, folder.path() / "f.csv");
-  CHECK(testing::text_in(folder.path() / "f.csv") ==
+  const ScratchFolder folder;
+  write(findings, folder / "f.csv");
+  CHECK(text_in(folder / "f.csv") ==
         "figure,quantity,paper,measured\nFigure 9,speed [m/s],>= 3,4\nFigure 9,size,,5\n");
 }
 

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/core/error.h"
-#include "tests/studies/paper/temporary_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::report {
 namespace {
@@ -30,10 +30,10 @@ TEST_CASE("measures: the machine has a name") {
 
 TEST_CASE("measures: a folder that cannot be made is bad input and named") {
   // Oracle: a file is no folder.
-  const palpate::paper::testing::TemporaryFolder folder("measures");
-  make_out_folder(folder.path() / "a/b");
-  CHECK(std::filesystem::is_directory(folder.path() / "a/b"));
-  const auto file = folder.path() / "file";
+  const ScratchFolder folder;
+  make_out_folder(folder / "a/b");
+  CHECK(std::filesystem::is_directory(folder / "a/b"));
+  const auto file = folder / "file";
   std::ofstream(file) << "x";
   CHECK_THROWS_AS(make_out_folder(file / "b"), InputError);
 }

@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "modules/core/data_folder.h"
-#include "tests/studies/paper/temporary_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::report {
 namespace {
@@ -21,7 +21,7 @@ TEST_CASE("plot script: a script that fails is named, and the CSV files stay") {
 
 TEST_CASE("plot script: without figures to draw it draws none and is content") {
   // Oracle: the folder.
-  const palpate::paper::testing::TemporaryFolder folder("plot");
+  const ScratchFolder folder;
   CHECK_NOTHROW(draw_figures(kScript, folder.path()));
   CHECK(std::filesystem::is_empty(folder.path()));
 }

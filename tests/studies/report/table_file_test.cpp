@@ -2,35 +2,32 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/studies/paper/temporary_folder.h"
+#include "tests/scratch_folder.h"
 
 namespace palpate::report {
 namespace {
 
-using palpate::paper::testing::TemporaryFolder;
-
 TEST_CASE("table file: rows as written, cells with commas quoted") {
   // Oracle: the text by hand, RFC 4180.
-  const TemporaryFolder folder("table");
-  TableFile table(folder.path() / "a.csv", {"x_m", "word"});
+  const ScratchFolder folder;
+  TableFile table(folder / "a.csv", {"x_m", "word"});
   table.write_row({0.1, -2e-12});
   table.write_row(std::vector<std::string>{"a, b", "say \"c\""});
   table.finish();
-  CHECK(palpate::paper::testing::text_in(folder.path() / "a.csv") ==
-        "x_m,word\n0.1,-2e-12\n\"a, b\",\"say \"\"c\"\"\"\n");
+  CHECK(text_in(folder / "a.csv") == "x_m,word\n0.1,-2e-12\n\"a, b\",\"say \"\"c\"\"\"\n");
 }
 
 TEST_CASE("table file: without finish nothing is left, and what was there stays") {
   // Oracle: the folder.
-  const TemporaryFolder folder("table");
-  const auto file = folder.path() / "a.csv";
+  const ScratchFolder folder;
+  const auto file = folder / "a.csv";
   std::ofstream(file) << "old";
   {
     TableFile table(file, {"x"});
     table.write_row({1.0});
-    CHECK(palpate::paper::testing::text_in(file) == "old");
+    CHECK(text_in(file) == "old");
   }
-  CHECK(palpate::paper::testing::text_in(file) == "old");
+  CHECK(text_in(file) == "old");
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 

@@ -44,7 +44,7 @@ class SlowGmsh {
   }
 
  private:
-  test::ScratchFolder folder_;
+  ScratchFolder folder_;
   std::string path_;
 };
 
@@ -162,7 +162,7 @@ TEST_CASE("gmsh tool: what would need far too many nodes is refused at once") {
 TEST_CASE("gmsh tool: a file without tetrahedra is refused by its own name") {
   // Oracle: the message. One triangle, as VTK's legacy format has it.
   if (testing::without_gmsh()) return;
-  const test::ScratchFolder folder;
+  const ScratchFolder folder;
   const auto file = folder / "shell.vtk";
   std::ofstream(file) << "# vtk DataFile Version 2.0\nshell\nASCII\nDATASET UNSTRUCTURED_GRID\n"
                          "POINTS 3 double\n0 0 0\n1 0 0\n0 1 0\n"
