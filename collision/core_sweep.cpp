@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "collision/continuous_collision.h"
+#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::collision {
 namespace {
@@ -12,8 +12,8 @@ constexpr int kMaxAdvances = 100;         // then the time reached so far is the
 constexpr int kGoldenSteps = 40;          // 0.618⁴⁰ < 1e-8 of the step
 constexpr double kGolden = 0.6180339887498949;
 
-void take_if_earlier(const std::optional<Impact>& impact, const Vec3& on_core, const Vec3& weights,
-                     std::optional<Crossing>& first) {
+void take_if_earlier(const std::optional<geometry::Impact>& impact, const Vec3& on_core,
+                     const Vec3& weights, std::optional<Crossing>& first) {
   if (impact && (!first || impact->time < first->time)) {
     first = Crossing{impact->time, on_core, weights};
   }
@@ -21,8 +21,8 @@ void take_if_earlier(const std::optional<Impact>& impact, const Vec3& on_core, c
 
 void cross_with_point(const Vec3& p, const SweptTriangle& t, double separation,
                       std::optional<Crossing>& first) {
-  const auto impact = point_triangle_impact({p, t.start[0], t.start[1], t.start[2]},
-                                            {p, t.end[0], t.end[1], t.end[2]}, separation);
+  const auto impact = geometry::point_triangle_impact(
+      {p, t.start[0], t.start[1], t.start[2]}, {p, t.end[0], t.end[1], t.end[2]}, separation);
   if (!impact) return;
   const double u = impact->u, v = std::min(impact->v, 1 - impact->u);
   take_if_earlier(impact, p, {1 - u - v, u, v}, first);
@@ -81,9 +81,9 @@ std::optional<Crossing> first_crossing(const Core& core, const SweptTriangle& tr
   cross_with_point(core.b, triangle, separation, first);
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
-    const auto impact =
-        edge_edge_impact({core.a, core.b, triangle.start[k], triangle.start[next]},
-                         {core.a, core.b, triangle.end[k], triangle.end[next]}, separation);
+    const auto impact = geometry::edge_edge_impact(
+        {core.a, core.b, triangle.start[k], triangle.start[next]},
+        {core.a, core.b, triangle.end[k], triangle.end[next]}, separation);
     if (!impact) continue;
     Vec3 weights = Vec3::Zero();
     weights[k] = 1 - impact->v;

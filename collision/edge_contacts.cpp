@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "collision/continuous_collision.h"
 #include "modules/core/tolerances.h"
+#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::collision {
 namespace {
@@ -78,9 +78,9 @@ bool in_front(const OrganStep& step, const SharpEdge& sharp, const EdgePair& pai
   return is_ridge(step, pair, edges, apart);
 }
 
-std::optional<Impact> impact_of(const Edges& start, const Edges& end, double separation) {
-  return edge_edge_impact({start.a0, start.a1, start.b0, start.b1},
-                          {end.a0, end.a1, end.b0, end.b1}, separation);
+std::optional<geometry::Impact> impact_of(const Edges& start, const Edges& end, double separation) {
+  return geometry::edge_edge_impact({start.a0, start.a1, start.b0, start.b1},
+                                    {end.a0, end.a1, end.b0, end.b1}, separation);
 }
 
 /// Contact with the organ's edge at fraction t.

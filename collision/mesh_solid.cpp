@@ -5,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "collision/continuous_collision.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
 #include "modules/geometry/closest_points.h"
+#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::collision {
 namespace {
@@ -60,7 +60,7 @@ class MeshSolid final : public ProbeSolid {
                                   double separation) const override {
     Bounds box{start, start};
     box.add(end);
-    box.inflate(separation + kImpactTolerance);
+    box.inflate(separation + geometry::kImpactTolerance);
     std::vector<std::uint32_t> near;
     mesh_.triangles_near(box, near);
     std::optional<SolidEntry> first;
@@ -68,8 +68,8 @@ class MeshSolid final : public ProbeSolid {
       const Vec3& normal = mesh_.face_normal(t);
       const geometry::TriangleCorners c = corners(t);
       if (normal.dot(start - c[0]) <= 0 || normal.dot(end - start) >= 0) continue;
-      const auto impact =
-          point_triangle_impact({start, c[0], c[1], c[2]}, {end, c[0], c[1], c[2]}, separation);
+      const auto impact = geometry::point_triangle_impact({start, c[0], c[1], c[2]},
+                                                          {end, c[0], c[1], c[2]}, separation);
       if (!impact || (first && first->time <= impact->time)) continue;
       first = SolidEntry{impact->time, start + impact->time * (end - start), normal};
     }
@@ -86,7 +86,7 @@ class MeshSolid final : public ProbeSolid {
     return std::any_of(near.begin(), near.end(), [&](std::uint32_t t) {
       return mesh_.face_normal(t) != Vec3::Zero() &&
              geometry::closest_of_segment_and_triangle(x, end, corners(t)).distance <
-                 kImpactTolerance;
+                 geometry::kImpactTolerance;
     });
   }
 

@@ -79,8 +79,8 @@ bool stays_apart(bool is_edges, const FourPoints& start, const FourPoints& end,
   const double before = gap_along(at_start.direction, first_count, start);
   const double after = gap_along(at_start.direction, first_count, end);
   if (before > 0 && after >= std::min(before, least)) return true;
-  const auto impact =
-      is_edges ? edge_edge_impact(start, end, least) : point_triangle_impact(start, end, least);
+  const auto impact = is_edges ? geometry::edge_edge_impact(start, end, least)
+                               : geometry::point_triangle_impact(start, end, least);
   return !impact;
 }
 

@@ -9,10 +9,12 @@
 #include <span>
 #include <vector>
 
-#include "collision/continuous_collision.h"
 #include "collision/organ_surface.h"
+#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::collision {
+
+using geometry::FourPoints;
 
 /// Node–triangle: nodes[0] of surfaces[0], nodes[1…3] of surfaces[1]. Edge–edge: nodes[0…1] of
 /// surfaces[0], nodes[2…3] of surfaces[1].

@@ -61,14 +61,50 @@ void SimulatedOrgan::reset() {
 
 void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
                           AdvanceReport& report) {
-  const double before = state_.target_volume;
+  const double target_before = begin_step(time, h, rows);
+  const StepReport stepped = dynamics_->step(h, rows, state_);
+  end_step(h, rows, target_before, stepped, report);
+}
+
+bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
+                          const Revise& revise, bool last_resort, AdvanceReport& report) {
+  if (!revise) {
+    step(time, h, std::span(rows), report);
+    return true;
+  }
+  start_ = state_;
+  const TargetVolume target_start = target_volume_;
+  const double target_before = begin_step(time, h, rows);
+  const double target = state_.target_volume;
+  StepReport stepped = dynamics_->step(h, rows, state_);
+  for (int revision = 0; revise(start_, state_); ++revision) {
+    if (revision == kMostRevisions && last_resort) break;
+    state_ = start_;
+    if (revision == kMostRevisions) {
+      target_volume_ = target_start;
+      return false;
+    }
+    state_.target_volume = target;
+    state_.pressure_limit = pressure_limit_;
+    stepped = dynamics_->step(h, rows, state_);
+  }
+  end_step(h, rows, target_before, stepped, report);
+  return true;
+}
+
+double SimulatedOrgan::begin_step(double time, double h, std::span<ContactRow> rows) {
+  const double target_before = state_.target_volume;
   state_.target_volume = model_->rest_volume * target_volume_.follow(time, h);
   state_.pressure_limit = pressure_limit_;
   if (gentle_time_ > 0) {
     for (ContactRow& row : rows) row.gap = std::max(row.gap, -kGentleSpeed * h);
   }
-  const StepReport stepped = dynamics_->step(h, rows, state_);
-  detector_.add_work(h, rows, state_.target_volume - before, state_);
+  return target_before;
+}
+
+void SimulatedOrgan::end_step(double h, std::span<const ContactRow> rows, double target_before,
+                              const StepReport& stepped, AdvanceReport& report) {
+  detector_.add_work(h, rows, state_.target_volume - target_before, state_);
   if (stepped.volume_skipped) {
     report.volume_skipped = true;
     advances_ = kThoroughCheckEvery;

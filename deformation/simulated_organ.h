@@ -10,8 +10,10 @@
 // in a state that was checked; none is computed twice.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "deformation/guard/advance_report.h"
 #include "deformation/guard/divergence_detector.h"
@@ -34,6 +36,7 @@ inline constexpr double kMaxVolumeError = 0.05;
 inline constexpr double kCollapsedTime = 0.5;
 inline constexpr int kMostHalvings = 3;
 inline constexpr int kMostFailures = 3;
+inline constexpr int kMostRevisions = 4;
 inline constexpr double kQuietTime = 1.0;  ///< simulated [s]
 /// Energy, volume and inversion are checked in every such advance, and after any guard acted.
 inline constexpr int kThoroughCheckEvery = 16;
@@ -59,6 +62,13 @@ class SimulatedOrgan {
 
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
+  /// The same; it is taken again from its start, with the rows there are then, while `revise`,
+  /// given the states at its start and end, wants it, at most kMostRevisions times. None: once.
+  /// @param last_resort  whether it is taken even if revise() is not content then
+  /// @returns false if it was not: the organ is as before
+  using Revise = std::function<bool(const OrganState& start, const OrganState& end)>;
+  bool step(double time, double h, std::vector<ContactRow>& rows, const Revise& revise,
+            bool last_resort, AdvanceReport& report);
 
   /// Changes the end of the last step, of h [s], as if contacts with organs had been in it: the
   /// velocities with the surface's way.
@@ -73,6 +83,10 @@ class SimulatedOrgan {
   bool finish(double period, AdvanceReport& report);
 
  private:
+  /// @returns V* before it
+  double begin_step(double time, double h, std::span<ContactRow> rows);
+  void end_step(double h, std::span<const ContactRow> rows, double target_before,
+                const StepReport& stepped, AdvanceReport& report);
   void release_volume();
   bool volume_is_far() const;
   bool has_rest_volume() const;
@@ -85,6 +99,7 @@ class SimulatedOrgan {
   TargetVolume target_volume_;
   DivergenceDetector detector_;
   OrganState state_, last_good_;
+  OrganState start_;  ///< of a step that may be taken again
   Guarding guarding_;
   bool holds_volume_ = false;   ///< by a constraint that answers an error with an impulse
   double pressure_limit_ = 0;   ///< [Pa]; infinite where no constraint makes it

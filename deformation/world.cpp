@@ -30,6 +30,8 @@ constexpr double kMostGrowth = 0.5;
 constexpr std::size_t kGrowthPeriods = 3;
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
 constexpr double kFarthestContact = 10;
+/// How often a step is halved so that a probe does not go through the wall.
+constexpr int kMostSplits = 5;
 
 struct WorldOrgan {
   std::string name;
@@ -42,7 +44,8 @@ struct WorldOrgan {
   bool replaced = false;      ///< its state, at the end of the last advance
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
-  VolumeGradient volume = {};                       ///< buffer of contact_compliance()
+  std::unique_ptr<SurfaceWalk> surface = nullptr;
+  VolumeGradient volume = {};  ///< buffer of contact_compliance()
 
   /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N].
   Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period) {
@@ -97,6 +100,7 @@ WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double per
       .mean_edge = geometry::mean_edge_length(shape.surface),
   };
   const OrganModel& kept = made.simulated.model();
+  made.surface = std::make_unique<SurfaceWalk>(kept);
   made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;
   std::vector<geometry::Tetrahedron> tetrahedra;
   if (kept.is_solid()) {
@@ -145,36 +149,57 @@ struct DeformationWorld::Impl {
     return near;
   }
 
-  /// The `step`th of the equal steps of an advance of one organ, all probes moving along.
-  void step_organ(std::uint32_t index, int step, int substeps, AdvanceReport& report) {
+  /// One organ from one fraction of the advance to another, all probes moving along. A probe that
+  /// would go through the wall is held by rows where it does.
+  /// @param last_resort  whether the step is taken even if they do not hold it
+  /// @returns false if it was not: the organ is as before
+  bool step_organ(std::uint32_t index, double from, double to, bool last_resort,
+                  AdvanceReport& report) {
     WorldOrgan& organ = organs[index];
-    const double h = period / substeps, fraction = static_cast<double>(step) / substeps;
+    const double h = (to - from) * period;
     organ.rows.clear();
     const bool contacts_suspended = organ.simulated.contacts_suspended();
     for (auto& probe : probes) {
       if (contacts_suspended) break;
-      probe.append_rows(index, organ.simulated.model(), organ.simulated.state(), h, fraction,
-                        organ.rows);
+      probe.append_rows(index, *organ.surface, organ.simulated.state(), h, to, organ.rows);
     }
-    organ.simulated.step(time + fraction * period, h, organ.rows, report);
+    const auto may_cross = [&](const ProbeContacts& probe) { return probe.may_cross(index); };
+    SimulatedOrgan::Revise crossed;
+    if (!contacts_suspended && std::ranges::any_of(probes, may_cross)) {
+      crossed = [&](const OrganState& start, const OrganState& end) {
+        bool any = false;
+        for (auto& probe : probes) {
+          any |= probe.hold_crossed(index, *organ.surface, start.positions, end.positions, h, to,
+                                    organ.rows);
+        }
+        return any;
+      };
+    }
+    return organ.simulated.step(time + to * period, h, organ.rows, crossed, last_resort, report);
   }
 
   void take_rows(std::uint32_t index) {
     WorldOrgan& organ = organs[index];
-    std::size_t first = 0;
     for (auto& probe : probes) {
       if (organ.simulated.contacts_suspended()) break;
-      first += probe.take_rows(index, organ.rows.data() + first);
+      probe.take_rows(index, organ.rows);
     }
+  }
+
+  /// The same; where rows do not hold a probe, in halves.
+  void step_apart(std::uint32_t index, double from, double to, int splits, AdvanceReport& report) {
+    if (step_organ(index, from, to, splits == 0, report)) return take_rows(index);
+    const double middle = (from + to) / 2;
+    step_apart(index, from, middle, splits - 1, report);
+    step_apart(index, middle, to, splits - 1, report);
   }
 
   /// Organs that do not touch each other, each in its own steps.
   void advance_apart(AdvanceReport& report) {
     for (std::uint32_t i = 0; i < organs.size(); ++i) {
-      const int substeps = organs[i].simulated.substeps(period);
+      const double substeps = organs[i].simulated.substeps(period);
       for (int step = 1; step <= substeps; ++step) {
-        step_organ(i, step, substeps, report);
-        take_rows(i);
+        step_apart(i, (step - 1) / substeps, step / substeps, kMostSplits, report);
       }
     }
   }
@@ -188,7 +213,7 @@ struct DeformationWorld::Impl {
     for (int step = 1; step <= substeps; ++step) {
       organ_contacts->begin_step();
       for (std::uint32_t i = 0; i < organs.size(); ++i) {
-        step_organ(i, step, substeps, report);
+        step_organ(i, (step - 1.0) / substeps, static_cast<double>(step) / substeps, true, report);
         rows[i] = organs[i].rows;
       }
       organ_contacts->end_step(period / substeps, rows, report);

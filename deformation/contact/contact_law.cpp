@@ -120,6 +120,7 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
                                                 double period) {
   std::vector<CondensedContact> pressing, near;
   for (const CarriedContact& contact : probe.contacts()) {
+    if (contact.row == CarriedContact::kNoRow && contact.pushed.isZero(0)) continue;
     CondensedContact one = one_of(contact, probe.pose(), *bodies[contact.organ],
                                   *states[contact.organ], probe.radius(), period);
     const bool held = std::ranges::all_of(one.weights, [&](const auto& w) {

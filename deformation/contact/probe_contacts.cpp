@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include "modules/core/tolerances.h"
-#include "modules/geometry/closest_points.h"
 
 namespace palpate::deformation {
 namespace {
+
+/// A probe whose way in a period is shorter rests [m].
+constexpr double kResting = 1e-6;
 
 bool same_place(const CarriedContact& a, const CarriedContact& b) {
   return a.organ == b.organ && a.triangle == b.triangle;
@@ -22,6 +24,7 @@ ProbeContacts::ProbeContacts(const scene::Probe& probe) : friction_(probe.fricti
 void ProbeContacts::reset() {
   placed_ = false;
   contacts_.clear();
+  near_.clear();
   gentle_.clear();
   begun_.clear();
 }
@@ -38,6 +41,7 @@ void ProbeContacts::set_contacts(std::span<const Contact> newest) {
   auto previous = previous_contacts_.begin();
   for (const Contact& contact : newest) {
     CarriedContact carried{contact};
+    carried.behind = core_ && is_behind(contact);
     // Both lists are sorted by (organ, triangle).
     while (previous != previous_contacts_.end() && std::pair(previous->organ, previous->triangle) <
                                                        std::pair(carried.organ, carried.triangle)) {
@@ -53,12 +57,22 @@ void ProbeContacts::set_contacts(std::span<const Contact> newest) {
   note_begun();
 }
 
+/// Whether the search found the core on the inner side of the contact's tissue.
+bool ProbeContacts::is_behind(const Contact& contact) const {
+  const Vec3 tissue = contact.point_P - contact.gap * contact.normal_P;
+  const Vec3 along = core_->b - core_->a;
+  const double length = along.squaredNorm();
+  const double at = length > 0 ? std::clamp(along.dot(tissue - core_->a) / length, 0.0, 1.0) : 0;
+  return contact.normal_P.dot(core_->a + at * along - tissue) < 0;
+}
+
 /// Organs that the probe was away from, until a step looks at them.
 void ProbeContacts::note_begun() {
   const auto among = [](const std::vector<CarriedContact>& contacts, std::uint32_t organ) {
     return std::ranges::find(contacts, organ, &CarriedContact::organ) != contacts.end();
   };
   std::erase_if(gentle_, [&](const GentleOrgan& g) { return !among(contacts_, g.organ); });
+  std::erase_if(near_, [&](const Near& n) { return !among(contacts_, n.organ); });
   std::erase_if(begun_, [&](std::uint32_t organ) { return !among(contacts_, organ); });
   for (const CarriedContact& contact : contacts_) {
     const bool known = std::ranges::find(begun_, contact.organ) != begun_.end();
@@ -105,6 +119,7 @@ bool ProbeContacts::begin(double period) {
   if (way() <= kMaxProbeSpeed * period) return true;
   start_ = target_;
   contacts_.clear();
+  near_.clear();
   return false;
 }
 
@@ -113,54 +128,148 @@ Pose ProbeContacts::pose_at(double fraction) const {
           start_.rotation.slerp(fraction, target_.rotation)};
 }
 
-void ProbeContacts::measure_again(const Body& body, const OrganState& state, const Pose& pose,
-                                  CarriedContact& contact) const {
-  const auto& nodes = body.triangles[contact.triangle];
-  const auto closest = geometry::closest_of_segment_and_triangle(
-      pose.to_world(core_->a), pose.to_world(core_->b),
-      {state.positions[nodes[0]], state.positions[nodes[1]], state.positions[nodes[2]]});
-  // A core that touches the triangle has no direction to it: the last one stays.
-  if (!(closest.distance > 1e-3 * core_->radius)) return;
-  const Vec3 away = (closest.on_segment - closest.on_triangle.point) / closest.distance;
-  const Vec3 last = pose.rotation * contact.normal_P;
-  // A core driven through the wall still belongs to the side it came from.
-  const Vec3 normal = away.dot(last) >= 0 ? away : -away;
-  contact.barycentric = closest.on_triangle.weights;
-  contact.normal_P = pose.rotation.conjugate() * normal;
-  contact.point_P = pose.to_body(closest.on_segment - core_->radius * normal);
+ProbeContacts::Near& ProbeContacts::near_of(std::uint32_t organ) {
+  const auto at = std::ranges::find(near_, organ, &Near::organ);
+  if (at != near_.end()) return *at;
+  near_.emplace_back().organ = organ;
+  return near_.back();
 }
 
-void ProbeContacts::append_rows(std::uint32_t organ, const Body& body, const OrganState& state,
+/// The one there is, or a new one: contacts are sorted by (organ, triangle).
+CarriedContact& ProbeContacts::contact_on(std::uint32_t organ, std::uint32_t triangle) {
+  const auto key = [](const CarriedContact& c) { return std::pair(c.organ, c.triangle); };
+  const auto at = std::ranges::lower_bound(contacts_, std::pair(organ, triangle), {}, key);
+  if (at != contacts_.end() && key(*at) == std::pair(organ, triangle)) return *at;
+  CarriedContact contact;
+  contact.organ = organ;
+  contact.triangle = triangle;
+  return *contacts_.insert(at, contact);
+}
+
+/// Folds of a wall are near in space, not over shared nodes: the search found them, too.
+void ProbeContacts::take_seeds(const Near& near) {
+  seeds_ = near.triangles;
+  for (const CarriedContact& contact : contacts_) {
+    if (contact.organ == near.organ) seeds_.push_back(contact.triangle);
+  }
+}
+
+void ProbeContacts::look_around(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
+                                const Pose& pose) {
+  Near& near = near_of(organ);
+  take_seeds(near);
+  surface.find(pose.to_world(core_->a), pose.to_world(core_->b), state.positions, seeds_,
+               core_->radius + kTouched, found_);
+  const bool found_behind = std::ranges::any_of(contacts_, [&](const CarriedContact& contact) {
+    return contact.organ == organ && contact.behind;
+  });
+  // A search that saw a resting probe inside knows better.
+  if (near.inside || (found_behind && way() < kResting)) near.inside = is_behind_nearest(found_);
+  near.crossed = false;
+  near.triangles.clear();
+  for (const NearTriangle& found : found_) {
+    near.triangles.push_back(found.index);
+    const bool touched = found.facing > 0 && found.pair.distance <= core_->radius + kTouched;
+    if (!near.inside && touched) contact_on(organ, found.index);
+  }
+}
+
+bool ProbeContacts::measure_again(const SurfaceWalk& surface, const OrganState& state,
+                                  const Pose& pose, bool inside, CarriedContact& contact) const {
+  const NearTriangle near = surface.triangle_near(contact.triangle, pose.to_world(core_->a),
+                                                  pose.to_world(core_->b), state.positions);
+  // A core that touches the triangle has no direction to it: the last one stays.
+  if (!(near.pair.distance > 1e-3 * core_->radius)) return true;
+  const bool came_through = inside && near.away.dot(pose.rotation * contact.normal_P) < 0;
+  if (near.facing <= 0 && !came_through) return false;
+  const Vec3 normal = near.facing > 0 ? near.away : -near.away;
+  contact.barycentric = near.pair.on_triangle.weights;
+  contact.normal_P = pose.rotation.conjugate() * normal;
+  contact.point_P = pose.to_body(near.pair.on_segment - core_->radius * normal);
+  return true;
+}
+
+ContactRow ProbeContacts::row_of(const CarriedContact& contact, const Body& body,
+                                 std::span<const Vec3> positions, const Pose& before,
+                                 const Pose& after, double h) const {
+  ContactRow row;
+  row.nodes = body.triangles[contact.triangle];
+  row.weights = contact.barycentric;
+  row.normal = after.rotation * contact.normal_P;
+  Vec3 tissue = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) tissue += row.weights[k] * positions[row.nodes[k]];
+  const Vec3 point = before.to_world(contact.point_P);
+  row.gap = row.normal.dot(point - tissue);
+  row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
+  row.friction = friction_;
+  row.normal_impulse = contact.normal_impulse;
+  row.tangential_impulse = contact.tangential_impulse;
+  return row;
+}
+
+void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                                 double h, double fraction, std::vector<ContactRow>& rows) {
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   const std::size_t first = rows.size();
+  if (!has_contacts(organ)) return;
+  if (core_) look_around(organ, surface, state, before);
+  const bool inside = core_ && near_of(organ).inside;
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
-    if (core_) measure_again(body, state, before, contact);
-    ContactRow row;
-    row.nodes = body.triangles[contact.triangle];
-    row.weights = contact.barycentric;
-    row.normal = after.rotation * contact.normal_P;
-    Vec3 tissue = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) tissue += row.weights[k] * state.positions[row.nodes[k]];
-    const Vec3 point = before.to_world(contact.point_P);
-    row.gap = row.normal.dot(point - tissue);
-    row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
-    row.friction = friction_;
-    row.normal_impulse = contact.normal_impulse;
-    row.tangential_impulse = contact.tangential_impulse;
-    rows.push_back(row);
+    contact.row = CarriedContact::kNoRow;
+    if (core_ && !measure_again(surface, state, before, inside, contact)) continue;
+    contact.row = rows.size();
+    rows.push_back(row_of(contact, surface.body(), state.positions, before, after, h));
   }
   if (!gentle_.empty() || !begun_.empty()) {
     be_gentle(organ, state, h, std::span(rows).subspan(first));
   }
 }
 
-std::size_t ProbeContacts::take_rows(std::uint32_t organ, const ContactRow* rows) {
+bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
+                                 std::span<const Vec3> start, std::span<const Vec3> end, double h,
+                                 double fraction, std::vector<ContactRow>& rows) {
+  if (!may_cross(organ) || near_of(organ).inside) return false;
+  const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
+  take_seeds(near_of(organ));
+  // A core on its gentle way out may swing back in; it is not kept from it at a blow.
+  const bool gentle = std::ranges::find(gentle_, organ, &GentleOrgan::organ) != gentle_.end();
+  bool crossed = false;
+  for (int end_of_core = 0; end_of_core < (core_->is_ball() ? 1 : 2); ++end_of_core) {
+    const Vec3& tip = end_of_core == 0 ? core_->a : core_->b;
+    const auto crossing =
+        surface.first_crossing(before.to_world(tip), after.to_world(tip), start, end, seeds_);
+    if (!crossing) continue;
+    crossed = true;
+    if (gentle) continue;
+    CarriedContact& contact = contact_on(organ, crossing->triangle);
+    contact.barycentric = crossing->weights;
+    contact.normal_P = after.rotation.conjugate() * crossing->normal;
+    contact.point_P = tip - core_->radius * contact.normal_P;
+    ContactRow row = row_of(contact, surface.body(), start, before, after, h);
+    if (contact.row == CarriedContact::kNoRow) {
+      contact.row = rows.size();
+      rows.push_back(row);
+    } else {
+      row.normal_impulse = rows[contact.row].normal_impulse;
+      row.tangential_impulse = rows[contact.row].tangential_impulse;
+      rows[contact.row] = row;
+    }
+  }
+  near_of(organ).crossed = crossed;
+  return crossed && !gentle;
+}
+
+std::size_t ProbeContacts::take_rows(std::uint32_t organ, std::span<const ContactRow> rows) {
   std::size_t taken = 0;
+  if (may_cross(organ)) near_of(organ).inside |= near_of(organ).crossed;
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
-    const ContactRow& row = rows[taken++];
+    contact.normal_impulse = 0;
+    contact.tangential_impulse.setZero();
+    if (contact.row == CarriedContact::kNoRow) continue;
+    const ContactRow& row = rows[contact.row];
+    ++taken;
     contact.normal_impulse = row.normal_impulse;
     contact.tangential_impulse = row.tangential_impulse;
     if (row.normal_impulse <= 0) continue;
@@ -174,6 +283,10 @@ Vec3 ProbeContacts::impulse() const {
   Vec3 sum = Vec3::Zero();
   for (const CarriedContact& contact : contacts_) sum += contact.pushed + contact.dragged;
   return sum;
+}
+
+bool ProbeContacts::has_contacts(std::uint32_t organ) const {
+  return std::ranges::find(contacts_, organ, &CarriedContact::organ) != contacts_.end();
 }
 
 bool ProbeContacts::touches(std::uint32_t organ) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "deformation/contact/contact_solve.h"
+#include "deformation/contact/surface_walk.h"
 #include "deformation/model/organ_state.h"
 #include "modules/core/touch.h"
 #include "modules/scene/scene.h"
@@ -17,7 +18,11 @@ namespace palpate::deformation {
 /// their core: a plane frozen for a period would tilt late as the tissue slides under a fingertip,
 /// which feeds energy into the sideways swing of the patch.
 struct CarriedContact : Contact {
-  double normal_impulse = 0;               ///< of the last sub-step, for its next start [N·s]
+  static constexpr std::size_t kNoRow = ~std::size_t{0};
+
+  std::size_t row = kNoRow;   ///< of the sub-step; none where a round probe sees it from behind
+  bool behind = false;        ///< a round probe's core was found inside, through this wall
+  double normal_impulse = 0;  ///< of the last sub-step, for its next start [N·s]
   Vec3 tangential_impulse = Vec3::Zero();  ///< likewise
   // On the probe over the advance, in W [N·s]:
   Vec3 pushed = Vec3::Zero();   ///< along the normals
@@ -26,6 +31,8 @@ struct CarriedContact : Contact {
 
 class ProbeContacts {
  public:
+  /// A round probe's rows are those of all tissue nearer to it than this [m].
+  static constexpr double kTouched = 1e-3;
   static constexpr double kSeenDepth = 1e-3;    ///< [m]
   static constexpr double kGentleRise = 0.03;   ///< to the speed of a gentle push [s]
   static constexpr double kGentleEnd = 0.2;     ///< its speed falls with the depth over this [s]
@@ -48,12 +55,21 @@ class ProbeContacts {
 
   /// Appends the rows of this probe's contacts with `organ` at `fraction` (0, 1] of the advance.
   /// A row at the sub-step's start is given by the probe at its end, minus the way it moves.
-  void append_rows(std::uint32_t organ, const Body& body, const OrganState& state, double h,
+  /// The rows of a round probe are those of its contacts and of all else it touches.
+  void append_rows(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state, double h,
                    double fraction, std::vector<ContactRow>& rows);
-  /// Takes the solved rows back, in the order they were appended. @returns their number
-  std::size_t take_rows(std::uint32_t organ, const ContactRow* rows);
+  /// After a sub-step: did a round probe's core go through the wall? Then a row of its place there
+  /// is added, or put in the place of that triangle's, for the sub-step to be taken again; if it is
+  /// not, take_rows() comes next.
+  bool hold_crossed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
+                    std::span<const Vec3> end, double h, double fraction,
+                    std::vector<ContactRow>& rows);
+  /// Takes the solved rows back. @param rows  all of the sub-step  @returns the number of its own
+  std::size_t take_rows(std::uint32_t organ, std::span<const ContactRow> rows);
 
   bool touches(std::uint32_t organ) const;
+  /// Whether a round probe has contacts there, so that it may cross the wall.
+  bool may_cross(std::uint32_t organ) const { return core_ && has_contacts(organ); }
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance
@@ -62,11 +78,32 @@ class ProbeContacts {
 
  private:
   Pose pose_at(double fraction) const;
+  /// What a round probe's core is near in an organ.
+  struct Near {
+    std::uint32_t organ = 0;
+    /// The core is inside at the sub-step's start. One outside stays so while no crossing is let
+    /// pass: where a wall is folded through itself the nearest triangle tells nothing.
+    bool inside = true;
+    bool crossed = false;                  ///< in the sub-step as it was last taken
+    std::vector<std::uint32_t> triangles;  ///< the nearest among them
+  };
+  Near& near_of(std::uint32_t organ);
+  void take_seeds(const Near& near);
+  /// Looks around the core; what it touches and has no contact gets one.
+  void look_around(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
+                   const Pose& pose);
+  CarriedContact& contact_on(std::uint32_t organ, std::uint32_t triangle);
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
-  void measure_again(const Body& body, const OrganState& state, const Pose& pose,
-                     CarriedContact& contact) const;
+  /// @returns false if it is seen from behind by a core outside: the wall is not touched there
+  bool measure_again(const SurfaceWalk& surface, const OrganState& state, const Pose& pose,
+                     bool inside, CarriedContact& contact) const;
+  ContactRow row_of(const CarriedContact& contact, const Body& body,
+                    std::span<const Vec3> positions, const Pose& before, const Pose& after,
+                    double h) const;
   /// Of the probe's origin in this advance [m].
   double way() const { return (target_.position - start_.position).norm(); }
+  bool is_behind(const Contact& contact) const;
+  bool has_contacts(std::uint32_t organ) const;
   void note_begun();
   void be_gentle(std::uint32_t organ, const OrganState& state, double h,
                  std::span<ContactRow> rows);
@@ -77,6 +114,9 @@ class ProbeContacts {
   Pose start_, target_;
   double period_ = 0;
   std::vector<CarriedContact> contacts_, previous_contacts_;
+  std::vector<Near> near_;            ///< by organ it is or was near
+  std::vector<NearTriangle> found_;   ///< buffer
+  std::vector<std::uint32_t> seeds_;  ///< buffer
   struct GentleOrgan {
     std::uint32_t organ = 0;
     double time = 0;  ///< since the first contact [s]

@@ -29,6 +29,7 @@ class Sliding final : public haptics::Device {
         last_turn_(2 * M_PI * std::ceil(std::max(kLeastPresses, kLeastMotion * rate_ / 2 / M_PI)) +
                    std::acos((kMiddle - kHeldDepth) / kHalf)) {}
 
+  double presses() const { return std::ceil(last_turn_ / 2 / M_PI); }
   double duration() const { return kWait + last_turn_ / rate_ + kHold; }
 
   haptics::DeviceSample read(double time) override {
@@ -64,7 +65,8 @@ class Judge {
   explicit Judge(session::InProcess& session)
       : session_(session),
         contacts_(session.bus().reader(bus::kContacts)),
-        positions_(session.bus().reader(bus::kNodePositions)) {}
+        positions_(session.bus().reader(bus::kNodePositions)),
+        laws_(session.bus().reader(bus::kContactModel)) {}
 
   void look(LoopResult& result) {
     NodePositions nodes;
@@ -72,10 +74,24 @@ class Judge {
       if (nodes.organ == 0) surfaces_.push_back(nodes);
     }
     while (contacts_.take(newest_)) judge(result);
+    while (laws_.take(law_)) judge_advance(result);
     while (surfaces_.size() > 8) surfaces_.pop_front();
   }
 
  private:
+  /// The surface that deformation made, at the pose it made it for.
+  void judge_advance(LoopResult& result) {
+    const auto at = std::find_if(surfaces_.rbegin(), surfaces_.rend(), [&](const NodePositions& s) {
+      return s.header.sim_time_ns == law_.header.sim_time_ns;
+    });
+    if (at == surfaces_.rend()) return;
+    ++result.advances;
+    const bool inside =
+        winding_number(law_.anchor.position, at->positions, session_.surface(0).triangles) > 0.5;
+    result.crossings += inside && !was_inside_;
+    was_inside_ = inside;
+  }
+
   void judge(LoopResult& result) {
     ++result.searches;
     result.truncated += newest_.truncated;
@@ -115,8 +131,11 @@ class Judge {
   session::InProcess& session_;
   bus::Reader<Contacts> contacts_;
   bus::Reader<NodePositions> positions_;
+  bus::Reader<ContactModel> laws_;
   std::deque<NodePositions> surfaces_;
   Contacts newest_;
+  ContactModel law_;
+  bool was_inside_ = false;
   double lost_since_ = -1;
 };
 
@@ -129,8 +148,10 @@ LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, co
                   place.z());
   auto device = std::make_unique<Sliding>(skin, loop);
   const double duration = device->duration();
+  const long presses = static_cast<long>(device->presses());
   session.haptics().set_device(0, std::move(device));
   LoopResult result;
+  result.presses = presses;
   Judge judge(session);
   while (session.time() < duration) {
     session.tick();

@@ -15,8 +15,14 @@ struct LoopCase {
   double collision_hz = 250;
 };
 
-/// What the searches of a run found.
+/// What a run did and its searches found. A search sees the ball where it is and the surface as it
+/// was up to a period ago: a ball that is faster than its radius in a period is inside that.
 struct LoopResult {
+  long presses = 0;   ///< in and out
+  long advances = 0;  ///< of deformation
+  /// Of these: the ball's centre was inside the surface they left at the pose they left it for, and
+  /// outside before.
+  long crossings = 0;
   long searches = 0;
   long inside = 0;          ///< the ball's centre was inside the surface
   long lost = 0;            ///< of these: no contact that pushes it out

@@ -14,6 +14,7 @@ namespace {
 struct Plate {
   OrganModel model = testing::ball_model(2);
   OrganState state = rest_state(model);
+  SurfaceWalk surface{model};
   ProbeContacts probe{{"plate", scene::PlaneShape{}, 0, scene::ScriptedDevice{}}};
 
   /// @param impulse  of a contact, by its number; 0: it does not press
@@ -37,9 +38,9 @@ struct Plate {
     probe.set_contacts(contacts);
     probe.begin(kPeriod);
     std::vector<ContactRow> rows;
-    probe.append_rows(0, model, state, kPeriod, 1, rows);
+    probe.append_rows(0, surface, state, kPeriod, 1, rows);
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = impulse(i);
-    probe.take_rows(0, rows.data());
+    probe.take_rows(0, rows);
     probe.end();
   }
   std::vector<CondensedContact> condense() const {

@@ -35,11 +35,12 @@ scene::Probe plate(double friction) {
 struct Ball {
   OrganModel model = testing::ball_model(1);
   OrganState state = rest_state(model);
+  SurfaceWalk surface{model};
 };
 
 TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
   // Oracle: rigid motion by hand; a quarter turn takes +x to +y.
-  const Ball ball;
+  Ball ball;
   ProbeContacts probe(plate(0.3));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
@@ -48,7 +49,7 @@ TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
   probe.set_pose(pose_at(Vec3(0, 0, 0.002), M_PI / 2));
   REQUIRE(probe.begin(kPeriod));
   std::vector<ContactRow> rows;
-  probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+  probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
   REQUIRE(rows.size() == 1);
   CHECK((rows[0].normal - Vec3::UnitY()).norm() < 1e-12);
   const Vec3 moved = Vec3(-0.06, 0.01, 0.002) - Vec3(0.01, 0.06, 0);
@@ -74,14 +75,14 @@ TEST_CASE("probe contacts: a depth nobody saw coming is undone gently, one that 
     std::vector<ContactRow> rows;
     if (seen) {
       probe.set_contacts(contacts_on({0}, tissue + 0.1 * Vec3::UnitZ(), Vec3::UnitZ()));
-      probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+      probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
     }
     probe.set_contacts(contacts_on({0}, tissue - 0.02 * Vec3::UnitZ(), Vec3::UnitZ()));
     probe.begin(kPeriod);
     for (const double speed : {0.0, 0.3}) {
       for (Vec3& v : ball.state.velocities) v = Vec3(0, 0, speed);
       rows.clear();
-      probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+      probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
       const double allowed = speed - kPeriod / ProbeContacts::kGentleRise * (speed + kGentleSpeed);
       if (seen) {
         CHECK(rows[0].gap < -0.01);
@@ -94,7 +95,7 @@ TEST_CASE("probe contacts: a depth nobody saw coming is undone gently, one that 
 
 TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
   // Oracle: the sum of the parts is the whole way.
-  const Ball ball;
+  Ball ball;
   ProbeContacts probe(plate(0));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
@@ -105,7 +106,7 @@ TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
   Vec3 way = Vec3::Zero();
   for (int step = 1; step <= 4; ++step) {
     std::vector<ContactRow> rows;
-    probe.append_rows(0, ball.model, ball.state, kPeriod / 4, step / 4.0, rows);
+    probe.append_rows(0, ball.surface, ball.state, kPeriod / 4, step / 4.0, rows);
     way += rows[0].probe_velocity * kPeriod / 4;
   }
   CHECK((way - Vec3(0.001, 0, 0)).norm() < 1e-15);
@@ -113,15 +114,15 @@ TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
 
 TEST_CASE("probe contacts: a triangle touched again starts from its last impulses") {
   // Oracle: definition; triangles 2 and 5 stay, 3 is new, 7 is gone.
-  const Ball ball;
+  Ball ball;
   ProbeContacts probe(plate(0.1));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.set_contacts(contacts_on({2, 5, 7}, Vec3::Zero(), Vec3::UnitZ()));
   probe.begin(kPeriod);
   std::vector<ContactRow> rows;
-  probe.append_rows(0, ball.model, ball.state, kPeriod, 1.0, rows);
+  probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = 1.0 + double(i);
-  CHECK(probe.take_rows(0, rows.data()) == 3);
+  CHECK(probe.take_rows(0, rows) == 3);
   probe.end();
   CHECK(probe.touches(0));
   CHECK_FALSE(probe.touches(1));
@@ -134,17 +135,17 @@ TEST_CASE("probe contacts: a triangle touched again starts from its last impulse
 
 TEST_CASE("probe contacts: impulses add up over an advance, and the next begins without them") {
   // Oracle: by hand; impulses along −n and friction on the tissue, their negative on the probe.
-  const Ball ball;
+  Ball ball;
   ProbeContacts probe(plate(0.5));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.set_contacts(contacts_on({0, 4}, Vec3(0.01, 0, 0), Vec3::UnitZ()));
   probe.begin(kPeriod);
   for (const double fraction : {0.5, 1.0}) {
     std::vector<ContactRow> rows;
-    probe.append_rows(0, ball.model, ball.state, kPeriod / 2, fraction, rows);
+    probe.append_rows(0, ball.surface, ball.state, kPeriod / 2, fraction, rows);
     rows[0].normal_impulse = 2e-3;
     rows[0].tangential_impulse = Vec3(0, 1e-3, 0);
-    probe.take_rows(0, rows.data());
+    probe.take_rows(0, rows);
   }
   probe.end();
   CHECK((probe.impulse() - Vec3(0, -2e-3, 4e-3)).norm() < 1e-15);
@@ -153,6 +154,81 @@ TEST_CASE("probe contacts: impulses add up over an advance, and the next begins 
   CHECK(probe.contacts()[1].pushed.isZero(0));
   probe.begin(kPeriod);
   CHECK(probe.impulse().isZero(0));
+}
+
+/// A ball of 2 mm over the organ's highest node, given the contacts of some triangles about it.
+struct Tip {
+  static constexpr double kRadius = 2e-3;
+  Ball organ;
+  ProbeContacts probe{{"tip", scene::SphereShape{kRadius}, 0, scene::ScriptedDevice{}}};
+  std::uint32_t top = 0, one = 0;  ///< node, and a triangle around it
+  std::vector<ContactRow> rows;
+
+  Tip() {
+    const auto& x = organ.state.positions;
+    for (std::uint32_t i = 0; i < organ.model.surface_node_count; ++i) {
+      if (x[i].z() > x[top].z()) top = i;
+    }
+    while (std::ranges::count(organ.model.triangles[one], top) == 0) ++one;
+  }
+  Vec3 above(double height) const { return organ.state.positions[top] + height * Vec3::UnitZ(); }
+  /// From `from` to `to` over the top within a period, as it begins.
+  void go(double from, double to) {
+    probe.set_pose(pose_at(above(from)));
+    probe.begin(kPeriod);
+    probe.end();
+    probe.set_contacts(contacts_on({one}, Vec3(0, 0, -kRadius), Vec3::UnitZ()));
+    probe.set_pose(pose_at(above(to)));
+    probe.begin(kPeriod);
+    rows.clear();
+    probe.append_rows(0, organ.surface, organ.state, kPeriod, 1.0, rows);
+  }
+  bool held(const std::vector<Vec3>& end) {
+    return probe.hold_crossed(0, organ.surface, organ.state.positions, end, kPeriod, 1.0, rows);
+  }
+};
+
+TEST_CASE(
+    "probe contacts: a round probe has rows on all it touches, not on what it sees from behind") {
+  // Oracle: brute force over all triangles; the search told of one alone.
+  constexpr double kHeight = 0.75 * Tip::kRadius;
+  Tip tip;
+  tip.go(kHeight, kHeight);
+  std::size_t touched = 0;
+  for (std::uint32_t t = 0; t < tip.organ.model.triangles.size(); ++t) {
+    const Vec3 c = tip.above(kHeight);
+    const NearTriangle near = tip.organ.surface.triangle_near(t, c, c, tip.organ.state.positions);
+    touched += near.pair.distance <= Tip::kRadius + ProbeContacts::kTouched && near.facing > 0;
+  }
+  CHECK(touched > 3);
+  CHECK(tip.rows.size() == touched);
+  for (const ContactRow& row : tip.rows) {
+    CHECK(row.gap >= kHeight - Tip::kRadius - 1e-12);
+    CHECK(row.gap <= ProbeContacts::kTouched);
+    CHECK(row.normal.z() > 0.9);
+  }
+}
+
+TEST_CASE("probe contacts: a core that went through the wall gets a row where it did") {
+  // Oracle: analytic. Straight down through the top, tissue at rest; tissue that gives way as far
+  // was not crossed.
+  Tip tip;
+  const double from = 4e-3, to = -3e-3;
+  tip.go(from, to);
+  const std::size_t seen = tip.rows.size();
+  REQUIRE(tip.held(tip.organ.state.positions));
+  CHECK(tip.rows.size() <= seen + 1);
+  const auto row = std::ranges::find_if(tip.rows, [&](const ContactRow& r) {
+    Vec3 tissue = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) tissue += r.weights[k] * tip.organ.state.positions[r.nodes[k]];
+    return (tissue - tip.above(0)).norm() < 1e-6;
+  });
+  REQUIRE(row != tip.rows.end());
+  CHECK(row->gap == Approx(row->normal.z() * from - Tip::kRadius).margin(1e-6));
+  CHECK(row->probe_velocity.z() == Approx((to - from) / kPeriod));
+  auto yielded = tip.organ.state.positions;
+  for (Vec3& x : yielded) x.z() += to - from;
+  CHECK_FALSE(tip.held(yielded));
 }
 
 }  // namespace

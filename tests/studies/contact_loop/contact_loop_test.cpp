@@ -33,6 +33,7 @@ TEST_CASE("contact loop: no ball at any speed is inside the stomach without a co
             run_loop(scene, assets, {0.022, 0, -0.004}, {radius, speed, rate, 250});
         INFO(radius << " m at " << speed << " m/s, " << rate << " Hz");
         CHECK(result.lost == 0);
+        CHECK(result.crossings == 0);
         CHECK(result.truncated == 0);
         inside += result.inside;
       }

@@ -36,7 +36,7 @@ class Restarted final : public runtime::Stage {
 
 struct Seen {
   double before = 0, greatest_after = 0, last = 0;  ///< force on the hand [N]
-  bool touches_at_first = false;
+  double gap_at_first = 1;                          ///< least, of the first search's contacts [m]
   bool said = false;  ///< collision's status told of a probe begun inside
 };
 
@@ -70,7 +70,9 @@ Seen run(const std::string& module, double depth, double silence) {
     seen.last = force;
     // One period for deformation's reset to be heard.
     if (now < back + 0.006) {
-      for (const Contact& c : session.contacts(0).contacts) seen.touches_at_first |= c.gap < 0;
+      for (const Contact& c : session.contacts(0).contacts) {
+        seen.gap_at_first = std::min(seen.gap_at_first, c.gap);
+      }
     }
     const std::string guard = session.health("collision").guard;
     seen.said |= guard.find("first heard of inside") != std::string::npos;
@@ -91,7 +93,8 @@ TEST_CASE(
         INFO(module << " silent for " << silence << " s, " << depth << " m deep: " << seen.before
                     << " N before, " << seen.last << " N after");
         CHECK(seen.before > 0.01);
-        CHECK(seen.touches_at_first);
+        // A contact that held is at 0 but for what the surface moved since, and float32.
+        CHECK(seen.gap_at_first < 1e-6);
         if (module == "deformation") CHECK(seen.said == (depth > 0.0085));  // its centre inside
         CHECK(seen.last == Approx(seen.before).epsilon(0.05));
         CHECK(seen.greatest_after <= 1.1 * seen.before);

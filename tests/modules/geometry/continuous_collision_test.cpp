@@ -1,4 +1,4 @@
-#include "collision/continuous_collision.h"
+#include "modules/geometry/continuous_collision.h"
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -9,8 +9,10 @@
 
 #include "tests/collision/random_shapes.h"
 
-namespace palpate::collision {
+namespace palpate::geometry {
 namespace {
+
+using collision::RandomShapes;
 
 std::filesystem::path data_folder() {
   const char* named = std::getenv("PALPATE_DATA");
@@ -171,4 +173,4 @@ TEST_CASE("continuous collision: features that do not move meet exactly if they 
   CHECK_FALSE(point_triangle_impact(apart, apart));
 }
 
-}  // namespace palpate::collision
+}  // namespace palpate::geometry

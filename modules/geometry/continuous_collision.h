@@ -15,7 +15,7 @@
 
 #include "modules/core/types.h"
 
-namespace palpate::collision {
+namespace palpate::geometry {
 
 inline constexpr double kImpactTolerance = 1e-8;
 inline constexpr int kMaxImpactBoxes = 20'000;
@@ -36,4 +36,4 @@ std::optional<Impact> point_triangle_impact(const FourPoints& start, const FourP
 std::optional<Impact> edge_edge_impact(const FourPoints& start, const FourPoints& end,
                                        double separation = 0);
 
-}  // namespace palpate::collision
+}  // namespace palpate::geometry

@@ -1,10 +1,10 @@
-#include "collision/continuous_collision.h"
+#include "modules/geometry/continuous_collision.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace palpate::collision {
+namespace palpate::geometry {
 namespace {
 
 // Evaluating F at a corner adds up less than 64 roundings of numbers below the largest coordinate
@@ -135,4 +135,4 @@ std::optional<Impact> edge_edge_impact(const FourPoints& start, const FourPoints
   return RootSearch<EdgeEdge>(start, end, separation).run();
 }
 
-}  // namespace palpate::collision
+}  // namespace palpate::geometry

@@ -1,0 +1,189 @@
+#include "deformation/contact/surface_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "modules/core/tolerances.h"
+#include "modules/geometry/continuous_collision.h"
+
+namespace palpate::deformation {
+namespace {
+
+geometry::TriangleCorners corners_of(const geometry::Triangle& t, std::span<const Vec3> x) {
+  return {x[t[0]], x[t[1]], x[t[2]]};
+}
+
+geometry::SegmentAndTriangle closest(const Vec3& a, const Vec3& b,
+                                     const geometry::TriangleCorners& corners) {
+  if (a != b) return geometry::closest_of_segment_and_triangle(a, b, corners);
+  const geometry::PointOnTriangle on_triangle = geometry::closest_on_triangle(a, corners);
+  return {a, on_triangle, (a - on_triangle.point).norm()};
+}
+
+/// May the origin meet what is between these corners, each going from the one to the other?
+bool may_meet(const geometry::TriangleCorners& start, const geometry::TriangleCorners& end) {
+  Vec3 low = start[0], high = start[0];
+  for (int k = 0; k < 3; ++k) {
+    low = low.cwiseMin(start[k]).cwiseMin(end[k]);
+    high = high.cwiseMax(start[k]).cwiseMax(end[k]);
+  }
+  return (low.array() <= kDirectionless).all() && (high.array() >= -kDirectionless).all();
+}
+
+/// Seen from the point, which rests at the origin.
+std::optional<WallCrossing> crossing_of(const geometry::TriangleCorners& start,
+                                        const geometry::TriangleCorners& end) {
+  const Vec3 p = Vec3::Zero();
+  const auto impact = geometry::point_triangle_impact({p, start[0], start[1], start[2]},
+                                                      {p, end[0], end[1], end[2]});
+  if (!impact) return {};
+  WallCrossing crossing;
+  crossing.time = impact->time;
+  const double u = impact->u, v = std::min(impact->v, 1 - impact->u);
+  crossing.weights = {1 - u - v, u, v};
+  geometry::TriangleCorners at;
+  Vec3 way = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    at[k] = start[k] + impact->time * (end[k] - start[k]);
+    way += crossing.weights[k] * (end[k] - start[k]);
+  }
+  crossing.normal = geometry::unit_normal(at);
+  if (!(crossing.normal.dot(way) > 0)) return {};  // the wall comes from behind
+  return crossing;
+}
+
+}  // namespace
+
+SurfaceWalk::SurfaceWalk(const Body& body) : body_(body) {
+  first_triangle_.assign(body.surface_node_count + 1, 0);
+  for (const geometry::Triangle& t : body.triangles) {
+    for (const std::uint32_t node : t) ++first_triangle_[node + 1];
+  }
+  for (std::size_t i = 1; i < first_triangle_.size(); ++i)
+    first_triangle_[i] += first_triangle_[i - 1];
+  node_triangles_.resize(first_triangle_.back());
+  std::vector<std::uint32_t> next = first_triangle_;
+  for (std::uint32_t t = 0; t < body.triangles.size(); ++t) {
+    for (const std::uint32_t node : body.triangles[t]) node_triangles_[next[node]++] = t;
+  }
+  visited_.assign(body.triangles.size(), 0);
+}
+
+std::span<const std::uint32_t> SurfaceWalk::around(std::uint32_t node) const {
+  return std::span(node_triangles_)
+      .subspan(first_triangle_[node], first_triangle_[node + 1] - first_triangle_[node]);
+}
+
+NearTriangle SurfaceWalk::triangle_near(std::uint32_t triangle, const Vec3& a, const Vec3& b,
+                                        std::span<const Vec3> positions) const {
+  const auto corners = corners_of(body_.triangles[triangle], positions);
+  NearTriangle near{triangle, closest(a, b, corners)};
+  if (near.pair.distance > kDirectionless) {
+    near.away = (near.pair.on_segment - near.pair.on_triangle.point) / near.pair.distance;
+    near.facing = near.away.dot(geometry::unit_normal(corners));
+  }
+  return near;
+}
+
+template <class Take>
+void SurfaceWalk::flood(std::span<const std::uint32_t> first, const Take& take) {
+  ++walk_;
+  waiting_.clear();
+  const auto visit = [&](std::uint32_t t) {
+    if (std::exchange(visited_[t], walk_) != walk_ && take(t)) waiting_.push_back(t);
+  };
+  for (const std::uint32_t t : first) visit(t);
+  while (!waiting_.empty()) {
+    const geometry::Triangle nodes = body_.triangles[waiting_.back()];
+    waiting_.pop_back();
+    for (const std::uint32_t node : nodes) {
+      for (const std::uint32_t t : around(node)) visit(t);
+    }
+  }
+}
+
+std::uint32_t SurfaceWalk::nearest_from(const Vec3& a, const Vec3& b,
+                                        std::span<const Vec3> positions,
+                                        std::span<const std::uint32_t> seeds) {
+  std::uint32_t nearest = 0;
+  double distance = std::numeric_limits<double>::infinity();
+  ++walk_;
+  bool nearer = false;
+  const auto visit = [&](std::uint32_t t) {
+    if (std::exchange(visited_[t], walk_) == walk_) return;
+    const double d = closest(a, b, corners_of(body_.triangles[t], positions)).distance;
+    if (!(d < distance)) return;
+    distance = d;
+    nearest = t;
+    nearer = true;
+  };
+  for (const std::uint32_t t : seeds) visit(t);
+  while (std::exchange(nearer, false)) {
+    const geometry::Triangle nodes = body_.triangles[nearest];
+    for (const std::uint32_t node : nodes) {
+      for (const std::uint32_t t : around(node)) visit(t);
+    }
+  }
+  return nearest;
+}
+
+void SurfaceWalk::find(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
+                       std::span<const std::uint32_t> seeds, double reach,
+                       std::vector<NearTriangle>& near) {
+  near.clear();
+  if (seeds.empty()) return;
+  const std::uint32_t nearest = nearest_from(a, b, positions, seeds);
+  first_.assign(seeds.begin(), seeds.end());
+  first_.push_back(nearest);
+  flood(first_, [&](std::uint32_t t) {
+    const NearTriangle found = triangle_near(t, a, b, positions);
+    if (t != nearest && !(found.pair.distance <= reach)) return false;
+    near.push_back(found);
+    return true;
+  });
+  std::ranges::sort(near, {}, &NearTriangle::index);
+}
+
+std::optional<WallCrossing> SurfaceWalk::first_crossing(const Vec3& p0, const Vec3& p1,
+                                                        std::span<const Vec3> start,
+                                                        std::span<const Vec3> end,
+                                                        std::span<const std::uint32_t> seeds) {
+  std::optional<WallCrossing> first;
+  const double way = (p1 - p0).norm();
+  flood(seeds, [&](std::uint32_t t) {
+    geometry::TriangleCorners from = corners_of(body_.triangles[t], start);
+    geometry::TriangleCorners to = corners_of(body_.triangles[t], end);
+    double moved = 0;
+    for (int k = 0; k < 3; ++k) {
+      moved = std::max(moved, (to[k] - from[k]).norm());
+      from[k] -= p0;
+      to[k] -= p1;
+    }
+    const double distance = geometry::closest_on_triangle(Vec3::Zero(), from).point.norm();
+    if (distance > way + moved) return false;
+    if (!may_meet(from, to)) return true;
+    const auto crossing = crossing_of(from, to);
+    if (crossing &&
+        (!first || std::pair(crossing->time, t) < std::pair(first->time, first->triangle))) {
+      first = crossing;
+      first->triangle = t;
+    }
+    return true;
+  });
+  return first;
+}
+
+bool is_behind_nearest(std::span<const NearTriangle> near) {
+  constexpr double kEquallyNear = 1e-9;  // [m]
+  double nearest = std::numeric_limits<double>::infinity(), facing = 0;
+  for (const NearTriangle& n : near) nearest = std::min(nearest, n.pair.distance);
+  for (const NearTriangle& n : near) {
+    if (n.pair.distance > nearest + kEquallyNear) continue;
+    if (std::abs(n.facing) > std::abs(facing)) facing = n.facing;
+  }
+  return facing < 0;
+}
+
+}  // namespace palpate::deformation
