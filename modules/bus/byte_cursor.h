@@ -34,8 +34,9 @@ class Cursor {
     return Cursor(big).four();
   }
   std::int64_t sequence() {
-    const auto high = static_cast<std::int32_t>(four());
-    return std::int64_t{high} * (std::int64_t{1} << 32) + four();
+    const std::uint64_t high = four();
+    const std::uint64_t low = four();
+    return static_cast<std::int64_t>(high << 32 | low);
   }
   std::span<const std::uint8_t> left() const { return bytes_; }
   bool missing() const { return missing_; }

@@ -27,7 +27,8 @@ inline constexpr double kStiffnessTolerance = 1e-6;
 inline constexpr std::size_t kMaxNameBytes = 64;  ///< of a module and a topic
 
 /// What a field must satisfy beside its type. Whatever the rule, floating-point numbers are finite
-/// and at most kMaxMagnitude (but kAge), words are listed ones and texts hold at most kMaxTextBytes and no zero byte.
+/// and at most kMaxMagnitude (but kAge), words are listed ones and texts hold at most kMaxTextBytes
+/// and no zero byte.
 enum class Rule {
   kPlain,
   kFromOne,      ///< ≥ 1

@@ -8,8 +8,9 @@ namespace palpate::messages {
 /// No number in SI units is larger here, and none whose square would overflow is let in.
 inline constexpr double kMaxMagnitude = 1e12;
 
-/// The wire name of the first field that is not acceptable (not finite, beyond kMaxMagnitude, out of range, too long, an
-/// index beyond its list), or nullptr. Rules and names are those of describe.h.
+/// The wire name of the first field that is not acceptable (not finite, beyond kMaxMagnitude, out
+/// of range, too long, an index beyond its list), or nullptr. Rules and names are those of
+/// describe.h.
 template <class Message>
 const char* first_invalid_field(const Message& message);
 

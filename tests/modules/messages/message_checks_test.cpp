@@ -205,9 +205,9 @@ TEST_CASE("message checks: NodePositions", "[messages]") {
     M m = random_message<M>(random);
     m.positions.assign(3 * 20, 0.999f * float{kMaxMagnitude});
     REQUIRE(first_invalid_field(m) == nullptr);
-    m.positions[place] = std::array{std::numeric_limits<float>::infinity(),
-                                    std::numeric_limits<float>::quiet_NaN(),
-                                    -1.001f * float{kMaxMagnitude}}[place % 3];
+    m.positions[place] =
+        std::array{std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(),
+                   -1.001f * float{kMaxMagnitude}}[place % 3];
     CHECK(first_invalid_field(m) != nullptr);
   }
 }
