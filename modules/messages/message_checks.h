@@ -5,8 +5,8 @@
 
 namespace palpate::messages {
 
-/// No number in SI units is larger here, and none whose square would overflow is let in.
-inline constexpr double kMaxMagnitude = 1e12;
+/// Far beyond what anything measures in SI units, and far from where squares overflow.
+inline constexpr double kMaxMagnitude = 1e30;
 
 /// The wire name of the first field that is not acceptable (not finite, beyond kMaxMagnitude, out
 /// of range, too long, an index beyond its list), or nullptr. Rules and names are those of

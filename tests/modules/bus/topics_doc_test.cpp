@@ -86,8 +86,8 @@ TEST_CASE("docs/topics.md: sizes are those of the wire types", "[bus]") {
   CHECK(row_with("haptic_force", bytes(idl::HapticForce()) + " B"));
   CHECK(row_with("session_control", bytes(idl::SessionControl()) + " B"));
   CHECK(row_with("contacts", bytes(idl::Contacts()) + " B \\+ 96 B per contact"));
-  CHECK(node_positions_bytes(550) == "6680");
-  CHECK(node_positions_bytes(19'500) == "234080");
+  CHECK(node_positions_bytes(550) == "6684");
+  CHECK(node_positions_bytes(19'500) == "234084");
   CHECK(row_with("node_positions", "6.7 KB / 234 KB"));
 }
 
