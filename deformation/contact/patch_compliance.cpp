@@ -56,7 +56,7 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   Eigen::Index far = 0;
   const std::size_t reach =
       std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(springs / mass)));
-  if (!model_.is_solid() && reach > 2 * most_nodes_) {
+  if (!model_.is_solid() && shares.stiffness > 0 && reach > 2 * most_nodes_) {
     if (!far_) far_.emplace(model_);
     far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
     far = 3;

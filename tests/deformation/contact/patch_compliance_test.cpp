@@ -188,7 +188,6 @@ TEST_CASE("patch compliance: what goes along beyond a small patch is counted on 
 TEST_CASE("patch compliance: in a single explicit step only masses answer") {
   // Oracle: by hand, Σ b² T²/m, and nothing between rows that share no node.
   const Ball ball;
-  PatchCompliance compliance(ball.model, Neighbours(ball.model, {}), 5);
   Ball drag_free;
   drag_free.model.drag = 0;
   PatchCompliance without_drag(drag_free.model, Neighbours(drag_free.model, {}), 5);
@@ -199,6 +198,16 @@ TEST_CASE("patch compliance: in a single explicit step only masses answer") {
   CHECK(W(0, 0) == Approx(T2 * (0.04 * w[3] + 0.09 * w[7] + 0.25 * w[12])).epsilon(1e-6));
   CHECK(W(1, 1) == Approx(T2 * w[3]).epsilon(1e-6));
   CHECK(W(0, 2) == Approx(0).margin(1e-12));
+  // A touch of more nodes than the patch has asks for those in reach too.
+  ComplianceRow wide{{}, Vec3::UnitZ()};
+  double expected = 0;
+  for (std::uint32_t node = 0; node < 20; ++node) {
+    wide.weights.push_back({node, 0.05});
+    expected += T2 * 0.05 * 0.05 * w[node];
+  }
+  const auto of_wide = without_drag.solve(ball.state.positions, std::vector{wide},
+                                          {0.004, 1, false}, {}, ball.add());
+  CHECK(of_wide(0, 0) == Approx(expected).epsilon(1e-6));
 }
 
 }  // namespace
