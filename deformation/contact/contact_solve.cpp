@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/contact/gauss_seidel.h"
 #include "deformation/contact/independent_contacts.h"
 
 namespace palpate::deformation {
@@ -41,9 +42,7 @@ class Solver {
     prepared_.resize(rows.size());
     for (std::size_t r = 0; r < rows.size(); ++r) prepare(rows[r], h, prepared_[r]);
     for (std::size_t r = 0; start == WarmStart::kToApply && r < rows.size(); ++r) {
-      // Start values are only a guess, but must lie in the cone of this row.
-      rows[r].tangential_impulse -= rows[r].normal * rows[r].normal.dot(rows[r].tangential_impulse);
-      clamp_to_cone(rows[r]);
+      take_guess(rows[r]);
       const Vec3 impulse = rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal;
       add_impulse(r, impulse, prepared_[r].volume_coupling.dot(impulse));
     }
@@ -52,12 +51,9 @@ class Solver {
 
   /// One visit of every contact; the largest change of a contact velocity [m/s].
   double sweep() {
-    double change = 0;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      if (prepared_[r].tangential_inverse_mass == 0) continue;  // all nodes fixed
-      change = std::max(change, relax_normal(r));
-      if (rows_[r].friction > 0) change = std::max(change, relax_friction(r));
-    }
+    const double change = visit_all(
+        rows_, prepared_, [this](std::size_t r) { return relax_normal(r); },
+        [this](std::size_t r) { return relax_friction(r); });
     ++sweeps_;
     return volume_ != nullptr && sigma_is_held_ ? std::max(change, refresh_sigma()) : change;
   }
@@ -91,12 +87,6 @@ class Solver {
     }
     prepared.tangential_inverse_mass = across;
     prepared.allowed_approach = allowed_approach(row, h) + row.normal.dot(row.probe_velocity);
-  }
-
-  static void clamp_to_cone(ContactRow& row) {
-    const double limit = row.friction * row.normal_impulse;
-    const double norm = row.tangential_impulse.norm();
-    if (norm > limit) row.tangential_impulse *= norm > 0 ? limit / norm : 0;
   }
 
   /// Newton on the volume's one equation, F(σ) = rate + g·w(σ) − gᵀWg σ, piecewise linear in σ
@@ -141,24 +131,18 @@ class Solver {
     const PreparedRow& prepared = prepared_[r];
     const double separation = prepared.allowed_approach + sigma_ * prepared.normal_coupling -
                               row.normal.dot(tissue_velocity(r));
-    if (row.normal_impulse == 0 && separation >= 0) return 0;
-    const double wanted = row.normal_impulse - separation / prepared.normal_inverse_mass;
-    const double change = std::max(0.0, wanted) - row.normal_impulse;
-    row.normal_impulse += change;
+    const double change = press(row, separation, prepared.normal_inverse_mass);
+    if (change == 0) return 0;
     add_impulse(r, -change * row.normal, -change * prepared.normal_coupling);
     return std::abs(change) * prepared.normal_inverse_mass;
   }
 
   double relax_friction(std::size_t r) {
     ContactRow& row = rows_[r];
-    if (row.normal_impulse == 0 && row.tangential_impulse.isZero(0)) return 0;
+    if (!may_rub(row)) return 0;
     const Vec3 velocity =
         tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
-    const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
-    const Vec3 before = row.tangential_impulse;
-    row.tangential_impulse -= sliding / prepared_[r].tangential_inverse_mass;
-    clamp_to_cone(row);
-    const Vec3 change = row.tangential_impulse - before;
+    const Vec3 change = rub(row, velocity, prepared_[r].tangential_inverse_mass);
     add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
     return change.norm() * prepared_[r].tangential_inverse_mass;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "deformation/contact/gauss_seidel.h"
 #include "deformation/volume/volume_constraint.h"
 
 namespace palpate::deformation {
@@ -48,13 +49,9 @@ class Solver {
 
   /// One visit of every contact; the largest change of a contact velocity [m/s].
   double sweep() {
-    double change = 0;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      if (prepared_[r].tangential_inverse_mass == 0) continue;  // all nodes fixed
-      change = std::max(change, relax_normal(r));
-      if (rows_[r].friction > 0) change = std::max(change, relax_friction(r));
-    }
-    return change;
+    return visit_all(
+        rows_, prepared_, [this](std::size_t r) { return relax_normal(r); },
+        [this](std::size_t r) { return relax_friction(r); });
   }
 
   void apply_volumes() {
@@ -110,17 +107,10 @@ class Solver {
     prepared.tangential_inverse_mass = inverse;
   }
 
-  static void clamp_to_cone(OrganContactRow& row) {
-    const double limit = row.friction * row.normal_impulse, norm = row.tangential_impulse.norm();
-    if (norm > limit) row.tangential_impulse *= norm > 0 ? limit / norm : 0;
-  }
-
-  /// Start values are only a guess, but must lie in the cone of this row.
   void start_from_guess(std::size_t r) {
     OrganContactRow& row = rows_[r];
     if (row.applied) return;
-    row.tangential_impulse -= row.normal * row.normal.dot(row.tangential_impulse);
-    clamp_to_cone(row);
+    take_guess(row);
     add_impulse(r, row.impulse());
   }
 
@@ -151,22 +141,16 @@ class Solver {
     OrganContactRow& row = rows_[r];
     const PreparedRow& prepared = prepared_[r];
     const double parting = row.normal.dot(velocity(r)) + row.approach;
-    if (row.normal_impulse == 0 && parting >= 0) return 0;
-    const double wanted = row.normal_impulse - parting / prepared.normal_inverse_mass;
-    const double change = std::max(0.0, wanted) - row.normal_impulse;
-    row.normal_impulse += change;
+    const double change = press(row, parting, prepared.normal_inverse_mass);
+    if (change == 0) return 0;
     add_impulse(r, change * row.normal);
     return std::abs(change) * prepared.normal_inverse_mass;
   }
 
   double relax_friction(std::size_t r) {
     OrganContactRow& row = rows_[r];
-    if (row.normal_impulse == 0 && row.tangential_impulse.isZero(0)) return 0;
-    const Vec3 motion = velocity(r), sliding = motion - row.normal * row.normal.dot(motion);
-    const Vec3 before = row.tangential_impulse;
-    row.tangential_impulse -= sliding / prepared_[r].tangential_inverse_mass;
-    clamp_to_cone(row);
-    const Vec3 change = row.tangential_impulse - before;
+    if (!may_rub(row)) return 0;
+    const Vec3 change = rub(row, velocity(r), prepared_[r].tangential_inverse_mass);
     add_impulse(r, change);
     return change.norm() * prepared_[r].tangential_inverse_mass;
   }

@@ -1,0 +1,73 @@
+// One visit of a contact by projected Gauss–Seidel, whatever its row's places are and whatever
+// answers its impulses. A row has `normal`, `normal_impulse` ≥ 0, `tangential_impulse` and
+// `friction`.
+#pragma once
+
+#include <algorithm>
+
+#include "modules/core/types.h"
+
+namespace palpate::deformation {
+
+/// Coulomb: |tangential| ≤ friction · normal.
+template <class Row>
+void clamp_to_cone(Row& row) {
+  const double limit = row.friction * row.normal_impulse, norm = row.tangential_impulse.norm();
+  if (norm > limit) row.tangential_impulse *= norm > 0 ? limit / norm : 0;
+}
+
+/// Start values are only a guess, but must lie in the cone of this row.
+template <class Row>
+void take_guess(Row& row) {
+  row.tangential_impulse -= row.normal * row.normal.dot(row.tangential_impulse);
+  clamp_to_cone(row);
+}
+
+/// 0 ≤ normal impulse ⊥ separation ≥ 0.
+/// @param separation    speed at which it opens [m/s]
+/// @param inverse_mass  along the normal [1/kg] > 0
+/// @returns the change of the normal impulse [N·s]
+template <class Row>
+double press(Row& row, double separation, double inverse_mass) {
+  if (row.normal_impulse == 0 && separation >= 0) return 0;
+  const double wanted = row.normal_impulse - separation / inverse_mass;
+  const double change = std::max(0.0, wanted) - row.normal_impulse;
+  row.normal_impulse += change;
+  return change;
+}
+
+/// Stops what slides, within the cone.
+/// @param velocity      of one side to the other; what is along the normal does not matter [m/s]
+/// @param inverse_mass  across the normal [1/kg] > 0
+/// @returns the change of the tangential impulse [N·s]
+template <class Row>
+Vec3 rub(Row& row, const Vec3& velocity, double inverse_mass) {
+  const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
+  const Vec3 before = row.tangential_impulse;
+  row.tangential_impulse -= sliding / inverse_mass;
+  clamp_to_cone(row);
+  return row.tangential_impulse - before;
+}
+
+/// Whether rubbing may change anything.
+template <class Row>
+bool may_rub(const Row& row) {
+  return row.normal_impulse != 0 || !row.tangential_impulse.isZero(0);
+}
+
+/// One visit of every contact.
+/// @param relax_normal, relax_friction  of row r: the change of a contact velocity [m/s]
+/// @returns the largest change [m/s]
+template <class Rows, class Prepared, class Normal, class Friction>
+double visit_all(const Rows& rows, const Prepared& prepared, const Normal& relax_normal,
+                 const Friction& relax_friction) {
+  double change = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (prepared[r].tangential_inverse_mass == 0) continue;  // all nodes fixed
+    change = std::max(change, relax_normal(r));
+    if (rows[r].friction > 0) change = std::max(change, relax_friction(r));
+  }
+  return change;
+}
+
+}  // namespace palpate::deformation
