@@ -93,8 +93,9 @@ TEST_CASE(
         INFO(module << " silent for " << silence << " s, " << depth << " m deep: " << seen.before
                     << " N before, " << seen.last << " N after");
         CHECK(seen.before > 0.01);
-        // A contact that held is at 0 but for what the surface moved since, and float32.
-        CHECK(seen.gap_at_first < 1e-6);
+        // A contact that held is at 0, but for node positions that travel as float32: half an ulp
+        // of 0.13 m is 7e-9 m.
+        CHECK(seen.gap_at_first < 1e-8);
         if (module == "deformation") CHECK(seen.said == (depth > 0.0085));  // its centre inside
         CHECK(seen.last == Approx(seen.before).epsilon(0.05));
         CHECK(seen.greatest_after <= 1.1 * seen.before);
