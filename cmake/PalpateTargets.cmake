@@ -144,7 +144,6 @@ function(palpate_tests name)
   # A test's own code is compiled often and run once; what it judges keeps the preset's optimization.
   target_compile_options(${name}_tests PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(${name}_tests PRIVATE ${ARG_DEPENDS} Catch2::Catch2WithMain palpate_warnings)
-  set_target_properties(${name}_tests PROPERTIES UNITY_BUILD OFF)
   palpate_precompile(${name}_tests tests)
   target_compile_definitions(${name}_tests PRIVATE
     PALPATE_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PALPATE_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")

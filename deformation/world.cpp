@@ -9,20 +9,16 @@
 
 #include "deformation/contact/contact_law.h"
 #include "deformation/organ_contacts.h"
-#include "deformation/springs/patch_springs.h"
-#include "deformation/springs/spring_forces.h"
+#include "deformation/world_organ.h"
 #include "modules/core/error.h"
 #include "modules/scene/models.h"
 
 namespace palpate::deformation {
 namespace {
 
-constexpr double kLeastStep = 1e-6;  // [s]
 /// The contact model is believed within this part of the mean edge: the touched nodes stay the
 /// same.
 constexpr double kValidityOfEdge = 0.5;
-/// Nodes that a law's compliance is taken from. Nearly incompressible tissue reaches further.
-constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
 /// Forces that change faster than this part of themselves in a period are not taken to go on so.
 constexpr double kMostGrowth = 0.5;
 /// A law is used for up to a period and a half more: a change over fewer periods than that, which a
@@ -32,86 +28,6 @@ constexpr std::size_t kGrowthPeriods = 3;
 constexpr double kFarthestContact = 10;
 /// How often a step is halved so that a probe does not go through the wall.
 constexpr int kMostSplits = 5;
-
-struct WorldOrgan {
-  std::string name;
-  SimulatedOrgan simulated;
-  IntegratorChoice integrator;
-  std::uint32_t generation = 1;
-  std::vector<ContactRow> rows = {};
-  double mean_edge = 0;
-  bool keeps_volume = false;  ///< by springs' contents: at once, wherever it is touched
-  bool replaced = false;      ///< its state, at the end of the last advance
-  std::unique_ptr<PatchCompliance> compliance = nullptr;
-  std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
-  std::unique_ptr<SurfaceWalk> surface = nullptr;
-  VolumeGradient volume = {};  ///< buffer of contact_compliance()
-
-  /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N].
-  Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period) {
-    const OrganState& state = simulated.state();
-    std::span<const Vec3> gradient;
-    if (keeps_volume) {
-      evaluate_volume(simulated.model(), state.positions, volume);
-      gradient = volume.gradient;
-    }
-    const PeriodSteps steps{period, simulated.substeps(period), simulated.dynamics().is_implicit()};
-    Eigen::MatrixXd own = simulated.dynamics().compliance(touched, steps);
-    if (own.size() > 0) return own;
-    return compliance->solve(state.positions, touched, steps, gradient,
-                             [&](const Patch& patch, double stiffness_share, double damping_share,
-                                 Eigen::MatrixXf& sum) {
-                               if (springs) {
-                                 springs->add(state.positions, patch, stiffness_share,
-                                              damping_share, sum);
-                               } else {
-                                 simulated.dynamics().add_stiffness(patch, stiffness_share, sum);
-                               }
-                             });
-  }
-};
-
-/// The organ as it is stepped: contacts with organs take symplectic Euler alone.
-scene::Organ stepped_organ(const scene::Scene& scene, std::size_t index) {
-  scene::Organ organ = scene.organs[index];
-  const bool is_free = organ.integrator == scene::Integrator::kAutomatic;
-  if (scene.contacts.any() && is_free && scene::format_of(organ.model).has_integrator) {
-    organ.integrator = scene::Integrator::kSymplecticEuler;
-  }
-  return organ;
-}
-
-WorldOrgan make_organ(const scene::Organ& organ, const Vec3& gravity, double period,
-                      const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding) {
-  auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
-  auto dynamics = make_dynamics(organ, *model, period, runner);
-  if (dynamics->largest_step() < kLeastStep) {
-    std::ostringstream message;
-    message << "organ '" << organ.name << "': its largest stable step is "
-            << dynamics->largest_step() << " s, less than " << kLeastStep
-            << " s; soften the tissue or even out the mesh ('nodes')";
-    throw InputError(message.str());
-  }
-  const IntegratorChoice integrator = choose_integrator(organ, *model, period);
-  WorldOrgan made{
-      .name = organ.name,
-      .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
-      .integrator = integrator,
-      .mean_edge = geometry::mean_edge_length(shape.surface),
-  };
-  const OrganModel& kept = made.simulated.model();
-  made.surface = std::make_unique<SurfaceWalk>(kept);
-  made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;
-  std::vector<geometry::Tetrahedron> tetrahedra;
-  if (kept.is_solid()) {
-    tetrahedra = kept.mesh().tetrahedra;
-  } else {
-    made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
-  }
-  made.compliance = std::make_unique<PatchCompliance>(
-      kept, Neighbours(kept, tetrahedra), kept.is_solid() ? kPatchOfSolid : kPatchOfSprings);
-  return made;
-}
 
 }  // namespace
 
@@ -302,9 +218,7 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
-    impl_->organs.push_back(make_organ(stepped_organ(scene, i), scene.gravity,
-                                       1 / scene.rates.deformation, rest_shapes[i], runner,
-                                       guarding));
+    impl_->organs.push_back(make_organ(scene, i, rest_shapes[i], runner, guarding));
   }
   if (scene.contacts.any()) {
     const scene::Misfit misfit = scene::misfit_of_contacts(scene);

@@ -6,7 +6,7 @@
 namespace palpate::geometry {
 namespace {
 
-constexpr double kDegenerateArea = 1e-12;
+constexpr double kFlatArea = 1e-12;
 
 PointOnTriangle on_edge(const TriangleCorners& triangle, int from, int to, double fraction) {
   PointOnTriangle result;
@@ -107,7 +107,7 @@ Vec3 unit_normal(const TriangleCorners& triangle) {
   const double longest =
       std::max({ab.squaredNorm(), ac.squaredNorm(), (triangle[2] - triangle[1]).squaredNorm()});
   const double norm = normal.norm();
-  if (!(norm > 2 * kDegenerateArea * longest) || !std::isfinite(norm)) return Vec3::Zero();
+  if (!(norm > 2 * kFlatArea * longest) || !std::isfinite(norm)) return Vec3::Zero();
   return normal / norm;
 }
 

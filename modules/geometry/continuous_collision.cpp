@@ -12,7 +12,7 @@ namespace {
 constexpr double kRounding = 64 * 0.5 * std::numeric_limits<double>::epsilon();
 
 /// [lower, lower + width] per argument t, u, v; all dyadic.
-struct Box {
+struct ParameterBox {
   std::array<double, 3> lower{0, 0, 0};
   std::array<double, 3> width{1, 1, 1};
 };
@@ -51,13 +51,13 @@ class RootSearch {
   }
 
   std::optional<Impact> run() {
-    std::array<Box, 256> stack;  // depth first: at most one waiting box per halving
+    std::array<ParameterBox, 256> stack;  // depth first: at most one waiting box per halving
     std::size_t waiting = 1;
-    stack[0] = Box();
+    stack[0] = ParameterBox();
     std::optional<Impact> earliest;
     int visited = 0;
     while (waiting > 0) {
-      const Box box = stack[--waiting];
+      const ParameterBox box = stack[--waiting];
       if (earliest && box.lower[0] >= earliest->time) continue;
       const bool undecided = ++visited > kMaxImpactBoxes || waiting + 2 > stack.size();
       bool is_small = false;
@@ -67,9 +67,9 @@ class RootSearch {
         continue;
       }
       const int split = widest(box);
-      Box early = box;
+      ParameterBox early = box;
       early.width[split] *= 0.5;
-      Box late = early;
+      ParameterBox late = early;
       late.lower[split] += early.width[split];
       stack[waiting++] = late;
       stack[waiting++] = early;
@@ -90,7 +90,7 @@ class RootSearch {
     }
   }
 
-  bool may_hold_root(const Box& box, bool& is_small) const {
+  bool may_hold_root(const ParameterBox& box, bool& is_small) const {
     if (Pair::kTriangular && box.lower[1] + box.lower[2] > 1) return false;
     Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
     for (int side = 0; side < 2; ++side) {
@@ -108,7 +108,7 @@ class RootSearch {
     return (lowest.array() <= reach_).all() && (highest.array() >= -reach_).all();
   }
 
-  int widest(const Box& box) const {
+  int widest(const ParameterBox& box) const {
     int best = 0;
     for (int k = 1; k < 3; ++k) {
       if (box.width[k] * slopes_[k] > box.width[best] * slopes_[best]) best = k;

@@ -4,11 +4,11 @@
 #include <functional>
 
 #include "palpate/session/in_process.h"
+#include "studies/report/progress.h"
 
 namespace palpate::certify {
 
-/// Asked now and then; may throw.
-using KeepGoing = std::function<void()>;
+using report::KeepGoing;
 
 /// Where the scene's own motion brings the probe to an organ first.
 struct Place {

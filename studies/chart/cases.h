@@ -16,6 +16,7 @@
 #include <optional>
 
 #include "studies/chart/fidelity.h"
+#include "studies/report/progress.h"
 
 namespace palpate::chart {
 
@@ -56,8 +57,7 @@ struct Measurement {
   std::vector<Sample> samples;
 };
 
-/// Asked at every period; may throw to end a run.
-using KeepGoing = std::function<void()>;
+using report::KeepGoing;
 
 /// Who knows the answers.
 enum class Reference {

@@ -12,6 +12,9 @@ namespace palpate::report {
 struct Stopped {};
 inline constexpr int kExitStopped = 130;  ///< exit code of it: Ctrl-C as shells count it
 
+/// Asked now and then by long work; throws to end it.
+using KeepGoing = std::function<void()>;
+
 class Progress {
  public:
   /// @param stop  true as soon as somebody wants the job to end

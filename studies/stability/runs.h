@@ -3,12 +3,12 @@
 
 #include <functional>
 
+#include "studies/report/progress.h"
 #include "studies/stability/scheme.h"
 
 namespace palpate::stability {
 
-/// Asked now and then; may throw to end a run.
-using KeepGoing = std::function<void()>;
+using report::KeepGoing;
 
 /// What of a body must not grow.
 enum class Energy {

@@ -8,8 +8,6 @@
 namespace palpate::collision {
 namespace {
 
-constexpr std::size_t kMostContacts = 1024;
-
 FoundContact contact(std::uint32_t organ, std::uint32_t triangle, const Vec3& weights, double gap) {
   FoundContact result;
   result.organ = organ;

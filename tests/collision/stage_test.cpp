@@ -5,6 +5,7 @@
 
 #include "modules/bus/memory_bus.h"
 #include "modules/geometry/primitives.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using collision::CollisionStage;
@@ -12,7 +13,6 @@ using collision::CollisionStage;
 namespace {
 
 constexpr double kRadius = 0.05;
-constexpr std::int64_t kMs = 1'000'000;
 
 /// A ball that somebody publishes, and a finger over it.
 struct Session {

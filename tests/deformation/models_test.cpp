@@ -9,7 +9,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kPeriod = 4e-3;  // [s]
+using testing::kPeriod;
 
 TEST_CASE("models: deformation and scene have a row each for the same words, in the same order") {
   // Oracle: the other table.

@@ -16,8 +16,7 @@ namespace {
 
 using testing::ball_organ;
 using testing::kBallRadius;
-
-constexpr double kPeriod = 4e-3;
+using testing::kPeriod;
 
 /// Of all surfaces, together and each with itself.
 bool any_triangles_cross(const std::vector<std::pair<std::span<const Vec3>, const Body*>>& organs) {

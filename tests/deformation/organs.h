@@ -16,6 +16,8 @@ using rigs::ball_organ;
 using rigs::kBallRadius;
 using rigs::plate_contacts;
 
+inline constexpr double kPeriod = 4e-3;  ///< of an advance [s]
+
 inline OrganModel ball_model(int levels, const scene::Organ& organ = ball_organ(),
                              const Vec3& gravity = Vec3::Zero()) {
   return build_organ_model(organ, gravity, geometry::make_ball(kBallRadius, levels));
@@ -29,6 +31,15 @@ inline SymplecticEuler constrained(const OrganModel& model, int corrections = 0)
 /// Symplectic Euler of the springs alone.
 inline SymplecticEuler springs_alone(const OrganModel& model) {
   return {model, std::make_unique<NoVolume>(model)};
+}
+
+/// Of all nodes [kg·m/s].
+inline Vec3 momentum(const OrganModel& model, const OrganState& state) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    sum += model.masses[i] * state.velocities[i];
+  }
+  return sum;
 }
 
 inline scene::Scene ball_scene(std::size_t probes, const scene::Organ& organ = ball_organ()) {

@@ -10,7 +10,7 @@ using namespace palpate::deformation;
 
 namespace {
 
-constexpr double kPeriod = 4e-3;
+using testing::kPeriod;
 
 struct Session {
   scene::Scene scene = testing::ball_scene(1);

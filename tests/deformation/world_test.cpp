@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "modules/core/error.h"
 #include "organs.h"
 
 namespace palpate::deformation {
@@ -13,9 +12,8 @@ namespace {
 using testing::ball_organ;
 using testing::ball_scene;
 using testing::kBallRadius;
+using testing::kPeriod;
 using testing::plate_contacts;
-
-constexpr double kPeriod = 4e-3;
 
 DeformationWorld ball_world(int levels, std::size_t probes,
                             const scene::Organ& organ = ball_organ()) {
@@ -198,18 +196,6 @@ TEST_CASE("deformation world: the topology names nodes, triangles, springs and f
   }
   CHECK(structural == 3 * 162 - 6);
   CHECK(inner == 162);
-}
-
-TEST_CASE("deformation world: an organ that would need steps below 1 µs is refused by name") {
-  // Oracle: definition.
-  auto organ = ball_organ();
-  organ.tissue.youngs_modulus = 1e7;
-  organ.tissue.wall_thickness = 0.05;
-  organ.tissue.density = 100;
-  organ.integrator = scene::Integrator::kSymplecticEuler;
-  auto tiny = geometry::make_ball(1e-4, 3);
-  CHECK_THROWS_WITH(DeformationWorld(ball_scene(1, organ), {tiny}),
-                    Catch::Contains("organ 'ball': its largest stable step is"));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ using Catch::Contains;
 
 TEST_CASE("replay: a recording without a scene or motion is refused by name") {
   // Oracle: the messages.
-  const testing::BallScene scene;
+  const palpate::testing::BallScene scene;
   const auto file = scene.folder() / "empty.mcap";
   recording::McapWriter(file).close();
   std::ostringstream out, log;

@@ -10,7 +10,7 @@ using Catch::Contains;
 namespace {
 
 /// A session of one organ, one probe and two modules, some seconds old.
-SessionTally some_tally() {
+SessionTally stomach_tally() {
   scene::Scene scene;
   scene.organs.resize(1);
   scene.organs[0].name = "stomach";
@@ -51,7 +51,7 @@ SessionTally some_tally() {
 
 TEST_CASE("status line: one line with time, speed, volume, force, rates and troubles") {
   // Oracle: the numbers given.
-  const auto line = status_line(some_tally());
+  const auto line = status_line(stomach_tally());
   CHECK(std::count(line.begin(), line.end(), '\n') == 0);
   CHECK_THAT(line, Contains("12.0 s") && Contains("real time 0.97") &&
                        Contains("V/V0 stomach 1.000050") && Contains("force finger 0.500 N") &&
@@ -63,7 +63,7 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
   // Oracle: the numbers given.
   SessionEnd end{"stomach_probe", 12, 12.1, {{"haptics", "[haptics] info: bye"}}, {}, false};
   end.failures["collision"] = "killed by signal 9 (Killed)";
-  const auto text = summary(some_tally(), end);
+  const auto text = summary(stomach_tally(), end);
   CHECK(std::count(text.begin(), text.end(), '\n') <= 24);
   CHECK_THAT(text, Contains("scene stomach_probe: 12.0 s in 12.1 s") &&
                        Contains("real-time factor 0.970") &&
@@ -81,7 +81,7 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
 
 TEST_CASE("summary: in lockstep speed is simulated over wall time, and nobody is late") {
   // Oracle: the numbers given.
-  const auto text = summary(some_tally(), {"stomach_probe", 12, 4, {}, {}, true});
+  const auto text = summary(stomach_tally(), {"stomach_probe", 12, 4, {}, {}, true});
   CHECK_THAT(text, Contains("12.0 s in 4.0 s") && Contains("real-time factor 3.000") &&
                        Contains("haptics      11994 cycles\n") && Contains("3000 taken"));
   CHECK_THAT(text, !Contains("on time") && !Contains("lateness"));

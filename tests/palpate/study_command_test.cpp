@@ -9,7 +9,7 @@
 
 using namespace palpate;
 using Catch::Contains;
-using testing::type;
+using palpate::testing::type;
 
 TEST_CASE("study command: a program that is missing is named") {
   // Oracle: the message text.

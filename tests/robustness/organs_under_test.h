@@ -9,13 +9,17 @@
 
 namespace palpate::deformation::testing {
 
-inline constexpr double kPeriod = 4e-3;  ///< of an advance [s]
-
 inline SimulatedOrgan simulate(const scene::Organ& organ, const geometry::OrganShape& shape,
                                const Vec3& gravity = Vec3::Zero()) {
   auto model = std::make_unique<const OrganModel>(build_organ_model(organ, gravity, shape));
   auto dynamics = make_dynamics(organ, *model, kPeriod);
   return {organ, std::move(model), std::move(dynamics)};
+}
+
+inline scene::Organ ball_with(scene::Integrator integrator) {
+  auto organ = testing::ball_organ();
+  organ.integrator = integrator;
+  return organ;
 }
 
 inline SimulatedOrgan simulated_ball(int levels, const scene::Organ& organ = ball_organ()) {

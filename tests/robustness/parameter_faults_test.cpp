@@ -11,16 +11,11 @@
 namespace palpate::deformation {
 namespace {
 
+using testing::ball_with;
 using testing::run;
 using testing::shape_error;
 using testing::simulated_ball;
 using testing::volume_error;
-
-scene::Organ ball_with(scene::Integrator integrator) {
-  auto organ = testing::ball_organ();
-  organ.integrator = integrator;
-  return organ;
-}
 
 double energy(const OrganModel& model, OrganDynamics& dynamics, const OrganState& state) {
   double sum = dynamics.elastic_energy(state);

@@ -8,6 +8,7 @@
 namespace palpate::deformation {
 namespace {
 
+using testing::ball_with;
 using testing::run;
 using testing::shape_error;
 using testing::simulated_ball;
@@ -16,12 +17,6 @@ using testing::volume_error;
 constexpr double kBackTime = 5.0;    // [s]
 constexpr double kBackShape = 2e-3;  // 0.16 mm
 constexpr double kBackVolume = 1e-8;
-
-scene::Organ ball_with(scene::Integrator integrator) {
-  auto organ = testing::ball_organ();
-  organ.integrator = integrator;
-  return organ;
-}
 
 scene::Integrator any_integrator() {
   return GENERATE(scene::Integrator::kSymplecticEuler, scene::Integrator::kBackwardEuler);

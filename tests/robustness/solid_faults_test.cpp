@@ -15,9 +15,9 @@ using testing::shape_error;
 
 const std::string kSolids[] = {"corotational", "nodal_pressure", "xpbd_tetrahedra",
                                "quadratic_elements"};
-constexpr double kBackTime = 3.0;    // [s]
-constexpr double kBackShape = 2e-3;  // 0.2 mm
-constexpr double kBackVolume = 1e-4;
+constexpr double kSolidBackTime = 3.0;    // [s]
+constexpr double kSolidBackShape = 2e-3;  // 0.2 mm
+constexpr double kSolidBackVolume = 1e-4;
 
 /// A free cube of 10 cm about the origin.
 SimulatedOrgan cube(const std::string& model) {
@@ -34,18 +34,18 @@ OrganState changed(const SimulatedOrgan& organ, const Change& change) {
   return state;
 }
 
-/// The guarded organ from such a state: finite, and back in its shape after kBackTime.
+/// The guarded organ from such a state: finite, and back in its shape after kSolidBackTime.
 testing::Story endure(const std::string& model, const char* name, const Change& change) {
   auto organ = cube(model);
   organ.put(changed(organ, change));
-  const auto story = run(organ, kBackTime);
+  const auto story = run(organ, kSolidBackTime);
   INFO(model << ", " << name << ": shape " << shape_error(organ) << ", volume "
              << testing::volume_error(organ) << ", fastest " << story.fastest << " m/s, replaced "
              << story.replaced << ", reason " << int(story.first_reason));
   CHECK(story.finite);
   CHECK(story.to_rest == 0);
-  CHECK(shape_error(organ) < kBackShape);
-  CHECK(testing::volume_error(organ) < kBackVolume);
+  CHECK(shape_error(organ) < kSolidBackShape);
+  CHECK(testing::volume_error(organ) < kSolidBackVolume);
   return story;
 }
 

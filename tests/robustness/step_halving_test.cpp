@@ -102,24 +102,24 @@ TEST_CASE("step halving: modes move exactly while nothing touches, so there is n
 }
 
 /// A standing organ pressed by a plate that comes down at 5 cm/s, no shock at the start.
-std::vector<Vec3> press(OrganDynamics& dynamics, const OrganModel& model, int steps) {
-  constexpr double kSpeed = 0.05;
+std::vector<Vec3> press_down(OrganDynamics& dynamics, const OrganModel& model, int steps) {
+  constexpr double kPlateSpeed = 0.05;
   const double h = kTime / steps;
   OrganState state = rest_state(model);
   std::vector<ContactRow> rows;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     const double height = state.positions[i].z() / testing::kBallRadius + 1;
-    state.velocities[i].z() = -kSpeed * height / 2;
+    state.velocities[i].z() = -kPlateSpeed * height / 2;
   }
   for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
     if (state.positions[i].z() < testing::kBallRadius - 1e-9) continue;
     ContactRow& row = rows.emplace_back();
     row.nodes = {i, i, i};
     row.weights = Vec3::UnitX();
-    row.probe_velocity = Vec3(0, 0, -kSpeed);
+    row.probe_velocity = Vec3(0, 0, -kPlateSpeed);
   }
   for (int s = 0; s < steps; ++s) {
-    const double plate = testing::kBallRadius - kSpeed * h * s;
+    const double plate = testing::kBallRadius - kPlateSpeed * h * s;
     for (ContactRow& row : rows) row.gap = plate - state.positions[row.nodes[0]].z();
     dynamics.step(h, rows, state);
   }
@@ -132,7 +132,7 @@ TEST_CASE("step halving: modes under a plate are of first order") {
   organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, -0.049)});
   const auto model = build_organ_model(organ, Vec3::Zero(), testing::compact_shape(organ.model));
   const auto dynamics = make_dynamics(organ, model, testing::kPeriod);
-  check_first_order(differences(press, *dynamics, model, 200), "modal");
+  check_first_order(differences(press_down, *dynamics, model, 200), "modal");
 }
 
 TEST_CASE("step halving: symplectic Euler's energy swings with the step but does not drift") {

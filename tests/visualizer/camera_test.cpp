@@ -1,21 +1,11 @@
 #include "visualizer/camera.h"
+#include "tests/visualizer/fake_session.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 using namespace palpate;
 using namespace palpate::visualizer;
-
-namespace {
-
-Camera skewed() {
-  Camera camera;
-  camera.position = Vec3(0.3, -0.4, 0.2);
-  camera.target = Vec3(0.02, 0.03, -0.05);
-  return camera;
-}
-
-}  // namespace
 
 TEST_CASE("camera: the frontal camera shows x to the right and z up", "[visualizer][analytic]") {
   // Oracle: analytic; looking along +y.
@@ -44,7 +34,7 @@ TEST_CASE("camera: the frontal camera holds the whole ball, and not much more",
 
 TEST_CASE("camera: unproject is the inverse of project", "[visualizer][analytic]") {
   // Oracle: analytic inverse; double precision.
-  const Camera camera = skewed();
+  const Camera camera = testing::skewed_camera();
   for (const Vec3& p : {Vec3(0, 0, 0), Vec3(0.1, 0.05, -0.1), Vec3(-0.05, 0.2, 0.1)}) {
     const auto pixel = project(camera, p);
     REQUIRE(pixel);
@@ -55,7 +45,7 @@ TEST_CASE("camera: unproject is the inverse of project", "[visualizer][analytic]
 TEST_CASE("camera: a pixel at the view's upper edge lies at half the view angle",
           "[visualizer][analytic]") {
   // Oracle: trigonometry.
-  const Camera camera = skewed();
+  const Camera camera = testing::skewed_camera();
   const Vec3 p = unproject(camera, {camera.width / 2.0, double(camera.height), 1.0});
   const double angle = std::acos((p - camera.position).normalized().dot(camera.view_direction()));
   CHECK(angle == Approx(0.5 * camera.view_angle));
@@ -63,7 +53,7 @@ TEST_CASE("camera: a pixel at the view's upper edge lies at half the view angle"
 
 TEST_CASE("camera: points behind the eye have no pixel", "[visualizer]") {
   // Oracle: the stated rule.
-  const Camera camera = skewed();
+  const Camera camera = testing::skewed_camera();
   CHECK_FALSE(project(camera, camera.position - camera.view_direction()));
   CHECK_FALSE(project(camera, camera.position));
 }
@@ -87,7 +77,7 @@ TEST_CASE("camera: orbit keeps the distance, stays off the poles, and follows th
 
 TEST_CASE("camera: pan carries the target's plane along with the mouse", "[visualizer][analytic]") {
   // Oracle: analytic.
-  Camera camera = skewed();
+  Camera camera = testing::skewed_camera();
   const Vec3 target = camera.target;
   const auto before = project(camera, target);
   pan(camera, 25, -40);
@@ -98,7 +88,7 @@ TEST_CASE("camera: pan carries the target's plane along with the mouse", "[visua
 
 TEST_CASE("camera: zoom goes nearer and back, and never through the target", "[visualizer]") {
   // Oracle: inverse operation; the stated least distance.
-  Camera camera = skewed();
+  Camera camera = testing::skewed_camera();
   const Vec3 position = camera.position;
   zoom(camera, 3);
   CHECK((camera.position - camera.target).norm() < (position - camera.target).norm());

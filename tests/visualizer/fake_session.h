@@ -7,6 +7,7 @@
 #include "modules/geometry/triangle_surface.h"
 #include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
+#include "visualizer/camera.h"
 
 namespace palpate::visualizer::testing {
 
@@ -24,6 +25,14 @@ inline scene::Scene two_probe_scene() {
   scene.probes[1].shape = scene::CapsuleShape{0.006, 0.06};
   scene.probes[1].device = scene::MouseDevice{Vec3(0.12, 0, 0), Quat::Identity()};
   return scene;
+}
+
+/// Looks down and to the left at a place beside the origin.
+inline Camera skewed_camera() {
+  Camera camera;
+  camera.position = Vec3(0.3, -0.4, 0.2);
+  camera.target = Vec3(0.02, 0.03, -0.05);
+  return camera;
 }
 
 inline std::vector<float> flat(const std::vector<Vec3>& nodes) {

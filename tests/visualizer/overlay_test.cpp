@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/geometry/primitives.h"
+#include "tests/times.h"
 #include "tests/visualizer/fake_session.h"
 
 using namespace palpate;
@@ -12,8 +13,6 @@ using visualizer::testing::topology_of;
 using visualizer::testing::two_probe_scene;
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// A session in full swing, with an error, long numbers and five processes.
 SceneView busy_view() {

@@ -18,7 +18,7 @@ const PolylineItem* curve_of(const Overlay& overlay, const Rgb& color) {
   return nullptr;
 }
 
-bool has_text(const Overlay& overlay, const std::string& text) {
+bool has_line(const Overlay& overlay, const std::string& text) {
   for (const TextItem& item : overlay.texts) {
     if (item.text == text) return true;
   }
@@ -72,9 +72,9 @@ TEST_CASE("plot: a straight line in time is a straight line in the picture",
     CHECK(curve->points[i + 1] - curve->points[i - 1] == Approx(dy).margin(1e-3));
     CHECK(box.contains(curve->points[i], curve->points[i + 1]));
   }
-  CHECK(has_text(overlay, "force [N]"));
-  CHECK(has_text(overlay, "time [s]"));
-  CHECK(has_text(overlay, "2"));  // newest value, and the axis' top
+  CHECK(has_line(overlay, "force [N]"));
+  CHECK(has_line(overlay, "time [s]"));
+  CHECK(has_line(overlay, "2"));  // newest value, and the axis' top
 }
 
 TEST_CASE("plot: what is older than the span is not drawn", "[visualizer]") {

@@ -1,24 +1,14 @@
 #include "visualizer/probe_drag.h"
+#include "tests/visualizer/fake_session.h"
 
 #include <catch2/catch.hpp>
 
 using namespace palpate;
 using namespace palpate::visualizer;
 
-namespace {
-
-Camera skewed() {
-  Camera camera;
-  camera.position = Vec3(0.3, -0.4, 0.2);
-  camera.target = Vec3(0.02, 0.03, -0.05);
-  return camera;
-}
-
-}  // namespace
-
 TEST_CASE("drag: the probe stays under the cursor and in its plane", "[visualizer][analytic]") {
   // Oracle: analytic projection. The pixel of the probe moves by the mouse's way, its depth not.
-  const Camera camera = skewed();
+  const Camera camera = testing::skewed_camera();
   ProbeDrag drag(1, Vec3(0.05, 0.02, 0.03));
   const auto before = project(camera, drag.position());
   drag.in_picture_plane(camera, 37, -12);
@@ -44,7 +34,7 @@ TEST_CASE("drag: a frontal camera moves it by pixels times the plane's pixel siz
 
 TEST_CASE("drag: towards the eye it stops in front of it", "[visualizer]") {
   // Oracle: the stated rule.
-  const Camera camera = skewed();
+  const Camera camera = testing::skewed_camera();
   ProbeDrag drag(0, Vec3::Zero());
   for (int i = 0; i < 100; ++i) drag.along_view(camera, -100);
   const auto pixel = project(camera, drag.position());

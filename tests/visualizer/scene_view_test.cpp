@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/geometry/primitives.h"
+#include "tests/times.h"
 #include "tests/visualizer/fake_session.h"
 
 using namespace palpate;
@@ -12,8 +13,6 @@ using visualizer::testing::topology_of;
 using visualizer::testing::two_probe_scene;
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 SurfaceTopology ball_topology(std::uint32_t generation = 1) {
   return topology_of(geometry::make_ball(0.05, 2), generation);

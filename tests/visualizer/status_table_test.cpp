@@ -2,14 +2,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/times.h"
 #include "tests/visualizer/fake_session.h"
 
 using namespace palpate;
 using namespace palpate::visualizer;
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 ModuleStatus running(const std::string& module) {
   ModuleStatus status;

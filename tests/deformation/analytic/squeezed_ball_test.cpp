@@ -11,9 +11,8 @@ namespace {
 using testing::ball_organ;
 using testing::ball_scene;
 using testing::kBallRadius;
+using testing::kPeriod;
 using testing::plate_contacts;
-
-constexpr double kPeriod = 4e-3;
 
 DeformationWorld ball_world(int levels, const scene::Organ& organ) {
   return DeformationWorld(ball_scene(2, organ), {geometry::make_ball(kBallRadius, levels)});

@@ -11,11 +11,11 @@ namespace palpate::deformation {
 namespace {
 
 /// A ball of 42 nodes blown up by 5 %, so that all springs are in tension.
-struct Ball {
+struct SwollenBall {
   OrganModel model = testing::ball_model(1);
   OrganState state = rest_state(model);
   PatchSprings springs{model.network(), model.node_count()};
-  Ball() {
+  SwollenBall() {
     for (Vec3& x : state.positions) x *= 1.05;
   }
 
@@ -60,7 +60,7 @@ Eigen::MatrixXd matrix_of(const std::vector<ComplianceRow>& rows, std::size_t no
 
 TEST_CASE("patch springs: stiffness and damping are the derivatives of the springs' forces") {
   // Oracle: central differences of the plain forces. Tolerance: float, 1e-5 of the largest entry.
-  Ball ball;
+  SwollenBall ball;
   const Patch whole = ball.whole();
   const auto size = static_cast<Eigen::Index>(3 * whole.nodes.size());
   Eigen::MatrixXf stiffness = Eigen::MatrixXf::Zero(size, size), damping = stiffness;
@@ -91,7 +91,7 @@ TEST_CASE("patch springs: stiffness and damping are the derivatives of the sprin
 TEST_CASE("patch compliance: of a patch that is the whole organ it is C A⁻¹ Cᵀ") {
   // Oracle: the dense matrix in double, inverted; with a kept volume the bordered one. Tolerance:
   // float's ε times the condition of A, of the largest entry.
-  const Ball ball;
+  const SwollenBall ball;
   PatchCompliance compliance(ball.model, Neighbours(ball.model, {}), ball.model.node_count());
   VolumeGradient volume;
   evaluate_volume(ball.model, ball.state.positions, volume);
@@ -187,8 +187,8 @@ TEST_CASE("patch compliance: what goes along beyond a small patch is counted on 
 
 TEST_CASE("patch compliance: in a single explicit step only masses answer") {
   // Oracle: by hand, Σ b² T²/m, and nothing between rows that share no node.
-  const Ball ball;
-  Ball drag_free;
+  const SwollenBall ball;
+  SwollenBall drag_free;
   drag_free.model.drag = 0;
   PatchCompliance without_drag(drag_free.model, Neighbours(drag_free.model, {}), 5);
   const auto W =

@@ -7,7 +7,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kPeriod = 4e-3;
+using testing::kPeriod;
 
 Pose pose_at(const Vec3& position, double turn_about_z = 0) {
   return {position, Quat(Eigen::AngleAxisd(turn_about_z, Vec3::UnitZ()))};
@@ -32,7 +32,7 @@ scene::Probe plate(double friction) {
   return {"plate", scene::PlaneShape{}, friction, scene::ScriptedDevice{}};
 }
 
-struct Ball {
+struct TouchedBall {
   OrganModel model = testing::ball_model(1);
   OrganState state = rest_state(model);
   SurfaceWalk surface{model};
@@ -40,7 +40,7 @@ struct Ball {
 
 TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
   // Oracle: rigid motion by hand; a quarter turn takes +x to +y.
-  Ball ball;
+  TouchedBall ball;
   ProbeContacts probe(plate(0.3));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
@@ -65,7 +65,7 @@ TEST_CASE("probe contacts: a contact moves rigidly with its probe") {
 TEST_CASE("probe contacts: a depth nobody saw coming is undone gently, one that was at once") {
   // Oracle: the definition. A plate 2 cm below triangle 0, found there at once or after a search
   // that had it near; the tissue rests, then comes nearer at 0.3 m/s.
-  Ball ball;
+  TouchedBall ball;
   const Vec3& tissue = ball.state.positions[ball.model.triangles[0][0]];
   for (const bool seen : {false, true}) {
     ProbeContacts probe(plate(0));
@@ -95,7 +95,7 @@ TEST_CASE("probe contacts: a depth nobody saw coming is undone gently, one that 
 
 TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
   // Oracle: the sum of the parts is the whole way.
-  Ball ball;
+  TouchedBall ball;
   ProbeContacts probe(plate(0));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.begin(kPeriod);
@@ -114,7 +114,7 @@ TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
 
 TEST_CASE("probe contacts: a triangle touched again starts from its last impulses") {
   // Oracle: definition; triangles 2 and 5 stay, 3 is new, 7 is gone.
-  Ball ball;
+  TouchedBall ball;
   ProbeContacts probe(plate(0.1));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.set_contacts(contacts_on({2, 5, 7}, Vec3::Zero(), Vec3::UnitZ()));
@@ -135,7 +135,7 @@ TEST_CASE("probe contacts: a triangle touched again starts from its last impulse
 
 TEST_CASE("probe contacts: impulses add up over an advance, and the next begins without them") {
   // Oracle: by hand; impulses along −n and friction on the tissue, their negative on the probe.
-  Ball ball;
+  TouchedBall ball;
   ProbeContacts probe(plate(0.5));
   probe.set_pose(pose_at(Vec3::Zero()));
   probe.set_contacts(contacts_on({0, 4}, Vec3(0.01, 0, 0), Vec3::UnitZ()));
@@ -159,7 +159,7 @@ TEST_CASE("probe contacts: impulses add up over an advance, and the next begins 
 /// A ball of 2 mm over the organ's highest node, given the contacts of some triangles about it.
 struct Tip {
   static constexpr double kRadius = 2e-3;
-  Ball organ;
+  TouchedBall organ;
   ProbeContacts probe{{"tip", scene::SphereShape{kRadius}, 0, scene::ScriptedDevice{}}};
   std::uint32_t top = 0, one = 0;  ///< node, and a triangle around it
   std::vector<ContactRow> rows;

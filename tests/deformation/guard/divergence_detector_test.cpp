@@ -9,7 +9,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kStep = 5e-4;
+constexpr double kWatchedStep = 5e-4;
 constexpr double kLong = 1;  // in which a node may come as far as the tests put it [s]
 
 /// Rows of a plate that comes down on the ball's top at `speed` and is at `height` at the step's
@@ -44,10 +44,10 @@ TEST_CASE("divergence detector: the energy budget bounds what a press puts in, a
   constexpr double kSpeed = 0.1;
   for (int s = 0; s < 400; ++s) {
     auto rows = plate_rows(model, state, height, kSpeed);
-    dynamics.step(kStep, rows, state);
-    detector.add_work(kStep, rows, 0, state);
-    height -= kStep * kSpeed;
-    REQUIRE(detector.check_bounds(state, kStep) == Violation::kNone);
+    dynamics.step(kWatchedStep, rows, state);
+    detector.add_work(kWatchedStep, rows, 0, state);
+    height -= kWatchedStep * kSpeed;
+    REQUIRE(detector.check_bounds(state, kWatchedStep) == Violation::kNone);
     CHECK_FALSE(detector.suspicious());
     energy = dynamics.elastic_energy(state);
     for (std::size_t i = 0; i < model.node_count(); ++i) {
@@ -80,9 +80,9 @@ TEST_CASE(
         for (const Vec3& p : state.positions) top = std::max(top, side * p.z());
       }
       auto rows = plate_rows(model, state, top - 0.005, 0, side);
-      dynamics.step(kStep, rows, state);
-      detector.add_work(kStep, rows, 0, state);
-      seen = detector.check_bounds(state, kStep);
+      dynamics.step(kWatchedStep, rows, state);
+      detector.add_work(kWatchedStep, rows, 0, state);
+      seen = detector.check_bounds(state, kWatchedStep);
     }
     CHECK(seen == (again ? Violation::kEnergyGrew : Violation::kNone));
   }
@@ -95,7 +95,7 @@ TEST_CASE("divergence detector: a pressure that moves the volume does work") {
   OrganState state = rest_state(model);
   detector.begin(state, 0.25);
   state.pressure = 100;
-  detector.add_work(kStep, {}, 1e-5, state);
+  detector.add_work(kWatchedStep, {}, 1e-5, state);
   CHECK(detector.energy_budget() == Approx(0.25 + 1e-3));
 }
 
@@ -110,10 +110,10 @@ TEST_CASE("divergence detector: falling is not gaining") {
     detector.begin(state, 0);
     Violation seen = Violation::kNone;
     for (int s = 1; s <= 1000 && seen == Violation::kNone; ++s) {
-      for (auto& v : state.velocities) v.z() = -9.81 * s * kStep;
-      for (auto& p : state.positions) p.z() -= 9.81 * s * kStep * kStep;
-      seen = s % 10 == 0 ? detector.check_thoroughly(state, kStep, dynamics)
-                         : detector.check_bounds(state, kStep);
+      for (auto& v : state.velocities) v.z() = -9.81 * s * kWatchedStep;
+      for (auto& p : state.positions) p.z() -= 9.81 * s * kWatchedStep * kWatchedStep;
+      seen = s % 10 == 0 ? detector.check_thoroughly(state, kWatchedStep, dynamics)
+                         : detector.check_bounds(state, kWatchedStep);
     }
     CHECK(seen == (g > 0 ? Violation::kNone : Violation::kEnergyGrew));
   }
@@ -146,10 +146,10 @@ TEST_CASE("divergence detector: each kind of nonsense is told from the others") 
   state.velocities[5].x() = 1.01 * kMaxNodeSpeed;
   CHECK(detector.check_bounds(state, kLong) == Violation::kTooFast);
   state = rest;  // slow now, but it has come a long way
-  state.positions[5].x() += 1.01 * kMaxNodeSpeed * kStep;
-  CHECK(detector.check_bounds(state, kStep) == Violation::kTooFast);
-  state.positions[5].x() -= 0.02 * kMaxNodeSpeed * kStep;
-  CHECK(detector.check_bounds(state, kStep) == Violation::kNone);
+  state.positions[5].x() += 1.01 * kMaxNodeSpeed * kWatchedStep;
+  CHECK(detector.check_bounds(state, kWatchedStep) == Violation::kTooFast);
+  state.positions[5].x() -= 0.02 * kMaxNodeSpeed * kWatchedStep;
+  CHECK(detector.check_bounds(state, kWatchedStep) == Violation::kNone);
   state = rest;
   state.positions[5] += 2 * kMaxGrowth * Vec3(testing::kBallRadius, 0, 0);
   CHECK(detector.check_bounds(state, kLong) == Violation::kTooLarge);
@@ -189,7 +189,7 @@ TEST_CASE(
   ContactRow row;
   row.weights = Vec3(1, 0, 0);
   row.tangential_impulse = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-  detector.add_work(kStep, std::span(&row, 1), 0, state);
+  detector.add_work(kWatchedStep, std::span(&row, 1), 0, state);
   CHECK(detector.check_bounds(state, kLong) == Violation::kNotFinite);
   detector.begin(state, std::numeric_limits<double>::quiet_NaN());
   CHECK(detector.check_bounds(state, kLong) == Violation::kNone);

@@ -9,7 +9,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kStep = 0.01;
+constexpr double kLinearisedStep = 0.01;
 
 std::vector<Vec3> random_vectors(std::size_t count, double size, unsigned seed) {
   std::mt19937 random(seed);
@@ -32,7 +32,7 @@ std::vector<Vec3> product(const ProjectedSpringStiffness& springs, const std::ve
   return out;
 }
 
-double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+double inner_product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
   return sum;
@@ -63,7 +63,7 @@ TEST_CASE("spring linearisation: in tension A p is the finite difference of M p 
   auto state = stretched_state(model);
   for (Vec3& v : state.velocities) v.setZero();
   ProjectedSpringStiffness springs(model, model.network());
-  springs.linearise(state.positions, kStep);
+  springs.linearise(state.positions, kLinearisedStep);
   const auto p = random_vectors(model.node_count(), 1, 3);
   const auto found = product(springs, p);
 
@@ -72,16 +72,17 @@ TEST_CASE("spring linearisation: in tension A p is the finite difference of M p 
   for (const int side : {1, -1}) {
     OrganState moved = state;
     for (std::size_t i = 0; i < p.size(); ++i) {
-      moved.positions[i] += side * epsilon * kStep * p[i];
+      moved.positions[i] += side * epsilon * kLinearisedStep * p[i];
       moved.velocities[i] += side * epsilon * p[i];
     }
     std::vector<Vec3> forces(model.node_count(), Vec3::Zero());
     add_spring_forces(model.network(), moved, forces);
     for (std::size_t i = 0; i < p.size(); ++i) difference[i] += side * forces[i] / (2 * epsilon);
   }
-  const double size = std::sqrt(dot(found, found) / static_cast<double>(p.size()));
+  const double size = std::sqrt(inner_product(found, found) / static_cast<double>(p.size()));
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec3 expected = (1 + kStep * model.drag) * model.masses[i] * p[i] - kStep * difference[i];
+    const Vec3 expected = (1 + kLinearisedStep * model.drag) * model.masses[i] * p[i] -
+                          kLinearisedStep * difference[i];
     CHECK((found[i] - expected).norm() < 2e-5 * size);  // float: lengths have 1e-6
   }
 }
@@ -91,19 +92,19 @@ TEST_CASE("spring linearisation: A is symmetric, above M and below 2 D, also com
   const auto model = testing::ball_model(2);
   const auto state = compressed_state(model);
   ProjectedSpringStiffness springs(model, model.network());
-  springs.linearise(state.positions, kStep);
+  springs.linearise(state.positions, kLinearisedStep);
   for (unsigned seed = 1; seed <= 20; ++seed) {
     const auto p = random_vectors(model.node_count(), 1, seed);
     const auto q = random_vectors(model.node_count(), 1, seed + 100);
     const auto ap = product(springs, p), aq = product(springs, q);
-    CHECK(dot(p, aq) == Approx(dot(q, ap)).margin(1e-6 * dot(p, ap)));
+    CHECK(inner_product(p, aq) == Approx(inner_product(q, ap)).margin(1e-6 * inner_product(p, ap)));
     double mass = 0, diagonal = 0;
     for (std::size_t i = 0; i < p.size(); ++i) {
       mass += model.masses[i] * p[i].squaredNorm();
       diagonal += p[i].dot(springs.diagonal()[i] * p[i]);
     }
-    CHECK(dot(p, ap) > mass);
-    CHECK(dot(p, ap) < 2 * diagonal);
+    CHECK(inner_product(p, ap) > mass);
+    CHECK(inner_product(p, ap) < 2 * diagonal);
   }
 }
 
@@ -112,7 +113,7 @@ TEST_CASE("spring linearisation: D holds the diagonal blocks of A") {
   const auto model = testing::ball_model(1);
   const auto state = stretched_state(model);
   ProjectedSpringStiffness springs(model, model.network());
-  springs.linearise(state.positions, kStep);
+  springs.linearise(state.positions, kLinearisedStep);
   for (const std::size_t node : {std::size_t{0}, std::size_t{17}, model.node_count() - 1}) {
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<Vec3> unit(model.node_count(), Vec3::Zero());
@@ -128,10 +129,10 @@ TEST_CASE("spring linearisation: a common velocity strains nothing") {
   const auto model = testing::ball_model(2);
   const auto state = compressed_state(model);
   ProjectedSpringStiffness springs(model, model.network());
-  springs.linearise(state.positions, kStep);
+  springs.linearise(state.positions, kLinearisedStep);
   const auto found = product(springs, std::vector<Vec3>(model.node_count(), Vec3(1, 2, 3)));
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const Vec3 expected = (1 + kStep * model.drag) * model.masses[i] * Vec3(1, 2, 3);
+    const Vec3 expected = (1 + kLinearisedStep * model.drag) * model.masses[i] * Vec3(1, 2, 3);
     CHECK((found[i] - expected).norm() < 1e-6 * expected.norm());
   }
 }
@@ -142,11 +143,11 @@ TEST_CASE("spring linearisation: a spring without length gives nothing and no Na
   auto state = rest_state(model);
   for (Vec3& x : state.positions) x.setZero();
   ProjectedSpringStiffness springs(model, model.network());
-  springs.linearise(state.positions, kStep);
+  springs.linearise(state.positions, kLinearisedStep);
   const auto p = random_vectors(model.node_count(), 1, 5);
   const auto found = product(springs, p);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const Vec3 expected = (1 + kStep * model.drag) * model.masses[i] * p[i];
+    const Vec3 expected = (1 + kLinearisedStep * model.drag) * model.masses[i] * p[i];
     CHECK((found[i] - expected).norm() < 1e-6 * expected.norm());
   }
 }

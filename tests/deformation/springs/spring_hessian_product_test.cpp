@@ -4,20 +4,21 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
-#include <thread>
 
 #include "deformation/springs/projected_spring_stiffness.h"
 #include "tests/deformation/organs.h"
+#include "tests/deformation/springs/chunk_threads.h"
 
 namespace palpate::deformation {
 namespace {
 
 using testing::ball_model;
 using testing::ball_organ;
+using testing::ChunkThreads;
 
-constexpr double kStep = 5e-3;  // [s]
+constexpr double kProductStep = 5e-3;  // [s]
 
-std::vector<Vec3> disturbed(const OrganModel& model, double amplitude) {
+std::vector<Vec3> disturbed_positions(const OrganModel& model, double amplitude) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> uniform(-1, 1);
   auto positions = model.rest_positions;
@@ -42,16 +43,16 @@ double apply(SpringHessianProduct& product, const std::vector<Vec4f>& p, std::ve
 }
 
 void check_agrees(const OrganModel& model) {
-  const auto positions = disturbed(model, 3e-3);
+  const auto positions = disturbed_positions(model, 3e-3);
   const auto p = directions(model);
   ProjectedSpringStiffness plain(model, model.network());
-  plain.linearise(positions, kStep);
+  plain.linearise(positions, kProductStep);
   std::vector<Vec4f> expected(p.size()), found(p.size());
   plain.apply(p, expected);
   for (const InstructionSet set : available_instruction_sets()) {
     INFO(name_of(set));
     SpringHessianProduct fast(model, model.network(), true, nullptr, set);
-    fast.linearise(positions, kStep);
+    fast.linearise(positions, kProductStep);
     const double found_dot = apply(fast, p, found);
     CHECK(found_dot == Approx(dot(p, found)).epsilon(1e-5));
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -87,11 +88,11 @@ TEST_CASE("spring product: springs without length give nothing and no NaN") {
   const auto p = directions(model);
   for (const InstructionSet set : available_instruction_sets()) {
     SpringHessianProduct product(model, model.network(), true, nullptr, set);
-    product.linearise(positions, kStep);
+    product.linearise(positions, kProductStep);
     std::vector<Vec4f> out(p.size());
     apply(product, p, out);
     for (std::size_t i = 0; i < p.size(); ++i) {
-      const auto mass = static_cast<float>((1 + kStep * model.drag) * model.masses[i]);
+      const auto mass = static_cast<float>((1 + kProductStep * model.drag) * model.masses[i]);
       CHECK((out[i] - mass * p[i]).norm() < 1e-6f * mass);
     }
   }
@@ -107,7 +108,7 @@ TEST_CASE("spring product: rounded couplings leave the matrix symmetric, and its
   std::vector<Vec4f> image_a(a.size()), image_b(a.size());
   for (const InstructionSet set : available_instruction_sets()) {
     SpringHessianProduct product(model, model.network(), true, nullptr, set);
-    product.linearise(disturbed(model, 3e-3), kStep);
+    product.linearise(disturbed_positions(model, 3e-3), kProductStep);
     const double a_a = apply(product, a, image_a), b_b = apply(product, b, image_b);
     CHECK(a_a > 0);
     CHECK(std::abs(dot(a, image_b) - dot(b, image_a)) < 1e-6 * (a_a + b_b));
@@ -124,23 +125,6 @@ TEST_CASE("spring product: rounded couplings leave the matrix symmetric, and its
   }
 }
 
-class Threads : public ChunkRunner {
- public:
-  explicit Threads(std::size_t count) : count_(count) {}
-  void run(std::size_t chunks, ChunkBody body) override {
-    std::vector<std::thread> threads;
-    for (std::size_t t = 0; t < count_; ++t) {
-      threads.emplace_back([=, this] {
-        for (std::size_t chunk = t; chunk < chunks; chunk += count_) body(chunk);
-      });
-    }
-    for (auto& thread : threads) thread.join();
-  }
-
- private:
-  std::size_t count_;
-};
-
 TEST_CASE("spring product: the same bits for all instruction sets with fused multiply-add") {
   // Oracle: each other.
   const auto sets = available_instruction_sets();
@@ -153,8 +137,8 @@ TEST_CASE("spring product: the same bits for all instruction sets with fused mul
   std::vector<Vec4f> first(p.size()), second(p.size());
   SpringHessianProduct narrow(model, model.network(), true, nullptr, sets[1]),
       wide(model, model.network(), true, nullptr, sets[2]);
-  narrow.linearise(disturbed(model, 3e-3), kStep);
-  wide.linearise(disturbed(model, 3e-3), kStep);
+  narrow.linearise(disturbed_positions(model, 3e-3), kProductStep);
+  wide.linearise(disturbed_positions(model, 3e-3), kProductStep);
   CHECK(apply(narrow, p, first) == apply(wide, p, second));
   CHECK(first == second);
   CHECK(narrow.diagonal() == wide.diagonal());
@@ -163,17 +147,17 @@ TEST_CASE("spring product: the same bits for all instruction sets with fused mul
 TEST_CASE("spring product: the same bits for any number of threads") {
   // Oracle: itself on one thread.
   const auto model = ball_model(3);
-  const auto positions = disturbed(model, 3e-3);
+  const auto positions = disturbed_positions(model, 3e-3);
   const auto p = directions(model);
   for (const InstructionSet set : available_instruction_sets()) {
     std::vector<Vec4f> expected(p.size()), found(p.size());
     SpringHessianProduct serial(model, model.network(), true, nullptr, set);
-    serial.linearise(positions, kStep);
+    serial.linearise(positions, kProductStep);
     apply(serial, p, expected);
     for (std::size_t threads = 2; threads <= 3; ++threads) {
-      Threads runner(threads);
+      ChunkThreads runner(threads);
       SpringHessianProduct product(model, model.network(), true, &runner, set);
-      product.linearise(positions, kStep);
+      product.linearise(positions, kProductStep);
       apply(product, p, found);
       CHECK(found == expected);
       CHECK(product.diagonal() == serial.diagonal());

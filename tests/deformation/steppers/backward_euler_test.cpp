@@ -15,7 +15,7 @@ using testing::ball_scene;
 using testing::kBallRadius;
 using testing::plate_contacts;
 
-constexpr double kStep = 0.01;
+constexpr double kImplicitStep = 0.01;
 
 /// Organ between two plates that close to `compression` in a second and hold for another.
 struct Press {
@@ -63,7 +63,7 @@ TEST_CASE("backward Euler: plates feel the equilibrium of symplectic Euler") {
   auto organ = ball_organ();
   organ.tissue.drag = 10;
   const auto expected = press(organ, scene::Integrator::kSymplecticEuler, 0.3, 4e-3);
-  const auto found = press(organ, scene::Integrator::kBackwardEuler, 0.3, kStep);
+  const auto found = press(organ, scene::Integrator::kBackwardEuler, 0.3, kImplicitStep);
   CHECK(found.upper_force == Approx(expected.upper_force).epsilon(0.01));
   CHECK(found.lower_force == Approx(-found.upper_force).epsilon(1e-3));
   CHECK(found.pressure == Approx(expected.pressure).epsilon(0.01));
@@ -76,7 +76,7 @@ TEST_CASE("backward Euler: the volume holds under plates at 10 ms with one corre
   auto organ = ball_organ();
   organ.tissue.drag = 10;
   organ.volume_corrections = 1;
-  const auto found = press(organ, scene::Integrator::kBackwardEuler, 0.5, kStep);
+  const auto found = press(organ, scene::Integrator::kBackwardEuler, 0.5, kImplicitStep);
   CHECK(found.worst_volume_error < 1e-5);
   CHECK(found.held_volume_error < 1e-8);
 }
@@ -97,7 +97,7 @@ TEST_CASE("backward Euler: a sphere inflated to V* holds the pressure of symplec
     }
     return state.pressure;
   };
-  CHECK(inflate(implicit, kStep) == Approx(inflate(symplectic, 1e-3)).epsilon(1e-4));
+  CHECK(inflate(implicit, kImplicitStep) == Approx(inflate(symplectic, 1e-3)).epsilon(1e-4));
 }
 
 TEST_CASE("backward Euler: a free organ falls by g h² n(n+1)/2, and drag slows it") {
@@ -110,8 +110,8 @@ TEST_CASE("backward Euler: a free organ falls by g h² n(n+1)/2, and drag slows 
   auto state = rest_state(falling);
   BackwardEuler dynamics(falling);
   const int steps = 50;
-  for (int s = 0; s < steps; ++s) dynamics.step(kStep, {}, state);
-  const Vec3 fall = 0.5 * steps * (steps + 1) * kStep * kStep * gravity;
+  for (int s = 0; s < steps; ++s) dynamics.step(kImplicitStep, {}, state);
+  const Vec3 fall = 0.5 * steps * (steps + 1) * kImplicitStep * kImplicitStep * gravity;
   for (std::size_t i = 0; i < falling.node_count(); ++i) {
     CHECK((state.positions[i] - falling.rest_positions[i] - fall).norm() < 1e-7);
   }
@@ -120,9 +120,9 @@ TEST_CASE("backward Euler: a free organ falls by g h² n(n+1)/2, and drag slows 
   state = rest_state(drifting);
   for (Vec3& v : state.velocities) v = Vec3(1, 0, 0);
   BackwardEuler slowed(drifting);
-  for (int s = 0; s < steps; ++s) slowed.step(kStep, {}, state);
+  for (int s = 0; s < steps; ++s) slowed.step(kImplicitStep, {}, state);
   for (const Vec3& v : state.velocities) {
-    CHECK(v.x() == Approx(std::pow(1 + 5 * kStep, -steps)).margin(1e-6));
+    CHECK(v.x() == Approx(std::pow(1 + 5 * kImplicitStep, -steps)).margin(1e-6));
   }
 }
 
@@ -145,7 +145,7 @@ TEST_CASE("backward Euler: without forces from outside momentum is kept, however
   }
   const Vec3 before = momentum();
   BackwardEuler dynamics(model, {}, 3);
-  for (int s = 0; s < 100; ++s) dynamics.step(kStep, {}, state);
+  for (int s = 0; s < 100; ++s) dynamics.step(kImplicitStep, {}, state);
   CHECK((momentum() - before).norm() < 1e-12);
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("backward Euler: fixed nodes stay, a resting organ stays and costs no 
   auto model = testing::ball_model(2, organ);
   auto state = rest_state(model);
   BackwardEuler dynamics(model);
-  for (int s = 0; s < 100; ++s) dynamics.step(kStep, {}, state);
+  for (int s = 0; s < 100; ++s) dynamics.step(kImplicitStep, {}, state);
   CHECK(dynamics.iterations_used() == 0);
   for (std::size_t i = 0; i < model.node_count(); ++i) {
     CHECK((state.positions[i] - model.rest_positions[i]).norm() < 2e-8);
@@ -166,7 +166,7 @@ TEST_CASE("backward Euler: fixed nodes stay, a resting organ stays and costs no 
   BackwardEuler held(model);
   state = rest_state(model);
   state.target_volume = 1.1 * model.rest_volume;
-  CHECK(held.step(kStep, {}, state).volume_skipped);
+  CHECK(held.step(kImplicitStep, {}, state).volume_skipped);
   CHECK(state.pressure == 0);
   for (const Vec3& v : state.velocities) CHECK(v.isZero(0));
 }
@@ -193,7 +193,7 @@ TEST_CASE("backward Euler: all nodes in contact, against the volume, stays finit
   BackwardEuler dynamics(model);
   auto rows = rows_on_all_nodes(model, 0.05, 0.2);
   for (int s = 0; s < 20; ++s) {
-    dynamics.step(kStep, rows, state);
+    dynamics.step(kImplicitStep, rows, state);
     CHECK(std::isfinite(state.pressure));
     for (const ContactRow& row : rows) {
       CHECK(row.normal_impulse >= 0);
@@ -211,7 +211,7 @@ TEST_CASE("backward Euler: the same steps give the same bits") {
     BackwardEuler dynamics(model);
     auto rows = rows_on_all_nodes(model, 0.02, 0.1);
     rows.resize(rows.size() / 4);
-    for (int s = 0; s < 50; ++s) dynamics.step(kStep, rows, state);
+    for (int s = 0; s < 50; ++s) dynamics.step(kImplicitStep, rows, state);
     return state;
   };
   const auto first = run(), second = run();
@@ -230,7 +230,7 @@ TEST_CASE("backward Euler: steps ten times its largest, from a wild state, stay 
   }
   BackwardEuler dynamics(model);
   for (int s = 0; s < 100; ++s) {
-    dynamics.step(10 * kStep, {}, state);
+    dynamics.step(10 * kImplicitStep, {}, state);
     for (const Vec3& v : state.velocities) REQUIRE(v.allFinite());
   }
   double fastest = 0;
@@ -244,7 +244,7 @@ TEST_CASE("backward Euler: a flattened organ goes on without the volume and says
   auto state = rest_state(model);
   for (Vec3& x : state.positions) x.setZero();
   BackwardEuler dynamics(model);
-  CHECK(dynamics.step(kStep, {}, state).volume_skipped);
+  CHECK(dynamics.step(kImplicitStep, {}, state).volume_skipped);
   for (const Vec3& x : state.positions) CHECK(x.allFinite());
   CHECK(state.pressure == 0);
 }

@@ -10,7 +10,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kStep = 0.06;  // so long that all of a small ball goes along
+constexpr double kLongStep = 0.06;  // so long that all of a small ball goes along
 
 /// Rows on two triangles, pressing.
 std::vector<ContactRow> some_rows(const OrganModel& model) {
@@ -34,7 +34,7 @@ TEST_CASE("contact relaxation: solves A Δ + Bᵀ λ = r, B Δ = 0 of the nodes 
   std::vector<Vec3> positions = model.rest_positions;
   for (Vec3& x : positions) x *= 1.05;
   ProjectedSpringStiffness springs(model, model.network());
-  springs.linearise(positions, kStep);
+  springs.linearise(positions, kLongStep);
   const std::size_t nodes = model.node_count();
   const auto size = static_cast<Eigen::Index>(3 * nodes);
   Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(size + 2, size + 2);
@@ -69,9 +69,9 @@ TEST_CASE("contact relaxation: solves A Δ + Bᵀ λ = r, B Δ = 0 of the nodes 
   std::vector<Mat3> inverse_blocks;
   for (const Mat3& block : springs.diagonal()) inverse_blocks.push_back(block.inverse());
   SpringHessianProduct product(model, model.network(), false);
-  product.linearise(positions, kStep);
+  product.linearise(positions, kLongStep);
   ContactRelaxation relaxation(model, product);
-  REQUIRE(relaxation.choose(kStep, positions, rows));
+  REQUIRE(relaxation.choose(kLongStep, positions, rows));
   REQUIRE(relaxation.nodes().size() == nodes);
   relaxation.solve(inverse_blocks, residual, rows);
   Eigen::VectorXd found(size);
@@ -93,17 +93,17 @@ TEST_CASE("contact relaxation: no rows, or more than is local, are left alone") 
   // Oracle: the stated behaviour.
   const OrganModel model = testing::ball_model(4);  // 2,562 nodes
   SpringHessianProduct product(model, model.network(), false);
-  product.linearise(model.rest_positions, kStep);
+  product.linearise(model.rest_positions, kLongStep);
   ContactRelaxation relaxation(model, product);
   std::vector<ContactRow> rows;
-  CHECK_FALSE(relaxation.choose(kStep, model.rest_positions, rows));
+  CHECK_FALSE(relaxation.choose(kLongStep, model.rest_positions, rows));
   rows.resize(kMostInReach + 1);
   for (std::uint32_t i = 0; i < rows.size(); ++i) {
     rows[i].nodes = {i, 0, 0};
     rows[i].weights = Vec3::UnitX();
     rows[i].normal_impulse = 1;
   }
-  CHECK_FALSE(relaxation.choose(kStep, model.rest_positions, rows));
+  CHECK_FALSE(relaxation.choose(kLongStep, model.rest_positions, rows));
 }
 
 TEST_CASE("contact relaxation: on a fine wall a probe that slows feels less, not more") {

@@ -10,17 +10,11 @@ using namespace palpate::deformation::testing;
 
 namespace {
 
+using testing::momentum;
+
 const std::string kModels[] = {"corotational", "nodal_pressure"};
 
 double poisson_of(const std::string& model) { return model == "corotational" ? 0.45 : 0.5; }
-
-Vec3 momentum(const OrganModel& model, const OrganState& state) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    sum += model.masses[i] * state.velocities[i];
-  }
-  return sum;
-}
 
 /// Rows of all nodes near z = height, under a plate that moves down at `speed`.
 std::vector<ContactRow> plate(const OrganModel& model, const OrganState& state, double height,

@@ -9,7 +9,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kPeriod = 4e-3;
+using testing::kPeriod;
 
 TEST_CASE("organ dynamics: its largest step is below the stable bound and stays sound") {
   // Oracle: stable_step_bound(), tested against eigenvalues in organ_model_test.

@@ -7,7 +7,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kStep = 5e-4;  // [s]
+constexpr double kRestoredStep = 5e-4;  // [s]
 
 /// A state and the impulses its contacts start from.
 struct Moment {
@@ -20,14 +20,14 @@ struct Moment {
 void press(OrganDynamics& dynamics, double top, int from, int steps, Moment& now) {
   const Vec3 normal = Vec3(0.02, -0.01, 1).normalized(), velocity(0.03, 0.01, -0.1);
   for (int k = from; k < from + steps; ++k) {
-    const Vec3 plate = Vec3(0, 0, top + 1e-3) + k * kStep * velocity;
+    const Vec3 plate = Vec3(0, 0, top + 1e-3) + k * kRestoredStep * velocity;
     for (ContactRow& row : now.rows) {
       row.normal = normal;
       row.gap = normal.dot(plate - now.state.positions[row.nodes[0]]);
       row.probe_velocity = velocity;
       row.friction = 0.3;
     }
-    dynamics.step(std::min(kStep, dynamics.largest_step()), now.rows, now.state);
+    dynamics.step(std::min(kRestoredStep, dynamics.largest_step()), now.rows, now.state);
   }
 }
 
@@ -77,13 +77,13 @@ TEST_CASE("restored state: continues as if it had never been left") {
     const auto model = scene::is_solid(organ.model) ? testing::block_model(organ, 2)
                                                     : testing::ball_model(2, organ);
     const double top = top_of(model);
-    const auto dynamics = make_dynamics(organ, model, kStep);
+    const auto dynamics = make_dynamics(organ, model, kRestoredStep);
     Moment straight = start(model);
     press(*dynamics, top, 0, 25, straight);
     const Moment kept = straight;
     press(*dynamics, top, 25, 25, straight);
     double force = 0;
-    for (const ContactRow& row : straight.rows) force += row.normal_impulse / kStep;
+    for (const ContactRow& row : straight.rows) force += row.normal_impulse / kRestoredStep;
     REQUIRE(force > 0);
 
     Moment again = kept;
@@ -92,7 +92,7 @@ TEST_CASE("restored state: continues as if it had never been left") {
     CHECK(dynamics->elastic_energy(again.state) == dynamics->elastic_energy(straight.state));
 
     Moment elsewhere = kept;
-    const auto fresh = make_dynamics(organ, model, kStep);
+    const auto fresh = make_dynamics(organ, model, kRestoredStep);
     press(*fresh, top, 25, 25, elsewhere);
     check_same_bits(elsewhere.state, straight.state);
   }

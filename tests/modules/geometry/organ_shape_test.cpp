@@ -10,7 +10,7 @@
 namespace palpate::geometry {
 namespace {
 
-double volume_of(const OrganShape& shape) {
+double tetrahedra_volume(const OrganShape& shape) {
   double volume = 0;
   for (const auto& [a, b, c, d] : shape.tetrahedra) {
     const double part =
@@ -28,7 +28,7 @@ TEST_CASE("organ shape: boundary nodes come first and the surface encloses the t
   CHECK(shape.inner_nodes.size() == 8);
   CHECK(shape.surface.nodes.size() == 64 - 8);
   CHECK(shape.surface.triangles.size() == 108);
-  CHECK(volume_of(shape) == Approx(0.006));
+  CHECK(tetrahedra_volume(shape) == Approx(0.006));
   CHECK(enclosed_volume(shape.surface.nodes, shape.surface.triangles) == Approx(0.006));
 }
 
@@ -37,7 +37,7 @@ TEST_CASE("organ shape: edge nodes lie in the middle and quarter the surface") {
   const auto linear = shape_of(testing::block({0.1, 0.2, 0.3}, 2, 2, 2));
   const auto shape = with_edge_nodes(linear);
   REQUIRE(shape.edge_nodes.size() == shape.tetrahedra.size());
-  CHECK(volume_of(shape) == Approx(0.006));
+  CHECK(tetrahedra_volume(shape) == Approx(0.006));
   for (std::size_t t = 0; t < shape.tetrahedra.size(); ++t) {
     for (std::size_t e = 0; e < 6; ++e) {
       const auto& [a, b] = kTetrahedronEdges[e];

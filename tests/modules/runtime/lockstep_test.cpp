@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/memory_bus.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using namespace palpate::runtime;
@@ -51,8 +52,6 @@ struct Haptics {
     REQUIRE(models.write(model));
   }
 };
-
-constexpr std::int64_t kMs = 1'000'000;
 
 }  // namespace
 

@@ -12,7 +12,7 @@ using namespace palpate;
 namespace {
 
 /// Exit code of a program with one option, --size, and this body.
-int run(std::vector<std::string> words, const std::function<int()>& body) {
+int run_main(std::vector<std::string> words, const std::function<int()>& body) {
   words.insert(words.begin(), "palpate-test");
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());
@@ -26,23 +26,23 @@ int run(std::vector<std::string> words, const std::function<int()>& body) {
 
 TEST_CASE("program: the body's result is the exit code") {
   // Oracle: definition.
-  CHECK(run({"--size", "3"}, [] { return 7; }) == 7);
+  CHECK(run_main({"--size", "3"}, [] { return 7; }) == 7);
 }
 
 TEST_CASE("program: --version and --help are answers, and the body does not run") {
   // Oracle: the exit codes of core/error.h.
   for (const char* word : {"--version", "--help"}) {
     bool ran = false;
-    CHECK(run({word}, [&] { return ran = true, 1; }) == kExitDone);
+    CHECK(run_main({word}, [&] { return ran = true, 1; }) == kExitDone);
     CHECK_FALSE(ran);
   }
 }
 
 TEST_CASE("program: a wrong command line and what is thrown decide the exit code") {
   // Oracle: the exit codes of core/error.h.
-  CHECK(run({"--sizes", "3"}, [] { return 0; }) == kExitBadInput);
-  CHECK(run({}, []() -> int { throw InputError("s.yaml:3: no"); }) == kExitBadInput);
-  CHECK(run({}, []() -> int { throw std::runtime_error("disk full"); }) == kExitFailed);
+  CHECK(run_main({"--sizes", "3"}, [] { return 0; }) == kExitBadInput);
+  CHECK(run_main({}, []() -> int { throw InputError("s.yaml:3: no"); }) == kExitBadInput);
+  CHECK(run_main({}, []() -> int { throw std::runtime_error("disk full"); }) == kExitFailed);
 }
 
 TEST_CASE("program: the version names the project and the protocol") {

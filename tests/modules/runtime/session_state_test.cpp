@@ -1,4 +1,5 @@
 #include "modules/runtime/session_state.h"
+#include "tests/times.h"
 
 #include <catch2/catch.hpp>
 
@@ -6,8 +7,6 @@ using namespace palpate;
 using namespace palpate::runtime;
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Gives a command at a time and applies it.
 SessionControl give(SessionState& state, SessionCommand command, double seconds) {

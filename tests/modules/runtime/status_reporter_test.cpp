@@ -8,6 +8,7 @@
 #include "modules/bus/dds_bus.h"
 #include "modules/runtime/clock.h"
 #include "tests/modules/runtime/waiting.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using namespace palpate::runtime;
@@ -28,8 +29,6 @@ struct Reported {
     return wait_until([&] { return reader.take(newest); });
   }
 };
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 }  // namespace
 

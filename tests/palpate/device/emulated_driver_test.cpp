@@ -3,13 +3,12 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/memory_bus.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using launcher::EmulatedDriver;
 
 namespace {
-
-constexpr std::int64_t kMs = 1'000'000;
 
 /// A driver of probe 1 at 1 kHz, and the haptic process in the test's hands.
 struct Attached {

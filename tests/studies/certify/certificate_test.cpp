@@ -7,21 +7,12 @@
 #include <limits>
 #include <sstream>
 
+#include "tests/scratch_folder.h"
 #include "tests/studies/certify/subjects.h"
 
 using namespace palpate;
 using namespace palpate::testing;
 using namespace palpate::certify;
-
-namespace {
-
-std::string text_in(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
-}  // namespace
 
 TEST_CASE("certificate: JSON holds each line's number, limit, source and verdict") {
   // Oracle: JsonCpp reads what was written.

@@ -8,6 +8,7 @@
 #include "studies/certify/tables.h"
 #include "studies/report/progress.h"
 #include "studies/report/reference_table.h"
+#include "tests/scratch_folder.h"
 #include "tests/studies/certify/subjects.h"
 
 using namespace palpate;
@@ -15,12 +16,6 @@ using namespace palpate::testing;
 using namespace palpate::certify;
 
 namespace {
-
-std::string text_in(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 CertifyOptions options_for(const BallScene& scene, const char* folder) {
   CertifyOptions options;

@@ -8,11 +8,12 @@
 #include "modules/core/error.h"
 #include "tests/modules/geometry/tetrahedra.h"
 #include "tests/studies/chart/folders.h"
+#include "tests/studies/keep_on.h"
 
 namespace palpate::chart {
 namespace {
 
-const KeepGoing kOn = [] {};
+using report::kKeepOn;
 
 TEST_CASE("cases: errors are root mean squares of what is known") {
   // Oracle: by hand.
@@ -46,7 +47,7 @@ TEST_CASE("cases: a block with averaged pressures follows the reference") {
   // Oracle: reference case C. On edges of 16 mm the force is within 30 %, the inner displacements
   // within 1 mm of up to 15; coarser than what the chart shows.
   if (geometry::testing::without_gmsh()) return;
-  const auto m = measure(find_case("block"), {"nodal_pressure", 0, 100}, kOn);
+  const auto m = measure(find_case("block"), {"nodal_pressure", 0, 100}, kKeepOn);
   REQUIRE(m.samples.size() == 3);
   CHECK(force_error(m) < 0.3);
   CHECK(field_error(m) < 1e-3);
@@ -57,8 +58,8 @@ TEST_CASE("cases: a block with averaged pressures follows the reference") {
 TEST_CASE("cases: under a small sphere the force comes to rest, whatever the step") {
   // Oracle: invariant (an equilibrium does not know the step).
   if (geometry::testing::without_gmsh()) return;
-  const auto coarse = measure(find_case("indent"), {"nodal_pressure", 0, 50}, kOn);
-  const auto fine = measure(find_case("indent"), {"nodal_pressure", 0, 250}, kOn);
+  const auto coarse = measure(find_case("indent"), {"nodal_pressure", 0, 50}, kKeepOn);
+  const auto fine = measure(find_case("indent"), {"nodal_pressure", 0, 250}, kKeepOn);
   REQUIRE(coarse.samples.size() == fine.samples.size());
   for (std::size_t i = 0; i < fine.samples.size(); ++i) {
     CHECK(coarse.samples[i].force == Approx(fine.samples[i].force).epsilon(5e-3));
@@ -89,8 +90,8 @@ TEST_CASE("cases: every case runs, and springs and solids get meshes of one size
       continue;
     }
     INFO(of.name);
-    const auto shell = measure(of, {"mass_spring", 0, 100}, kOn);
-    const auto solid = measure(of, {"corotational", 0, 100}, kOn);
+    const auto shell = measure(of, {"mass_spring", 0, 100}, kKeepOn);
+    const auto solid = measure(of, {"corotational", 0, 100}, kKeepOn);
     CHECK(!shell.samples.empty());
     CHECK(shell.surface_nodes == solid.surface_nodes);
     CHECK(shell.inner_nodes == 0);

@@ -6,11 +6,12 @@
 
 #include "modules/scene/models.h"
 #include "tests/studies/chart/folders.h"
+#include "tests/studies/keep_on.h"
 
 namespace palpate::chart {
 namespace {
 
-const KeepGoing kOn = [] {};
+using report::kKeepOn;
 
 TEST_CASE("sweep: what was measured is not measured again and comes back the same") {
   // Oracle: a second sweep that is stopped at the first measurement finishes all the same.
@@ -19,7 +20,7 @@ TEST_CASE("sweep: what was measured is not measured again and comes back the sam
   const std::vector<Case> of{find_case("ball")};
   const std::vector<std::string> models{"mass_spring"};
   const auto begin = [](const Outlook&) {};
-  const auto first = sweep(of, Extent::kQuick, models, store, begin, kOn).points;
+  const auto first = sweep(of, Extent::kQuick, models, store, begin, kKeepOn).points;
   REQUIRE(first.size() == 1);
   struct Stop {};
   const auto again = sweep(of, Extent::kQuick, models, store, begin, [] { throw Stop{}; }).points;
@@ -57,13 +58,13 @@ TEST_CASE("sweep: what it says is left shrinks to nothing as points are done") {
   const std::vector<std::string> models{"mass_spring", "implicit_volume"};
   std::vector<Outlook> said;
   const auto say = [&](const Outlook& outlook) { said.push_back(outlook); };
-  sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kOn);
+  sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kKeepOn);
   REQUIRE(said.size() == 2);
   CHECK(std::isnan(said[0].seconds_left));
   CHECK(said[1].seconds_left > 0);
   CHECK(said[1].done == 1);
   CHECK(said[1].total == 2);
-  sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kOn);
+  sweep({find_case("vibration")}, Extent::kQuick, models, store, say, kKeepOn);
   CHECK(said.size() == 2);
 }
 

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "tests/studies/chart/folders.h"
+#include "tests/studies/keep_on.h"
 
 namespace palpate::stability {
 namespace {
 
-const KeepGoing kOn = [] {};
+using report::kKeepOn;
 
 /// Stands up to 0.7/x; above that oscillates, above three times that diverges.
 Map made_up(int* tries = nullptr) {
@@ -37,7 +38,7 @@ TEST_CASE("atlas: the frontier is bisected to the precision asked for, from belo
   // Oracle: the limit of a made-up method.
   const Map map = made_up();
   for (const double x : map.xs) {
-    const Column column = measure_column(map, "one", x, kOn);
+    const Column column = measure_column(map, "one", x, kKeepOn);
     const Frontier frontier = frontier_of(column.cells);
     CHECK(frontier.edge == Edge::kFound);
     CHECK(frontier.value <= 0.7 / x);
@@ -73,7 +74,7 @@ TEST_CASE("atlas: a stored column comes back the same, and only for its own grid
   Map map = made_up();
   Column back;
   CHECK_FALSE(store.read(map, "one", 1, back));
-  const Column column = measure_column(map, "one", 1, kOn);
+  const Column column = measure_column(map, "one", 1, kKeepOn);
   store.write(map, column);
   REQUIRE(store.read(map, "one", 1, back));
   CHECK(back.map == column.map);

@@ -4,11 +4,12 @@
 #include <iostream>
 
 #include "studies/stability/atlas.h"
+#include "tests/studies/keep_on.h"
 
 namespace palpate::stability {
 namespace {
 
-const KeepGoing kOn = [] {};
+using report::kKeepOn;
 
 Frontier frontier(const Loop& loop, double delay) {
   Map map{"loop", "delay_s", "stiffness", {"one"}, {delay}, geometric(1, 1e3, 4), 0.02, {}, {}};
@@ -16,7 +17,7 @@ Frontier frontier(const Loop& loop, double delay) {
     return close_loop(loop, x, y, keep_going);
   };
   map.predict = [](const std::string&, double) { return Prediction{}; };
-  return frontier_of(measure_column(map, "one", delay, kOn).cells);
+  return frontier_of(measure_column(map, "one", delay, kKeepOn).cells);
 }
 
 TEST_CASE(
@@ -42,8 +43,8 @@ TEST_CASE(
 TEST_CASE("haptic loop: beyond the frontier the bare law leaves, the whole chain stays bounded") {
   // Oracle: invariant, the passivity controller and the force limits bound what the law does not.
   const double stiffness = 3 * critical_stiffness({1000, true, false}, 0);
-  CHECK(close_loop({1000, true, false}, 0.001, stiffness, kOn).state == State::kDiverged);
-  const Verdict passive = close_loop({1000, true, true}, 0.001, stiffness, kOn);
+  CHECK(close_loop({1000, true, false}, 0.001, stiffness, kKeepOn).state == State::kDiverged);
+  const Verdict passive = close_loop({1000, true, true}, 0.001, stiffness, kKeepOn);
   CHECK(passive.state == State::kOscillating);
   CHECK(passive.displacement < 1);
 }

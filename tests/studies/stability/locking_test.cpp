@@ -3,19 +3,20 @@
 #include <catch2/catch.hpp>
 
 #include "tests/studies/chart/folders.h"
+#include "tests/studies/keep_on.h"
 
 namespace palpate::stability {
 namespace {
 
-const KeepGoing kOn = [] {};
+using report::kKeepOn;
 
 TEST_CASE("locking: linear tetrahedra stiffen towards one half, averaged pressures do not") {
   // Oracle: recorded reference, A_ball_plates.csv: 0.799225 N at 10 %, ν = 0.499; 1 % for the
   // coarse mesh. Then the theory of locking: nodal_pressure keeps its error within a tenth.
-  const double reference = locking_reference(0.499, kOn);
+  const double reference = locking_reference(0.499, kKeepOn);
   CHECK(reference == Approx(0.799225).epsilon(0.01));
-  const double linear = locking_point("corotational", 0.499, kOn).force;
-  const double averaged = locking_point("nodal_pressure", 0.499, kOn).force;
+  const double linear = locking_point("corotational", 0.499, kKeepOn).force;
+  const double averaged = locking_point("nodal_pressure", 0.499, kKeepOn).force;
   CHECK(linear > 1.3 * reference);
   CHECK(averaged < 1.1 * reference);
   CHECK(averaged > 0.9 * reference);
@@ -27,7 +28,7 @@ TEST_CASE("locking: what was measured is not measured again, and stands in the t
   struct Stop {};
   CHECK(locking_ratios(true).size() < locking_ratios(false).size());
   CHECK_THROWS_AS(measure_locking({0.45}, folder.path, [] { throw Stop{}; }), Stop);
-  const auto first = measure_locking({0.45}, folder.path, kOn);
+  const auto first = measure_locking({0.45}, folder.path, kKeepOn);
   const auto again = measure_locking({0.45}, folder.path, [] { throw Stop{}; });
   REQUIRE(again.size() == first.size());
   for (std::size_t i = 0; i < first.size(); ++i) {

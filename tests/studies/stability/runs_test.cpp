@@ -6,11 +6,12 @@
 #include <iostream>
 
 #include "studies/stability/maps.h"
+#include "tests/studies/keep_on.h"
 
 namespace palpate::stability {
 namespace {
 
-const KeepGoing kOn = [] {};
+using report::kKeepOn;
 
 /// The map with values of one's own.
 Map map_named(const std::string& name, std::vector<double> ys) {
@@ -26,7 +27,7 @@ Map map_named(const std::string& name, std::vector<double> ys) {
 
 void check_against_theory(const std::string& name, const std::string& series, double x) {
   const Map map = map_named(name, geometric(1e-4, 0.03, 5));
-  const Column column = measure_column(map, series, x, kOn);
+  const Column column = measure_column(map, series, x, kKeepOn);
   const Frontier frontier = frontier_of(column.cells);
   std::cout << name << ", " << series << ", x = " << x << ": measured " << frontier.value
             << " s, predicted " << column.prediction.value << " s\n";
@@ -54,10 +55,10 @@ TEST_CASE("runs: implicit steps stand at any size, explicit ones do not, and say
   for (const char* name : {"implicit_volume_backward", "xpbd_springs", "corotational"}) {
     const Scheme& scheme = scheme_named(name);
     INFO(name);
-    CHECK(holds(swing(scheme, shapes.shape_for(scheme), 1e6, 0.05, kOn).state));
+    CHECK(holds(swing(scheme, shapes.shape_for(scheme), 1e6, 0.05, kKeepOn).state));
   }
   const Scheme& scheme = scheme_named("implicit_volume");
-  const Verdict verdict = swing(scheme, shapes.shape_for(scheme), 1e6, 0.05, kOn);
+  const Verdict verdict = swing(scheme, shapes.shape_for(scheme), 1e6, 0.05, kKeepOn);
   CHECK(verdict.state == State::kDiverged);
   CHECK_FALSE(verdict.energy < kDivergedGain);
 }
@@ -69,7 +70,7 @@ TEST_CASE("runs: modal motion and ChainMail stand at any step, being exact or no
     const Scheme& scheme = scheme_named(name);
     INFO(name);
     for (const double h : {1e-4, 1e-2, 0.1}) {
-      const Verdict verdict = swing(scheme, shapes.shape_for(scheme), 1e5, h, kOn);
+      const Verdict verdict = swing(scheme, shapes.shape_for(scheme), 1e5, h, kKeepOn);
       CHECK(verdict.state == State::kStable);
       CHECK(verdict.energy < 1.5);
     }
@@ -101,21 +102,21 @@ TEST_CASE("runs: a squeezed ball touches the plates, keeps its volume, and stand
   Shapes shapes;
   std::unique_ptr<TestBody> end;
   const Scheme& kept = scheme_named("implicit_volume");
-  const Verdict verdict = squeeze(kept, shapes.shape_for(kept), 0.3, 2e-3, kOn, &end);
+  const Verdict verdict = squeeze(kept, shapes.shape_for(kept), 0.3, 2e-3, kKeepOn, &end);
   CHECK(verdict.state == State::kStable);
   CHECK(verdict.volume_error < 1e-6);
   double highest = 0;
   for (const Vec3& p : end->state().positions) highest = std::max(highest, std::abs(p.z()));
   CHECK(highest == Approx(0.7 * kBallRadius).epsilon(1e-3));
   const Scheme& springs = scheme_named("mass_spring");
-  CHECK(squeeze(springs, shapes.shape_for(springs), 0.3, 2e-3, kOn).volume_error > 0.01);
+  CHECK(squeeze(springs, shapes.shape_for(springs), 0.3, 2e-3, kKeepOn).volume_error > 0.01);
 }
 
 TEST_CASE("runs: a sphere driven in and out dents the ball by its depth and leaves it whole") {
   // Oracle: the top node is under the sphere at 20 mm depth, 0.4 R; afterwards it stands.
   Shapes shapes;
   const Scheme& scheme = scheme_named("implicit_volume");
-  const Verdict verdict = poke(scheme, shapes.shape_for(scheme), 0.3, 2e-3, kOn);
+  const Verdict verdict = poke(scheme, shapes.shape_for(scheme), 0.3, 2e-3, kKeepOn);
   CHECK(verdict.state == State::kStable);
   CHECK(verdict.displacement == Approx(0.4).margin(0.05));
   CHECK(verdict.inverted == 0);

@@ -3,19 +3,20 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <random>
-#include <thread>
 
 #include "deformation/springs/spring_forces.h"
 #include "deformation/steppers/symplectic_euler.h"
 #include "tests/deformation/organs.h"
+#include "tests/deformation/springs/chunk_threads.h"
 
 namespace palpate::deformation {
 namespace {
 
 using testing::ball_model;
 using testing::ball_organ;
+using testing::ChunkThreads;
 
-constexpr double kStep = 3e-4;  // [s]
+constexpr double kKernelStep = 3e-4;  // [s]
 
 OrganState disturbed(const OrganModel& model, double amplitude) {
   std::mt19937 random(1);
@@ -34,24 +35,6 @@ scene::Organ loaded_organ() {
   return organ;
 }
 
-/// Chunks shared out over real threads, round robin.
-class Threads : public ChunkRunner {
- public:
-  explicit Threads(std::size_t count) : count_(count) {}
-  void run(std::size_t chunks, ChunkBody body) override {
-    std::vector<std::thread> threads;
-    for (std::size_t t = 0; t < count_; ++t) {
-      threads.emplace_back([=, this] {
-        for (std::size_t chunk = t; chunk < chunks; chunk += count_) body(chunk);
-      });
-    }
-    for (auto& thread : threads) thread.join();
-  }
-
- private:
-  std::size_t count_;
-};
-
 /// Largest differences of what the kernel and the plain code say of one state, each over the size
 /// of what was summed up.
 struct Differences {
@@ -61,10 +44,10 @@ struct Differences {
 Differences from_plain(const OrganModel& model, const OrganState& state, InstructionSet set) {
   SpringKernel kernel(model, model.network(), true, nullptr, set);
   FreeStep fast;
-  kernel.free_step(kStep, state, fast);
+  kernel.free_step(kKernelStep, state, fast);
   auto plain = state;
   std::vector<Vec3> forces;
-  apply_forces(model, kStep, plain, forces);
+  apply_forces(model, kKernelStep, plain, forces);
   VolumeGradient volume;
   evaluate_volume(model, state.positions, volume);
 
@@ -72,7 +55,7 @@ Differences from_plain(const OrganModel& model, const OrganState& state, Instruc
   Differences worst;
   double speed = 0, area = 0, sum = 0;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
-    const double kick = kStep * model.inverse_masses[i] * model.node_stiffness[i] * 0.05;
+    const double kick = kKernelStep * model.inverse_masses[i] * model.node_stiffness[i] * 0.05;
     speed = std::max(speed, kick + state.velocities[i].norm());
     worst.velocity = std::max(worst.velocity, (fast.velocities[i] - plain.velocities[i]).norm());
   }
@@ -179,9 +162,9 @@ TEST_CASE("spring kernel: far from the origin the volume keeps its digits") {
   auto state = disturbed(model, 3e-3);
   SpringKernel kernel(model, model.network(), true);
   FreeStep here, there;
-  kernel.free_step(kStep, state, here);
+  kernel.free_step(kKernelStep, state, here);
   for (Vec3& p : state.positions) p += Vec3(65536, -32768, 16384);
-  kernel.free_step(kStep, state, there);
+  kernel.free_step(kKernelStep, state, there);
   CHECK(there.volume.volume == Approx(here.volume.volume).epsilon(3e-9));
   CHECK(there.volume.denominator == Approx(here.volume.denominator).epsilon(3e-9));
 }
@@ -194,7 +177,7 @@ TEST_CASE("spring kernel: springs without length give no force and no NaN") {
   for (const InstructionSet set : available_instruction_sets()) {
     SpringKernel kernel(model, model.network(), true, nullptr, set);
     FreeStep step;
-    kernel.free_step(kStep, state, step);
+    kernel.free_step(kKernelStep, state, step);
     for (const Vec3& v : step.velocities) CHECK(v == Vec3::Zero());
     CHECK(step.volume.volume == 0);
     CHECK(step.volume.denominator == 0);
@@ -207,11 +190,11 @@ OrganState stepped(const OrganModel& model, InstructionSet set, ChunkRunner* run
   SpringKernel kernel(model, model.network(), true, runner, set);
   FreeStep step;
   for (int s = 0; s < 20; ++s) {
-    kernel.free_step(kStep, state, step);
-    const double rate = (step.volume.volume - state.target_volume) / kStep;
+    kernel.free_step(kKernelStep, state, step);
+    const double rate = (step.volume.volume - state.target_volume) / kKernelStep;
     const double sigma = (rate + step.volume_velocity) / step.volume.denominator;
-    kernel.finish_step(kStep, sigma, step, state);
-    state.pressure = -sigma / kStep;
+    kernel.finish_step(kKernelStep, sigma, step, state);
+    state.pressure = -sigma / kKernelStep;
   }
   return state;
 }
@@ -227,7 +210,7 @@ TEST_CASE("spring kernel: the same bits for any number of threads") {
     INFO(name_of(set));
     const auto expected = stepped(model, set, nullptr);
     for (std::size_t threads = 1; threads <= 3; ++threads) {
-      Threads runner(threads);
+      ChunkThreads runner(threads);
       CHECK(same_bits(stepped(model, set, &runner), expected));
     }
   }
@@ -253,7 +236,7 @@ TEST_CASE("spring kernel: internal forces keep momentum and angular momentum") {
   const auto state = disturbed(model, 5e-3);
   SpringKernel kernel(model, model.network(), true);
   FreeStep step;
-  kernel.free_step(kStep, state, step);
+  kernel.free_step(kKernelStep, state, step);
   Vec3 momentum = Vec3::Zero(), angular = Vec3::Zero(), volume = Vec3::Zero();
   double size = 0;
   for (std::size_t i = 0; i < model.node_count(); ++i) {
@@ -276,8 +259,9 @@ TEST_CASE("spring kernel: without volume it is the same step") {
   const auto state = disturbed(model, 3e-3);
   for (const InstructionSet set : available_instruction_sets()) {
     FreeStep expected, found;
-    SpringKernel(model, model.network(), true, nullptr, set).free_step(kStep, state, expected);
-    SpringKernel(model, model.network(), false, nullptr, set).free_step(kStep, state, found);
+    SpringKernel(model, model.network(), true, nullptr, set)
+        .free_step(kKernelStep, state, expected);
+    SpringKernel(model, model.network(), false, nullptr, set).free_step(kKernelStep, state, found);
     double given = 0;
     for (std::size_t i = 0; i < model.node_count(); ++i) {
       given = std::max(given, (expected.velocities[i] - state.velocities[i]).norm());
@@ -318,8 +302,9 @@ TEST_CASE(
   std::array<ContactRow, 1> fast_rows{row}, plain_rows{row};
   auto fast = disturbed(model, 2e-3), plain = fast;
   StepBuffers buffers;
-  testing::constrained(model, corrections).step(kStep, fast_rows, fast);
-  symplectic_euler_step(model, kStep, plain_rows, plain, buffers, {.corrections = corrections});
+  testing::constrained(model, corrections).step(kKernelStep, fast_rows, fast);
+  symplectic_euler_step(model, kKernelStep, plain_rows, plain, buffers,
+                        {.corrections = corrections});
   REQUIRE(plain_rows[0].normal_impulse > 0);
   CHECK(fast_rows[0].normal_impulse == Approx(plain_rows[0].normal_impulse).epsilon(1e-6));
   CHECK(fast.pressure == Approx(plain.pressure).epsilon(1e-6));

@@ -7,7 +7,9 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kStep = 1e-3;
+using testing::momentum;
+
+constexpr double kRuleStep = 1e-3;
 
 /// Those of springs that step by symplectic Euler, and ChainMail.
 std::vector<std::string> all_models() {
@@ -16,14 +18,6 @@ std::vector<std::string> all_models() {
     if (!format.is_solid() && format.iterations == 0) models.emplace_back(format.word);
   }
   return models;
-}
-
-Vec3 momentum(const OrganModel& model, const OrganState& state) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < model.node_count(); ++i) {
-    sum += model.masses[i] * state.velocities[i];
-  }
-  return sum;
 }
 
 Vec3 angular_momentum(const OrganModel& model, const OrganState& state) {
@@ -40,11 +34,11 @@ TEST_CASE("neighbours: every model of the scene can be stepped, with its own lar
     INFO(method);
     const auto organ = testing::ball_organ_with(method);
     const auto model = testing::ball_model(2, organ);
-    const auto dynamics = make_dynamics(organ, model, kStep);
+    const auto dynamics = make_dynamics(organ, model, kRuleStep);
     CHECK(dynamics->largest_step() > 0.1 * stable_step_bound(model));
     CHECK(dynamics->largest_step() < stable_step_bound(model));
     OrganState state = rest_state(model);
-    CHECK_FALSE(dynamics->step(kStep, {}, state).volume_skipped);
+    CHECK_FALSE(dynamics->step(kRuleStep, {}, state).volume_skipped);
     CHECK(testing::volume_of(model, state) == Approx(model.rest_volume).epsilon(1e-9));
   }
 }
@@ -59,16 +53,16 @@ TEST_CASE("neighbours: a free organ keeps its momentum") {
     INFO(method);
     const auto organ = testing::undamped_ball_with(method);
     const auto model = testing::ball_model(1, organ);
-    const auto dynamics = make_dynamics(organ, model, kStep);
+    const auto dynamics = make_dynamics(organ, model, kRuleStep);
     OrganState state = testing::shaken_state(model, 1e-3, 0.1);
     const Vec3 linear = momentum(model, state), angular = angular_momentum(model, state);
-    for (int s = 0; s < 200; ++s) dynamics->step(kStep, {}, state);
+    for (int s = 0; s < 200; ++s) dynamics->step(kRuleStep, {}, state);
     const double scale = model.masses[0] * static_cast<double>(model.node_count()) * 0.1;
     CHECK((momentum(model, state) - linear).norm() < 1e-8 * scale);
     const bool projects = method == "promayon" || method == "post_stabilisation";
     if (projects) continue;
     const double stiffness = *std::ranges::max_element(model.node_stiffness);
-    const double rounding = 6e-8 * stiffness * 1e-3 * kStep *
+    const double rounding = 6e-8 * stiffness * 1e-3 * kRuleStep *
                             std::sqrt(200.0 * static_cast<double>(model.node_count()));
     CHECK((angular_momentum(model, state) - angular).norm() < 3 * rounding * testing::kBallRadius);
   }
@@ -81,9 +75,9 @@ TEST_CASE("neighbours: fixed nodes never move") {
     auto organ = testing::ball_organ_with(method);
     organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, 0.05), 0.03});
     const auto model = testing::ball_model(2, organ);
-    const auto dynamics = make_dynamics(organ, model, kStep);
+    const auto dynamics = make_dynamics(organ, model, kRuleStep);
     OrganState state = testing::shaken_state(model, 1e-3, 0.1);
-    for (int s = 0; s < 50; ++s) dynamics->step(kStep, {}, state);
+    for (int s = 0; s < 50; ++s) dynamics->step(kRuleStep, {}, state);
     for (const auto node : model.fixed_nodes) {
       CHECK(state.positions[node] == model.rest_positions[node]);
     }
@@ -96,11 +90,11 @@ TEST_CASE("neighbours: a flattened ball stays finite") {
     INFO(method);
     const auto organ = testing::ball_organ_with(method);
     const auto model = testing::ball_model(2, organ);
-    const auto dynamics = make_dynamics(organ, model, kStep);
+    const auto dynamics = make_dynamics(organ, model, kRuleStep);
     for (const Vec3& keep : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0)}) {
       OrganState state = rest_state(model);
       for (Vec3& x : state.positions) x = x.cwiseProduct(keep);
-      for (int s = 0; s < 20; ++s) dynamics->step(kStep, {}, state);
+      for (int s = 0; s < 20; ++s) dynamics->step(kRuleStep, {}, state);
       for (const Vec3& x : state.positions) REQUIRE(x.allFinite());
       for (const Vec3& v : state.velocities) REQUIRE(v.allFinite());
       CHECK(std::isfinite(state.pressure));
@@ -113,15 +107,15 @@ TEST_CASE("neighbours: what does not go together is refused by name") {
   auto organ = testing::ball_organ_with("zordan");
   organ.springs.virtual_nodes = 0;
   const auto hollow = testing::ball_model(1, organ);
-  CHECK_THROWS_WITH(make_dynamics(organ, hollow, kStep),
+  CHECK_THROWS_WITH(make_dynamics(organ, hollow, kRuleStep),
                     Catch::Contains("organ 'ball'") && Catch::Contains("model zordan") &&
                         Catch::Contains("virtual_nodes must be at least 1"));
   organ.model = "element_volume";
-  CHECK_THROWS_AS(make_dynamics(organ, hollow, kStep), InputError);
+  CHECK_THROWS_AS(make_dynamics(organ, hollow, kRuleStep), InputError);
   organ.model = "penalty";
-  CHECK_NOTHROW(make_dynamics(organ, hollow, kStep));
+  CHECK_NOTHROW(make_dynamics(organ, hollow, kRuleStep));
   organ.integrator = scene::Integrator::kBackwardEuler;
-  CHECK_THROWS_WITH(make_dynamics(organ, hollow, kStep),
+  CHECK_THROWS_WITH(make_dynamics(organ, hollow, kRuleStep),
                     Catch::Contains("model penalty") && Catch::Contains("integrator must be"));
 }
 

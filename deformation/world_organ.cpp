@@ -1,0 +1,84 @@
+#include "deformation/world_organ.h"
+
+#include <sstream>
+#include <utility>
+
+#include "modules/core/error.h"
+#include "modules/scene/models.h"
+
+namespace palpate::deformation {
+namespace {
+
+constexpr double kLeastStep = 1e-6;  // [s]
+/// Nodes that a law's compliance is taken from. Nearly incompressible tissue reaches further.
+constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
+
+/// The organ as it is stepped: contacts with organs take symplectic Euler alone.
+scene::Organ stepped_organ(const scene::Scene& scene, std::size_t index) {
+  scene::Organ organ = scene.organs[index];
+  const bool is_free = organ.integrator == scene::Integrator::kAutomatic;
+  if (scene.contacts.any() && is_free && scene::format_of(organ.model).has_integrator) {
+    organ.integrator = scene::Integrator::kSymplecticEuler;
+  }
+  return organ;
+}
+
+}  // namespace
+
+Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> touched,
+                                               double period) {
+  const OrganState& state = simulated.state();
+  std::span<const Vec3> gradient;
+  if (keeps_volume) {
+    evaluate_volume(simulated.model(), state.positions, volume);
+    gradient = volume.gradient;
+  }
+  const PeriodSteps steps{period, simulated.substeps(period), simulated.dynamics().is_implicit()};
+  Eigen::MatrixXd own = simulated.dynamics().compliance(touched, steps);
+  if (own.size() > 0) return own;
+  return compliance->solve(
+      state.positions, touched, steps, gradient,
+      [&](const Patch& patch, double stiffness_share, double damping_share, Eigen::MatrixXf& sum) {
+        if (springs) {
+          springs->add(state.positions, patch, stiffness_share, damping_share, sum);
+        } else {
+          simulated.dynamics().add_stiffness(patch, stiffness_share, sum);
+        }
+      });
+}
+
+WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
+                      const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding) {
+  const scene::Organ organ = stepped_organ(scene, index);
+  const double period = 1 / scene.rates.deformation;
+  auto model = std::make_unique<const OrganModel>(build_organ_model(organ, scene.gravity, shape));
+  auto dynamics = make_dynamics(organ, *model, period, runner);
+  if (dynamics->largest_step() < kLeastStep) {
+    std::ostringstream message;
+    message << "organ '" << organ.name << "': its largest stable step is "
+            << dynamics->largest_step() << " s, less than " << kLeastStep
+            << " s; soften the tissue or even out the mesh ('nodes')";
+    throw InputError(message.str());
+  }
+  const IntegratorChoice integrator = choose_integrator(organ, *model, period);
+  WorldOrgan made{
+      .name = organ.name,
+      .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
+      .integrator = integrator,
+      .mean_edge = geometry::mean_edge_length(shape.surface),
+  };
+  const OrganModel& kept = made.simulated.model();
+  made.surface = std::make_unique<SurfaceWalk>(kept);
+  made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  if (kept.is_solid()) {
+    tetrahedra = kept.mesh().tetrahedra;
+  } else {
+    made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
+  }
+  made.compliance = std::make_unique<PatchCompliance>(
+      kept, Neighbours(kept, tetrahedra), kept.is_solid() ? kPatchOfSolid : kPatchOfSprings);
+  return made;
+}
+
+}  // namespace palpate::deformation

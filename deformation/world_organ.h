@@ -1,0 +1,52 @@
+// One organ of a world: its simulation, the rows on it, and what a period's force on those rows
+// does.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "deformation/contact/patch_compliance.h"
+#include "deformation/contact/surface_walk.h"
+#include "deformation/models.h"
+#include "deformation/simulated_organ.h"
+#include "deformation/springs/patch_springs.h"
+#include "deformation/springs/spring_forces.h"
+#include "modules/geometry/organ_shape.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::deformation {
+
+/// What a world keeps of an organ.
+struct WorldOrgan {
+  std::string name;
+  SimulatedOrgan simulated;
+  IntegratorChoice integrator;
+  std::uint32_t generation = 1;
+  std::vector<ContactRow> rows = {};
+  double mean_edge = 0;       ///< of the surface at rest [m]
+  bool keeps_volume = false;  ///< by springs' contents: at once, wherever it is touched
+  bool replaced = false;      ///< its state, at the end of the last advance
+  std::unique_ptr<PatchCompliance> compliance = nullptr;
+  std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
+  std::unique_ptr<SurfaceWalk> surface = nullptr;
+  VolumeGradient volume = {};  ///< buffer of contact_compliance()
+
+  /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N], symmetric, one row and column each.
+  /// @param period  [s], above 0
+  Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period);
+};
+
+/// Organ `index` of a scene at rest. In a scene whose organs may touch, springs whose integrator is
+/// left open take symplectic Euler, the one that contacts with organs know.
+/// @param shape  closed, outward, in W [m]
+/// @param runner  outlives the organ; none: the calling thread alone
+/// @throws InputError naming the organ if it cannot be simulated (all nodes fixed, stable step
+/// below
+///         1 µs, …)
+WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
+                      const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding);
+
+}  // namespace palpate::deformation

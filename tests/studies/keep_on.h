@@ -1,0 +1,10 @@
+// For work that nobody ends.
+#pragma once
+
+#include "studies/report/progress.h"
+
+namespace palpate::report {
+
+inline const KeepGoing kKeepOn = [] {};
+
+}  // namespace palpate::report
