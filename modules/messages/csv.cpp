@@ -6,6 +6,7 @@
 
 #include "modules/core/units.h"
 #include "modules/messages/describe.h"
+#include "modules/messages/key_of.h"
 
 namespace palpate::messages {
 namespace {
@@ -101,24 +102,6 @@ void walk(std::ostream& stream, CsvRow::Shows shows, const T& described) {
   describe(row, described);
 }
 
-class KeyText {
- public:
-  std::string text;
-  void header(const Header&) {}
-  void key(const char*, std::uint32_t number) { text = std::to_string(number); }
-  void key(const char*, const std::string& name) { text = name; }
-  template <class... Any>
-  void field(const Any&...) {}
-  template <class... Any>
-  void numbers(const Any&...) {}
-  template <class... Any>
-  void list(const Any&...) {}
-  template <class... Any>
-  void derived(const Any&...) {}
-  template <class... Any>
-  void require(const Any&...) {}
-};
-
 }  // namespace
 
 void write_number(std::ostream& stream, double value) {
@@ -171,7 +154,7 @@ void write_csv_values(std::ostream& stream, const ModuleStatus::Input& input) {
 }
 
 std::string key_text(const AnyMessage& message) {
-  KeyText key;
+  KeyOf key;
   std::visit([&](const auto& m) { describe(key, m); }, message);
   return key.text;
 }

@@ -6,38 +6,19 @@
 
 #include "modules/messages/cdr.h"
 #include "modules/messages/describe.h"
+#include "modules/messages/key_of.h"
 
 namespace palpate::messages {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 24;
 
-// Finds out what the key is.
-class KeyFinder {
- public:
-  MessageType::Key key_kind = MessageType::Key::kNone;
-
-  void header(const Header&) {}
-  void key(const char*, std::uint32_t) { key_kind = MessageType::Key::kNumber; }
-  void key(const char*, const std::string&) { key_kind = MessageType::Key::kText; }
-  template <class... Any>
-  void field(const Any&...) {}
-  template <class... Any>
-  void numbers(const Any&...) {}
-  template <class... Any>
-  void list(const Any&...) {}
-  template <class... Any>
-  void derived(const Any&...) {}
-  template <class... Any>
-  void require(const Any&...) {}
-};
-
 template <class Message>
 MessageType::Key key_kind() {
-  KeyFinder finder;
+  KeyOf key;
   const Message message;
-  describe(finder, message);
-  return finder.key_kind;
+  describe(key, message);
+  return key.kind;
 }
 
 template <class Message>

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "modules/runtime/clock.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/shell_script.h"
 
 using namespace palpate::launcher;

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/dds_bus.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 
 using namespace palpate;
 using namespace palpate::launcher;

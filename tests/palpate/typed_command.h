@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "palpate/child_process.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 
 namespace palpate::testing {
 

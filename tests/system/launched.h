@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "palpate/child_process.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/ball_scene.h"
 
 namespace palpate::testing {

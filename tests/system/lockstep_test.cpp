@@ -9,7 +9,7 @@
 
 #include "modules/recording/inspect.h"
 #include "palpate/child_process.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/ball_scene.h"
 
 using namespace palpate;

@@ -13,7 +13,7 @@
 #include "modules/runtime/session.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/child_process.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/ball_scene.h"
 
 namespace palpate::testing {

@@ -5,25 +5,15 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <string>
-#include <thread>
 
 #include "modules/bus/dds_bus.h"
+#include "tests/modules/waiting.h"
 
 namespace palpate::bus::testing {
 
-inline constexpr double kDeadline = 20;  // [s] far beyond any sound run, even on a busy machine
-
-template <class Condition>
-bool wait_until(const Condition& condition, double deadline = kDeadline) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(deadline);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
-}
+using palpate::testing::kDeadline;
+using palpate::testing::wait_until;
 
 /// Options that no other test shares: domain from the process, session from a count. Samples
 /// between buses of one process then travel by UDP, as between processes.

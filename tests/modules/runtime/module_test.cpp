@@ -5,7 +5,7 @@
 
 #include "modules/runtime/clock.h"
 #include "modules/scene/scene_reader.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 
 using namespace palpate;
 using namespace palpate::runtime;

@@ -6,7 +6,7 @@
 
 #include "modules/runtime/clock.h"
 #include "modules/runtime/stop_signal.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 
 using palpate::runtime::begin_period;
 using palpate::runtime::monotonic_now_ns;

@@ -7,7 +7,7 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/runtime/clock.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/times.h"
 
 using namespace palpate;

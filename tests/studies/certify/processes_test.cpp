@@ -5,7 +5,7 @@
 #include "studies/certify/hands.h"
 #include "studies/certify/release.h"
 #include "studies/certify/timing.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/studies/certify/subjects.h"
 
 using namespace palpate;

@@ -10,7 +10,7 @@
 #include "modules/core/error.h"
 #include "palpate/child_process.h"
 #include "studies/report/progress.h"
-#include "tests/modules/runtime/waiting.h"
+#include "tests/modules/runtime/own_bus.h"
 #include "tests/scratch_folder.h"
 
 namespace palpate::paper {
