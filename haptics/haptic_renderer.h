@@ -63,7 +63,7 @@ class HapticRenderer {
   scene::Haptics limits_;
   double period_;
   ForceLimiter force_limiter_, torque_limiter_;
-  Passivity passivity_;
+  PassivityControl passivity_;
 
   Received current_, next_;  ///< `next_` takes over at the coming tick
   LawSolver solver_;         ///< of the current law

@@ -13,7 +13,7 @@ constexpr double kStandstill = 1e-6;
 
 }  // namespace
 
-void Passivity::observe(const Pose& pose, double returnable) {
+void PassivityControl::observe(const Pose& pose, double returnable) {
   if (has_pose_) {
     const Vec3 moved = pose.position - pose_.position;
     const Vec3 turned = vector_from_rotation(pose.rotation * pose_.rotation.conjugate());
@@ -26,7 +26,7 @@ void Passivity::observe(const Pose& pose, double returnable) {
   has_pose_ = true;
 }
 
-Wrench Passivity::controlled(const Wrench& wanted, const Twist& twist) const {
+Wrench PassivityControl::controlled(const Wrench& wanted, const Twist& twist) const {
   const double speed = std::hypot(twist.linear.stableNorm(), kArm * twist.angular.stableNorm());
   if (!(speed > kStandstill) || !std::isfinite(speed)) return wanted;
   const Vec3 along = twist.linear / speed, around = twist.angular / speed;
@@ -39,7 +39,7 @@ Wrench Passivity::controlled(const Wrench& wanted, const Twist& twist) const {
   return {wanted.force - taken * along, wanted.torque - taken * kArm * kArm * around};
 }
 
-void Passivity::clear() {
+void PassivityControl::clear() {
   energy_ = 0;
   has_pose_ = false;
   held_ = {};

@@ -19,14 +19,15 @@
 
 namespace palpate::haptics {
 
-class Passivity {
+class PassivityControl {
  public:
   static constexpr double kMaxAddedDamping = 10;  ///< α_max [N·s/m]; T α_max/2 ≪ any device's mass
   static constexpr double kMaxDebt = 0.01;        ///< [J]; 10 mJ: a 10 mm press at 200 N/m
   static constexpr double kArm = 0.1;             ///< [m]; a turn of 10° counts as 17 mm
 
   /// @param device_damping  b [N·s/m] ≥ 0   @param period  T [s] > 0
-  Passivity(double device_damping, double period) : damping_(device_damping), period_(period) {}
+  PassivityControl(double device_damping, double period)
+      : damping_(device_damping), period_(period) {}
 
   /// The device has come to `pose` while the wrench given to held() acted.
   /// @param returnable  W of the present contact, before any limit [J] ≥ 0

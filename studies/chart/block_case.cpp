@@ -187,12 +187,13 @@ Measurement bend_beam(int level, const KeepGoing& keep_going) {
       deformation::make_quadratic(
           geometry::mesh_block(kBeamLow, kBeamHigh, kSizes[static_cast<std::size_t>(level)])),
       deformation::ElasticConstants(kStiff, kPoissonRatio), kDensity);
-  std::vector<char> held;
-  for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
+  std::vector<char> constrained;
+  for (const Vec3& node : solid.mesh().nodes)
+    constrained.insert(constrained.end(), 3, node.x() == 0);
   Measurement result = summary(solid);
   Sample& sample = result.samples.emplace_back();
   sample.load = kWeight.norm();
-  sample.shape = -sag_at_rest(solid, held, kWeight, {{kLength, 0, 0}}, keep_going)[0].z();
+  sample.shape = -sag_at_rest(solid, constrained, kWeight, {{kLength, 0, 0}}, keep_going)[0].z();
   return result;
 }
 
@@ -241,15 +242,16 @@ Measurement press_block(int level, const KeepGoing& keep_going) {
   const deformation::TaylorHoodElements solid(
       deformation::make_quadratic(rigs::quarter_block(kSizes[static_cast<std::size_t>(level)])),
       deformation::ElasticConstants(kYoungsModulus, kPoissonRatio), kDensity);
-  std::vector<char> held;
-  held.reserve(solid.displacement_count());
+  std::vector<char> constrained;
+  constrained.reserve(solid.displacement_count());
   for (const Vec3& node : solid.mesh().nodes) {
-    for (int axis = 0; axis < 3; ++axis) held.push_back(rigs::is_held_in_quarter(node, axis));
+    for (int axis = 0; axis < 3; ++axis)
+      constrained.push_back(rigs::is_constrained_in_quarter(node, axis));
   }
   Press press{{0, 0, kHeight}, -Vec3::UnitZ(), kTip, {kTipDepths.begin(), kTipDepths.end()}, {}};
   for (const double place : kProfilePlaces) press.marks.emplace_back(place, 0, kHeight);
   Measurement result = summary(solid);
-  const auto answers = press_at_rest(solid, held, press, keep_going);
+  const auto answers = press_at_rest(solid, constrained, press, keep_going);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     Sample& sample = result.samples.emplace_back();
     sample.load = kTipDepths[i];

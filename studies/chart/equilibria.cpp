@@ -79,12 +79,12 @@ std::vector<Vec3> displacements(const TaylorHoodElements& solid, const SolidStat
 
 }  // namespace
 
-std::vector<Pressed> press_at_rest(const TaylorHoodElements& solid, std::vector<char> held,
+std::vector<Pressed> press_at_rest(const TaylorHoodElements& solid, std::vector<char> constrained,
                                    const Press& press, const std::function<void()>& keep_going) {
   const auto& tissue = solid.tissue();
   deformation::RigidContact contact(solid, faces_near(solid, press.place, kReach * press.radius),
                                     kPenaltyRatio * 3 * tissue.shear_modulus() / press.radius);
-  deformation::QuasiStaticNewton solver(solid, std::move(held), &contact);
+  deformation::QuasiStaticNewton solver(solid, std::move(constrained), &contact);
   const auto setting = quiet(keep_going);
   elements_bench::LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(kStride * press.radius);
@@ -104,12 +104,12 @@ std::vector<Pressed> press_at_rest(const TaylorHoodElements& solid, std::vector<
 }
 
 // Weight as inertia: M f (x − x̂) with x̂ = X + g/f is −M g, but for the part f |x − X|/|g|.
-std::vector<Vec3> sag_at_rest(const TaylorHoodElements& solid, std::vector<char> held,
+std::vector<Vec3> sag_at_rest(const TaylorHoodElements& solid, std::vector<char> constrained,
                               const Vec3& gravity, const std::vector<Vec3>& marks,
                               const std::function<void()>& keep_going) {
   constexpr double kFactor = 1e-3;  // f [1/s²]
   constexpr int kStrides = 8;
-  deformation::QuasiStaticNewton solver(solid, std::move(held), nullptr);
+  deformation::QuasiStaticNewton solver(solid, std::move(constrained), nullptr);
   SolidState state = solid.rest_state();
   for (int k = 1; k <= kStrides; ++k) {
     keep_going();

@@ -23,16 +23,17 @@ struct Pressed {
 };
 
 /// One per depth; fewer if Newton's method fails at one.
-/// @param held        as QuasiStaticNewton
+/// @param constrained  as QuasiStaticNewton
 /// @param keep_going  asked between loads; may throw
 std::vector<Pressed> press_at_rest(const deformation::TaylorHoodElements& solid,
-                                   std::vector<char> held, const Press& press,
+                                   std::vector<char> constrained, const Press& press,
                                    const std::function<void()>& keep_going);
 
 /// Displacements of the surface's points nearest to the marks, under `gravity` [m/s²].
 /// @throws std::runtime_error if Newton's method fails
-std::vector<Vec3> sag_at_rest(const deformation::TaylorHoodElements& solid, std::vector<char> held,
-                              const Vec3& gravity, const std::vector<Vec3>& marks,
+std::vector<Vec3> sag_at_rest(const deformation::TaylorHoodElements& solid,
+                              std::vector<char> constrained, const Vec3& gravity,
+                              const std::vector<Vec3>& marks,
                               const std::function<void()>& keep_going);
 
 }  // namespace palpate::chart

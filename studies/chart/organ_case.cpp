@@ -82,9 +82,9 @@ Measurement press_at_rest(const PokedPlace& place, int level, const KeepGoing& k
       deformation::make_quadratic(
           geometry::fill_surface(surface, geometry::mean_edge_length(coarse))),
       deformation::ElasticConstants(kYoungsModulus, kPoissonRatio), kDensity);
-  std::vector<char> held;
+  std::vector<char> constrained;
   for (const Vec3& node : solid.mesh().nodes) {
-    held.insert(held.end(), 3, deformation::is_fixed(organ, node));
+    constrained.insert(constrained.end(), 3, deformation::is_fixed(organ, node));
   }
   const double z = place.z + kBeside;
   const Press press{touched,
@@ -93,7 +93,7 @@ Measurement press_at_rest(const PokedPlace& place, int level, const KeepGoing& k
                     {kDepths.begin(), kDepths.end()},
                     {{place.x, front_of(coarse, place.x, z), z}}};
   Measurement result = summary(solid);
-  const auto answers = chart::press_at_rest(solid, held, press, keep_going);
+  const auto answers = chart::press_at_rest(solid, constrained, press, keep_going);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     Sample& sample = result.samples.emplace_back();
     sample.load = kDepths[i];

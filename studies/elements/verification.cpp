@@ -37,12 +37,13 @@ Run described(const TaylorHoodElements& solid, double size) {
   return {size, solid.mesh().nodes.size(), solid.element_count(), solid.dof_count(), {}, true};
 }
 
-/// Coordinates with `held(position, axis)`.
-template <typename Held>
-std::vector<char> held_where(const TaylorHoodElements& solid, const Held& held) {
+/// Coordinates with `constrained(position, axis)`.
+template <typename Constrained>
+std::vector<char> constrained_where(const TaylorHoodElements& solid,
+                                    const Constrained& constrained) {
   std::vector<char> flags;
   for (const Vec3& p : solid.mesh().nodes) {
-    for (int axis = 0; axis < 3; ++axis) flags.push_back(held(p, axis));
+    for (int axis = 0; axis < 3; ++axis) flags.push_back(constrained(p, axis));
   }
   return flags;
 }
@@ -84,7 +85,8 @@ Run squeezed_ball(double size, const Setting& setting) {
       solid, faces_where(solid, [](const Vec3& p) { return p.norm() > (1 - 1e-6) * kBallRadius; }),
       kPenaltyRatio * kYoungsModulus / kBallRadius);
   QuasiStaticNewton solver(
-      solid, held_where(solid, [](const Vec3& p, int axis) { return p[axis] == 0; }), &contact);
+      solid, constrained_where(solid, [](const Vec3& p, int axis) { return p[axis] == 0; }),
+      &contact);
   LoadPath path(solid, solver, &contact, setting);
   const std::size_t equator = node_at(solid, {kBallRadius, 0, 0});
   Run run = described(solid, size);
@@ -119,9 +121,9 @@ Run bonded_block(double size, const Setting& setting) {
   const TaylorHoodElements solid(
       make_quadratic(geometry::mesh_block(Vec3::Zero(), Vec3::Constant(a), expression)), tissue(),
       1000);
-  const auto held =
-      held_where(solid, [](const Vec3& p, int axis) { return p.z() == a || p[axis] == 0; });
-  QuasiStaticNewton solver(solid, held, nullptr);
+  const auto constrained =
+      constrained_where(solid, [](const Vec3& p, int axis) { return p.z() == a || p[axis] == 0; });
+  QuasiStaticNewton solver(solid, constrained, nullptr);
   LoadPath path(solid, solver, nullptr, setting);
   path.set_longest_stride(0.025);
   const std::size_t face_centre = node_at(solid, {a, 0, 0});
@@ -159,7 +161,8 @@ Run indented_block(double size, const Setting& setting) {
                                             std::hypot(p.x(), p.y()) < 5 * kIndenterRadius;
                                    }),
                        kPenaltyRatio / 100 * kYoungsModulus / kIndenterRadius);
-  QuasiStaticNewton solver(solid, held_where(solid, rigs::is_held_in_quarter), &contact);
+  QuasiStaticNewton solver(solid, constrained_where(solid, rigs::is_constrained_in_quarter),
+                           &contact);
   LoadPath path(solid, solver, &contact, setting);
   path.set_longest_stride(0.0005);
   Run run = described(solid, size);

@@ -24,7 +24,7 @@ geometry::TetMesh quarter_block(double size) {
                               text_of({size * kIndenterRadius, 0.012, 0.02}));
 }
 
-bool is_held_in_quarter(const Vec3& p, int axis) {
+bool is_constrained_in_quarter(const Vec3& p, int axis) {
   return p.z() == 0 || (axis < 2 && p[axis] == 0);
 }
 

@@ -24,7 +24,7 @@ geometry::TetMesh whole_block(const BlockSizes& sizes);
 /// @throws InputError if Gmsh is missing
 geometry::TetMesh quarter_block(double size);
 /// Whether a node of the quarter at `p` is held along `axis`: by the base or by symmetry.
-bool is_held_in_quarter(const Vec3& p, int axis);
+bool is_constrained_in_quarter(const Vec3& p, int axis);
 
 /// Where an organ is held that is the whole block.
 scene::Region block_base();

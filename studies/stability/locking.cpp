@@ -56,11 +56,11 @@ deformation::TaylorHoodElements octant(double poisson_ratio) {
 }
 
 std::vector<char> symmetry_of(const deformation::TaylorHoodElements& solid) {
-  std::vector<char> held;
+  std::vector<char> constrained;
   for (const Vec3& p : solid.mesh().nodes) {
-    for (int axis = 0; axis < 3; ++axis) held.push_back(p[axis] == 0);
+    for (int axis = 0; axis < 3; ++axis) constrained.push_back(p[axis] == 0);
   }
-  return held;
+  return constrained;
 }
 
 std::vector<std::uint32_t> outer_faces(const deformation::TaylorHoodElements& solid) {

@@ -196,7 +196,7 @@ TEST_CASE("closed loop: beyond the critical stiffness limits and passivity bound
             << largest(held.path, 0.5, 1) * 1e3 << " mm, largest debt " << -worst_energy * 1e3
             << " mJ\n";
   CHECK(largest(held.path, 0, 1) < 2 * wall.depth);
-  CHECK(worst_energy > -Passivity::kMaxDebt);
+  CHECK(worst_energy > -PassivityControl::kMaxDebt);
 }
 
 namespace {

@@ -6,7 +6,7 @@
 #include "tests/times.h"
 
 using namespace palpate;
-using haptics::Passivity;
+using haptics::PassivityControl;
 using haptics::Wrench;
 
 namespace {
@@ -21,7 +21,7 @@ Twist moving(double x, double y, double z) { return {Vec3(x, y, z), Vec3::Zero()
 
 TEST_CASE("passivity: the observed energy is the sum of force held times motion made") {
   // Oracle: analytic. Pressing 10 steps of 1 mm against 2 N puts in 20 mJ; b = 0.5 adds b dx²/T.
-  Passivity passivity(0.5, kTick);
+  PassivityControl passivity(0.5, kTick);
   passivity.observe(at(0), kPlenty);
   for (int i = 1; i <= 10; ++i) {
     passivity.held(force(0, 0, 2));
@@ -32,7 +32,7 @@ TEST_CASE("passivity: the observed energy is the sum of force held times motion 
 
 TEST_CASE("passivity: a force that takes in energy, or returns what was put in, is left alone") {
   // Oracle: identity, bit for bit.
-  Passivity passivity(0, kTick);
+  PassivityControl passivity(0, kTick);
   const Wrench pushed = force(0, 0, 2);
   passivity.observe(at(0), kPlenty);
   CHECK(passivity.controlled(pushed, moving(0, 0, -0.1)) == pushed);
@@ -44,7 +44,7 @@ TEST_CASE("passivity: a force that takes in energy, or returns what was put in, 
 
 TEST_CASE("passivity: a push that would generate energy is cut to what brings E to zero") {
   // Oracle: analytic, E + T(−f v) = 0 gives f = E/(T v) = 2 mJ/(1 ms · 2 m/s) = 1 N.
-  Passivity passivity(0, kTick);
+  PassivityControl passivity(0, kTick);
   passivity.observe(at(0), kPlenty);
   passivity.held(force(0, 0, 2));
   passivity.observe(at(-0.001), kPlenty);
@@ -54,7 +54,7 @@ TEST_CASE("passivity: a push that would generate energy is cut to what brings E 
 
 TEST_CASE("passivity: the device's damping pays for that much generated energy") {
   // Oracle: analytic. b v = 0.2 · 0.5 = 0.1 N may be pushed for nothing.
-  Passivity passivity(0.2, kTick);
+  PassivityControl passivity(0.2, kTick);
   passivity.observe(at(0), kPlenty);
   const Twist twist = moving(0.5, 0, 0);
   CHECK(passivity.controlled(force(0.0999, 0, 0), twist) == force(0.0999, 0, 0));
@@ -64,13 +64,13 @@ TEST_CASE("passivity: the device's damping pays for that much generated energy")
 
 TEST_CASE("passivity: debt is paid back by damping of at most the stated size") {
   // Oracle: analytic. 8 mJ generated; at 0.1 m/s a full repayment in a tick would take 80 N.
-  Passivity passivity(0, kTick);
+  PassivityControl passivity(0, kTick);
   passivity.observe(at(0), kPlenty);
   passivity.held(force(0, 0, 2));
   passivity.observe(at(0.004), kPlenty);
   REQUIRE(passivity.energy() == Approx(-0.008));
   const Twist twist = moving(0, 0, 0.1);
-  const double damping = Passivity::kMaxAddedDamping * 0.1;
+  const double damping = PassivityControl::kMaxAddedDamping * 0.1;
   CHECK(passivity.controlled({}, twist).force.z() == Approx(-damping));
   CHECK(passivity.controlled(force(0, 0, 2), twist).force.z() == Approx(-damping));
   // Against the motion the force already takes energy in; damping comes on top.
@@ -80,13 +80,13 @@ TEST_CASE("passivity: debt is paid back by damping of at most the stated size") 
 
 TEST_CASE("passivity: energy is bounded by what the contact can return, and by the largest debt") {
   // Oracle: the stated bounds.
-  Passivity passivity(0, kTick);
+  PassivityControl passivity(0, kTick);
   passivity.observe(at(0), kPlenty);
   passivity.held(force(0, 0, 2));
   passivity.observe(at(-1), 0.003);
   CHECK(passivity.energy() == 0.003);
   passivity.observe(at(1), 0.003);
-  CHECK(passivity.energy() == -Passivity::kMaxDebt);
+  CHECK(passivity.energy() == -PassivityControl::kMaxDebt);
   passivity.clear();
   CHECK(passivity.energy() == 0);
   passivity.observe(at(5), 0.003);  // the way since the last position is not known
@@ -96,7 +96,7 @@ TEST_CASE("passivity: energy is bounded by what the contact can return, and by t
 TEST_CASE("passivity: a turn against a torque counts, and a torque that leaks is cut") {
   // Oracle: analytic. 0.02 N·m turned back by 0.1 rad takes in 2 mJ; at 4 rad/s, that is 0.4 m/s at
   // the arm, it may give back 2 mJ/(1 ms · 4 rad/s) = 0.5 N·m in a tick, not 0.6.
-  Passivity passivity(0, kTick);
+  PassivityControl passivity(0, kTick);
   passivity.observe(at(0), kPlenty);
   passivity.held({Vec3::Zero(), Vec3(0, 0.02, 0)});
   passivity.observe({Vec3::Zero(), Quat(Eigen::AngleAxisd(-0.1, Vec3::UnitY()))}, kPlenty);
@@ -109,7 +109,7 @@ TEST_CASE("passivity: a turn against a torque counts, and a torque that leaks is
 
 TEST_CASE("passivity: motions too large for a number leave the energy as it was") {
   // Oracle: invariant, E stays finite.
-  Passivity passivity(0.2, kTick);
+  PassivityControl passivity(0.2, kTick);
   passivity.held(force(1, 1, 1));
   passivity.observe(at(0), kPlenty);
   passivity.observe({Vec3(1e308, 0, 0), Quat::Identity()}, kPlenty);

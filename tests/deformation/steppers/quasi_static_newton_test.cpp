@@ -18,7 +18,7 @@ TEST_CASE(
   const auto solid = testing::solid(mesh, 0.3);
   Mat3 F;
   F << 1.1, 0.2, 0, 0.05, 0.9, 0.1, 0, -0.1, 1.05;
-  std::vector<char> held(solid.displacement_count(), 0);
+  std::vector<char> constrained(solid.displacement_count(), 0);
   auto state = solid.rest_state();
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const Vec3& p = solid.mesh().nodes[i];
@@ -27,9 +27,9 @@ TEST_CASE(
       continue;
     }
     state.positions[i] = F * p;
-    for (int axis = 0; axis < 3; ++axis) held[3 * i + static_cast<std::size_t>(axis)] = 1;
+    for (int axis = 0; axis < 3; ++axis) constrained[3 * i + static_cast<std::size_t>(axis)] = 1;
   }
-  QuasiStaticNewton solver(solid, held, nullptr);
+  QuasiStaticNewton solver(solid, constrained, nullptr);
   REQUIRE(solver.solve(state).converged);
   double worst = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
@@ -61,13 +61,13 @@ TEST_CASE("quasi-static Newton: a block pulled and pressed carries the neo-Hooke
   // Oracle: uniaxial solution, for ν = 0.5 in closed form μ(λ − λ⁻²). Uniform, so exact.
   const double nu = GENERATE(0.3, 0.4999, 0.5), stretch = GENERATE(0.6, 1.4);
   const auto solid = testing::solid(testing::block({0.02, 0.02, 0.03}, 2, 1, 2), nu);
-  auto held = testing::symmetry(solid);
+  auto constrained = testing::symmetry(solid);
   auto state = solid.rest_state();
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    if (state.positions[i].z() == 0.03) held[3 * i + 2] = 1;
+    if (state.positions[i].z() == 0.03) constrained[3 * i + 2] = 1;
     state.positions[i].z() *= stretch;
   }
-  QuasiStaticNewton solver(solid, held, nullptr);
+  QuasiStaticNewton solver(solid, constrained, nullptr);
   const auto report = solver.solve(state);
   REQUIRE(report.converged);
   const auto r = solver.residual(state, {});
@@ -108,16 +108,16 @@ TEST_CASE("quasi-static Newton: a thick sphere blown up a little follows Lamé a
   if (testing::without_gmsh()) return;
   const double nu = GENERATE(0.3, 0.499, 0.4999, 0.5);
   const auto solid = thick_sphere(0.013, nu);
-  auto held = testing::symmetry(solid);
+  auto constrained = testing::symmetry(solid);
   const double grown = 1e-4 * kInner;
   auto state = solid.rest_state();
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     Vec3& p = state.positions[i];
     if (p.norm() > kInner * (1 + 1e-6)) continue;
     p *= 1 + grown / kInner;
-    for (std::size_t axis = 0; axis < 3; ++axis) held[3 * i + axis] = 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) constrained[3 * i + axis] = 1;
   }
-  QuasiStaticNewton solver(solid, held, nullptr);
+  QuasiStaticNewton solver(solid, constrained, nullptr);
   REQUIRE(solver.solve(state).converged);
   const auto r = solver.residual(state, {});
   double force = 0;

@@ -37,9 +37,10 @@ TEST_CASE("equilibria: a beam sags by its weight as beam theory has it") {
                                          {length, width / 2, width / 2}, "0.01 + 0*x");
   const deformation::TaylorHoodElements solid(deformation::make_quadratic(mesh),
                                               deformation::ElasticConstants(E, nu), 1060);
-  std::vector<char> held;
-  for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.x() == 0);
-  const auto moved = sag_at_rest(solid, held, Vec3(0, 0, -g), {{length, 0, 0}}, [] {});
+  std::vector<char> constrained;
+  for (const Vec3& node : solid.mesh().nodes)
+    constrained.insert(constrained.end(), 3, node.x() == 0);
+  const auto moved = sag_at_rest(solid, constrained, Vec3(0, 0, -g), {{length, 0, 0}}, [] {});
   const double q = 1060 * g * width * width, G = E / (2 * (1 + nu));
   const double bending = q * std::pow(length, 4) / (8 * E * std::pow(width, 4) / 12);
   const double shear = q * length * length / (2 * 5.0 / 6 * G * width * width);
@@ -56,10 +57,11 @@ TEST_CASE("equilibria: a sphere pressed into a block meets the force of Hertz") 
                            "0.0012 + 0.008*((x*x+y*y+(z-0.02)^2)/(x*x+y*y+(z-0.02)^2+0.0001))^2");
   const deformation::TaylorHoodElements solid(deformation::make_quadratic(mesh),
                                               deformation::ElasticConstants(E, nu), 1060);
-  std::vector<char> held;
-  for (const Vec3& node : solid.mesh().nodes) held.insert(held.end(), 3, node.z() == 0);
+  std::vector<char> constrained;
+  for (const Vec3& node : solid.mesh().nodes)
+    constrained.insert(constrained.end(), 3, node.z() == 0);
   const Press press{{0, 0, 0.02}, -Vec3::UnitZ(), radius, {depth}, {{0, 0, 0.02}}};
-  const auto pressed = press_at_rest(solid, held, press, [] {});
+  const auto pressed = press_at_rest(solid, constrained, press, [] {});
   REQUIRE(pressed.size() == 1);
   const double hertz = 4.0 / 3 * E / (1 - nu * nu) * std::sqrt(radius) * std::pow(depth, 1.5);
   CHECK(pressed[0].force == Approx(hertz).epsilon(0.1));

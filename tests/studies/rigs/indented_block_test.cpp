@@ -48,9 +48,9 @@ TEST_CASE("indented block: eight tetrahedra across the sphere carry its force, a
 TEST_CASE("indented block: the quarter is held at its base and where it is cut, nowhere else") {
   // Oracle: definition.
   for (int axis = 0; axis < 3; ++axis) {
-    CHECK(is_held_in_quarter({0.01, 0.02, 0}, axis));
-    CHECK_FALSE(is_held_in_quarter({0.01, 0.02, kBlockHeight}, axis));
-    CHECK(is_held_in_quarter({0, 0, kBlockHeight}, axis) == (axis < 2));
+    CHECK(is_constrained_in_quarter({0.01, 0.02, 0}, axis));
+    CHECK_FALSE(is_constrained_in_quarter({0.01, 0.02, kBlockHeight}, axis));
+    CHECK(is_constrained_in_quarter({0, 0, kBlockHeight}, axis) == (axis < 2));
   }
 }
 
