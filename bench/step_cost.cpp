@@ -11,12 +11,11 @@
 #include <functional>
 #include <numeric>
 
+#include "bench/fine_surface.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/steppers/symplectic_euler.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
-#include "modules/geometry/mesh_prepare.h"
-#include "modules/geometry/node_order.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
@@ -28,42 +27,9 @@ namespace {
 using namespace palpate;
 using deformation::InstructionSet;
 
-constexpr std::size_t kMostResampled = 20'000;  // nodes; resampling to more takes minutes
-constexpr double kTurn = 1e-3;                  // [s], at least
+constexpr double kTurn = 1e-3;    // [s], at least
 constexpr int kLeastSteps = 8;    // of a turn, so that its arrays are where they are in a session
 constexpr double kSeconds = 5.0;  // per size, about
-
-/// Every triangle into four.
-geometry::TriangleSurface halve_edges(const geometry::TriangleSurface& surface) {
-  geometry::TriangleSurface fine{surface.nodes, {}};
-  const auto edges = geometry::edges_of(surface.triangles);
-  for (const auto& [a, b] : edges) {
-    fine.nodes.push_back((surface.nodes[a] + surface.nodes[b]) / 2);
-  }
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const std::array<std::uint32_t, 2> edge{std::min(a, b), std::max(a, b)};
-    const auto found = std::lower_bound(edges.begin(), edges.end(), edge);
-    return static_cast<std::uint32_t>(surface.nodes.size() +
-                                      static_cast<std::size_t>(found - edges.begin()));
-  };
-  for (const auto& [a, b, c] : surface.triangles) {
-    const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    for (const geometry::Triangle& t :
-         {geometry::Triangle{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}) {
-      fine.triangles.push_back(t);
-    }
-  }
-  return fine;
-}
-
-geometry::TriangleSurface surface_of(const geometry::TriangleSurface& organ, std::size_t nodes) {
-  int halvings = 0;
-  for (; nodes > kMostResampled; nodes /= 4) ++halvings;
-  auto surface = geometry::resample_surface(organ, nodes);
-  for (int k = 0; k < halvings; ++k) surface = halve_edges(surface);
-  if (halvings > 0) geometry::order_nodes_by_neighbourhood(surface);
-  return surface;
-}
 
 deformation::OrganState swinging(const deformation::OrganModel& model) {
   auto state = deformation::rest_state(model);
@@ -202,7 +168,9 @@ int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {
   const scene::Organ& organ = scene.organs[0];
   const auto surface = scene::load_organ(organ).surface;
   std::printf("%s; organ '%s'\n", report::machine_name().c_str(), organ.name.c_str());
-  for (const std::size_t nodes : sizes) measure(organ, scene.gravity, surface_of(surface, nodes));
+  for (const std::size_t nodes : sizes) {
+    measure(organ, scene.gravity, bench::fine_surface(surface, nodes));
+  }
   return kExitDone;
 }
 

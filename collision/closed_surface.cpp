@@ -1,14 +1,14 @@
 #include "collision/closed_surface.h"
 
+#include <algorithm>
 #include <limits>
 
-#include "modules/core/tolerances.h"
 #include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
 namespace {
 
-constexpr double kFirstReach = 2e-3;  // [m]
+constexpr double kDistanceRounding = 1e-12;  // of a distance
 
 /// A ray from p along an axis, up or down it.
 struct Ray {
@@ -37,7 +37,7 @@ Ray ray_out_of(const Bounds& bounds, const Vec3& p) {
 }
 
 /// On which side of the line from node a to node b the ray passes: 1 left, −1 right.
-int side_of(const Ray& ray, const std::vector<Vec3>& nodes, std::uint32_t a, std::uint32_t b) {
+int side_of(const Ray& ray, const NodeArray& nodes, std::uint32_t a, std::uint32_t b) {
   if (a > b) return -side_of(ray, nodes, b, a);
   const int u = ray.u(), v = ray.v();
   const double du = nodes[b][u] - nodes[a][u], dv = nodes[b][v] - nodes[a][v];
@@ -48,7 +48,7 @@ int side_of(const Ray& ray, const std::vector<Vec3>& nodes, std::uint32_t a, std
 }
 
 /// 1 if the ray leaves through the triangle, −1 if it enters, 0 if it misses it.
-int crossing_of(const Ray& ray, const std::vector<Vec3>& nodes, const geometry::Triangle& t) {
+int crossing_of(const Ray& ray, const NodeArray& nodes, const geometry::Triangle& t) {
   const int turn = side_of(ray, nodes, t[0], t[1]);
   if (side_of(ray, nodes, t[1], t[2]) != turn || side_of(ray, nodes, t[2], t[0]) != turn) return 0;
   const Vec3 normal = (nodes[t[1]] - nodes[t[0]]).cross(nodes[t[2]] - nodes[t[0]]);
@@ -60,7 +60,7 @@ int crossing_of(const Ray& ray, const std::vector<Vec3>& nodes, const geometry::
 }  // namespace
 
 bool ClosedSurface::encloses(const OrganSurface& organ, const Vec3& p) {
-  const Bounds bounds = organ.bvh().bounds();
+  const Bounds bounds = organ.bounds();
   Bounds thin;
   thin.add(p);
   if (!bounds.overlaps(thin)) return false;
@@ -68,7 +68,7 @@ bool ClosedSurface::encloses(const OrganSurface& organ, const Vec3& p) {
   (ray.upwards ? thin.upper : thin.lower)[ray.axis] =
       (ray.upwards ? bounds.upper : bounds.lower)[ray.axis];
   triangles_.clear();
-  organ.bvh().append_overlapping(thin, triangles_);
+  organ.append_overlapping(thin, triangles_);
   int winding = 0;
   for (const std::uint32_t t : triangles_) {
     winding += crossing_of(ray, organ.positions(), organ.triangles()[t]);
@@ -78,29 +78,31 @@ bool ClosedSurface::encloses(const OrganSurface& organ, const Vec3& p) {
 
 std::uint32_t ClosedSurface::nearest_triangle(const OrganSurface& organ, const Vec3& p,
                                               double& distance) {
-  const auto distance_to = [&](std::uint32_t t) {
-    const geometry::Triangle& nodes = organ.triangles()[t];
-    const auto& x = organ.positions();
-    const geometry::TriangleCorners corners{x[nodes[0]], x[nodes[1]], x[nodes[2]]};
-    if (geometry::unit_normal(corners).isZero(0)) return std::numeric_limits<double>::infinity();
-    return (geometry::closest_on_triangle(p, corners).point - p).norm();
-  };
-  // Boxes around p grow until what they hold is nearer than their sides.
   std::uint32_t nearest = 0;
   distance = std::numeric_limits<double>::infinity();
-  for (double reach = kFirstReach; reach < 4 * kWorldReach; reach *= 2) {
-    Bounds box;
-    box.add(p);
-    box.inflate(reach);
-    triangles_.clear();
-    organ.bvh().append_overlapping(box, triangles_);
-    for (const std::uint32_t t : triangles_) {
-      const double d = distance_to(t);
+  const auto visit = [&](std::size_t block) {
+    for (const std::uint32_t t : organ.blocks().triangles_of(block)) {
+      const geometry::TriangleCorners corners = organ.corners(t);
+      if (geometry::unit_normal(corners).isZero(0)) continue;
+      const double d = (geometry::closest_on_triangle(p, corners).point - p).norm();
       if (d > distance || (d == distance && t > nearest)) continue;
       distance = d;
       nearest = t;
     }
-    if (distance <= reach) break;
+  };
+  // The nearest block first, then those that may hold something as near.
+  Bounds point;
+  point.add(p);
+  block_distances_.clear();
+  for (const geometry::BlockBox& box : organ.boxes()) {
+    block_distances_.push_back(point.squared_distance(box));
+  }
+  const auto first = std::min_element(block_distances_.begin(), block_distances_.end());
+  const auto first_block = static_cast<std::size_t>(first - block_distances_.begin());
+  if (first != block_distances_.end()) visit(first_block);
+  for (std::size_t block = 0; block < block_distances_.size(); ++block) {
+    const double reach = distance * (1 + kDistanceRounding);
+    if (block != first_block && block_distances_[block] <= reach * reach) visit(block);
   }
   return nearest;
 }

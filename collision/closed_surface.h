@@ -23,7 +23,9 @@ class ClosedSurface {
   std::uint32_t nearest_triangle(const OrganSurface& organ, const Vec3& p, double& distance);
 
  private:
-  std::vector<std::uint32_t> triangles_;  ///< kept for its memory only
+  // Kept between calls for their memory only.
+  std::vector<std::uint32_t> triangles_;
+  std::vector<double> block_distances_;  ///< squared [m²]
 };
 
 }  // namespace palpate::collision

@@ -6,6 +6,7 @@
 
 #include "collision/core_contacts.h"
 #include "collision/edge_contacts.h"
+#include "collision/near_surface.h"
 #include "collision/node_contacts.h"
 #include "collision/probe_model.h"
 #include "modules/core/error.h"
@@ -42,15 +43,13 @@ class ProbeSearch {
     for (std::uint32_t i = 0; i < organs.size(); ++i) {
       OrganSurface& organ = organs[i];
       if (!organ.present()) continue;
-      const double displacement = organ.displacement_since(seen_versions_[i]);
-      const OrganStep step{
-          i,        organ,
-          relative, organ.positions_at(seen_versions_[i]),
-          margin,   model_.max_tracked_penetration + relative.travel() + displacement};
+      OrganStep step{i,        organ,
+                     relative, seen_versions_[i],
+                     margin,   model_.max_tracked_penetration + relative.travel()};
       const bool first = seen_versions_[i] == 0;
       if (first) report.begun_inside |= hold_inside(step, 1);
       const std::size_t others = found_.size();
-      find_on(step, displacement);
+      find_on(step);
       if (!first && !pushes(others)) report.was_lost |= find_lost(step);
       seen_versions_[i] = organ.version();
       organ.mark_found();
@@ -90,8 +89,9 @@ class ProbeSearch {
     for (const std::uint32_t core : held_) {
       triangle_list_.clear();
       cores_.append_near_wall(step, core_of(core), triangle_list_);
-      sweep_listed(step);
-      cores_.find(step, core_of(core), triangles_, found_);
+      near_.clear();
+      near_.add(step, triangle_list_);
+      cores_.find(step, core_of(core), near_.triangles(), found_);
     }
     return true;
   }
@@ -102,48 +102,42 @@ class ProbeSearch {
     return {index, x, x, 0};
   }
 
-  void find_on(const OrganStep& step, double displacement) {
+  void find_on(OrganStep& step) {
     if (!model_.is_bounded) {
-      node_list_.resize(step.organ.positions().size());
-      for (std::uint32_t i = 0; i < node_list_.size(); ++i) node_list_[i] = i;
+      node_list_.clear();
+      near_.gather_nodes(step, model_.hull, step.margin, node_list_);
+      nodes_.append_remembered(step.organ_index, node_list_);
+      sort_unique(node_list_);
       nodes_.find(step, *model_.solid, node_list_, found_);
       return;
     }
-    gather_triangles(step, displacement);
-    for (const Core& core : model_.cores) cores_.find(step, core, triangles_, found_);
+    gather_triangles(step);
+    for (const Core& core : model_.cores) cores_.find(step, core, near_.triangles(), found_);
     if (model_.sharp) find_sharp(step);
   }
 
-  /// Every triangle the probe may touch in the step, ascending.
-  void gather_triangles(const OrganStep& step, double displacement) {
-    Bounds box = step.motion.swept(model_.bounds);
+  /// Every triangle the probe may touch in the step.
+  void gather_triangles(OrganStep& step) {
+    double reach = model_.hull_radius + step.margin;
     triangle_list_.clear();
+    for (const Core& core : model_.cores) {
+      reach = std::max(reach, cores_.wall_reach(step, core));
+      cores_.append_remembered(step, core, triangle_list_);
+    }
+    near_.gather(step, model_.hull, reach);
     held_.clear();
-    cores_.append_held(step.organ_index, held_);
-    for (const std::uint32_t core : held_) {
-      cores_.append_near_wall(step, core_of(core), triangle_list_);
+    if (model_.sharp) cores_.append_held(step.organ_index, held_);
+    for (const std::uint32_t vertex : held_) {
+      cores_.append_near_wall(step, core_of(vertex), triangle_list_);
     }
-    box.inflate(step.margin + step.motion.chord_error() + displacement);
-    step.organ.bvh().append_overlapping(box, triangle_list_);
-    sweep_listed(step);
-  }
-
-  void sweep_listed(const OrganStep& step) {
-    sort_unique(triangle_list_);
-    triangles_.clear();
-    SweptTriangle swept;
-    for (const std::uint32_t triangle : triangle_list_) {
-      if (step.sweep(triangle, swept)) triangles_.push_back(swept);
-    }
+    near_.add(step, triangle_list_);
+    step.depth_limit += near_.travel();
   }
 
   void find_sharp(const OrganStep& step) {
     node_list_.clear();
-    for (const SweptTriangle& t : triangles_) {
-      node_list_.insert(node_list_.end(), t.nodes.begin(), t.nodes.end());
-    }
     nodes_.append_remembered(step.organ_index, node_list_);
-    sort_unique(node_list_);
+    near_.append_nodes(node_list_);
     nodes_.find(step, *model_.solid, node_list_, found_);
 
     gather_pairs(step);
@@ -153,15 +147,16 @@ class ProbeSearch {
 
   /// Vertices and edges of the probe with the organ's triangles and edges near them.
   void gather_pairs(const OrganStep& step) {
+    const std::vector<SweptTriangle>& triangles = near_.triangles();
     vertex_pairs_.clear();
     edge_pairs_.clear();
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      Bounds box = triangles_[i].bounds();
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      Bounds box = triangles[i].bounds();
       box.inflate(step.margin + step.motion.chord_error());
       model_.sharp->features_near(box, near_vertices_, near_edges_);
       for (const std::uint32_t vertex : near_vertices_) vertex_pairs_.push_back({vertex, i});
       for (const std::uint32_t edge : near_edges_) {
-        for (const std::uint32_t organ_edge : step.organ.edges_of_triangle(triangles_[i].index)) {
+        for (const std::uint32_t organ_edge : step.organ.edges_of_triangle(triangles[i].index)) {
           edge_pairs_.push_back({edge, organ_edge});
         }
       }
@@ -171,10 +166,10 @@ class ProbeSearch {
       cores_.append_near_wall(step, core_of(vertex), triangle_list_);
       for (const std::uint32_t t : triangle_list_) {
         const auto at =
-            std::lower_bound(triangles_.begin(), triangles_.end(), t,
+            std::lower_bound(triangles.begin(), triangles.end(), t,
                              [](const SweptTriangle& s, std::uint32_t k) { return s.index < k; });
-        if (at != triangles_.end() && at->index == t) {
-          vertex_pairs_.push_back({vertex, static_cast<std::size_t>(at - triangles_.begin())});
+        if (at != triangles.end() && at->index == t) {
+          vertex_pairs_.push_back({vertex, static_cast<std::size_t>(at - triangles.begin())});
         }
       }
     }
@@ -188,7 +183,7 @@ class ProbeSearch {
       const std::uint32_t vertex = first->first;
       near_triangles_.clear();
       for (; first != vertex_pairs_.end() && first->first == vertex; ++first) {
-        near_triangles_.push_back(triangles_[first->second]);
+        near_triangles_.push_back(near_.triangles()[first->second]);
       }
       cores_.find(step, core_of(vertex), near_triangles_, found_);
     }
@@ -202,7 +197,8 @@ class ProbeSearch {
 
   // Kept between calls for their memory only.
   std::vector<FoundContact> found_;
-  std::vector<SweptTriangle> triangles_, near_triangles_;
+  NearSurface near_;
+  std::vector<SweptTriangle> near_triangles_;
   std::vector<std::uint32_t> triangle_list_, node_list_, near_vertices_, near_edges_, held_;
   std::vector<VertexPair> vertex_pairs_;
   std::vector<EdgePair> edge_pairs_;
@@ -216,9 +212,15 @@ struct ContactFinder::Impl {
 };
 
 ContactFinder::ContactFinder(std::vector<std::vector<geometry::Triangle>> organ_triangles,
-                             std::vector<geometry::ProbeForm> probes)
+                             std::vector<geometry::ProbeForm> probes,
+                             const std::vector<std::vector<std::uint32_t>>& blocks)
     : impl_(std::make_unique<Impl>()) {
-  for (auto& triangles : organ_triangles) impl_->organs.emplace_back(std::move(triangles));
+  PALPATE_DEMAND(blocks.empty() || blocks.size() == organ_triangles.size());
+  for (std::size_t i = 0; i < organ_triangles.size(); ++i) {
+    std::span<const std::uint32_t> of_organ;
+    if (!blocks.empty()) of_organ = blocks[i];
+    impl_->organs.emplace_back(std::move(organ_triangles[i]), of_organ);
+  }
   for (geometry::ProbeForm& probe : probes) impl_->probes.emplace_back(std::move(probe));
 }
 
@@ -227,6 +229,12 @@ ContactFinder::~ContactFinder() = default;
 void ContactFinder::update_organ(std::size_t organ, std::span<const Vec3> positions) {
   PALPATE_DEMAND(organ < impl_->organs.size());
   impl_->organs[organ].update(positions);
+}
+
+void ContactFinder::take_organ(std::size_t organ, std::vector<float>& positions,
+                               std::vector<geometry::BlockBox>& boxes) {
+  PALPATE_DEMAND(organ < impl_->organs.size());
+  impl_->organs[organ].take(positions, boxes);
 }
 
 void ContactFinder::reset() {

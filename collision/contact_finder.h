@@ -7,6 +7,7 @@
 
 #include "modules/core/touch.h"
 #include "modules/geometry/probe_form.h"
+#include "modules/geometry/surface_blocks.h"
 
 namespace palpate::collision {
 
@@ -28,13 +29,20 @@ struct SearchReport {
 /// Deterministic: same calls, same contacts, sorted by (organ, triangle).
 class ContactFinder {
  public:
-  /// @param triangles  of each organ; node indices refer to the positions given to update_organ()
+  /// @param organ_triangles  of each organ; node indices refer to the positions of update_organ()
+  /// @param blocks  of each organ the block of each triangle (geometry::SurfaceBlocks); none: they
+  ///                are made of the first positions
   ContactFinder(std::vector<std::vector<geometry::Triangle>> organ_triangles,
-                std::vector<geometry::ProbeForm> probes);
+                std::vector<geometry::ProbeForm> probes,
+                const std::vector<std::vector<std::uint32_t>>& blocks = {});
   ~ContactFinder();
 
   /// New node positions of an organ [m]; at least as many as its triangles name.
   void update_organ(std::size_t organ, std::span<const Vec3> positions);
+  /// The same with the wire's floats and the boxes of all blocks, without a look at any node: both
+  /// are exchanged with buffers that are free. Without boxes they are made here.
+  void take_organ(std::size_t organ, std::vector<float>& positions,
+                  std::vector<geometry::BlockBox>& boxes);
 
   /// Forgets what is remembered of earlier calls, of all probes or of one (reset, silence, jump):
   /// it is heard of for the first time again.

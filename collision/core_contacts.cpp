@@ -9,6 +9,15 @@
 #include "modules/core/tolerances.h"
 
 namespace palpate::collision {
+namespace {
+
+double distance_to(const OrganStep& step, const Core& core, std::uint32_t triangle) {
+  const geometry::Triangle& nodes = step.organ.triangles()[triangle];
+  return closest(core, {step.node_end(nodes[0]), step.node_end(nodes[1]), step.node_end(nodes[2])})
+      .distance;
+}
+
+}  // namespace
 
 void CoreContacts::reset() {
   before_.clear();
@@ -26,7 +35,7 @@ void CoreContacts::begin_step() {
 std::span<const CoreContacts::Behind> CoreContacts::remembered(std::uint32_t organ,
                                                                std::uint32_t core) const {
   const auto [first, last] =
-      std::equal_range(before_.begin(), before_.end(), Behind{organ, core, 0, 0},
+      std::equal_range(before_.begin(), before_.end(), Behind{organ, core, 0, 0, 0},
                        [](const Behind& a, const Behind& b) {
                          return std::tie(a.organ, a.core) < std::tie(b.organ, b.core);
                        });
@@ -56,29 +65,35 @@ bool CoreContacts::hold_if_inside(const OrganStep& step, const Core& core) {
     return std::pair(held.organ, held.core) > std::pair(step.organ_index, core.index);
   };
   before_.insert(std::find_if(before_.begin(), before_.end(), later),
-                 {step.organ_index, core.index, triangle, step.depth_limit});
+                 {step.organ_index, core.index, triangle, step.depth_limit, distance});
   return true;
+}
+
+double CoreContacts::wall_reach(const OrganStep& step, const Core& core) const {
+  const auto before = remembered(step.organ_index, core.index);
+  if (before.empty()) return 0;
+  // The wall's nearest place is no further than what was nearest last.
+  const auto nearest =
+      std::min_element(before.begin(), before.end(),
+                       [](const Behind& a, const Behind& b) { return a.distance < b.distance; });
+  return distance_to(step, core, nearest->triangle) + core.radius + step.margin;
+}
+
+void CoreContacts::append_remembered(const OrganStep& step, const Core& core,
+                                     std::vector<std::uint32_t>& triangles) const {
+  for (const Behind& b : remembered(step.organ_index, core.index)) triangles.push_back(b.triangle);
 }
 
 void CoreContacts::append_near_wall(const OrganStep& step, const Core& core,
                                     std::vector<std::uint32_t>& triangles) {
   const auto before = remembered(step.organ_index, core.index);
   if (before.empty()) return;
-  const auto distance = [&](std::uint32_t t) {
-    const geometry::Triangle& nodes = step.organ.triangles()[t];
-    return closest(core,
-                   {step.node_end(nodes[0]), step.node_end(nodes[1]), step.node_end(nodes[2])})
-        .distance;
-  };
-  // What is as near as the nearest of what it was behind, and within the radius around that.
-  double reach = std::numeric_limits<double>::infinity();
-  for (const Behind& b : before) reach = std::min(reach, distance(b.triangle));
-  reach += core.radius + step.margin;
-  seen_.assign(step.organ.triangles().size(), 0);
+  const double reach = wall_reach(step, core);
+  marks_.begin(step.organ.triangles().size());
   waiting_.clear();
   for (const Behind& b : before) {
     waiting_.push_back(b.triangle);
-    seen_[b.triangle] = 1;
+    marks_.set(b.triangle, 0);
   }
   while (!waiting_.empty()) {
     const std::uint32_t triangle = waiting_.back();
@@ -86,7 +101,9 @@ void CoreContacts::append_near_wall(const OrganStep& step, const Core& core,
     triangles.push_back(triangle);
     for (const std::uint32_t node : step.organ.triangles()[triangle]) {
       for (const std::uint32_t t : step.organ.triangles_of_node(node)) {
-        if (std::exchange(seen_[t], 1) == 0 && distance(t) <= reach) waiting_.push_back(t);
+        if (marks_.at(t) != IndexMarks::kNone) continue;
+        marks_.set(t, 0);
+        if (distance_to(step, core, t) <= reach) waiting_.push_back(t);
       }
     }
   }
@@ -107,7 +124,7 @@ bool CoreContacts::has_left(const OrganStep& step, const Core& core,
   box.add(step.motion.to_world_at_end(core.a));
   box.inflate(distance + kDirectionless);
   waiting_.clear();
-  step.organ.bvh().append_overlapping(box, waiting_);
+  step.organ.append_overlapping(box, waiting_);
   return std::none_of(waiting_.begin(), waiting_.end(), [&](std::uint32_t t) {
     return step.sweep(t, triangle) &&
            triangle.normal_end.dot(outward) < -kSameWall * outward.norm() &&
@@ -115,9 +132,9 @@ bool CoreContacts::has_left(const OrganStep& step, const Core& core,
   });
 }
 
-/// Contact with the wall nearest to a core that is inside. @returns its triangle
-std::uint32_t CoreContacts::hold_nearest(const OrganStep& step, const Core& core,
-                                         std::vector<FoundContact>& found) {
+/// Contact with the wall nearest to a core that is inside.
+void CoreContacts::append_nearest_wall(const OrganStep& step, const Core& core,
+                                       std::vector<FoundContact>& found) {
   const Vec3& end =
       surface_.encloses(step.organ, step.motion.to_world_at_end(core.a)) ? core.a : core.b;
   double distance = 0;
@@ -127,7 +144,6 @@ std::uint32_t CoreContacts::hold_nearest(const OrganStep& step, const Core& core
   PALPATE_DEMAND(step.sweep(nearest, triangle));
   const Core point{core.index, end, end, core.radius};
   append_nearest(step, point, CoreCandidate(point, triangle), found);
-  return nearest;
 }
 
 void CoreContacts::find(const OrganStep& step, const Core& core,
@@ -136,48 +152,77 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
   const auto before = remembered(step.organ_index, core.index);
   double depth_limit = 0;
   for (const Behind& b : before) depth_limit = std::max(depth_limit, b.depth_limit);
-  std::vector<CoreCandidate> near;
+  near_.clear();
   bool crosses = false;
   for (const SweptTriangle& triangle : candidates) {
     CoreCandidate c(core, triangle);
     if (before.empty() && c.gap(core) > std::max(step.margin, triangle.travel)) continue;
-    c.remembered = std::any_of(before.begin(), before.end(),
-                               [&](const Behind& b) { return b.triangle == triangle.index; });
+    c.remembered = std::binary_search(
+        before.begin(), before.end(), Behind{0, 0, triangle.index, 0, 0},
+        [](const Behind& a, const Behind& b) { return a.triangle < b.triangle; });
     c.crossing = crossed_inward(step, core, c);
     if (c.crossing) depth_limit = std::max(depth_limit, step.depth_limit);
     crosses = crosses || c.crossing;
-    near.push_back(c);
+    near_.push_back(c);
   }
   const bool was_behind = !before.empty();
   const bool inside = (crosses || was_behind) && is_inside(step, core);
   if (crosses || inside || (was_behind && !has_left(step, core, before))) {
-    find_behind(step, core, inside, depth_limit, near, found);
+    find_behind(step, core, inside, depth_limit, found);
     return;
   }
-  for (const CoreCandidate& c : near) {
+  node_marks_.begin(step.organ.node_count());
+  edge_marks_.begin(step.organ.edges().size());
+  for (const CoreCandidate& c : near_) {
     if (c.side > 0 && c.gap(core) <= step.margin) {
-      append_front(step, core, c, found);
+      if (is_new_place(step, core, c)) append_front(step, core, c, found);
     } else if (!was_behind) {  // a core that has just left touched walls from behind
       append_graze(step, core, c, found);
     }
   }
 }
 
+/// Whether no triangle before had its closest point on the same node or edge: the contact would be
+/// the same but for rounding.
+bool CoreContacts::is_new_place(const OrganStep& step, const Core& core, const CoreCandidate& c) {
+  constexpr double kSteady = 1e-4;  // nearer, a rounding turns the normal [m]
+  if (!core.is_point() || c.pair.distance < kSteady) return true;
+  const Vec3& weights = c.pair.on_triangle.weights;
+  const auto off = (weights.array() == 0).count();
+  if (off == 0) return true;
+  Eigen::Index corner = 0;
+  weights.maxCoeff(&corner);
+  IndexMarks& marks = off == 2 ? node_marks_ : edge_marks_;
+  std::uint32_t place = c.triangle.nodes[static_cast<std::size_t>(corner)];
+  if (off == 1) {
+    weights.minCoeff(&corner);  // the edge opposite to it
+    place =
+        step.organ.edges_of_triangle(c.triangle.index)[(static_cast<std::size_t>(corner) + 1) % 3];
+  }
+  if (marks.at(place) != IndexMarks::kNone) return false;
+  marks.set(place, 0);
+  return true;
+}
+
 /// Contacts of a core that is behind a wall, which is remembered.
 void CoreContacts::find_behind(const OrganStep& step, const Core& core, bool inside,
-                               double depth_limit, std::vector<CoreCandidate>& near,
-                               std::vector<FoundContact>& found) {
+                               double depth_limit, std::vector<FoundContact>& found) {
   const std::size_t others = found.size();
   constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-  auto wall = append_wall(step, core, inside ? kUnlimited : depth_limit, near, found);
-  if (inside && wall.empty()) wall.push_back(hold_nearest(step, core, found));
+  wall_.clear();
+  append_wall(step, core, inside ? kUnlimited : depth_limit, near_, marks_, wall_, found);
+  if (inside && wall_.empty()) append_nearest_wall(step, core, found);
   if (inside) {  // from here it may be dragged back through a far side
     for (std::size_t i = others; i < found.size(); ++i) {
       depth_limit = std::max({depth_limit, step.depth_limit, step.motion.travel() - found[i].gap});
     }
   }
-  for (const std::uint32_t triangle : wall) {
-    now_.push_back({step.organ_index, core.index, triangle, depth_limit});
+  if (inside && wall_.empty()) {
+    now_.push_back({step.organ_index, core.index, found.back().triangle, depth_limit, 0});
+  }
+  for (const CoreCandidate* c : wall_) {
+    now_.push_back(
+        {step.organ_index, core.index, c->triangle.index, depth_limit, c->pair.distance});
   }
 }
 

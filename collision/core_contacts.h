@@ -31,6 +31,12 @@ class CoreContacts {
   /// Puts a core that is inside the organ, and of which nothing is remembered, behind the wall
   /// nearest to it. @returns whether it did
   bool hold_if_inside(const OrganStep& step, const Core& core);
+  /// How far from the core the wall may be that it is behind and touches [m]; 0 if it is behind
+  /// none.
+  double wall_reach(const OrganStep& step, const Core& core) const;
+  /// The triangles of it that are remembered.
+  void append_remembered(const OrganStep& step, const Core& core,
+                         std::vector<std::uint32_t>& triangles) const;
   /// Triangles of the wall that a core is behind, as far as it may touch them.
   void append_near_wall(const OrganStep& step, const Core& core,
                         std::vector<std::uint32_t>& triangles);
@@ -46,21 +52,25 @@ class CoreContacts {
   struct Behind {
     std::uint32_t organ = 0, core = 0, triangle = 0;
     double depth_limit = 0;  ///< down to which it is dragged back through the far side [m]
+    double distance = 0;     ///< [m]
   };
 
   std::span<const Behind> remembered(std::uint32_t organ, std::uint32_t core) const;
   bool is_inside(const OrganStep& step, const Core& core);
   bool has_left(const OrganStep& step, const Core& core, std::span<const Behind> before);
-  std::uint32_t hold_nearest(const OrganStep& step, const Core& core,
-                             std::vector<FoundContact>& found);
+  void append_nearest_wall(const OrganStep& step, const Core& core,
+                           std::vector<FoundContact>& found);
+  bool is_new_place(const OrganStep& step, const Core& core, const CoreCandidate& c);
   void find_behind(const OrganStep& step, const Core& core, bool inside, double depth_limit,
-                   std::vector<CoreCandidate>& near, std::vector<FoundContact>& found);
+                   std::vector<FoundContact>& found);
 
   std::vector<Behind> before_, now_;
   ClosedSurface surface_;
   // Kept between calls for their memory only.
   std::vector<std::uint32_t> waiting_;
-  std::vector<std::uint8_t> seen_;  ///< per triangle
+  IndexMarks marks_, node_marks_, edge_marks_;
+  std::vector<CoreCandidate> near_;
+  std::vector<const CoreCandidate*> wall_;
 };
 
 }  // namespace palpate::collision

@@ -72,10 +72,13 @@ void append_crossed(const OrganStep& step, const Core& core, const CoreCandidate
 /// Marks the triangles connected with the crossed and remembered ones over nodes shared by
 /// triangles that face like the wall.
 /// @param candidates  ascending
-void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates) {
+void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates,
+               IndexMarks& marks) {
   Vec3 outward = Vec3::Zero();
   std::vector<CoreCandidate*> waiting;
+  marks.begin(organ.triangles().size());
   for (CoreCandidate& c : candidates) {
+    marks.set(c.triangle.index, static_cast<std::uint32_t>(&c - candidates.data()));
     if (!c.crossing && !c.remembered) continue;
     outward += c.triangle.normal_end;
     c.on_wall = true;
@@ -83,13 +86,12 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
   }
   const double limit = kSameWall * outward.norm();
   const auto visit = [&](std::uint32_t triangle) {
-    const auto at = std::lower_bound(
-        candidates.begin(), candidates.end(), triangle,
-        [](const CoreCandidate& c, std::uint32_t t) { return c.triangle.index < t; });
-    if (at == candidates.end() || at->triangle.index != triangle || at->on_wall) return;
-    if (!(at->triangle.normal_end.dot(outward) > limit)) return;
-    at->on_wall = true;
-    waiting.push_back(&*at);
+    const std::uint32_t place = marks.at(triangle);
+    if (place == IndexMarks::kNone || candidates[place].on_wall) return;
+    CoreCandidate& c = candidates[place];
+    if (!(c.triangle.normal_end.dot(outward) > limit)) return;
+    c.on_wall = true;
+    waiting.push_back(&c);
   };
   while (!waiting.empty()) {
     const geometry::Triangle& nodes = waiting.back()->triangle.nodes;
@@ -166,16 +168,15 @@ void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate
   append_contact(contact, candidate.triangle.nodes, found);
 }
 
-std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, double depth_limit,
-                                       std::vector<CoreCandidate>& candidates,
-                                       std::vector<FoundContact>& found) {
-  mark_wall(step.organ, candidates);
+void append_wall(const OrganStep& step, const Core& core, double depth_limit,
+                 std::vector<CoreCandidate>& candidates, IndexMarks& marks,
+                 std::vector<const CoreCandidate*>& behind, std::vector<FoundContact>& found) {
+  mark_wall(step.organ, candidates, marks);
   const CoreCandidate* nearest = nullptr;
   for (const CoreCandidate& c : candidates) {
     if (!c.on_wall || c.side > 0) continue;
     if (nearest == nullptr || c.pair.distance < nearest->pair.distance) nearest = &c;
   }
-  std::vector<std::uint32_t> behind;
   for (const CoreCandidate& c : candidates) {
     if (!c.on_wall) continue;
     if (c.side > 0 && !c.crossing) {
@@ -187,9 +188,8 @@ std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, 
       append_crossed(step, core, c, found);
       is_behind = true;
     }
-    if (is_behind) behind.push_back(c.triangle.index);
+    if (is_behind) behind.push_back(&c);
   }
-  return behind;
 }
 
 }  // namespace palpate::collision

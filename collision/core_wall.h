@@ -8,6 +8,7 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/core_sweep.h"
+#include "collision/index_marks.h"
 
 namespace palpate::collision {
 
@@ -48,9 +49,10 @@ void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate
 /// is connected with them and faces the same way.
 /// @param depth_limit  a wall deeper than this is given up [m]
 /// @param candidates   ascending
-/// @returns the triangles it is behind now
-std::vector<std::uint32_t> append_wall(const OrganStep& step, const Core& core, double depth_limit,
-                                       std::vector<CoreCandidate>& candidates,
-                                       std::vector<FoundContact>& found);
+/// @param marks        a buffer
+/// @param behind       what it is behind now is appended
+void append_wall(const OrganStep& step, const Core& core, double depth_limit,
+                 std::vector<CoreCandidate>& candidates, IndexMarks& marks,
+                 std::vector<const CoreCandidate*>& behind, std::vector<FoundContact>& found);
 
 }  // namespace palpate::collision

@@ -102,8 +102,7 @@ class MeshSolid final : public ProbeSolid {
 
 }  // namespace
 
-SharpMesh::SharpMesh(geometry::TriangleSurface mesh)
-    : mesh_(std::move(mesh)), bvh_(mesh_.nodes, mesh_.triangles) {
+SharpMesh::SharpMesh(geometry::TriangleSurface mesh) : mesh_(std::move(mesh)), tree_(mesh_) {
   build_normals();
   build_edges();
 }
@@ -165,7 +164,7 @@ Bounds SharpMesh::bounds() const {
 void SharpMesh::features_near(const Bounds& box, std::vector<std::uint32_t>& vertices,
                               std::vector<std::uint32_t>& edges) const {
   std::vector<std::uint32_t> near;
-  bvh_.append_overlapping(box, near);
+  tree_.append_overlapping({box.lower, box.upper}, near);
   vertices.clear();
   edges.clear();
   for (const std::uint32_t t : near) {
@@ -183,7 +182,7 @@ void SharpMesh::features_near(const Bounds& box, std::vector<std::uint32_t>& ver
 }
 
 void SharpMesh::triangles_near(const Bounds& box, std::vector<std::uint32_t>& triangles) const {
-  bvh_.append_overlapping(box, triangles);
+  tree_.append_overlapping({box.lower, box.upper}, triangles);
   std::sort(triangles.begin(), triangles.end());
 }
 

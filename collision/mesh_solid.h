@@ -4,8 +4,9 @@
 #include <array>
 #include <span>
 
+#include "collision/bounds.h"
 #include "collision/probe_solid.h"
-#include "collision/triangle_bvh.h"
+#include "modules/geometry/aabb_tree.h"
 
 namespace palpate::collision {
 
@@ -48,7 +49,7 @@ class SharpMesh {
   std::vector<SharpEdge> edges_;
   std::vector<Bounds> edge_bounds_;
   std::vector<std::array<std::uint32_t, 3>> edges_of_triangle_;  ///< index or kFlatEdge
-  TriangleBvh bvh_;
+  geometry::AabbTree tree_;
 };
 
 /// @param mesh  outlives the solid

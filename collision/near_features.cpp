@@ -10,6 +10,9 @@
 namespace palpate::collision {
 namespace {
 
+/// Small blocks: each with itself is a look at every pair of its features.
+constexpr std::size_t kBlockTriangles = 24;
+
 Separation between(const Vec3& first, const Vec3& second, const std::array<double, 4>& weights) {
   const Vec3 way = second - first;
   const double distance = way.norm();
@@ -90,59 +93,138 @@ NearFeatures::NearFeatures(std::vector<std::vector<geometry::Triangle>> triangle
   for (auto& of_surface : triangles) surfaces_.emplace_back(std::move(of_surface));
 }
 
+void NearFeatures::make_blocks(std::span<const std::span<const Vec3>> positions) {
+  features_.resize(surfaces_.size());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    const auto& triangles = surfaces_[i].triangles();
+    const auto block = geometry::SurfaceBlocks::split(positions[i], triangles, kBlockTriangles);
+    surfaces_[i] = OrganSurface(triangles, block);
+    const std::size_t blocks = surfaces_[i].blocks().count();
+    features_[i].nodes.resize(blocks);
+    features_[i].edges.resize(blocks);
+    for (std::uint32_t node = 0; node < surfaces_[i].node_count(); ++node) {
+      const auto around = surfaces_[i].triangles_of_node(node);
+      if (!around.empty()) features_[i].nodes[block[around.front()]].push_back(node);
+    }
+    for (std::uint32_t e = 0; e < surfaces_[i].edges().size(); ++e) {
+      features_[i].edges[block[surfaces_[i].edges()[e].triangles[0]]].push_back(e);
+    }
+  }
+}
+
 void NearFeatures::search(std::span<const std::span<const Vec3>> positions, double reach) {
   PALPATE_DEMAND(positions.size() == surfaces_.size());
+  if (features_.empty()) make_blocks(positions);
   for (std::size_t i = 0; i < surfaces_.size(); ++i) surfaces_[i].update(positions[i]);
   pairs_.clear();
   for (std::uint32_t a = 0; a < surfaces_.size(); ++a) {
     for (std::uint32_t b = a; b < surfaces_.size(); ++b) {
       if (!may_touch(a, b) || !surfaces_[a].present() || !surfaces_[b].present()) continue;
-      add_nodes(a, b, reach);
-      if (a != b) add_nodes(b, a, reach);
-      add_edges(a, b, reach);
+      search_pair(a, b, reach);
     }
   }
   std::sort(pairs_.begin(), pairs_.end(),
             [](const NearPair& a, const NearPair& b) { return a.pair < b.pair; });
 }
 
-void NearFeatures::add_nodes(std::uint32_t of, std::uint32_t with, double reach) {
-  const OrganSurface &first = surfaces_[of], &second = surfaces_[with];
-  const Bounds whole = second.bvh().bounds();
-  for (std::uint32_t node = 0; node < first.positions().size(); ++node) {
-    if (first.triangles_of_node(node).empty()) continue;
-    const Vec3& x = first.positions()[node];
-    const Bounds box = bounds_of(x, x, reach);
-    if (!box.overlaps(whole)) continue;
-    list_.clear();
-    second.bvh().append_overlapping(box, list_);
-    for (const std::uint32_t t : list_) {
-      const geometry::Triangle& triangle = second.triangles()[t];
-      if (of == with && has_node(triangle, node)) continue;
-      add_if_near({{of, with}, false, {node, triangle[0], triangle[1], triangle[2]}}, reach);
+/// Blocks whose boxes come within reach, found by a sweep along x.
+void NearFeatures::search_pair(std::uint32_t first, std::uint32_t second, double reach) {
+  struct Edge {
+    double lower;
+    Block block;
+  };
+  std::vector<Edge> edges;
+  for (const std::uint32_t surface : {first, second}) {
+    const auto& boxes = surfaces_[surface].boxes();
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+      edges.push_back({boxes[i].lower[0] - reach, {surface, i}});
+    }
+    if (first == second) break;
+  }
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& a, const Edge& b) { return a.lower < b.lower; });
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Bounds box = box_of(edges[i].block, reach);
+    for (std::size_t k = i; k < edges.size() && edges[k].lower <= box.upper[0]; ++k) {
+      Block one = edges[i].block, other = edges[k].block;
+      if (first != second && one.surface == other.surface) continue;
+      if (!box.overlaps(box_of(other, 0))) continue;
+      if (other.surface < one.surface) std::swap(one, other);
+      add_nodes(one, other, reach);
+      if (i != k) add_nodes(other, one, reach);
+      add_edges(one, other, reach);
     }
   }
 }
 
-void NearFeatures::add_edges(std::uint32_t of, std::uint32_t with, double reach) {
-  const OrganSurface &first = surfaces_[of], &second = surfaces_[with];
-  const Bounds whole = second.bvh().bounds();
-  for (std::uint32_t e = 0; e < first.edges().size(); ++e) {
-    const auto [a, b] = first.edges()[e].nodes;
-    const Bounds box = bounds_of(first.positions()[a], first.positions()[b], reach);
-    if (!box.overlaps(whole)) continue;
-    list_.clear();
-    second.bvh().append_overlapping(box, list_);
-    for (const std::uint32_t t : list_) {
-      for (const std::uint32_t f : second.edges_of_triangle(t)) {
-        const SurfaceEdge& other = second.edges()[f];
-        // Once, with the first of its triangles.
-        if (other.triangles[0] != t || (of == with && f <= e)) continue;
-        const auto [c, d] = other.nodes;
-        if (!box.overlaps(bounds_of(second.positions()[c], second.positions()[d], 0))) continue;
-        if (of == with && (a == c || a == d || b == c || b == d)) continue;
-        add_if_near({{of, with}, true, {a, b, c, d}}, reach);
+Bounds NearFeatures::box_of(const Block& block, double reach) const {
+  Bounds box;
+  box.add(surfaces_[block.surface].boxes()[block.index]);
+  box.inflate(reach);
+  return box;
+}
+
+void NearFeatures::list_nodes(const Block& of, const Bounds& within, double reach) {
+  ones_.clear();
+  for (const std::uint32_t node : features_[of.surface].nodes[of.index]) {
+    const Vec3 x = surfaces_[of.surface].positions()[node];
+    const Bounds box = bounds_of(x, x, reach);
+    if (box.overlaps(within)) ones_.push_back({node, box});
+  }
+}
+
+void NearFeatures::list_triangles(const Block& of, const Bounds& within) {
+  others_.clear();
+  for (const std::uint32_t t : surfaces_[of.surface].blocks().triangles_of(of.index)) {
+    const auto [a, b, c] = surfaces_[of.surface].corners(t);
+    Bounds box = bounds_of(a, b, 0);
+    box.add(c);
+    if (box.overlaps(within)) others_.push_back({t, box});
+  }
+}
+
+void NearFeatures::list_edges(const Block& of, const Bounds& within, double reach,
+                              std::vector<Boxed>& list) {
+  list.clear();
+  const OrganSurface& surface = surfaces_[of.surface];
+  for (const std::uint32_t edge : features_[of.surface].edges[of.index]) {
+    const auto [a, b] = surface.edges()[edge].nodes;
+    const Bounds box = bounds_of(surface.positions()[a], surface.positions()[b], reach);
+    if (box.overlaps(within)) list.push_back({edge, box});
+  }
+}
+
+void NearFeatures::add_nodes(const Block& of, const Block& with, double reach) {
+  list_nodes(of, box_of(with, 0), reach);
+  if (ones_.empty()) return;
+  list_triangles(with, box_of(of, reach));
+  for (const Boxed& node : ones_) {
+    for (const Boxed& other : others_) {
+      if (!node.box.overlaps(other.box)) continue;
+      const geometry::Triangle& t = surfaces_[with.surface].triangles()[other.index];
+      if (of.surface == with.surface && has_node(t, node.index)) continue;
+      add_if_near({{of.surface, with.surface}, false, {node.index, t[0], t[1], t[2]}}, reach);
+    }
+  }
+}
+
+void NearFeatures::add_edges(const Block& first, const Block& second, double reach) {
+  const bool same_surface = first.surface == second.surface;
+  const bool same_block = same_surface && first.index == second.index;
+  list_edges(first, box_of(second, 0), reach, ones_);
+  if (ones_.empty()) return;
+  list_edges(second, box_of(first, reach), 0, others_);
+  for (const Boxed& one : ones_) {
+    for (const Boxed& other : others_) {
+      if (!one.box.overlaps(other.box) || (same_block && other.index <= one.index)) continue;
+      auto [a, b] = surfaces_[first.surface].edges()[one.index].nodes;
+      auto [c, d] = surfaces_[second.surface].edges()[other.index].nodes;
+      if (same_surface && (a == c || a == d || b == c || b == d)) continue;
+      if (same_surface && other.index < one.index) {
+        std::swap(a, c);
+        std::swap(b, d);
       }
+      add_if_near({{first.surface, second.surface}, true, {a, b, c, d}}, reach);
     }
   }
 }
@@ -159,15 +241,16 @@ void NearFeatures::add_if_near(const FeaturePair& pair, double reach) {
 bool NearFeatures::cross(std::uint32_t first, std::uint32_t second) const {
   const OrganSurface &a = surfaces_[first], &b = surfaces_[second];
   const auto shift = static_cast<std::uint32_t>(first == second ? 0 : a.positions().size());
-  std::vector<Vec3> nodes = a.positions();
-  if (shift > 0) nodes.insert(nodes.end(), b.positions().begin(), b.positions().end());
+  const auto of_a = a.positions().doubles(), of_b = b.positions().doubles();
+  std::vector<Vec3> nodes(of_a.begin(), of_a.end());
+  if (shift > 0) nodes.insert(nodes.end(), of_b.begin(), of_b.end());
   std::vector<std::uint32_t> near;
   for (std::uint32_t t = 0; t < a.triangles().size(); ++t) {
     const geometry::Triangle& triangle = a.triangles()[t];
     Bounds box = bounds_of(nodes[triangle[0]], nodes[triangle[1]], 0);
     box.add(nodes[triangle[2]]);
     near.clear();
-    b.bvh().append_overlapping(box, near);
+    b.append_overlapping(box, near);
     for (const std::uint32_t u : near) {
       if (first == second && u <= t) continue;
       geometry::Triangle other = b.triangles()[u];

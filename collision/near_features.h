@@ -67,8 +67,8 @@ class NearFeatures {
 
   const std::vector<NearPair>& pairs() const { return pairs_; }
   /// At the last search.
-  const std::vector<Vec3>& positions(std::size_t surface) const {
-    return surfaces_[surface].positions();
+  std::span<const Vec3> positions(std::size_t surface) const {
+    return surfaces_[surface].positions().doubles();
   }
 
   /// Two surfaces, or one twice, that pass through each other as they were at the last search.
@@ -78,15 +78,34 @@ class NearFeatures {
   bool may_touch(std::size_t a, std::size_t b) const {
     return a == b ? kinds_.itself : kinds_.others;
   }
-  void add_nodes(std::uint32_t of, std::uint32_t with, double reach);
-  void add_edges(std::uint32_t first, std::uint32_t second, double reach);
+  /// Nodes and edges that belong to each block: each to that of its first triangle.
+  struct BlockFeatures {
+    std::vector<std::vector<std::uint32_t>> nodes, edges;
+  };
+  struct Boxed {
+    std::uint32_t index = 0;
+    Bounds box;
+  };
+  struct Block {
+    std::uint32_t surface = 0, index = 0;
+  };
+
+  void make_blocks(std::span<const std::span<const Vec3>> positions);
+  void search_pair(std::uint32_t first, std::uint32_t second, double reach);
+  Bounds box_of(const Block& block, double reach) const;
+  void list_nodes(const Block& of, const Bounds& within, double reach);
+  void list_triangles(const Block& of, const Bounds& within);
+  void list_edges(const Block& of, const Bounds& within, double reach, std::vector<Boxed>& list);
+  void add_nodes(const Block& of, const Block& with, double reach);
+  void add_edges(const Block& first, const Block& second, double reach);
   void add_if_near(const FeaturePair& pair, double reach);
   bool cross(std::uint32_t first, std::uint32_t second) const;
 
   TouchingKinds kinds_;
   std::vector<OrganSurface> surfaces_;
   std::vector<NearPair> pairs_;
-  std::vector<std::uint32_t> list_;  ///< of triangles, buffer
+  std::vector<BlockFeatures> features_;  ///< by surface
+  std::vector<Boxed> ones_, others_;     ///< buffers
 };
 
 }  // namespace palpate::collision

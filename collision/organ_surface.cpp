@@ -9,7 +9,8 @@
 
 namespace palpate::collision {
 
-OrganSurface::OrganSurface(std::vector<geometry::Triangle> triangles)
+OrganSurface::OrganSurface(std::vector<geometry::Triangle> triangles,
+                           std::span<const std::uint32_t> block_of_triangle)
     : triangles_(std::move(triangles)) {
   for (const geometry::Triangle& triangle : triangles_) {
     for (const std::uint32_t node : triangle)
@@ -17,6 +18,8 @@ OrganSurface::OrganSurface(std::vector<geometry::Triangle> triangles)
   }
   build_node_triangles();
   build_edges();
+  if (block_of_triangle.empty()) return;
+  blocks_ = geometry::SurfaceBlocks(triangles_, block_of_triangle);
 }
 
 void OrganSurface::build_node_triangles() {
@@ -59,40 +62,66 @@ void OrganSurface::build_edges() {
   }
 }
 
-void OrganSurface::update(std::span<const Vec3> positions) {
-  PALPATE_DEMAND(positions.size() >= node_count_);
-  positions = positions.first(node_count_);
-  const bool finite =
-      std::all_of(positions.begin(), positions.end(), [](const Vec3& x) { return x.allFinite(); });
+void OrganSurface::begin_update(bool finite) {
   const bool was_present = std::exchange(present_, finite && !triangles_.empty());
   if (!present_) return;
   if (found_ && was_present) {
-    std::swap(previous_, positions_);
+    std::swap(previous_, newest_);
     previous_version_ = version_;
   } else if (!was_present) {
     previous_version_ = 0;
   }
   found_ = false;
   ++version_;
-  positions_.assign(positions.begin(), positions.end());
-  double squared = 0;
-  for (std::size_t i = 0; previous_version_ > 0 && i < node_count_; ++i) {
-    squared = std::max(squared, (positions_[i] - previous_[i]).squaredNorm());
-  }
-  displacement_ = std::sqrt(squared);
-  if (bvh_) {
-    bvh_->move(positions_);
-  } else {
-    bvh_.emplace(positions_, triangles_);
-  }
 }
 
-const std::vector<Vec3>& OrganSurface::positions_at(std::uint64_t version) const {
-  return version > 0 && version == previous_version_ ? previous_ : positions_;
+void OrganSurface::update(std::span<const Vec3> positions) {
+  PALPATE_DEMAND(positions.size() >= node_count_);
+  positions = positions.first(node_count_);
+  begin_update(
+      std::all_of(positions.begin(), positions.end(), [](const Vec3& x) { return x.allFinite(); }));
+  if (!present_) return;
+  newest_.positions.assign(positions);
+  if (blocks_.count() == 0) split();
+  blocks_.bound(positions, newest_.boxes);
 }
 
-double OrganSurface::displacement_since(std::uint64_t version) const {
-  return version > 0 && version == previous_version_ ? displacement_ : 0;
+void OrganSurface::take(std::vector<float>& positions, Boxes& boxes) {
+  PALPATE_DEMAND(positions.size() >= 3 * node_count_);
+  const bool told = blocks_.count() > 0 && boxes.size() == blocks_.count();
+  const auto end = positions.begin() + 3 * static_cast<std::ptrdiff_t>(node_count_);
+  begin_update(told
+                   ? geometry::are_finite(boxes)
+                   : std::all_of(positions.begin(), end, [](float x) { return std::isfinite(x); }));
+  if (!present_) return;
+  newest_.positions.swap_in(positions);
+  if (told) return newest_.boxes.swap(boxes);
+  if (blocks_.count() == 0) split();
+  blocks_.bound(newest_.positions.floats(), newest_.boxes);
+}
+
+void OrganSurface::split() {
+  std::vector<Vec3> nodes(node_count_);
+  for (std::uint32_t i = 0; i < node_count_; ++i) nodes[i] = newest_.positions[i];
+  blocks_ = {triangles_, geometry::SurfaceBlocks::split(nodes, triangles_)};
+}
+
+Bounds OrganSurface::bounds() const {
+  Bounds bounds;
+  for (const geometry::BlockBox& box : newest_.boxes) bounds.add(box);
+  return bounds;
+}
+
+void OrganSurface::append_overlapping(const Bounds& box,
+                                      std::vector<std::uint32_t>& triangles) const {
+  for (std::size_t block = 0; block < newest_.boxes.size(); ++block) {
+    if (!box.overlaps(newest_.boxes[block])) continue;
+    for (const std::uint32_t t : blocks_.triangles_of(block)) {
+      const auto [a, b, c] = corners(t);
+      if (box.overlaps({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}))
+        triangles.push_back(t);
+    }
+  }
 }
 
 std::span<const std::uint32_t> OrganSurface::triangles_of_node(std::uint32_t node) const {

@@ -21,31 +21,32 @@ struct Builder {
       model.cores.push_back(Core{2, core.b, core.b, core.radius});
     }
     model.is_round = core.is_ball() && core.a.isZero(0);
-    const Vec3 radius = Vec3::Constant(core.radius);
-    set_bounds({core.a.cwiseMin(core.b) - radius, core.a.cwiseMax(core.b) + radius});
+    set_hull({core.a.cwiseMin(core.b), core.a.cwiseMax(core.b)}, core.radius);
     model.reach = core.radius + std::max(core.a.norm(), core.b.norm());
   }
   void operator()(const geometry::Box& box) const {
     model.sharp = std::make_unique<SharpMesh>(geometry::make_box(box.size));
     model.solid = make_box_solid(box.size);
-    set_bounds({-0.5 * box.size, 0.5 * box.size});
+    set_hull({-0.5 * box.size, 0.5 * box.size}, 0);
     model.reach = 0.5 * box.size.norm();
   }
   void operator()(const geometry::HalfSpace&) const {
     model.solid = make_half_space();
     model.is_bounded = false;
+    model.hull = {Vec3::Constant(-1e300), Vec3(1e300, 1e300, 0)};
     model.max_tracked_penetration = std::numeric_limits<double>::infinity();
   }
   void operator()(geometry::TriangleSurface& surface) const {
     model.sharp = std::make_unique<SharpMesh>(std::move(surface));
     model.solid = make_mesh_solid(*model.sharp);
     for (const Vec3& x : model.sharp->vertices()) model.reach = std::max(model.reach, x.norm());
-    set_bounds(model.sharp->bounds());
+    set_hull(model.sharp->bounds(), 0);
   }
 
-  void set_bounds(const Bounds& bounds) const {
-    model.bounds = bounds;
-    model.max_tracked_penetration = (bounds.upper - bounds.lower).maxCoeff();
+  void set_hull(const Bounds& box, double radius) const {
+    model.hull = box;
+    model.hull_radius = radius;
+    model.max_tracked_penetration = (box.upper - box.lower).maxCoeff() + 2 * radius;
   }
 };
 

@@ -19,7 +19,8 @@ struct ProbeModel {
   std::unique_ptr<ProbeSolid> solid;  ///< all that are not round
   bool is_bounded = true;             ///< all but the half-space
   bool is_round = false;              ///< a ball about P's origin: rotation changes nothing
-  Bounds bounds;                      ///< in P [m], if bounded
+  Bounds hull;                        ///< all of it is within `hull_radius` of this box in P [m]
+  double hull_radius = 0;             ///< [m]
   double reach = 0;                   ///< largest distance of the surface from P's origin [m]
   double max_tracked_penetration =
       0;  ///< twice the largest half extent; the half-space's is unlimited

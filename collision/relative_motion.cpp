@@ -8,13 +8,22 @@ namespace {
 
 constexpr double kRounding = 1e-12;  // [m], and relative: a way of 1 m is known to 1e-15
 
-Vec3 sum_of_area_vectors(const OrganSurface& organ, const std::vector<Vec3>& positions,
+Vec3 sum_of_area_vectors(const OrganSurface& organ, const NodeArray& positions,
                          std::span<const std::uint32_t> triangles) {
   Vec3 sum = Vec3::Zero();
   for (const std::uint32_t t : triangles) {
-    sum += geometry::area_vector(positions, organ.triangles()[t]);
+    const auto& [a, b, c] = organ.triangles()[t];
+    sum += 0.5 * (positions[b] - positions[a]).cross(positions[c] - positions[a]);
   }
   return sum;
+}
+
+/// Adds the bounds of a box turned and then moved by `by`.
+void add_turned(const Mat3& rotation, const Bounds& box, const Vec3& by, Bounds& to) {
+  const Vec3 centre = by + rotation * (0.5 * (box.lower + box.upper));
+  const Vec3 half = rotation.cwiseAbs() * (0.5 * (box.upper - box.lower));
+  to.add(centre - half);
+  to.add(centre + half);
 }
 
 }  // namespace
@@ -30,15 +39,18 @@ RelativeMotion::RelativeMotion(const ProbeMotion& motion, double reach, bool rou
 }
 
 Bounds RelativeMotion::swept(const Bounds& box_P) const {
-  const Vec3 center = 0.5 * (box_P.lower + box_P.upper), half = 0.5 * (box_P.upper - box_P.lower);
   Bounds result;
   for (const auto& [rotation, position] :
        {std::pair(&to_start_, &position_start_), std::pair(&to_end_, &position_end_)}) {
-    const Vec3 at = *position + rotation->transpose() * center;
-    const Vec3 extent = rotation->transpose().cwiseAbs() * half;
-    result.add(at - extent);
-    result.add(at + extent);
+    add_turned(rotation->transpose(), box_P, *position, result);
   }
+  return result;
+}
+
+Bounds RelativeMotion::seen(const Bounds& box_W) const {
+  Bounds result;
+  add_turned(to_start_, box_W, -(to_start_ * position_start_), result);
+  add_turned(to_end_, box_W, -(to_end_ * position_end_), result);
   return result;
 }
 
@@ -57,18 +69,24 @@ Bounds SweptTriangle::bounds() const {
   return box;
 }
 
+bool SweptTriangle::complete(std::uint32_t triangle, const geometry::Triangle& corners,
+                             double travel_squared) {
+  index = triangle;
+  nodes = corners;
+  travel = std::sqrt(travel_squared) * (1 + kRounding) + kRounding;
+  normal_end = geometry::unit_normal(end);
+  return normal_end != Vec3::Zero();
+}
+
 bool OrganStep::sweep(std::uint32_t triangle, SweptTriangle& result) const {
-  result.index = triangle;
-  result.nodes = organ.triangles()[triangle];
+  const geometry::Triangle& nodes = organ.triangles()[triangle];
   double squared = 0;
   for (int k = 0; k < 3; ++k) {
-    result.start[k] = node_start(result.nodes[k]);
-    result.end[k] = node_end(result.nodes[k]);
+    result.start[k] = node_start(nodes[k]);
+    result.end[k] = node_end(nodes[k]);
     squared = std::max(squared, (result.end[k] - result.start[k]).squaredNorm());
   }
-  result.travel = std::sqrt(squared) * (1 + kRounding) + kRounding;
-  result.normal_end = geometry::unit_normal(result.end);
-  return result.normal_end != Vec3::Zero();
+  return result.complete(triangle, nodes, squared);
 }
 
 Vec3 OrganStep::node_normal_end(std::uint32_t node) const {
@@ -78,7 +96,7 @@ Vec3 OrganStep::node_normal_end(std::uint32_t node) const {
 
 Vec3 OrganStep::edge_normal_start(std::uint32_t edge) const {
   return motion.direction_at_start(
-      sum_of_area_vectors(organ, start_positions, organ.edges()[edge].triangles));
+      sum_of_area_vectors(organ, start_positions(), organ.edges()[edge].triangles));
 }
 
 Vec3 OrganStep::edge_normal_end(std::uint32_t edge) const {

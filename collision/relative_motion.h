@@ -7,7 +7,6 @@
 
 #include "collision/contact_finder.h"
 #include "collision/organ_surface.h"
-#include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
 
@@ -30,6 +29,8 @@ class RelativeMotion {
   double chord_error() const { return chord_error_; }
   /// World bounds of a probe-fixed box over the step.
   Bounds swept(const Bounds& box_P) const;
+  /// Bounds in P, over the step, of a box that rests in the world.
+  Bounds seen(const Bounds& box_W) const;
 
  private:
   Mat3 to_start_, to_end_;  ///< R_PW
@@ -47,6 +48,9 @@ struct SweptTriangle {
 
   geometry::TriangleCorners at(double t) const;
   Bounds bounds() const;
+  /// Fills in the rest once start and end are there.
+  /// @param travel_squared  the largest of a corner [m²]. @returns false for a degenerate triangle
+  bool complete(std::uint32_t triangle, const geometry::Triangle& corners, double travel_squared);
 };
 
 /// What the searches of one probe on one organ share.
@@ -54,15 +58,16 @@ struct OrganStep {
   std::uint32_t organ_index = 0;
   const OrganSurface& organ;
   const RelativeMotion& motion;
-  const std::vector<Vec3>& start_positions;  ///< in W, see OrganSurface::positions_at()
-  double margin = 0;                         ///< [m]
+  std::uint64_t start_version = 0;  ///< see OrganSurface::positions_at(): where it was at the start
+  double margin = 0;                ///< [m]
   /// A wall crossed in this step is believed to be crossed down to this depth, for as long as the
   /// probe stays behind it: the probe's extent and all the way made in this step [m].
   double depth_limit = 0;
 
   /// @returns false for a degenerate triangle
   bool sweep(std::uint32_t triangle, SweptTriangle& result) const;
-  Vec3 node_start(std::uint32_t node) const { return motion.start(start_positions[node]); }
+  const NodeArray& start_positions() const { return organ.positions_at(start_version); }  ///< in W
+  Vec3 node_start(std::uint32_t node) const { return motion.start(start_positions()[node]); }
   Vec3 node_end(std::uint32_t node) const { return motion.end(organ.positions()[node]); }
   /// Sum of the area vectors of the triangles around a node or an edge, in P [m²].
   Vec3 node_normal_end(std::uint32_t node) const;

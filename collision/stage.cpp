@@ -37,15 +37,8 @@ class OrganInputs {
     std::uint32_t generation = 0;
     std::vector<geometry::Triangle> triangles;
     std::size_t surface_node_count = 0;
-    std::vector<Vec3> positions;
+    std::vector<float> rest_positions;  ///< x, y, z per node [m]
   };
-
-  static void read_positions(const std::vector<float>& from, OrganInput& organ) {
-    organ.positions.resize(organ.surface_node_count);
-    for (std::size_t i = 0; i < organ.surface_node_count; ++i) {
-      organ.positions[i] = Vec3(from[3 * i], from[3 * i + 1], from[3 * i + 2]);
-    }
-  }
 
   /// A surface starts its organ anew: what was remembered of the search before no longer holds.
   void take_surface() {
@@ -55,9 +48,16 @@ class OrganInputs {
     organ.generation = surface_.generation;
     organ.surface_node_count = surface_.surface_node_count;
     organ.triangles = surface_.triangles;
-    read_positions(surface_.rest_positions, organ);
-    same_shape ? finder_->reset() : make_finder();
-    if (finder_) finder_->update_organ(surface_.organ, organ.positions);
+    organ.rest_positions = surface_.rest_positions;
+    if (!same_shape) return make_finder();
+    finder_->reset();
+    put_at_rest(surface_.organ);
+  }
+
+  void put_at_rest(std::size_t organ) {
+    std::vector<float> positions = organs_[organ].rest_positions;
+    std::vector<geometry::BlockBox> boxes;
+    finder_->take_organ(organ, positions, boxes);
   }
 
   void make_finder() {
@@ -68,21 +68,19 @@ class OrganInputs {
       triangles.push_back(organ.triangles);
     }
     finder_.emplace(std::move(triangles), probes_);
-    for (std::size_t i = 0; i < organs_.size(); ++i) {
-      finder_->update_organ(i, organs_[i].positions);
-    }
+    for (std::size_t i = 0; i < organs_.size(); ++i) put_at_rest(i);
   }
 
   /// Positions of another generation than the surface's wait for their surface.
   void take_positions() {
     if (newest_.organ >= organs_.size() || !finder_) return;
-    OrganInput& organ = organs_[newest_.organ];
+    const OrganInput& organ = organs_[newest_.organ];
     if (newest_.generation != organ.generation ||
         newest_.positions.size() < 3 * organ.surface_node_count) {
       return;
     }
-    read_positions(newest_.positions, organ);
-    finder_->update_organ(newest_.organ, organ.positions);
+    boxes_.clear();
+    finder_->take_organ(newest_.organ, newest_.positions, boxes_);
     sequence_ = newest_.header.sequence;
     if (newest_.organ != 0) return;
     if (came_ns_ != 0) interval_ = seconds_from_ns(newest_.header.source_time_ns - came_ns_);
@@ -96,6 +94,7 @@ class OrganInputs {
   std::optional<ContactFinder> finder_;
   SurfaceTopology surface_;
   NodePositions newest_;
+  std::vector<geometry::BlockBox> boxes_;
   std::uint64_t sequence_ = 0;
   std::int64_t came_ns_ = 0;
   double interval_ = 0;

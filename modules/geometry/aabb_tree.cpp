@@ -1,6 +1,7 @@
 #include "modules/geometry/aabb_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -14,7 +15,6 @@ constexpr std::uint32_t kLeafSize = 4;
 }  // namespace
 
 AabbTree::AabbTree(const TriangleSurface& surface) {
-  PALPATE_DEMAND(!surface.triangles.empty());
   for (const auto& [a, b, c] : surface.triangles) {
     corners_.push_back({surface.nodes[a], surface.nodes[b], surface.nodes[c]});
     Box box(surface.nodes[a]);
@@ -59,6 +59,7 @@ Vec3 AabbTree::nearest_on(std::uint32_t triangle, const Vec3& point) const {
 }
 
 AabbTree::Nearest AabbTree::nearest(const Vec3& point) const {
+  PALPATE_DEMAND(!order_.empty());
   Nearest best;
   best.squared_distance = std::numeric_limits<double>::infinity();
   std::vector<std::uint32_t> open{0};
@@ -85,22 +86,32 @@ AabbTree::Nearest AabbTree::nearest(const Vec3& point) const {
   return best;
 }
 
+void AabbTree::append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const {
+  std::array<std::uint32_t, 64> open;  // depth first: at most one waiting branch per halving
+  std::size_t waiting = 1;
+  open[0] = 0;
+  while (waiting > 0) {
+    const Branch& branch = branches_[open[--waiting]];
+    if (!branch.box.intersects(box)) continue;
+    if (branch.left != 0) {
+      open[waiting++] = branch.left + 1;
+      open[waiting++] = branch.left;
+      continue;
+    }
+    for (std::uint32_t i = branch.begin; i < branch.end; ++i) {
+      if (boxes_[order_[i]].intersects(box)) triangles.push_back(order_[i]);
+    }
+  }
+}
+
 void AabbTree::for_each_touching_pair(
     const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
-  std::vector<std::uint32_t> open;
+  std::vector<std::uint32_t> near;
   for (std::uint32_t a = 0; a < boxes_.size(); ++a) {
-    open.assign(1, 0);
-    while (!open.empty()) {
-      const Branch& branch = branches_[open.back()];
-      open.pop_back();
-      if (!branch.box.intersects(boxes_[a])) continue;
-      if (branch.left != 0) {
-        open.insert(open.end(), {branch.left, branch.left + 1});
-        continue;
-      }
-      for (std::uint32_t i = branch.begin; i < branch.end; ++i) {
-        if (order_[i] > a && boxes_[order_[i]].intersects(boxes_[a])) visit(a, order_[i]);
-      }
+    near.clear();
+    append_overlapping(boxes_[a], near);
+    for (const std::uint32_t b : near) {
+      if (b > a) visit(a, b);
     }
   }
 }

@@ -10,7 +10,9 @@ namespace palpate::geometry {
 
 class AabbTree {
  public:
-  /// Copies what it needs. @param surface  at least one triangle
+  using Box = Eigen::AlignedBox3d;
+
+  /// Copies what it needs.
   explicit AabbTree(const TriangleSurface& surface);
 
   struct Nearest {
@@ -18,14 +20,17 @@ class AabbTree {
     Vec3 point = Vec3::Zero();    ///< on the surface [m]
     double squared_distance = 0;  ///< [m²]
   };
-  /// The point of the surface nearest to `point`; of equally near triangles the first visited.
+  /// The point of the surface nearest to `point`; of equally near triangles the first visited. Of
+  /// a surface with triangles only.
   Nearest nearest(const Vec3& point) const;
+
+  /// Appends the triangles whose own boxes touch `box`, in no useful order.
+  void append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const;
 
   /// Calls `visit(a, b)`, a < b, once for every pair of triangles whose boxes touch.
   void for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
 
  private:
-  using Box = Eigen::AlignedBox3d;
   struct Branch {
     Box box;
     std::uint32_t begin = 0, end = 0;  ///< range of order_, used by leaves

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "tests/collision/finder_scene.h"
 #include "tests/collision/step_scene.h"
 
 namespace palpate::collision {

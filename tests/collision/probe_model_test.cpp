@@ -20,7 +20,8 @@ TEST_CASE("probe model: every form has what its searches need, and its bounds") 
   CHECK_FALSE(capsule.is_round);
   REQUIRE(capsule.cores.size() == 3);
   CHECK(capsule.cores[0].b == Vec3(0, 0, 1));
-  CHECK(capsule.bounds.upper == Vec3(0.5, 0.5, 1.5));
+  CHECK(capsule.hull.upper == Vec3(0, 0, 1));
+  CHECK(capsule.hull_radius == 0.5);
   CHECK(capsule.reach == 1.5);
   CHECK(capsule.max_tracked_penetration == 3);
 
@@ -29,11 +30,12 @@ TEST_CASE("probe model: every form has what its searches need, and its bounds") 
   REQUIRE(box.sharp);
   CHECK(box.sharp->vertices().size() == 8);
   CHECK(box.sharp->edges().size() == 12);
-  CHECK(box.bounds.lower == Vec3(-1, -2, -2));
+  CHECK(box.hull.lower == Vec3(-1, -2, -2));
   CHECK(box.reach == 3);
 
   const ProbeModel plane(geometry::HalfSpace{});
   CHECK_FALSE(plane.is_bounded);
+  CHECK(plane.hull.upper[2] == 0);
   CHECK(plane.solid);
   CHECK_FALSE(plane.sharp);
 
@@ -41,14 +43,14 @@ TEST_CASE("probe model: every form has what its searches need, and its bounds") 
   const ProbeModel beside(geometry::RoundedSegment{aside, aside, 0.5});
   CHECK_FALSE(beside.is_round);
   CHECK(beside.cores.size() == 1);
-  CHECK(beside.bounds.lower == Vec3(0, -0.5, -0.5));
+  CHECK(beside.hull.lower == aside);
   CHECK(beside.reach == 1);
 
   auto off_center = geometry::make_box({2, 2, 2});
   for (Vec3& x : off_center.nodes) x[0] += 5;
   const ProbeModel mesh(off_center);
   CHECK(mesh.solid);
-  CHECK(mesh.bounds.lower == Vec3(4, -1, -1));
+  CHECK(mesh.hull.lower == Vec3(4, -1, -1));
   CHECK(mesh.reach == Approx(std::sqrt(38.0)));
   CHECK(mesh.max_tracked_penetration == 2);
 }

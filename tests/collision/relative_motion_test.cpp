@@ -68,7 +68,7 @@ TEST_CASE("organ step: a triangle's way, normal and the normals around it") {
   OrganSurface organ({{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
   organ.update(nodes);
   const RelativeMotion motion({{}, {Vec3(0, 0, 2), Quat::Identity()}}, 0.1, false);
-  const OrganStep step{0, organ, motion, organ.positions(), 0.1, 1};
+  const OrganStep step{0, organ, motion, 0, 0.1, 1};
   SweptTriangle triangle;
   REQUIRE(step.sweep(0, triangle));
   CHECK(triangle.travel == Approx(2));

@@ -16,7 +16,7 @@ struct StepScene {
             double depth_limit = 10)
       : organ(surface.triangles),
         motion({{way, Quat::Identity()}, {}}, 1, false),
-        step{0, organ, motion, organ.positions(), margin, depth_limit} {
+        step{0, organ, motion, 0, margin, depth_limit} {
     organ.update(surface.nodes);
   }
 
@@ -29,7 +29,7 @@ struct StepScene {
     return result;
   }
   std::vector<std::uint32_t> nodes() const {
-    std::vector<std::uint32_t> result(organ.positions().size());
+    std::vector<std::uint32_t> result(organ.node_count());
     for (std::uint32_t i = 0; i < result.size(); ++i) result[i] = i;
     return result;
   }

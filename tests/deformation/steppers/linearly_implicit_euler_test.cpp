@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "tests/deformation/organs.h"
 #include "tests/deformation/steppers/tetrahedral_solids.h"
 
 using namespace palpate;

@@ -61,6 +61,31 @@ TEST_CASE("nearest: the tree finds the distance that brute force finds") {
   }
 }
 
+TEST_CASE("overlapping: the triangles whose boxes touch a box, none of no surface") {
+  // Oracle: brute force over all triangles.
+  const TriangleSurface surface = make_ball(1, 2);
+  const AabbTree tree(surface);
+  std::size_t count = 0;
+  for (const double x : {-1.0, -0.3, 0.2, 0.9}) {
+    const AabbTree::Box box(Vec3(x, x / 2, -0.8), Vec3(x + 0.4, x / 2 + 0.3, 1));
+    std::vector<std::uint32_t> found, brute;
+    tree.append_overlapping(box, found);
+    std::sort(found.begin(), found.end());
+    for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+      AabbTree::Box own;
+      for (const std::uint32_t node : surface.triangles[t]) own.extend(surface.nodes[node]);
+      if (own.intersects(box)) brute.push_back(t);
+    }
+    CHECK(found == brute);
+    count += found.size();
+  }
+  CHECK(count > 20);
+  std::vector<std::uint32_t> none;
+  AabbTree(TriangleSurface{})
+      .append_overlapping(AabbTree::Box(Vec3(-1, -1, -1), Vec3(1, 1, 1)), none);
+  CHECK(none.empty());
+}
+
 TEST_CASE("touching pairs: each pair of overlapping boxes exactly once") {
   // Oracle: brute force over all pairs.
   const TriangleSurface surface = both(make_ball(1, 1), moved(make_ball(1, 1), {0.5, 0.3, 0}));

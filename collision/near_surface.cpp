@@ -1,0 +1,176 @@
+#include "collision/near_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "modules/core/sort_unique.h"
+#include "modules/core/tolerances.h"
+
+namespace palpate::collision {
+namespace {
+
+bool is_bounded(const Bounds& box) { return (box.upper - box.lower).maxCoeff() < 2 * kWorldReach; }
+
+}  // namespace
+
+/// What a gathering asks of boxes.
+struct NearSurface::Wanted {
+  Bounds core_P, core_W;  ///< over the step
+  bool bounded = true;
+  double reach = 0;          ///< [m]
+  double reach_squared = 0;  ///< [m²]
+
+  Wanted(const RelativeMotion& motion, const Bounds& core, double beside_chord)
+      : core_P(core), bounded(is_bounded(core)), reach(beside_chord + motion.chord_error()) {
+    reach_squared = reach * reach;
+    if (!bounded) return;
+    core_W = motion.swept(core);
+    Bounds wide = core_W;
+    wide.inflate(reach * (1 + kRounding) + kRounding);
+    wide_.add(wide.lower);
+    wide_.add(wide.upper);
+  }
+  /// @param start, end  boxes of the block
+  bool may_hold(const RelativeMotion& motion, const geometry::BlockBox& start,
+                const geometry::BlockBox& end) const {
+    if (bounded && !overlaps(start, end)) return false;
+    Bounds both;
+    both.add(start);
+    both.add(end);
+    if (bounded) return core_W.squared_distance(both) <= reach_squared;
+    Bounds in_P = motion.seen(both);
+    in_P.inflate(kDirectionless);  // turning it rounds
+    return core_P.squared_distance(in_P) <= reach_squared;
+  }
+
+ private:
+  /// Most blocks are far away: this costs a few instructions each.
+  bool overlaps(const geometry::BlockBox& start, const geometry::BlockBox& end) const {
+    using Four = Eigen::Map<const Eigen::Array4f>;  // a box is six floats in a row
+    const Eigen::Array4f lower = Four(start.lower.data()).min(Four(end.lower.data()));
+    const Eigen::Array4f upper = Four(start.lower.data() + 2).max(Four(end.lower.data() + 2));
+    const Eigen::Array4f lowest(wide_.upper[0], wide_.upper[1], wide_.upper[2], kFar);
+    const Eigen::Array4f highest(-kFar, wide_.lower[0], wide_.lower[1], wide_.lower[2]);
+    return (lower <= lowest).all() && (upper >= highest).all();
+  }
+
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  static constexpr double kRounding = 1e-12;  // [m], and relative
+  geometry::BlockBox wide_;                   ///< core_W and the reach
+};
+
+void NearSurface::open(const OrganStep& step, std::size_t block, const Wanted& wanted) {
+  const NodeArray &starts = step.start_positions(), &ends = step.organ.positions();
+  const geometry::SurfaceBlocks& blocks = step.organ.blocks();
+  const auto first = static_cast<std::uint32_t>(nodes_.size());
+  Bounds all;
+  for (const std::uint32_t node : blocks.nodes_of(block)) {
+    const Vec3 start = step.motion.start(starts[node]), end = step.motion.end(ends[node]);
+    nodes_.push_back(
+        {start, end, start.cwiseMin(end), start.cwiseMax(end), (end - start).squaredNorm()});
+    all.add(nodes_.back().lower);
+    all.add(nodes_.back().upper);
+  }
+  if (wanted.core_P.squared_distance(all) > wanted.reach_squared) {
+    nodes_.resize(first);
+    return;
+  }
+  const auto triangles = blocks.triangles_of(block);
+  const auto corners = blocks.corners_of(block);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const auto [a, b, c] = corners[i];
+    const SweptNode &x = nodes_[first + a], &y = nodes_[first + b], &z = nodes_[first + c];
+    const Bounds box{x.lower.cwiseMin(y.lower).cwiseMin(z.lower),
+                     x.upper.cwiseMax(y.upper).cwiseMax(z.upper)};
+    if (wanted.core_P.squared_distance(box) > wanted.reach_squared) continue;
+    near_.push_back({triangles[i], {first + a, first + b, first + c}});
+  }
+}
+
+/// By its own way through the world, as its block was judged.
+bool NearSurface::comes_near(const OrganStep& step, const geometry::Triangle& nodes,
+                             const Wanted& wanted) {
+  Bounds box;
+  for (const std::uint32_t node : nodes) {
+    box.add(step.start_positions()[node]);
+    box.add(step.organ.positions()[node]);
+  }
+  return wanted.core_W.squared_distance(box) <= wanted.reach_squared;
+}
+
+void NearSurface::gather(const OrganStep& step, const Bounds& core, double reach) {
+  const Wanted wanted(step.motion, core, reach);
+  nodes_.clear();
+  near_.clear();
+  triangles_.clear();
+  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
+  for (std::size_t block = 0; block < ends.size(); ++block) {
+    if (wanted.may_hold(step.motion, starts[block], ends[block])) open(step, block, wanted);
+  }
+  std::sort(near_.begin(), near_.end(),
+            [](const Near& a, const Near& b) { return a.triangle < b.triangle; });
+  for (const Near& near : near_) {
+    const geometry::Triangle& nodes = step.organ.triangles()[near.triangle];
+    if (wanted.bounded && !comes_near(step, nodes, wanted)) continue;
+    SweptTriangle& swept = triangles_.emplace_back();
+    double squared = 0;
+    for (int k = 0; k < 3; ++k) {
+      const SweptNode& node = nodes_[near.corners[k]];
+      swept.start[k] = node.start;
+      swept.end[k] = node.end;
+      squared = std::max(squared, node.travel_squared);
+    }
+    if (!swept.complete(near.triangle, nodes, squared)) triangles_.pop_back();
+  }
+}
+
+void NearSurface::gather_nodes(const OrganStep& step, const Bounds& core, double reach,
+                               std::vector<std::uint32_t>& nodes) {
+  const Wanted wanted(step.motion, core, reach);
+  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
+  seen_.assign(step.organ.node_count(), false);
+  for (std::size_t block = 0; block < ends.size(); ++block) {
+    if (!wanted.may_hold(step.motion, starts[block], ends[block])) continue;
+    for (const std::uint32_t node : step.organ.blocks().nodes_of(block)) {
+      if (seen_[node]) continue;
+      seen_[node] = true;
+      Bounds way;
+      way.add(step.node_start(node));
+      way.add(step.node_end(node));
+      if (core.squared_distance(way) <= wanted.reach_squared) nodes.push_back(node);
+    }
+  }
+}
+
+void NearSurface::add(const OrganStep& step, std::vector<std::uint32_t>& triangles) {
+  if (triangles.empty()) return;
+  sort_unique(triangles);
+  const std::size_t there = triangles_.size();
+  SweptTriangle swept;
+  std::size_t at = 0;
+  for (const std::uint32_t t : triangles) {
+    while (at < there && triangles_[at].index < t) ++at;
+    const bool is_there = at < there && triangles_[at].index == t;
+    if (!is_there && step.sweep(t, swept)) triangles_.push_back(swept);
+  }
+  if (triangles_.size() == there) return;
+  std::inplace_merge(
+      triangles_.begin(), triangles_.begin() + static_cast<std::ptrdiff_t>(there), triangles_.end(),
+      [](const SweptTriangle& a, const SweptTriangle& b) { return a.index < b.index; });
+}
+
+void NearSurface::append_nodes(std::vector<std::uint32_t>& nodes) const {
+  for (const SweptTriangle& t : triangles_) {
+    nodes.insert(nodes.end(), t.nodes.begin(), t.nodes.end());
+  }
+  sort_unique(nodes);
+}
+
+double NearSurface::travel() const {
+  double travel = 0;
+  for (const SweptTriangle& t : triangles_) travel = std::max(travel, t.travel);
+  return travel;
+}
+
+}  // namespace palpate::collision

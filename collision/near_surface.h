@@ -1,0 +1,60 @@
+// The part of an organ's surface that comes near a probe within a step.
+//
+// Blocks of triangles are told apart by their boxes at the step's start and end; only in those that
+// come near, nodes are looked at. What is handed out depends on each triangle alone, so it is the
+// same whatever the blocks are: all triangles whose box, in the probe's frame P and over the whole
+// step, comes within a reach of a box about the probe's core.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/relative_motion.h"
+
+namespace palpate::collision {
+
+class NearSurface {
+ public:
+  void clear() { triangles_.clear(); }
+  /// @param core   in P; may be without end
+  /// @param reach  beside the chord's error (RelativeMotion::chord_error()) [m]
+  void gather(const OrganStep& step, const Bounds& core, double reach);
+  /// The nodes that come so near instead, each once, in no useful order. Of a core without end they
+  /// are far fewer than the triangles' worth.
+  void gather_nodes(const OrganStep& step, const Bounds& core, double reach,
+                    std::vector<std::uint32_t>& nodes);
+  /// Adds triangles by their indices, each once whether it was there or not.
+  void add(const OrganStep& step, std::vector<std::uint32_t>& triangles);
+
+  /// Ascending; degenerate ones left out.
+  const std::vector<SweptTriangle>& triangles() const { return triangles_; }
+  /// Appends the corners of triangles() and leaves `nodes` ascending, each once.
+  void append_nodes(std::vector<std::uint32_t>& nodes) const;
+  /// The largest way of a corner [m].
+  double travel() const;
+
+ private:
+  /// A node over the step, in P.
+  struct SweptNode {
+    Vec3 start, end, lower, upper;
+    double travel_squared = 0;
+  };
+  struct Near {
+    std::uint32_t triangle = 0;
+    std::array<std::uint32_t, 3> corners{};  ///< in nodes_
+  };
+
+  struct Wanted;
+
+  void open(const OrganStep& step, std::size_t block, const Wanted& wanted);
+  static bool comes_near(const OrganStep& step, const geometry::Triangle& nodes,
+                         const Wanted& wanted);
+
+  std::vector<SweptTriangle> triangles_;
+  // Kept between calls for their memory only.
+  std::vector<SweptNode> nodes_;  ///< of all opened blocks
+  std::vector<Near> near_;
+  std::vector<bool> seen_;  ///< by node
+};
+
+}  // namespace palpate::collision

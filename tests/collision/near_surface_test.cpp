@@ -1,0 +1,145 @@
+#include "collision/near_surface.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "collision/probe_model.h"
+#include "modules/scene/probe_shape.h"
+#include "tests/collision/random_shapes.h"
+
+namespace palpate::collision {
+namespace {
+
+ProbeMotion random_way(RandomShapes& random) {
+  const Pose start{random.point(0.06), random.rotation()};
+  const Quat turn(Eigen::AngleAxisd(random.number(0, 0.2), random.direction()));
+  return {start, {start.position + random.point(0.01), turn * start.rotation}};
+}
+
+struct SplitOrgans {
+  RandomShapes random{17};
+  geometry::TriangleSurface ball = random.deformed_ball(0.05, 3);
+  std::vector<OrganSurface> organs;  ///< the same, in blocks of different sizes
+
+  SplitOrgans() {
+    for (const std::size_t most : {std::size_t{1}, std::size_t{20}, ball.triangles.size()}) {
+      organs.emplace_back(ball.triangles,
+                          geometry::SurfaceBlocks::split(ball.nodes, ball.triangles, most));
+    }
+  }
+  void move() {
+    for (Vec3& x : ball.nodes) x += random.point(0.003);
+    for (OrganSurface& organ : organs) {
+      organ.update(ball.nodes);
+      organ.mark_found();
+    }
+  }
+};
+
+bool same_triangles(const std::vector<SweptTriangle>& one,
+                    const std::vector<SweptTriangle>& other) {
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](const SweptTriangle& a, const SweptTriangle& b) {
+                      return a.index == b.index && a.nodes == b.nodes && a.start == b.start &&
+                             a.end == b.end && a.normal_end == b.normal_end && a.travel == b.travel;
+                    });
+}
+
+}  // namespace
+
+TEST_CASE("near surface: the same triangles whatever the blocks, and none within reach left out") {
+  // Oracle: brute force; one block of all triangles, and the distance of every triangle from
+  // points of the probe's core at both ends of the step.
+  SplitOrgans scene;
+  scene.move();
+  std::size_t found = 0, near = 0;
+  for (int step = 0; step < 60; ++step) {
+    const std::uint64_t before = scene.organs[0].version();
+    scene.move();
+    const ProbeModel probe(scene::form_of(scene::CapsuleShape{0.004, 0.03}));
+    const RelativeMotion motion(random_way(scene.random), probe.reach, probe.is_round);
+    const double reach = probe.hull_radius + 0.002;
+    std::array<NearSurface, 3> by_blocks;
+    for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+      by_blocks[i].gather({0, scene.organs[i], motion, before, 0.002, 1}, probe.hull, reach);
+    }
+    const auto& all = by_blocks[2].triangles();
+    CHECK(same_triangles(by_blocks[0].triangles(), all));
+    CHECK(same_triangles(by_blocks[1].triangles(), all));
+    found += all.size();
+    SweptTriangle triangle;
+    const OrganStep whole{0, scene.organs[2], motion, before, 0.002, 1};
+    for (std::uint32_t t = 0; t < scene.ball.triangles.size(); ++t) {
+      if (!whole.sweep(t, triangle)) continue;
+      const bool is_near = closest(probe.cores[0], triangle.start).distance <= reach ||
+                           closest(probe.cores[0], triangle.end).distance <= reach;
+      near += is_near;
+      const auto at =
+          std::lower_bound(all.begin(), all.end(), t,
+                           [](const SweptTriangle& s, std::uint32_t k) { return s.index < k; });
+      if (is_near) CHECK((at != all.end() && at->index == t));
+    }
+  }
+  CHECK(near > 500);
+  CHECK(found < 8 * near);
+}
+
+TEST_CASE("near surface: nodes near a half-space, each once") {
+  // Oracle: brute force over all nodes.
+  SplitOrgans scene;
+  scene.move();
+  std::size_t found = 0;
+  for (int step = 0; step < 30; ++step) {
+    const std::uint64_t before = scene.organs[0].version();
+    scene.move();
+    const ProbeModel plane(scene::form_of(scene::PlaneShape{}));
+    const RelativeMotion motion(random_way(scene.random), 0, false);
+    for (const OrganSurface& organ : scene.organs) {
+      const OrganStep whole{0, organ, motion, before, 0.002, 1};
+      NearSurface near;
+      std::vector<std::uint32_t> nodes, expected;
+      near.gather_nodes(whole, plane.hull, 0.002, nodes);
+      std::sort(nodes.begin(), nodes.end());
+      for (std::uint32_t i = 0; i < organ.node_count(); ++i) {
+        const double height = std::min(whole.node_start(i)[2], whole.node_end(i)[2]);
+        if (height <= 0.002 + motion.chord_error()) expected.push_back(i);
+      }
+      CHECK(nodes == expected);
+      found += nodes.size();
+    }
+  }
+  CHECK(found > 1000);
+}
+
+TEST_CASE("near surface: triangles are added once and in order") {
+  // Oracle: definition.
+  SplitOrgans scene;
+  scene.move();
+  const OrganSurface& organ = scene.organs[1];
+  const RelativeMotion motion({{}, {Vec3(0, 0, 1e-3), Quat::Identity()}}, 0.01, true);
+  const OrganStep step{0, organ, motion, 0, 0.002, 1};
+  NearSurface near;
+  const Vec3 x = organ.positions()[0];
+  near.gather(step, {x, x}, 0.004);
+  const std::size_t gathered = near.triangles().size();
+  REQUIRE(gathered > 0);
+  std::vector<std::uint32_t> more{near.triangles()[0].index, 700, 3, 700};
+  near.add(step, more);
+  CHECK(near.triangles().size() <= gathered + 2);
+  CHECK(std::is_sorted(
+      near.triangles().begin(), near.triangles().end(),
+      [](const SweptTriangle& a, const SweptTriangle& b) { return a.index < b.index; }));
+  CHECK(near.travel() == Approx(1e-3));
+  std::vector<std::uint32_t> nodes, expected;
+  near.append_nodes(nodes);
+  for (const SweptTriangle& t : near.triangles()) {
+    expected.insert(expected.end(), t.nodes.begin(), t.nodes.end());
+  }
+  std::sort(expected.begin(), expected.end());
+  expected.erase(std::unique(expected.begin(), expected.end()), expected.end());
+  CHECK(nodes == expected);
+  near.clear();
+  CHECK(near.triangles().empty());
+}
+
+}  // namespace palpate::collision

@@ -1,0 +1,105 @@
+#include "modules/geometry/surface_blocks.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+#include <set>
+
+#include "modules/geometry/primitives.h"
+
+namespace palpate::geometry {
+namespace {
+
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+
+/// Box of all corners of the block's triangles, in doubles.
+Eigen::AlignedBox3d exact_block_box(const TriangleSurface& surface, const SurfaceBlocks& blocks,
+                                    std::size_t block) {
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t t : blocks.triangles_of(block)) {
+    for (const std::uint32_t node : surface.triangles[t]) box.extend(surface.nodes[node]);
+  }
+  return box;
+}
+
+bool box_holds(const BlockBox& box, const Eigen::AlignedBox3d& exact) {
+  bool all = true;
+  for (int k = 0; k < 3; ++k) {
+    all &= double{box.lower[k]} <= exact.min()[k] && double{box.upper[k]} >= exact.max()[k];
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("surface blocks: every triangle in one small compact block, corners by their places") {
+  // Oracle: definition; a block of a ball cut into some forty reaches over a fraction of it.
+  const TriangleSurface ball = make_ball(1, 4);
+  const SurfaceBlocks blocks(ball.triangles, SurfaceBlocks::split(ball.nodes, ball.triangles));
+  CHECK(blocks.count() >= ball.triangles.size() / SurfaceBlocks::kMostTriangles);
+  CHECK(blocks.count() <= 4 * ball.triangles.size() / SurfaceBlocks::kMostTriangles);
+  std::set<std::uint32_t> seen;
+  for (std::size_t block = 0; block < blocks.count(); ++block) {
+    const auto triangles = blocks.triangles_of(block), nodes = blocks.nodes_of(block);
+    const auto corners = blocks.corners_of(block);
+    CHECK(triangles.size() <= SurfaceBlocks::kMostTriangles);
+    CHECK(std::is_sorted(triangles.begin(), triangles.end()));
+    REQUIRE(corners.size() == triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      CHECK(seen.insert(triangles[i]).second);
+      for (int k = 0; k < 3; ++k) {
+        CHECK(nodes[corners[i][k]] == ball.triangles[triangles[i]][k]);
+      }
+    }
+    CHECK(exact_block_box(ball, blocks, block).sizes().maxCoeff() < 1);
+  }
+  CHECK(seen.size() == ball.triangles.size());
+}
+
+TEST_CASE("surface blocks: boxes hold their nodes, of doubles and of floats, and are tight") {
+  // Oracle: the box of all corners. A float next to x is within 1.2e-7 |x|.
+  const TriangleSurface ball = make_ball(1, 3);
+  const SurfaceBlocks blocks(ball.triangles, SurfaceBlocks::split(ball.nodes, ball.triangles, 10));
+  std::vector<BlockBox> boxes, of_floats;
+  blocks.bound(ball.nodes, boxes);
+  TriangleSurface rounded = ball;
+  std::vector<float> floats;
+  for (Vec3& x : rounded.nodes) {
+    for (int k = 0; k < 3; ++k) floats.push_back(static_cast<float>(x[k]));
+    x = x.cast<float>().cast<double>();
+  }
+  blocks.bound(floats, of_floats);
+  REQUIRE(boxes.size() == blocks.count());
+  for (std::size_t block = 0; block < blocks.count(); ++block) {
+    const auto exact = exact_block_box(ball, blocks, block),
+               single = exact_block_box(rounded, blocks, block);
+    CHECK(box_holds(boxes[block], exact));
+    CHECK(box_holds(of_floats[block], single));
+    for (int k = 0; k < 3; ++k) {
+      CHECK(boxes[block].lower[k] == Approx(exact.min()[k]).margin(1.2e-7));
+      CHECK(double{of_floats[block].lower[k]} == single.min()[k]);
+      CHECK(double{of_floats[block].upper[k]} == single.max()[k]);
+    }
+  }
+}
+
+TEST_CASE("surface blocks: a number that is not finite shows in the boxes' check") {
+  // Oracle: definition.
+  std::vector<BlockBox> boxes(3);
+  CHECK_FALSE(are_finite(boxes));  // empty ones have no end
+  for (BlockBox& box : boxes) box.add(Vec3(1, 2, 3));
+  CHECK(are_finite(boxes));
+  boxes[2].lower[1] = kNoNumber;
+  CHECK_FALSE(are_finite(boxes));
+  boxes[2].lower[1] = 0;
+  boxes[1].upper[2] = std::numeric_limits<float>::infinity();
+  CHECK_FALSE(are_finite(boxes));
+}
+
+TEST_CASE("surface blocks: none of no triangles") {
+  // Oracle: definition.
+  CHECK(SurfaceBlocks().count() == 0);
+  CHECK(SurfaceBlocks::split({}, {}).empty());
+  CHECK(SurfaceBlocks({}, {}).count() == 0);
+}
+
+}  // namespace palpate::geometry
