@@ -106,6 +106,8 @@ void print_cost() {
       "sweeps; made in %.0f us (median, %zu nodes)%s\n",
       law.rows.size(), at(solving, 0.5), at(solving, 0.999), sweeps, at(making, 0.5),
       organ.node_count(), sum == 0 ? " " : "");
+  if (organ.lacks_contacts())
+    throw std::runtime_error("contacts of the pressed ball were left out");
 }
 
 int run(const std::vector<std::string>& scenes) {

@@ -54,7 +54,7 @@ class ProbeSearch {
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
-    reduce_contacts(found_, at_most, result);
+    reduce_contacts(found_, model_.is_round, at_most, result);
     return report;
   }
 
@@ -252,8 +252,7 @@ SearchReport ContactFinder::find(std::size_t probe, const ProbeMotion& motion, d
   PALPATE_DEMAND(margin > 0 && std::isfinite(margin));
   result.probe = static_cast<std::uint32_t>(probe);
   result.probe_pose = motion.pose_t1;
-  result.truncated = false;
-  result.contacts.clear();
+  result.clear();
   if (!is_believable(motion.pose_t0) || !is_believable(motion.pose_t1)) return {};
   return impl_->probes[probe].find(motion, margin, impl_->organs, at_most, result);
 }

@@ -51,7 +51,7 @@ class ContactFinder {
 
   /// Contacts of one probe that moved from pose_t0 to pose_t1 since the last call, all with
   /// gap ≤ margin at t1 or swept through in between. Weights and gap hold at pose_t1.
-  /// At most `at_most`, the deepest; `result.truncated` says if there were more.
+  /// Reduced (contact_reduction.h); at most `at_most` beside faces.
   /// @param margin  how far tissue and probe may approach until the next search [m], > 0
   SearchReport find(std::size_t probe, const ProbeMotion& motion, double margin,
                     std::size_t at_most, ContactSet& result);

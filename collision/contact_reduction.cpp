@@ -1,6 +1,7 @@
 #include "collision/contact_reduction.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "modules/core/tolerances.h"
@@ -38,6 +39,105 @@ void merge_duplicates(std::vector<FoundContact>& found) {
   found.resize(kept);
 }
 
+auto deepest_first(const FoundContact& c) {
+  return std::tuple_cat(order_within(c), std::tie(c.organ, c.triangle, c.feature));
+}
+
+bool deeper(const FoundContact& a, const FoundContact& b) {
+  return deepest_first(a) < deepest_first(b);
+}
+
+/// Of contacts with one organ keeps kMostOfRound.
+/// @returns the end of those kept
+std::vector<FoundContact>::iterator spread(std::vector<FoundContact>::iterator first,
+                                           std::vector<FoundContact>::iterator last) {
+  const auto tissue = [](const FoundContact& c) -> Vec3 { return c.point_P - c.gap * c.normal_P; };
+  if (last - first <= std::ptrdiff_t{kMostOfRound}) return last;
+  std::sort(first, last, deeper);
+  auto kept = first + kMostOfRound / 2;
+  std::vector<double> apart(static_cast<std::size_t>(last - kept),
+                            std::numeric_limits<double>::infinity());
+  const auto note = [&](const FoundContact& other) {
+    const Vec3 x = tissue(other);
+    auto distance = apart.end() - (last - kept);
+    for (auto c = kept; c != last; ++c, ++distance) {
+      *distance = std::min(*distance, (tissue(*c) - x).squaredNorm());
+    }
+  };
+  for (auto c = first; c != kept; ++c) note(*c);
+  while (kept != first + kMostOfRound) {
+    const auto from = apart.end() - (last - kept);
+    const auto farthest = std::max_element(from, apart.end());
+    std::swap(*kept, *(kept + (farthest - from)));
+    std::swap(*from, *farthest);
+    ++kept;
+    note(*(kept - 1));
+  }
+  return kept;
+}
+
+/// The same of each organ. @param found  sorted by organ
+void keep_of_round(std::vector<FoundContact>& found) {
+  auto kept = found.begin();
+  for (auto first = found.begin(); first != found.end();) {
+    const auto last = std::find_if(first, found.end(),
+                                   [&](const FoundContact& c) { return c.organ != first->organ; });
+    kept = std::move(first, spread(first, last), kept);
+    first = last;
+  }
+  found.erase(kept, found.end());
+}
+
+bool is_on_node(const FoundContact& c) { return c.feature[1] == kNoNode; }
+
+double offset(const FoundContact& c) { return c.normal_P.dot(c.point_P); }
+
+/// By planes; those of no node last.
+auto plane_order(const FoundContact& c) {
+  return std::tuple(!is_on_node(c), c.organ, c.normal_P[0], c.normal_P[1], c.normal_P[2]);
+}
+
+/// Nodes on one plane, sorted as they will be needed: by their triangle.
+void append_face(std::vector<FoundContact>::iterator first,
+                 std::vector<FoundContact>::iterator last, ContactSet& result) {
+  std::sort(first, last, [](const FoundContact& a, const FoundContact& b) {
+    return std::tie(a.triangle, a.feature) < std::tie(b.triangle, b.feature);
+  });
+  FaceContacts face;
+  face.organ = first->organ;
+  face.point_P = first->point_P;
+  face.normal_P = first->normal_P.normalized();
+  face.gap = std::min_element(first, last, [](const FoundContact& a, const FoundContact& b) {
+               return a.gap < b.gap;
+             })->gap;
+  face.node_count = static_cast<std::uint32_t>(last - first);
+  result.faces.push_back(face);
+  for (auto c = first; c != last; ++c) result.face_nodes.push_back(c->feature[0]);
+}
+
+/// Takes nodes on one plane out of `found`.
+void take_faces(std::vector<FoundContact>& found, ContactSet& result) {
+  std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
+    return std::tuple_cat(plane_order(a), std::tuple(offset(a), a.feature)) <
+           std::tuple_cat(plane_order(b), std::tuple(offset(b), b.feature));
+  });
+  auto kept = found.begin();
+  for (auto first = found.begin(); first != found.end();) {
+    auto last = first + 1;
+    while (last != found.end() && is_on_node(*last) && plane_order(*last) == plane_order(*first) &&
+           offset(*last) - offset(*(last - 1)) < kDirectionless) {
+      ++last;
+    }
+    if (last - first >= std::ptrdiff_t{kFewestOnFace} && result.faces.size() < kMostFaces) {
+      append_face(first, last, result);
+    } else {
+      kept = std::move(first, last, kept);
+    }
+    first = last;
+  }
+  found.erase(kept, found.end());
+}
+
 }  // namespace
 
 void append_contact(FoundContact contact, const geometry::Triangle& nodes,
@@ -57,12 +157,15 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
   append_contact(contact, nodes, found);
 }
 
-void reduce_contacts(std::vector<FoundContact>& found, std::size_t at_most, ContactSet& result) {
+void reduce_contacts(std::vector<FoundContact>& found, bool is_round, std::size_t at_most,
+                     ContactSet& result) {
+  result.clear();
   merge_duplicates(found);
-  const auto deeper = [](const FoundContact& a, const FoundContact& b) {
-    return std::tuple_cat(order_within(a), std::tie(a.organ, a.triangle, a.feature)) <
-           std::tuple_cat(order_within(b), std::tie(b.organ, b.triangle, b.feature));
-  };
+  if (is_round) {
+    keep_of_round(found);
+  } else {
+    take_faces(found, result);
+  }
   result.truncated = found.size() > at_most;
   if (result.truncated) {
     std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(at_most),
@@ -73,7 +176,6 @@ void reduce_contacts(std::vector<FoundContact>& found, std::size_t at_most, Cont
     return std::tuple_cat(std::tie(a.organ, a.triangle), order_within(a)) <
            std::tuple_cat(std::tie(b.organ, b.triangle), order_within(b));
   });
-  result.contacts.clear();
   for (const FoundContact& c : found) {
     result.contacts.push_back(c);
     result.contacts.back().normal_P.normalize();

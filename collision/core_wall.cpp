@@ -16,13 +16,11 @@ double height_over(const geometry::TriangleCorners& triangle, const Vec3& p) {
   return geometry::unit_normal(triangle).dot(p - triangle[0]);
 }
 
-FoundContact contact_of(const OrganStep& step, const Core& core, const CoreCandidate& candidate) {
+FoundContact contact_of(const OrganStep& step, const CoreCandidate& candidate) {
   FoundContact result;
   result.organ = step.organ_index;
   result.triangle = candidate.triangle.index;
   result.barycentric = candidate.pair.on_triangle.weights;
-  const bool may_touch = candidate.gap(core) < candidate.triangle.travel + core.radius * 1e-6;
-  result.time_of_impact = may_touch ? time_of_touch(core, candidate.triangle) : 1;
   return result;
 }
 
@@ -42,7 +40,7 @@ bool append_behind(const OrganStep& step, const Core& core, const CoreCandidate&
                    double depth_limit, bool nearest_of_wall, std::vector<FoundContact>& found) {
   const SweptTriangle& triangle = candidate.triangle;
   const geometry::SegmentAndTriangle& pair = candidate.pair;
-  FoundContact contact = contact_of(step, core, candidate);
+  FoundContact contact = contact_of(step, candidate);
   contact.normal_P = triangle.normal_end;
   contact.gap = reach_below(core, pair.on_segment, pair.on_triangle.point, contact.normal_P);
   if (contact.gap > 0 && nearest_of_wall) {
@@ -60,7 +58,7 @@ bool append_behind(const OrganStep& step, const Core& core, const CoreCandidate&
 /// Contact of the crossing itself, for a core that is already off to the side or deep.
 void append_crossed(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
                     std::vector<FoundContact>& found) {
-  FoundContact contact = contact_of(step, core, candidate);
+  FoundContact contact = contact_of(step, candidate);
   contact.barycentric = candidate.crossing->weights;
   contact.normal_P = candidate.triangle.normal_end;
   contact.point_P = candidate.crossing->on_core - core.radius * contact.normal_P;
@@ -127,7 +125,7 @@ std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
 
 void append_front(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
                   std::vector<FoundContact>& found) {
-  FoundContact contact = contact_of(step, core, candidate);
+  FoundContact contact = contact_of(step, candidate);
   const geometry::SegmentAndTriangle& pair = candidate.pair;
   contact.normal_P = pair.distance > kDirectionless
                          ? Vec3((pair.on_segment - pair.on_triangle.point) / pair.distance)
@@ -147,7 +145,7 @@ void append_graze(const OrganStep& step, const Core& core, const CoreCandidate& 
   if (nearest.pair.distance >= core.radius || nearest.pair.distance < kDirectionless) return;
   const Vec3 apart = nearest.pair.on_segment - nearest.pair.on_triangle.point;
   if (apart.dot(geometry::unit_normal(triangle.at(nearest.time))) <= 0) return;
-  FoundContact contact = contact_of(step, core, candidate);
+  FoundContact contact = contact_of(step, candidate);
   contact.normal_P = apart / nearest.pair.distance;
   contact.barycentric = nearest.pair.on_triangle.weights;
   contact.point_P = nearest.pair.on_segment - core.radius * contact.normal_P;
@@ -159,7 +157,7 @@ void append_graze(const OrganStep& step, const Core& core, const CoreCandidate& 
 void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
                     std::vector<FoundContact>& found) {
   const geometry::SegmentAndTriangle& pair = candidate.pair;
-  FoundContact contact = contact_of(step, core, candidate);
+  FoundContact contact = contact_of(step, candidate);
   contact.normal_P = pair.distance > kDirectionless
                          ? Vec3((pair.on_triangle.point - pair.on_segment) / pair.distance)
                          : candidate.triangle.normal_end;

@@ -146,7 +146,6 @@ void EdgeContacts::find_pair(const OrganStep& step, const SharpMesh& probe, cons
   end.outward = step.edge_normal_end(pair.second);
   const auto impact = may_cross ? impact_of(start, end, separation) : std::nullopt;
   FoundContact contact;
-  contact.time_of_impact = impact ? impact->time : 1;
   contact.normal_P = end.perpendicular();
   const bool is_behind = end.height() <= 0 && opposes(sharp, contact.normal_P);
   if (is_behind && (crossed != nullptr || (impact && start.height() > 0))) {

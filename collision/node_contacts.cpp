@@ -93,7 +93,6 @@ void NodeContacts::find_node(const OrganStep& step, const ProbeSolid& solid, std
   contact.point_P = face->point;
   contact.normal_P = -face->outward;
   contact.gap = face->height(node.end);
-  contact.time_of_impact = node.entry ? node.entry->time : contact.gap <= 0 ? 0 : 1;
   append_node_contact(step, index, contact, found);
   if (kept && contact.gap <= 0) {
     now_.push_back({step.organ_index, index, face->point, face->outward, kept->depth_limit});

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "collision/activation_distance.h"
+#include "collision/contact_reduction.h"
 #include "modules/core/error.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
@@ -176,11 +177,14 @@ struct Acted {
   SearchReport found;
 };
 
+static_assert(kMostFaces <= kMaxFacesPerProbe);
+
 const char* acting_guard(const Acted& acted) {
   if (acted.found.was_lost) {
     return "a probe was inside an organ without contact: the nearest wall pushes it out";
   }
-  if (acted.truncated) return "more contacts than a message holds: the deepest are kept";
+  if (acted.truncated)
+    return "more contacts than a message holds: the deepest are kept, the others pass";
   if (acted.found.begun_inside) {
     return "a probe was first heard of inside an organ: the nearest wall pushes it out, gently";
   }
@@ -202,8 +206,7 @@ struct CollisionStage::Impl {
     const ProbeState& state = probes.newest(probe);
     contacts.probe = probe;
     contacts.probe_pose = state.pose;
-    contacts.truncated = false;
-    contacts.contacts.clear();
+    contacts.clear();
     if (probes.silent(probe, now.now_ns)) {
       acted.silent = true;
       probes.lose(probe);
@@ -220,6 +223,8 @@ struct CollisionStage::Impl {
     acted.found.begun_inside |= found.begun_inside;
     acted.found.was_lost |= found.was_lost;
     acted.truncated |= contacts.truncated;
+    troubles.truncated += contacts.truncated;
+    troubles.lost += found.was_lost;
   }
 
   scene::Rates rates;
@@ -227,6 +232,7 @@ struct CollisionStage::Impl {
   ProbeInputs probes;
   bus::Writer<Contacts> writer;
   Contacts contacts;
+  ContactTroubles troubles;
 };
 
 std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
@@ -255,7 +261,9 @@ runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
   impl_->organs.take();
   impl_->probes.take();
   ContactFinder* finder = impl_->organs.finder();
-  if (finder == nullptr) return {.ready = false};
+  runtime::Health health;
+  health.ready = finder != nullptr;
+  if (!health.ready) return health;
   if (now.reset) finder->reset();
   Acted acted;
   for (std::uint32_t probe = 0; probe < impl_->probes.count(); ++probe) {
@@ -264,7 +272,9 @@ runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
     impl_->contacts.node_positions_sequence = impl_->organs.sequence();
     impl_->writer.write(impl_->contacts);
   }
-  return {.guard = acting_guard(acted)};
+  health.guard = acting_guard(acted);
+  health.contacts = impl_->troubles;
+  return health;
 }
 
 }  // namespace palpate::collision

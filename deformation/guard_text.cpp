@@ -41,6 +41,8 @@ constexpr std::array<Text, kGuardCodes> kTexts{{
      "organs would have passed through each other or themselves: they were held for a step"},
     {GuardCode::kOrganContactsUnsolved,
      "contacts between organs were not solved to the end in a step"},
+    {GuardCode::kContactsUnsolved,
+     "contacts were not solved to the end in a step: tissue is deeper in a probe than it may be"},
     {GuardCode::kStepReduced,
      "an organ held more energy than it was given: its steps are shortened"},
 }};

@@ -105,6 +105,9 @@ double SimulatedOrgan::begin_step(double time, double h, std::span<ContactRow> r
 void SimulatedOrgan::end_step(double h, std::span<const ContactRow> rows, double target_before,
                               const StepReport& stepped, AdvanceReport& report) {
   detector_.add_work(h, rows, state_.target_volume - target_before, state_);
+  report.contacts_unsolved += std::ranges::any_of(rows, [&](const ContactRow& row) {
+    return excess_depth(*model_, row, h, state_.velocities) > kUnsolvedDepth;
+  });
   if (stepped.volume_skipped) {
     report.volume_skipped = true;
     advances_ = kThoroughCheckEvery;

@@ -159,6 +159,8 @@ struct DeformationStage::Impl {
   runtime::Health advance(const runtime::Cycle& now) {
     time.begin(now.time());
     report = world.advance(now.advance);
+    troubles.unsolved += static_cast<std::uint64_t>(report.contacts_unsolved) +
+                         (report.organ_contacts_unsolved ? 1 : 0);
     runtime::Health health;
     health.real_time_factor = time.factor(now.time(), world.time(), period);
     health.guard = acting_guard(words.of(guards.note(report, world.time())),
@@ -174,6 +176,7 @@ struct DeformationStage::Impl {
   GuardLog guards;
   GuardText words;
   AdvanceReport report;
+  ContactTroubles troubles;
 };
 
 std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene) {
@@ -198,6 +201,7 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   impl_->outputs.publish_positions(sim_time, impl_->world);
   if (now.running) impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
   health.least_advance = least_advance(impl_->world, impl_->period);
+  health.contacts = impl_->troubles;
   return health;
 }
 

@@ -65,6 +65,39 @@ struct DeformationWorld::Impl {
     return near;
   }
 
+  /// The contacts of a face's nodes where the nodes are now.
+  void append_face(const FaceContacts& face, std::span<const std::uint32_t> nodes,
+                   const Pose& probe) {
+    if (face.organ >= organs.size()) return;
+    const WorldOrgan& organ = organs[face.organ];
+    const OrganModel& model = organ.simulated.model();
+    for (const std::uint32_t node : nodes) {
+      if (node >= model.surface_node_count || organ.surface->around(node).empty()) continue;
+      Contact contact =
+          contact_on_face(face, probe.to_body(organ.simulated.state().positions[node]));
+      contact.triangle = organ.surface->around(node).front();
+      const geometry::Triangle& corners = model.triangles[contact.triangle];
+      contact.barycentric = Vec3::Unit(std::ranges::find(corners, node) - corners.begin());
+      if (is_plausible(contact, probe)) accepted.push_back(contact);
+    }
+  }
+
+  /// All contacts of a message that can be believed, sorted by (organ, triangle).
+  void accept(const ContactSet& contacts) {
+    accepted.clear();
+    std::span<const std::uint32_t> nodes = contacts.face_nodes;
+    for (const FaceContacts& face : contacts.faces) {
+      const std::size_t count = std::min<std::size_t>(face.node_count, nodes.size());
+      append_face(face, nodes.first(count), contacts.probe_pose);
+      nodes = nodes.subspan(count);
+    }
+    for (const Contact& contact : contacts.contacts) {
+      if (is_plausible(contact, contacts.probe_pose)) accepted.push_back(contact);
+    }
+    const auto place = [](const Contact& c) { return std::pair(c.organ, c.triangle); };
+    if (!std::ranges::is_sorted(accepted, {}, place)) std::ranges::sort(accepted, {}, place);
+  }
+
   /// One organ from one fraction of the advance to another, all probes moving along. A probe that
   /// would go through the wall is held by rows where it does.
   /// @param last_resort  whether the step is taken even if they do not hold it
@@ -255,12 +288,8 @@ void DeformationWorld::set_probe(std::size_t probe, const Pose& pose) {
 
 void DeformationWorld::set_contacts(const ContactSet& contacts) {
   if (contacts.probe >= impl_->probes.size()) return;
-  std::vector<Contact>& accepted = impl_->accepted;
-  accepted.clear();
-  for (const Contact& contact : contacts.contacts) {
-    if (impl_->is_plausible(contact, contacts.probe_pose)) accepted.push_back(contact);
-  }
-  impl_->probes[contacts.probe].set_contacts(accepted);
+  impl_->accept(contacts);
+  impl_->probes[contacts.probe].set_contacts(impl_->accepted);
 }
 
 AdvanceReport DeformationWorld::advance(double period) {

@@ -19,6 +19,7 @@
 #include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
+#include "palpate/session/contact_line.h"
 #include "palpate/session/in_process.h"
 #include "palpate/session/timed_stage.h"
 
@@ -116,6 +117,7 @@ class TimedSession {
   }
 
   const deformation::DeformationWorld& world() const { return session_.world(); }
+  ContactTroubles contact_troubles() const { return session_.contact_troubles(); }
 
   /// Wall time of deformation in a period, mean over about `measure_for` seconds [s]. The sphere
   /// presses a triangle that is free to move once a second, 1 mm deep: an implicit step that has
@@ -187,6 +189,7 @@ int check_command(const std::filesystem::path& file, double measure_for, std::os
   out << fmt::format(
       "cost here: {:.3f} ms per period of {:.3f} ms, lightly touched: {:.0f} % of one core\n",
       1e3 * cost, 1e3 * period, 100 * cost / period);
+  out << session::contact_line(session.contact_troubles()) << '\n';
   out << (cost <= period
               ? fmt::format(
                     "expected real-time factor: 1.00 (up to {:.1f} with nothing else to do)\n",

@@ -243,6 +243,7 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   while (session.time() < duration && !stop.requested()) {
     session.tick();
     monitor.poll();
+    monitor.tally().receive(session.contact_troubles());
     progress.tell(session.time(), "");
   }
   const double reached = std::min(duration, session.time());

@@ -36,7 +36,10 @@ void SessionTally::start() {
 
 void SessionTally::receive(const ModuleStatus& status) {
   ModuleTally& module = modules_[status.module];
-  if (module.newest.process_id != status.process_id) module = {};  // started again
+  if (module.newest.process_id != status.process_id) {  // started again
+    of_ended_ += module.newest.contacts;
+    module = {};
+  }
   module.newest = status;
   if (!started_ || status.state != ModuleState::kDegraded || status.last_error.empty()) return;
   const std::string text = status.module + ": " + status.last_error;
@@ -69,6 +72,13 @@ void SessionTally::receive(const HapticForce& force) {
   if (!started_) return;
   probe.greatest_force = std::max(probe.greatest_force, probe.force);
   probe.limits |= force.limits;
+}
+
+ContactTroubles SessionTally::contact_troubles() const {
+  ContactTroubles sum = of_ended_;
+  sum += of_session_;
+  for (const auto& [name, module] : modules_) sum += module.newest.contacts;
+  return sum;
 }
 
 const ModuleTally* SessionTally::module(const std::string& name) const {

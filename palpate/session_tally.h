@@ -49,6 +49,10 @@ class SessionTally {
   const std::vector<OrganTally>& organs() const { return organs_; }
   const std::vector<ProbeTally>& probes() const { return probes_; }
   const std::map<std::string, ModuleTally>& modules() const { return modules_; }
+  /// Of all modules, those that ended too, and of a session in one process.
+  ContactTroubles contact_troubles() const;
+  void receive(const ContactTroubles& of_session) { of_session_ = of_session; }
+
   /// "module: what its status said while degraded", each once, in the order of its first time.
   const std::vector<std::string>& troubles() const { return troubles_; }
   /// nullptr if nothing was heard of it.
@@ -63,6 +67,7 @@ class SessionTally {
   std::vector<ProbeTally> probes_;
   std::map<std::string, ModuleTally> modules_;
   std::vector<std::string> troubles_;
+  ContactTroubles of_ended_, of_session_;
 };
 
 }  // namespace palpate::launcher

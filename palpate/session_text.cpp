@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include "palpate/session/contact_line.h"
+
 namespace palpate::launcher {
 namespace {
 
@@ -106,7 +108,9 @@ std::string summary(const SessionTally& tally, const SessionEnd& end) {
   std::string text =
       fmt::format("scene {}: {:.1f} s in {:.1f} s, {:.1f} s simulated, real-time factor {:.3f}\n",
                   end.scene, end.session_time, end.wall_time, tally.sim_time(), factor);
-  text += organ_lines(tally) + probe_lines(tally) + module_lines(tally, end.lockstep);
+  text += organ_lines(tally) + probe_lines(tally) +
+          session::contact_line(tally.contact_troubles()) + '\n' +
+          module_lines(tally, end.lockstep);
   for (const auto& trouble : tally.troubles()) {
     text += fmt::format("degraded for a while: {}\n", trouble);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <span>
 
 namespace palpate::visualizer {
 namespace {
@@ -45,13 +46,31 @@ void add_organ(const OrganView& organ, std::size_t index, const SceneView& view,
   }
 }
 
-void add_contacts(const ProbeView& probe, double normal_length, DrawList& list) {
+void add_contact(const ProbeView& probe, const Contact& contact, double normal_length,
+                 DrawList& list) {
+  if (contact.gap > 0) return;  // near, but apart
+  const Vec3 p = probe.pose.to_world(contact.point_P);
+  const Vec3 normal = probe.pose.rotation * contact.normal_P;
+  list.points.push_back({p, kContactColor, 5});
+  list.lines.push_back({p, p + normal_length * normal, kContactColor});
+}
+
+void add_contacts(const ProbeView& probe, const SceneView& view, DrawList& list) {
+  const double normal_length = 0.08 * view.radius();
+  std::span<const std::uint32_t> nodes = probe.contacts.face_nodes;
+  for (const FaceContacts& face : probe.contacts.faces) {
+    const auto own = nodes.first(face.node_count);
+    nodes = nodes.subspan(face.node_count);
+    if (face.organ >= view.organs().size()) continue;
+    const OrganView& organ = view.organs()[face.organ];
+    for (const std::uint32_t node : own) {
+      if (node >= organ.node_count()) continue;
+      const Vec3 tissue_P = probe.contacts.probe_pose.to_body(organ.node(node));
+      add_contact(probe, contact_on_face(face, tissue_P), normal_length, list);
+    }
+  }
   for (const Contact& contact : probe.contacts.contacts) {
-    if (contact.gap > 0 && contact.time_of_impact >= 1) continue;  // near, but apart
-    const Vec3 p = probe.pose.to_world(contact.point_P);
-    const Vec3 normal = probe.pose.rotation * contact.normal_P;
-    list.points.push_back({p, kContactColor, 5});
-    list.lines.push_back({p, p + normal_length * normal, kContactColor});
+    add_contact(probe, contact, normal_length, list);
   }
 }
 
@@ -65,7 +84,7 @@ void add_probe(const ProbeView& probe, std::size_t index, const SceneView& view,
   body.color = probe_color(index);
   body.opacity = plane ? 0.35 : 1;
   list.bodies.push_back(body);
-  add_contacts(probe, 0.08 * view.radius(), list);
+  add_contacts(probe, view, list);
 
   const double force = probe.has_force ? probe.force.force.norm() : 0;
   if (force < kSmallestForce) return;

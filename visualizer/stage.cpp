@@ -158,7 +158,9 @@ class VisualizerStage : public runtime::Stage {
     if (window_ || keep) studio_.draw(now.now_ns);
     if (keep) studio_.renderer.write_png(options_.frames / frame_name(view().sim_time()));
     carry_out(requests, now);
-    return {.finished = requests.close};
+    runtime::Health health;
+    health.finished = requests.close;
+    return health;
   }
 
  private:

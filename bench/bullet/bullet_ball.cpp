@@ -155,6 +155,15 @@ std::size_t BulletBall::contact_count() const {
   return std::size_t(world_->body->m_rcontacts.size());
 }
 
+double BulletBall::depth_beyond(double height) const {
+  double farthest = 0;
+  for (int i = 0; i < world_->body->m_nodes.size(); ++i) {
+    const double z = world_->body->m_nodes[i].m_x.z() / kScale;
+    farthest = std::max(farthest, std::abs(z) - height);
+  }
+  return farthest;
+}
+
 double BulletBall::volume() const {
   std::vector<Vec3> nodes;
   for (int i = 0; i < world_->body->m_nodes.size(); ++i) {

@@ -34,6 +34,7 @@ class BulletBall : public Squeezer {
   /// By what its volume terms ask for.
   double pressure() const override;
   std::size_t contact_count() const override;
+  double depth_beyond(double height) const override;
   double solver_seconds() const override;
 
  private:

@@ -176,6 +176,7 @@ std::vector<std::string> cells(const TableRow& row) {
           report::text_of("%.2e", o.held),
           cell_of("%.0f", o.pressure),
           std::to_string(o.contacts),
+          report::text_of("%.3f", 1e3 * o.beyond),
           o.verdict()};
 }
 
@@ -189,6 +190,7 @@ const std::vector<std::string>& columns() {
                                               "volume_error_held",
                                               "pressure_Pa",
                                               "contacts",
+                                              "beyond_plate_mm",
                                               "verdict"};
   return names;
 }

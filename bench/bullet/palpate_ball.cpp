@@ -20,6 +20,12 @@ int substeps_of(const deformation::OrganDynamics& dynamics) {
   return std::max(1, static_cast<int>(std::ceil(kStep / dynamics.largest_step())));
 }
 
+double farthest_beyond(std::span<const Vec3> nodes, double height) {
+  double farthest = 0;
+  for (const Vec3& x : nodes) farthest = std::max(farthest, std::abs(x.z()) - height);
+  return farthest;
+}
+
 /// A plate that a device moves.
 scene::Probe plate(int side, const Squeeze& squeeze) {
   scene::Probe probe;
@@ -92,6 +98,10 @@ void PalpateBall::step(double height) {
   height_ = height;
 }
 
+double PalpateBall::depth_beyond(double height) const {
+  return farthest_beyond(state_.positions, height);
+}
+
 double PalpateBall::volume() const {
   return geometry::enclosed_volume(state_.positions, ball_.surface.triangles);
 }
@@ -104,7 +114,14 @@ void PipelineBall::step(double) { pipeline_.tick(); }
 
 double PipelineBall::volume() const { return pipeline_.node_positions(0).volume; }
 std::size_t PipelineBall::contact_count() const {
-  return pipeline_.contacts(0).contacts.size() + pipeline_.contacts(1).contacts.size();
+  return pipeline_.contacts(0).count() + pipeline_.contacts(1).count();
+}
+std::uint64_t PipelineBall::contacts_left_out() const {
+  const ContactTroubles troubles = pipeline_.contact_troubles();
+  return troubles.truncated + troubles.lost;
+}
+double PipelineBall::depth_beyond(double height) const {
+  return farthest_beyond(pipeline_.world().positions(0), height);
 }
 double PipelineBall::pressure() const { return pipeline_.node_positions(0).pressure; }
 

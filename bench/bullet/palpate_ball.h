@@ -28,6 +28,7 @@ class PalpateBall : public Squeezer {
   double volume() const override;
   double pressure() const override { return state_.pressure; }
   std::size_t contact_count() const override { return rows_.size(); }
+  double depth_beyond(double height) const override;
   double solver_seconds() const override { return solver_seconds_; }
   bool is_whole() const override { return false; }
   int substeps() const { return substeps_; }
@@ -49,7 +50,7 @@ class PalpateBall : public Squeezer {
 };
 
 /// The whole in-process pipeline as a scene runs it: devices, collision on any shape, contact model
-/// and haptic force, once per step. A plate's contacts are the deepest of its 1,024 at most.
+/// and haptic force, once per step.
 class PipelineBall : public Squeezer {
  public:
   PipelineBall(const Ball& ball, const Squeeze& squeeze);
@@ -57,6 +58,8 @@ class PipelineBall : public Squeezer {
   double volume() const override;
   double pressure() const override;
   std::size_t contact_count() const override;
+  std::uint64_t contacts_left_out() const override;
+  double depth_beyond(double height) const override;
 
  private:
   session::InProcess pipeline_;

@@ -36,6 +36,7 @@ Ball make_bench_ball(std::size_t nodes) {
 
 const char* Outcome::verdict() const {
   constexpr double kBlownUp = 2, kCollapsed = 0.5, kSwinging = 0.05;  // of V₀
+  if (contacts_left_out > 0) return "contacts left out";
   if (!finite || peak > kBlownUp) return "blew up";
   if (held > kCollapsed) return "collapsed";
   return swing > kSwinging ? "swings" : "stable";
@@ -57,6 +58,7 @@ Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void
     squeezer.step(kBallRadius * (1 - squeeze.compression * closed));
     spent += report::processor_time() - begin;
 
+    outcome.contacts_left_out = squeezer.contacts_left_out();
     const double ratio = squeezer.volume() / rest_volume;
     outcome.finite = std::isfinite(ratio);
     outcome.peak = std::max(outcome.peak, std::abs(ratio - 1));
@@ -64,6 +66,8 @@ Outcome run(Squeezer& squeezer, const Squeeze& squeeze, const std::function<void
     if (k == held_from + 1) lowest = highest = ratio;
     lowest = std::min(lowest, ratio);
     highest = std::max(highest, ratio);
+    const double height = kBallRadius * (1 - squeeze.compression);
+    outcome.beyond = std::max(outcome.beyond, squeezer.depth_beyond(height));
   }
   outcome.held = std::max(std::abs(lowest - 1), std::abs(highest - 1));
   outcome.swing = highest - lowest;

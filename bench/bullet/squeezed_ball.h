@@ -41,6 +41,10 @@ class Squeezer {
   /// Processor time of all steps so far, search for contacts left out [s]; NaN where the two are
   /// not timed apart.
   virtual double solver_seconds() const { return kNone; }
+  /// Searches so far that left contacts out, or lost them.
+  virtual std::uint64_t contacts_left_out() const { return 0; }
+  /// The farthest any node is beyond a plate at ±height now [m].
+  virtual double depth_beyond(double height) const = 0;
   /// Whether step() searches contacts as for any shape, not for these two plates only.
   virtual bool is_whole() const { return true; }
 };
@@ -67,9 +71,12 @@ struct Outcome {
   double swing = 0;          ///< highest less lowest V/V₀ of that time
   double pressure = 0;       ///< of the contents at the end, by how much the ball resists [Pa]
   std::size_t contacts = 0;  ///< at the end, with both plates
+  double beyond = 0;         ///< the farthest a node was beyond a plate in the holding time [m]
+  std::uint64_t contacts_left_out = 0;  ///< searches; such a run is no result
   bool finite = true;
-  /// "stable", "swings" (the held volume by more than a twentieth), "collapsed" (no more than half
-  /// of the volume is left: no longer the ball of the others) or "blew up".
+  /// "contacts left out", "stable", "swings" (the held volume by more than a twentieth),
+  /// "collapsed" (no more than half of the volume is left: no longer the ball of the others) or
+  /// "blew up".
   const char* verdict() const;
   bool stable() const;
 };

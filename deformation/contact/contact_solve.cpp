@@ -212,6 +212,18 @@ bool has_vanished(const Body& body, const VolumeRow* volume) {
 
 }  // namespace
 
+double excess_depth(const Body& body, const ContactRow& row, double h,
+                    std::span<const Vec3> velocities) {
+  bool moves = false;
+  Vec3 velocity = -row.probe_velocity;
+  for (int k = 0; k < 3; ++k) {
+    moves |= row.weights[k] > 0 && body.inverse_masses[row.nodes[k]] > 0;
+    velocity += row.weights[k] * velocities[row.nodes[k]];
+  }
+  if (!moves) return 0;
+  return h * (row.normal.dot(velocity) - allowed_approach(row, h));
+}
+
 ContactSolveReport solve_contacts_and_volume(const Body& body, const VolumeRow* volume, double h,
                                              std::span<ContactRow> rows,
                                              std::vector<Vec3>& velocities, WarmStart start) {

@@ -57,10 +57,20 @@ inline constexpr double kGentleSpeed = 0.05;
 /// Contacts are solved when no sweep changes the velocity of one by more than this [m/s].
 inline constexpr double kContactVelocityTolerance = 1e-9;
 
+/// A contact whose tissue ends a step deeper in the probe than it may by more than this was not
+/// solved [m]. No node is to be further beyond a plate.
+inline constexpr double kUnsolvedDepth = 5e-5;
+
 /// How fast tissue may come nearer to the probe in a step of h [s] [m/s].
 inline double allowed_approach(const ContactRow& row, double h) {
   return std::max(row.gap / h, -kMaxSeparationSpeed);
 }
+
+/// How much deeper in its probe a row's tissue ends a step of h [s] than it may [m]; 0 where it is
+/// fixed.
+/// @param velocities  of the nodes in the step
+double excess_depth(const Body& body, const ContactRow& row, double h,
+                    std::span<const Vec3> velocities);
 
 /// Whether the impulses the rows bring are already in the velocities.
 enum class WarmStart { kToApply, kApplied };

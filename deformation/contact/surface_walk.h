@@ -33,6 +33,8 @@ class SurfaceWalk {
   /// @param body  outlives this
   explicit SurfaceWalk(const Body& body);
   const Body& body() const { return body_; }
+  /// Of a surface node, ascending.
+  std::span<const std::uint32_t> around(std::uint32_t node) const;
 
   NearTriangle triangle_near(std::uint32_t triangle, const Vec3& a, const Vec3& b,
                              std::span<const Vec3> positions) const;
@@ -51,7 +53,6 @@ class SurfaceWalk {
  private:
   std::uint32_t nearest_from(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
                              std::span<const std::uint32_t> seeds);
-  std::span<const std::uint32_t> around(std::uint32_t node) const;
   /// Visits `first` and what is connected with it through triangles that `take` wants.
   template <class Take>
   void flood(std::span<const std::uint32_t> first, const Take& take);

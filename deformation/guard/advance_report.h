@@ -31,6 +31,7 @@ struct AdvanceReport {
   bool probe_jumped = false;             ///< a probe moved faster than is plausible: no contacts
   bool organ_motion_cut = false;         ///< surfaces about to cross were held for a step
   bool organ_contacts_unsolved = false;  ///< of organs: their sweeps were cut
+  int contacts_unsolved = 0;             ///< steps that ended with a probe deeper than it may be
 };
 
 }  // namespace palpate::deformation

@@ -38,6 +38,8 @@ bool acted(GuardCode code, const AdvanceReport& r) {
       return r.organ_motion_cut;
     case GuardCode::kOrganContactsUnsolved:
       return r.organ_contacts_unsolved;
+    case GuardCode::kContactsUnsolved:
+      return r.contacts_unsolved > 0;
     case GuardCode::kStepReduced:
       return r.step_reduced;
     case GuardCode::kNone:

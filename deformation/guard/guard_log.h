@@ -27,6 +27,7 @@ enum class GuardCode : std::uint8_t {
   kProbeJumped,
   kOrganMotionCut,
   kOrganContactsUnsolved,
+  kContactsUnsolved,
   kStepReduced,
   kNone
 };

@@ -21,16 +21,37 @@ struct Contact {
   Vec3 point_P = Vec3::Zero();      ///< nearest point of the probe's surface, in P [m]
   Vec3 normal_P = Vec3::UnitZ();    ///< unit, from tissue to probe, in P
   double gap = 0;                   ///< along the normal; negative = penetration [m]
-  double time_of_impact = 1;  ///< fraction of the swept step at first touch, 1 = no touch within
+};
+
+/// Nodes of one organ that one plane of the probe touches, or may within this step. What a contact
+/// of each of them would say follows from the plane and from where the node is: contact_on_face().
+struct FaceContacts {
+  std::uint32_t organ = 0;        ///< index in the scene's list
+  Vec3 point_P = Vec3::Zero();    ///< of the plane, in P [m]
+  Vec3 normal_P = Vec3::UnitZ();  ///< unit, from tissue to probe, in P
+  double gap = 0;                 ///< of the deepest node [m]
+  std::uint32_t node_count = 0;   ///< ≥ 1; its nodes follow those of the face before it
 };
 
 /// Contacts of one probe. Gaps and weights hold for the probe at `probe_pose`.
 struct ContactSet {
-  std::uint32_t probe = 0;        ///< index in the scene's list
-  Pose probe_pose;                ///< X_WP
-  bool truncated = false;         ///< there were more; the deepest are kept
-  std::vector<Contact> contacts;  ///< sorted by (organ, triangle)
+  std::uint32_t probe = 0;  ///< index in the scene's list
+  Pose probe_pose;          ///< X_WP
+  /// Some were left out that the answer needs; the deepest are kept.
+  bool truncated = false;
+  std::vector<FaceContacts> faces;        ///< sorted by organ
+  std::vector<std::uint32_t> face_nodes;  ///< of the organ's surface, face by face
+  std::vector<Contact> contacts;          ///< all others, sorted by (organ, triangle)
+
+  bool empty() const { return faces.empty() && contacts.empty(); }
+  std::size_t count() const { return face_nodes.size() + contacts.size(); }  ///< places in all
+  double deepest_gap() const;  ///< least of all; infinity if there are none [m]
+  void clear();                ///< no contacts, nothing left out
 };
+
+/// Of a node of a face: its contact but for `triangle` and `barycentric`.
+/// @param tissue_P  where the node is, in P [m]
+Contact contact_on_face(const FaceContacts& face, const Vec3& tissue_P);
 
 /// The most rows of a local law.
 inline constexpr std::size_t kMaxLawRows = 16;

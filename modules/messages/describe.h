@@ -35,7 +35,6 @@ enum class Rule {
   kAtLeastZero,  ///< ≥ 0
   kSinceSetUp,   ///< ≥ −1: what is said before the first lockstep cycle has −1
   kAge,          ///< ≥ 0; infinity: nothing came yet
-  kFraction,     ///< in [0, 1]
   kUnit,         ///< length 1 within kUnitTolerance
   kWeights,      ///< ≥ 0, sum 1, both within kUnitTolerance
   kSymmetric,    ///< within kStiffnessTolerance
@@ -125,7 +124,15 @@ void describe(V& v, C& c) {
   v.field("contacts.point_P_m", c.point_P, Rule::kPlain);
   v.field("contacts.normal_P", c.normal_P, Rule::kUnit);
   v.field("contacts.gap_m", c.gap, Rule::kPlain);
-  v.field("contacts.time_of_impact", c.time_of_impact, Rule::kFraction);
+}
+
+template <class V, Is<FaceContacts> F>
+void describe(V& v, F& f) {
+  v.field("faces.organ", f.organ, Rule::kPlain);
+  v.field("faces.point_P_m", f.point_P, Rule::kPlain);
+  v.field("faces.normal_P", f.normal_P, Rule::kUnit);
+  v.field("faces.gap_m", f.gap, Rule::kPlain);
+  v.field("faces.node_count", f.node_count, Rule::kFromOne);
 }
 
 template <class V, Is<Contacts> M>
@@ -136,11 +143,14 @@ void describe(V& v, M& m) {
   v.field("probe_rotation_xyzw", m.probe_pose.rotation, Rule::kUnit);
   v.field("node_positions_sequence", m.node_positions_sequence, Rule::kPlain);
   v.field("truncated", m.truncated, Rule::kPlain);
+  v.list("faces", m.faces, kMaxFacesPerProbe, "face_count");
+  v.numbers("face_nodes", m.face_nodes, Bounds{1, 0, kMaxFaceNodes, "face_node_count"});
   v.list("contacts", m.contacts, kMaxContactsPerProbe, "contact_count");
-  v.derived("deepest_gap_m", [&] {
-    double deepest = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : m.contacts) deepest = std::min(deepest, contact.gap);
-    return deepest;
+  v.derived("deepest_gap_m", [&] { return m.deepest_gap(); });
+  v.require("face_nodes", [&] {
+    std::size_t nodes = 0;
+    for (const FaceContacts& face : m.faces) nodes += face.node_count;
+    return nodes == m.face_nodes.size();
   });
 }
 
@@ -259,6 +269,9 @@ void describe(V& v, M& m) {
   v.field("real_time_factor", m.real_time_factor, Rule::kAtLeastZero);
   v.field("realtime_priority", m.realtime_priority, Rule::kPlain);
   v.field("packets_refused", m.packets_refused, Rule::kPlain);
+  v.field("contacts_truncated", m.contacts.truncated, Rule::kPlain);
+  v.field("contacts_lost", m.contacts.lost, Rule::kPlain);
+  v.field("contacts_unsolved", m.contacts.unsolved, Rule::kPlain);
   v.field("last_error", m.last_error, Rule::kPlain);
   v.list("inputs", m.inputs, kMaxInputs, nullptr);
 }

@@ -25,8 +25,6 @@ bool holds(Rule rule, double x) {
       return sensible(x) && x >= 0;
     case Rule::kAge:
       return x >= 0;
-    case Rule::kFraction:
-      return x >= 0 && x <= 1;
     default:
       return sensible(x);
   }
@@ -46,6 +44,7 @@ bool holds(Rule rule, std::int64_t x) {
   return rule != Rule::kAtLeastZero || x >= 0;
 }
 bool holds(Rule rule, std::uint32_t x) {
+  if (rule == Rule::kFromOne) return x >= 1;
   return rule != Rule::kForceLimits || (x & ~kAllForceLimits) == 0;
 }
 // A zero byte would end the text on the wire.

@@ -14,10 +14,12 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 6;
+inline constexpr std::uint32_t kProtocolVersion = 7;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
+inline constexpr std::size_t kMaxFacesPerProbe = 1024;
+inline constexpr std::size_t kMaxFaceNodes = kMaxNodes;  ///< of all faces of a probe
 inline constexpr std::size_t kMaxLawCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;
 inline constexpr std::size_t kMaxInputs = 16;
 
@@ -97,6 +99,21 @@ enum class ModuleState : std::uint8_t {
   kStopped = 6    ///< said goodbye
 };
 
+/// What of contacts went wrong, counted since a module's start.
+struct ContactTroubles {
+  std::uint64_t truncated = 0;  ///< searches that left contacts out
+  std::uint64_t lost = 0;       ///< searches that found a probe inside an organ without a contact
+  std::uint64_t unsolved = 0;   ///< steps of organs whose contacts were not solved to the end
+
+  bool any() const { return truncated + lost + unsolved > 0; }
+  ContactTroubles& operator+=(const ContactTroubles& other) {
+    truncated += other.truncated;
+    lost += other.lost;
+    unsolved += other.unsolved;
+    return *this;
+  }
+};
+
 /// Published by every process, a few times a second.
 struct ModuleStatus {
   struct Input {
@@ -119,6 +136,7 @@ struct ModuleStatus {
   double real_time_factor = 0;  ///< simulated per wall time, 0 where it has no meaning
   bool realtime_priority = false;
   std::uint64_t packets_refused = 0;  ///< not sound, or in another's name, since start
+  ContactTroubles contacts;           ///< of collision and deformation
   std::string last_error;             ///< empty if none
   std::vector<Input> inputs;          ///< at most kMaxInputs
 };

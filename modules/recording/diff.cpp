@@ -134,7 +134,11 @@ void check_names(const DiffOptions& options) {
   std::set<std::string, std::less<>> known;
   for (const bus::TopicInfo& topic : bus::all_topics()) known.emplace(topic.name);
   for (messages::AnyMessage message : messages::one_of_each()) {
-    if (auto* contacts = std::get_if<Contacts>(&message)) contacts->contacts.resize(1);
+    if (auto* contacts = std::get_if<Contacts>(&message)) {
+      contacts->contacts.resize(1);
+      contacts->faces.resize(1);
+      contacts->face_nodes.resize(1);
+    }
     if (auto* status = std::get_if<ModuleStatus>(&message)) status->inputs.resize(1);
     std::vector<Value> values;
     messages::list_values(message, values);

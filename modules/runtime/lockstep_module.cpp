@@ -75,6 +75,7 @@ class LockstepModule {
       const Health health = cursor_->step(*stage_);
       ++loop_.cycles;
       if (*health.guard != '\0') guard_ = health.guard;
+      status_.set_contact_troubles(health.contacts);
       finished_ = health.finished;
       if (finished_ || stop_.requested()) return;
     }

@@ -51,6 +51,9 @@ class Module {
   /// Guards that act in this cycle, for the status; empty if none. A pointer to a constant text.
   void set_guard(const char* acting) { guard_ = acting; }
   void set_real_time_factor(double factor) { status_.set_real_time_factor(factor); }
+  void set_contact_troubles(const ContactTroubles& troubles) {
+    status_.set_contact_troubles(troubles);
+  }
 
   /// A header for a message of this cycle.
   Header header() const;

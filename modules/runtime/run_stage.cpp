@@ -35,6 +35,7 @@ void run_in_real_time(Module& module, Stage& stage) {
     if (health.ready) module.ready();
     module.set_guard(health.guard);
     module.set_real_time_factor(health.real_time_factor);
+    module.set_contact_troubles(health.contacts);
     if (health.finished) return;
   }
 }

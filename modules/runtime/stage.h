@@ -36,6 +36,7 @@ struct Health {
   double real_time_factor = 0;  ///< simulated per wall time; 0: has no meaning
   double least_advance = 0;     ///< smallest useful Cycle::advance [s]; 0: takes none on
   bool finished = false;        ///< wants no further cycle
+  ContactTroubles contacts;     ///< since the stage was made
 };
 
 class Stage {

@@ -22,6 +22,7 @@ class StatusReporter {
   /// @param error  shown until another state or error is set; cut at kMaxErrorBytes
   void set_state(ModuleState state, std::string_view error = {});
   void set_realtime_priority(bool granted) { status_.realtime_priority = granted; }
+  void set_contact_troubles(const ContactTroubles& troubles) { status_.contacts = troubles; }
   void set_real_time_factor(double factor) { status_.real_time_factor = factor; }
 
   /// Publishes if it is time to, or if the state changed since: then true.

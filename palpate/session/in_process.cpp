@@ -59,6 +59,7 @@ Assets load_assets(const scene::Scene& scene) {
 struct InProcess::Impl {
   Impl(const scene::Scene& scene_in, Assets assets, const InProcessOptions& options)
       : scene(scene_in),
+        troubles(options.troubles),
         tapped(options.tap ? options.tap(carrier) : nullptr),
         probes(carrier, bus::kProbeState, &ProbeState::probe, scene.probes.size()),
         contacts(carrier, bus::kContacts, &Contacts::probe, scene.probes.size()),
@@ -88,6 +89,16 @@ struct InProcess::Impl {
       deformation::write_node_positions(deformation->world(), organ, nodes[organ]);
     }
     listen();
+  }
+
+  ~Impl() {
+    if (troubles != nullptr) *troubles += contact_troubles();
+  }
+
+  ContactTroubles contact_troubles() const {
+    ContactTroubles sum;
+    for (const Member& member : members) sum += member.health.contacts;
+    return sum;
   }
 
   bus::Bus& stages_bus() { return tapped ? *tapped : static_cast<bus::Bus&>(carrier); }
@@ -138,6 +149,7 @@ struct InProcess::Impl {
   }
 
   const scene::Scene scene;
+  ContactTroubles* troubles;
   std::int64_t clock_ns = runtime::CycleGrid::kSetUp;
   bus::MemoryBus carrier{true};
   std::unique_ptr<bus::Bus> tapped;
@@ -187,6 +199,8 @@ const runtime::Health& InProcess::health(const std::string& module) const {
   PALPATE_DEMAND(found != impl_->members.end());
   return found->health;
 }
+
+ContactTroubles InProcess::contact_troubles() const { return impl_->contact_troubles(); }
 
 const ProbeState& InProcess::probe(std::size_t probe) const { return impl_->probes[probe]; }
 const Contacts& InProcess::contacts(std::size_t probe) const { return impl_->contacts[probe]; }

@@ -33,6 +33,7 @@ using MakeStage = std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>;
 struct InProcessOptions {
   ChunkRunner* runner = nullptr;  ///< of deformation; outlives the session
   deformation::Guarding guarding = deformation::Guarding::kOn;
+  ContactTroubles* troubles = nullptr;  ///< at the session's end gets its own added; outlives it
   /// The bus that the stages see, given the one that carries: for taps. None: the same.
   std::function<std::unique_ptr<bus::Bus>(bus::Bus&)> tap;
   /// How a module's stage is made, given the usual way: to time it (timed_stage.h), to put another
@@ -68,6 +69,7 @@ class InProcess {
   const deformation::DeformationStage& deformation() const;
   const deformation::DeformationWorld& world() const { return deformation().world(); }
   const runtime::Health& health(const std::string& module) const;  ///< after its last cycle
+  ContactTroubles contact_troubles() const;                        ///< of all stages so far
 
   // The newest of what the stages said; before the first of its kind a default one, of organs the
   // rest shape.

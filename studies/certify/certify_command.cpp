@@ -48,6 +48,7 @@ class Certifying {
       add(disturbance_lines(subject_, d, push_, keep_going_));
     }
     if (!options_.lockstep) real_processes();
+    contacts();
     certificate_.complete = true;
   }
 
@@ -117,6 +118,16 @@ class Certifying {
     if (!path.empty()) ticks = slide(loop_on_organ(subject_), path, keep_going_);
     write_slide(ticks, options_.out);
     add({slide_line(ticks)});
+  }
+
+  void contacts() {
+    const ContactTroubles& troubles = *subject_.contacts;
+    const auto line = [&](const char* name, std::uint64_t count) {
+      add({at_most("contacts", {name, static_cast<double>(count), 0, "", "none may be", ""})});
+    };
+    line("searches truncated", troubles.truncated);
+    line("searches with the probe inside without contact", troubles.lost);
+    line("steps not solved", troubles.unsolved);
   }
 
   void real_processes() {

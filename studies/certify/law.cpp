@@ -31,6 +31,7 @@ double force(const Subject& subject, double depth, double off, LocalLaw& law,
   }
   law = organ.law(0);
   organ.advance({at((periods + 1) * way - kApproach + off)});
+  *subject.contacts += organ.contact_troubles();
   return -organ.force(0).dot(subject.place.into);
 }
 

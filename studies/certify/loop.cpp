@@ -17,7 +17,9 @@ constexpr int kAskEvery = 50;           // ticks
 }  // namespace
 
 Loop loop_on_organ(const Subject& subject) {
-  return {subject.scene, subject.assets, {}, subject.place};
+  Loop loop{subject.scene, subject.assets, {}, subject.place};
+  loop.options.troubles = subject.contacts.get();
+  return loop;
 }
 
 Loop loop_on_wall(const scene::Scene& scene, double stiffness) {

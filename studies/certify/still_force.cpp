@@ -30,6 +30,7 @@ std::vector<double> still_forces(const Subject& subject, const std::vector<Vec3>
     organ.move_and_settle({place}, kPressSpeed, keep_going);
     forces.push_back(-organ.force(0).dot(subject.place.into));
   }
+  *subject.contacts += organ.contact_troubles();
   return forces;
 }
 

@@ -12,7 +12,7 @@ Measurement summary(const rigs::PressedOrgan& pressed, const geometry::OrganShap
   result.step = pressed.step();
   result.cost = pressed.time() > 0 ? pressed.busy() / pressed.time() : 0;
   result.volume_error = pressed.volume_error();
-  result.diverged = pressed.diverged();
+  result.diverged = pressed.diverged() || pressed.lacks_contacts();
   return result;
 }
 

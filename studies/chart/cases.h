@@ -52,8 +52,8 @@ struct Measurement {
   double step = 0;          ///< h used [s]
   double cost = 0;          ///< processor seconds per simulated second
   double volume_error = 0;  ///< largest |V − V*|/V*
-  bool diverged = false;
-  bool is_course = false;  ///< samples are times of one motion, where forces may pass through 0
+  bool diverged = false;    ///< or contacts were left out: no result
+  bool is_course = false;   ///< samples are times of one motion, where forces may pass through 0
   std::vector<Sample> samples;
 };
 

@@ -94,7 +94,6 @@ class Judge {
 
   void judge(LoopResult& result) {
     ++result.searches;
-    result.truncated += newest_.truncated;
     const auto on = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const NodePositions& s) {
       return s.header.sequence == newest_.node_positions_sequence;
     });
@@ -157,6 +156,7 @@ LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, co
     session.tick();
     judge.look(result);
   }
+  result.troubles = session.contact_troubles();
   return result;
 }
 

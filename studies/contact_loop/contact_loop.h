@@ -24,11 +24,11 @@ struct LoopResult {
   /// outside before.
   long crossings = 0;
   long searches = 0;
-  long inside = 0;          ///< the ball's centre was inside the surface
-  long lost = 0;            ///< of these: no contact that pushes it out
-  double longest_lost = 0;  ///< the longest such time [s]
-  long truncated = 0;       ///< searches with more contacts than a message holds
-  double deepest = 0;       ///< centre below the nearest point of the surface, when inside [m]
+  long inside = 0;           ///< the ball's centre was inside the surface
+  long lost = 0;             ///< of these: no contact that pushes it out
+  double longest_lost = 0;   ///< the longest such time [s]
+  ContactTroubles troubles;  ///< as the session counts them
+  double deepest = 0;        ///< centre below the nearest point of the surface, when inside [m]
 };
 
 /// The first organ of the scene and one ball, from the front (-y) at `place` (x, z) [m].

@@ -7,6 +7,7 @@
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
+#include "palpate/session/contact_line.h"
 #include "studies/contact_loop/contact_loop.h"
 
 namespace palpate::contact_loop {
@@ -21,7 +22,8 @@ std::vector<T> or_else(const std::vector<T>& given, std::vector<T> usual) {
 }
 
 struct Sum {
-  long runs = 0, inside = 0, lost = 0, truncated = 0, presses = 0, crossings = 0;
+  long runs = 0, inside = 0, lost = 0, presses = 0, crossings = 0;
+  ContactTroubles troubles;
 };
 
 }  // namespace
@@ -44,7 +46,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
   const Numbers rates =
       or_else(options.rates, options.quick ? Numbers{100} : Numbers{50, 100, 250});
   out << "scene                   r [mm] v [m/s] [Hz]  searches inside   lost longest [s] "
-         "deepest [mm] truncated presses advances crossings\n";
+         "deepest [mm] presses advances crossings truncated unsolved\n";
   Sum sum;
   for (const auto& file : files) {
     const scene::Scene scene = scene::load_scene(file);
@@ -58,16 +60,16 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
               run_loop(scene, {{assets.organs[0]}, {geometry::TriangleSurface{}}},
                        is_liver ? kOnLiver : kOnStomach, {radius, speed, rate, 250});
           out << fmt::format(
-                     "{:<23} {:6g} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:9} {:7} {:8} "
-                     "{:9}\n",
+                     "{:<23} {:6g} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:7} {:8} {:9} "
+                     "{:9} {:8}\n",
                      file.stem().string(), 1e3 * radius, speed, rate, r.searches, r.inside, r.lost,
-                     r.longest_lost, 1e3 * r.deepest, r.truncated, r.presses, r.advances,
-                     r.crossings)
+                     r.longest_lost, 1e3 * r.deepest, r.presses, r.advances, r.crossings,
+                     r.troubles.truncated, r.troubles.unsolved)
               << std::flush;
           ++sum.runs;
           sum.inside += r.inside;
           sum.lost += r.lost;
-          sum.truncated += r.truncated;
+          sum.troubles += r.troubles;
           sum.presses += r.presses;
           sum.crossings += r.crossings;
         }
@@ -75,10 +77,13 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
     }
   }
   out << fmt::format(
-      "{} runs: {} searches inside an organ, {} of them without contact; {} "
-      "truncated\n{} presses: {} times the organ was left with the ball's centre inside\n",
-      sum.runs, sum.inside, sum.lost, sum.truncated, sum.presses, sum.crossings);
-  return sum.lost == 0 && sum.crossings == 0 ? kExitDone : kExitFailed;
+             "{} runs: {} searches inside an organ, {} of them without contact\n{} presses: {} "
+             "times "
+             "the organ was left with the ball's centre inside\n",
+             sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings)
+      << session::contact_line(sum.troubles) << '\n';
+  return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone
+                                                                            : kExitFailed;
 }
 
 }  // namespace palpate::contact_loop

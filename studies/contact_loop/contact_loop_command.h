@@ -18,7 +18,9 @@ struct ContactLoopOptions {
 
 /// Runs every combination, prints a line for each with what its searches found, and their sum.
 /// Ends early when `stop` says so.
-/// @return kExitDone if no search inside an organ was without contact and no wall was crossed
+/// @return kExitDone if no search inside an organ was without contact, none left contacts out, and
+/// no
+///         wall was crossed
 /// @throws InputError
 int run_contact_loop(const ContactLoopOptions& options, const std::function<bool()>& stop,
                      std::ostream& out);

@@ -38,6 +38,7 @@ class Lockstep {
       look_at_messages();
       look_at_forces();
       if (advanced_ != session_.world().time()) look_at_organs();
+      look_at_contacts();
     }
     if (guarding_ == deformation::Guarding::kOn) return;
     for (const OrganWatch& organ : organs_) organ.look_last();
@@ -89,6 +90,14 @@ class Lockstep {
     }
   }
 
+  void look_at_contacts() {
+    const ContactTroubles now = session_.contact_troubles();
+    count(Guard::kContactsTruncated, now.truncated > troubles_.truncated);
+    count(Guard::kContactsLost, now.lost > troubles_.lost);
+    count(Guard::kContactsUnsolved, now.unsolved > troubles_.unsolved);
+    troubles_ = now;
+  }
+
   void look_at_organs() {
     advanced_ = session_.world().time();
     const deformation::AdvanceReport& report = session_.deformation().report();
@@ -121,6 +130,7 @@ class Lockstep {
   session::InProcess session_;
   std::vector<OrganWatch> organs_;
   std::uint64_t refused_ = 0;       ///< messages so far
+  ContactTroubles troubles_;        ///< so far
   double advanced_ = 0, cost_ = 0;  ///< simulated [s], in steps of nodes of springs
 };
 

@@ -26,14 +26,18 @@ enum class Guard : std::uint8_t {
   kTissueInverted,
   kProbeJumped,
   kMessageRefused,
-  kForceNotFinite
+  kForceNotFinite,
+  kContactsTruncated,
+  kContactsLost,
+  kContactsUnsolved
 };
-inline constexpr std::size_t kGuardCount = 16;
+inline constexpr std::size_t kGuardCount = 19;
 inline constexpr std::array<const char*, kGuardCount> kGuardNames{
-    "not_finite",      "too_fast",        "energy_grew",     "too_large",
-    "turned_inside",   "collapsed",       "back_to_rest",    "step_reduced",
-    "pressure_capped", "volume_released", "volume_skipped",  "contacts_suspended",
-    "tissue_inverted", "probe_jumped",    "message_refused", "force_not_finite"};
+    "not_finite",         "too_fast",        "energy_grew",      "too_large",
+    "turned_inside",      "collapsed",       "back_to_rest",     "step_reduced",
+    "pressure_capped",    "volume_released", "volume_skipped",   "contacts_suspended",
+    "tissue_inverted",    "probe_jumped",    "message_refused",  "force_not_finite",
+    "contacts_truncated", "contacts_lost",   "contacts_unsolved"};
 
 /// What became of a scene in which a guard of the state acted (acts_on_state()) without any.
 enum class Unguarded : std::uint8_t { kNotTried, kFine, kFailed };

@@ -68,6 +68,10 @@ std::vector<Sample> run_scene(const scene::Scene& scene, double seconds, report:
     progress.at(time, seconds, "s simulated");
     if (observe && !observe(pipeline, samples.back())) break;
   }
+  const ContactTroubles troubles = pipeline.contact_troubles();
+  if (troubles.truncated + troubles.lost > 0) {
+    throw std::runtime_error("scene " + scene.name + ": contacts were left out or lost");
+  }
   return samples;
 }
 

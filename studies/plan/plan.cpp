@@ -166,6 +166,7 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
   course.deformation_cost = pressed.busy() / pressed.time();
   course.collision_cost = pressed.searching() / pressed.time();
   course.diverged = pressed.diverged();
+  course.contacts = pressed.contact_troubles();
   return course;
 }
 
@@ -205,6 +206,9 @@ Verdict judge(const scene::Needs& needs, const Candidate& candidate, const Cours
   check("load of all cores", kLargestLoad * static_cast<double>(needs.cores), verdict.total_load,
         verdict.failures);
   if (course.diverged) verdict.failures.emplace_back("diverged");
+  if (course.contacts.truncated + course.contacts.lost > 0) {
+    verdict.failures.emplace_back("contacts left out");
+  }
   return verdict;
 }
 

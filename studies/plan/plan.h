@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modules/geometry/organ_shape.h"
+#include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::plan {
@@ -31,6 +32,7 @@ struct Course {
   double collision_cost = 0;                ///< the same of the search for contacts
   std::size_t node_count = 0;               ///< of the state, inner ones included
   bool diverged = false;
+  ContactTroubles contacts;
 };
 inline constexpr double kSampleRate = 20;  // [Hz]
 

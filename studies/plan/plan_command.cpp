@@ -127,6 +127,9 @@ std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& o
   const auto marks = marks_on(scene::load_organ(scene.organs[0]).surface);
   const Course reference = run_reference(scene, false, marks, options.seconds, keep_going);
   if (reference.diverged) throw std::runtime_error("the reference diverged on this scene: no plan");
+  if (reference.contacts.truncated + reference.contacts.lost > 0) {
+    throw std::runtime_error("contacts of the reference were left out on this scene: no plan");
+  }
   check_touched(scene, reference, options.seconds);
   const Course coarser = run_reference(scene, true, marks, options.seconds, keep_going);
   print_reference(reference, coarser, log);

@@ -48,6 +48,9 @@ class PressedOrgan {
 
   double volume_error() const { return volume_error_; }  ///< largest |V − V*|/V* so far
   bool diverged() const { return diverged_; }            ///< the world had to put the organ back
+  /// Contacts were left out or lost: what was measured is not of this press.
+  bool lacks_contacts() const { return contact_troubles().truncated + contact_troubles().lost > 0; }
+  ContactTroubles contact_troubles() const { return session_.contact_troubles(); }
   double busy() const { return busy_; }            ///< processor time in deformation so far [s]
   double searching() const { return searching_; }  ///< the same in collision [s]
   double time() const { return session_.world().time(); }  ///< simulated so far [s]

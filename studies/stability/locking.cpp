@@ -128,7 +128,7 @@ LockingPoint locking_point(const std::string& model, double poisson_ratio,
   const double height = kBallRadius * (1 - kLockingCompression);
   pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
   LockingPoint point;
-  point.diverged = pressed.diverged();
+  point.diverged = pressed.diverged() || pressed.lacks_contacts();
   point.force = (std::abs(pressed.force(0).z()) + std::abs(pressed.force(1).z())) / 2;
   return point;
 }

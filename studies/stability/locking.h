@@ -17,7 +17,7 @@ struct LockingPoint {
   std::string model = "corotational";
   double poisson_ratio = 0, computed_poisson_ratio = 0;  ///< asked for; deformation/models.h
   double force = 0, reference_force = 0;                 ///< on one plate [N]
-  bool diverged = false;                                 ///< the guards had to put the organ back
+  bool diverged = false;  ///< the guards had to put the organ back, or contacts were left out
   double error() const { return force / reference_force - 1; }
 };
 

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <map>
+#include <set>
 
 #include "tests/collision/finder_scene.h"
 
@@ -282,20 +283,43 @@ TEST_CASE("contact finder: the numbering of triangles changes no place") {
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i].gap == Approx(b[i].gap).margin(1e-15));
 }
 
-TEST_CASE("contact finder: a list that is too long keeps the deepest and says so") {
-  // Oracle: brute force, sorted node heights.
+TEST_CASE("contact finder: a plane tells of every node it touches, however many") {
+  // Oracle: brute force over the nodes.
   const auto ball = geometry::make_ball(0.05, 5);  // 10242 nodes
   FinderScene scene(ball, scene::PlaneShape{});
   const Quat down(Eigen::AngleAxisd(M_PI, Vec3::UnitX()));
-  const ContactSet found = scene.find({at({0, 0, 0.06}, down), at({0, 0, 0.03}, down)}, 0.002);
-  CHECK(found.truncated);
-  REQUIRE(found.contacts.size() == kMostContacts);
+  ContactSet found;
+  scene.finder.find(0, {at({0, 0, 0.06}, down), at({0, 0, 0.03}, down)}, 0.002, 10, found);
+  CHECK_FALSE(found.truncated);
+  CHECK(found.contacts.empty());
+  REQUIRE(found.faces.size() == 1);
+  std::set<std::uint32_t> above;
+  for (std::uint32_t i = 0; i < ball.nodes.size(); ++i) {
+    if (0.03 - ball.nodes[i][2] <= 0.002) above.insert(i);
+  }
+  CHECK(above.size() > kMostContacts);
+  CHECK(std::set(found.face_nodes.begin(), found.face_nodes.end()) == above);
+  CHECK(found.face_nodes.size() == above.size());
+  CHECK(found.deepest_gap() == Approx(-0.02).margin(1e-12));
+}
+
+TEST_CASE("contact finder: a list that is too long keeps the deepest and says so") {
+  // Oracle: the same search without a limit, sorted.
+  const auto ball = geometry::make_ball(0.05, 4);
+  const geometry::ProbeForm small = geometry::make_ball(0.01, 2);
+  FinderScene all({ball}, {small}), few({ball}, {small});
+  const ProbeMotion motion = resting({0, 0, 0.055});
+  ContactSet unlimited, limited;
+  all.finder.find(0, motion, 0.002, 100000, unlimited);
+  few.finder.find(0, motion, 0.002, 20, limited);
+  CHECK_FALSE(unlimited.truncated);
+  CHECK(limited.truncated);
+  REQUIRE(limited.contacts.size() == 20);
   std::vector<double> gaps;
-  for (const Vec3& x : ball.nodes) gaps.push_back(0.03 - x[2]);
+  for (const Contact& c : unlimited.contacts) gaps.push_back(c.gap);
+  REQUIRE(gaps.size() > 40);
   std::sort(gaps.begin(), gaps.end());
-  double shallowest = -1;
-  for (const Contact& c : found.contacts) shallowest = std::max(shallowest, c.gap);
-  CHECK(shallowest == Approx(gaps[kMostContacts - 1]).margin(1e-12));
+  for (const Contact& c : limited.contacts) CHECK(c.gap <= gaps[19]);
 }
 
 TEST_CASE("contact finder: poses and positions that are not finite give no contacts") {

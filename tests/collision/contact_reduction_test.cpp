@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <map>
+#include <random>
+#include <set>
+#include <span>
 
 #include "tests/collision/finder_scene.h"
 #include "tests/collision/step_scene.h"
@@ -30,7 +34,7 @@ TEST_CASE("contact reduction: a place named by two triangles is one contact, of 
   CHECK(found[0].feature == std::array{4u, 5u, kNoNode});
   CHECK(found[0].feature == found[1].feature);
   ContactSet result;
-  reduce_contacts(found, kMostContacts, result);
+  reduce_contacts(found, false, kMostContacts, result);
   REQUIRE(result.contacts.size() == 2);
   CHECK(result.contacts[0].triangle == 3);
   CHECK(result.contacts[1].organ == 1);
@@ -46,7 +50,7 @@ TEST_CASE("contact reduction: the same place with another normal or probe point 
   append_contact(turned, {4, 5, 6}, found);
   append_contact(moved, {4, 5, 6}, found);
   ContactSet result;
-  reduce_contacts(found, kMostContacts, result);
+  reduce_contacts(found, false, kMostContacts, result);
   CHECK(result.contacts.size() == 3);
 }
 
@@ -64,8 +68,8 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   auto reversed = found;
   std::reverse(reversed.begin(), reversed.end());
   ContactSet one, other;
-  reduce_contacts(found, kMostContacts, one);
-  reduce_contacts(reversed, kMostContacts, other);
+  reduce_contacts(found, false, kMostContacts, one);
+  reduce_contacts(reversed, false, kMostContacts, other);
   CHECK(one.truncated);
   REQUIRE(one.contacts.size() == kMostContacts);
   REQUIRE(other.contacts.size() == kMostContacts);
@@ -80,6 +84,94 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   }
 }
 
+TEST_CASE("contact reduction: nodes on one plane are a face, all of them, and truncate nothing") {
+  // Oracle: the planes they were laid on.
+  RandomShapes random(83);
+  std::vector<FoundContact> found;
+  std::map<std::pair<std::uint32_t, double>, std::set<std::uint32_t>> laid;
+  std::map<std::pair<std::uint32_t, double>, double> deepest;
+  for (std::uint32_t node = 0; node < 6000; ++node) {
+    FoundContact c;
+    c.organ = node % 2;
+    c.triangle = node;
+    c.gap = random.number(-1, 1);
+    const double height = node % 3 == 0 ? 0.25 : node % 3 == 1 ? -0.5 : 1e-4 * node;
+    c.point_P = Vec3(random.number(-1, 1), random.number(-1, 1), height);
+    c.barycentric = Vec3::UnitX();
+    append_contact(c, {node, node + 1, node + 2}, found);
+    if (node % 3 == 2) continue;
+    laid[{c.organ, height}].insert(node);
+    deepest[{c.organ, height}] = std::min(c.gap, deepest[{c.organ, height}]);
+  }
+  std::shuffle(found.begin(), found.end(), std::mt19937(1));
+  ContactSet result;
+  reduce_contacts(found, false, 3000, result);
+  CHECK_FALSE(result.truncated);
+  CHECK(result.contacts.size() == 2000);  // each on a plane of its own
+  CHECK(result.count() == 6000);
+  REQUIRE(result.faces.size() == 4);
+  std::size_t first = 0;
+  for (const FaceContacts& face : result.faces) {
+    const auto nodes = std::span(result.face_nodes).subspan(first, face.node_count);
+    first += face.node_count;
+    const std::pair key(face.organ, face.point_P.z());
+    CHECK(std::set(nodes.begin(), nodes.end()) == laid.at(key));
+    CHECK(std::is_sorted(nodes.begin(), nodes.end()));  // by their triangles, which go with nodes
+    CHECK(face.gap == deepest.at(key));
+    CHECK(face.normal_P == Vec3::UnitZ());
+  }
+  CHECK(result.faces[0].organ + result.faces[1].organ == 0);
+  reduce_contacts(found, false, 1999, result);  // what is left of `found` is what is on no face
+  CHECK(result.truncated);
+}
+
+TEST_CASE("contact reduction: of a round probe the deepest and a spread remain, of each organ") {
+  // Oracle: brute force: sorted gaps, and how far from a kept one any contact is.
+  RandomShapes random(84);
+  std::vector<FoundContact> found;
+  for (std::uint32_t t = 0; t < 4000; ++t) {
+    FoundContact c = contact(t % 10 == 0, t, {0.2, 0.3, 0.5}, 0);
+    c.point_P = random.point(1);
+    c.normal_P = random.direction();
+    c.gap = c.organ == 1 ? random.number(2, 3) : random.number(-1, 1);
+    append_contact(c, {3 * t, 3 * t + 1, 3 * t + 2}, found);
+  }
+  const auto all = found;
+  ContactSet result;
+  reduce_contacts(found, true, 1024, result);
+  CHECK_FALSE(result.truncated);  // deformation finds the rest around them
+  CHECK(result.contacts.size() == 2 * kMostOfRound);
+  const auto tissue = [](const Contact& c) -> Vec3 { return c.point_P - c.gap * c.normal_P; };
+  for (const std::uint32_t organ : {0u, 1u}) {
+    std::vector<double> gaps, kept;
+    double farthest = 0;
+    for (const FoundContact& c : all) {
+      if (c.organ != organ) continue;
+      gaps.push_back(c.gap);
+      double nearest = 1e300;
+      for (const Contact& k : result.contacts) {
+        if (k.organ == organ) nearest = std::min(nearest, (tissue(k) - tissue(c)).norm());
+      }
+      farthest = std::max(farthest, nearest);
+    }
+    for (const Contact& k : result.contacts) {
+      if (k.organ == organ) kept.push_back(k.gap);
+    }
+    std::sort(gaps.begin(), gaps.end());
+    std::sort(kept.begin(), kept.end());
+    REQUIRE(kept.size() == kMostOfRound);
+    CHECK(std::equal(kept.begin(), kept.begin() + kMostOfRound / 2, gaps.begin()));
+    // Gonzalez 1985: each of the others was farther from all kept than any that is left out is now.
+    for (const Contact& k : result.contacts) {
+      if (k.organ != organ || k.gap <= kept[kMostOfRound / 2 - 1]) continue;
+      for (const Contact& other : result.contacts) {
+        if (other.organ != organ || other.triangle == k.triangle) continue;
+        CHECK((tissue(k) - tissue(other)).norm() >= farthest);
+      }
+    }
+  }
+}
+
 TEST_CASE("contact reduction: hands out what was found, its normal made unit") {
   // Oracle: definition.
   RandomShapes random(82);
@@ -90,7 +182,7 @@ TEST_CASE("contact reduction: hands out what was found, its normal made unit") {
   c.normal_P = (1 + 1e-9) * direction;
   append_contact(c, {0, 1, 2}, found);
   ContactSet result;
-  reduce_contacts(found, kMostContacts, result);
+  reduce_contacts(found, false, kMostContacts, result);
   REQUIRE(result.contacts.size() == 1);
   CHECK_FALSE(result.truncated);
   CHECK(result.contacts[0].point_P == c.point_P);

@@ -38,7 +38,6 @@ TEST_CASE("core contacts: in front of a wall, one contact per triangle within th
   for (const FoundContact& c : found) {
     gap = std::min(gap, c.gap);
     CHECK(c.normal_P[2] > 0);
-    CHECK(c.time_of_impact == 1);
     CHECK((c.point_P - (-0.5 * c.normal_P)).norm() < 1e-12);
   }
   CHECK(gap == Approx(0.05).margin(1e-12));
@@ -80,7 +79,6 @@ TEST_CASE("core contacts: a wall crossed in the step pushes out the way the core
   for (const FoundContact& c : found) {
     gap = std::min(gap, c.gap);
     CHECK((c.normal_P - Vec3::UnitZ()).norm() < 1e-12);
-    CHECK(c.time_of_impact == Approx((3 - 0.7 - 0.5) / 3).margin(1e-6));
   }
   CHECK(gap == Approx(-1.2).margin(1e-12));
   // Remembered at rest.

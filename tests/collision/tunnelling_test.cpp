@@ -111,10 +111,6 @@ TEST_CASE("tunnelling: grazing in passing is found with the depth of the graze")
   const ContactSet found = scene.find({at(from), at(to)}, 0.001);
   REQUIRE_FALSE(found.contacts.empty());
   CHECK(deepest_gap(found) == Approx(-0.002).margin(1e-6));
-  for (const Contact& c : found.contacts) {
-    CHECK(c.time_of_impact > 0.4);
-    CHECK(c.time_of_impact < 0.6);
-  }
 }
 
 TEST_CASE("tunnelling: a wall once passed keeps its side until the probe is back out") {

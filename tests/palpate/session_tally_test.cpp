@@ -125,3 +125,25 @@ TEST_CASE("session tally: organs and probes the scene does not have change nothi
   CHECK(tally.organs()[0].worst_volume_error == 0);
   CHECK(tally.probes()[1].greatest_force == 0);
 }
+
+TEST_CASE("session tally: troubles of contacts add up over modules, started again or not") {
+  // Oracle: by hand.
+  auto tally = some_tally();
+  CHECK_FALSE(tally.contact_troubles().any());
+  ModuleStatus collision = status("collision", 1, 0, 1), deformation = status("deformation", 1, 0);
+  collision.contacts = {1, 2, 0};
+  deformation.contacts = {0, 0, 4};
+  tally.receive(collision);
+  tally.receive(deformation);
+  collision.contacts = {8, 2, 0};
+  tally.receive(collision);
+  ModuleStatus again = status("collision", 1, 0, 2);
+  again.contacts = {16, 0, 0};
+  tally.receive(again);
+  CHECK(tally.contact_troubles().truncated == 24);
+  CHECK(tally.contact_troubles().lost == 2);
+  CHECK(tally.contact_troubles().unsolved == 4);
+  tally.receive(ContactTroubles{100, 0, 0});
+  tally.receive(ContactTroubles{200, 0, 0});
+  CHECK(tally.contact_troubles().truncated == 224);
+}

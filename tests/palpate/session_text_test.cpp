@@ -41,6 +41,7 @@ SessionTally stomach_tally() {
   ModuleStatus deformation;
   deformation.module = "deformation";
   deformation.real_time_factor = 0.97;
+  deformation.contacts = {3, 2, 1};
   deformation.state = ModuleState::kDegraded;
   deformation.last_error = "slower than real time";
   tally.receive(deformation);
@@ -68,7 +69,9 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
   CHECK_THAT(text, Contains("scene stomach_probe: 12.0 s in 12.1 s") &&
                        Contains("real-time factor 0.970") &&
                        Contains("|V-V0|/V0 at most 5.00e-05") &&
-                       Contains("force at most 0.500 N   limits that acted: slew, stale"));
+                       Contains("force at most 0.500 N   limits that acted: slew, stale") &&
+                       Contains("contacts: 3 searches truncated, 2 with a probe inside without "
+                                "contact, 1 steps not solved\n"));
   CHECK_THAT(text, Contains("11994 cycles, 99.950 % on time") &&
                        Contains("worst lateness 2.50 ms since its start") &&
                        Contains("real-time priority") &&

@@ -117,8 +117,7 @@ std::vector<Place> places() {
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].barycentric.x(); },
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].point_P.z(); },
           [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].normal_P.z(); },
-          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].gap; },
-          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].time_of_impact; }};
+          [](ProbeState&, ContactSet& c) -> double& { return c.contacts[0].gap; }};
 }
 
 TEST_CASE("number faults: a bad number in any field of contacts or pose stays inside") {

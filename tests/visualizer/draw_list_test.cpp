@@ -27,8 +27,7 @@ SceneView pressed_ball() {
   contacts.contacts.resize(3);
   contacts.contacts[0].gap = -1e-3;
   contacts.contacts[1].gap = 5e-3;  // near, but apart
-  contacts.contacts[2].gap = 5e-3;
-  contacts.contacts[2].time_of_impact = 0.5;  // touches within the step
+  contacts.contacts[2].gap = 0;
   view.receive(contacts);
   HapticForce force;
   force.force = Vec3(0, 0, 1.5);
@@ -38,6 +37,33 @@ SceneView pressed_ball() {
 }
 
 }  // namespace
+
+TEST_CASE("draw list: a node in a face is drawn on its plane, one before it is not",
+          "[visualizer]") {
+  // Oracle: by hand; the ball's nodes, a plane at z = 0.045 that tissue is below.
+  SceneView view = pressed_ball();
+  const std::size_t before = make_draw_list(view, {}).points.size();
+  Contacts contacts;
+  contacts.faces.resize(2);
+  contacts.faces[0].point_P = Vec3(0, 0, 0.045);
+  contacts.faces[1].organ = 9;
+  const OrganView& organ = view.organs()[0];
+  std::size_t beyond = 0;
+  for (std::uint32_t i = 0; i < organ.node_count(); ++i) {
+    contacts.face_nodes.push_back(i);
+    beyond += organ.node(i).z() >= 0.045;
+  }
+  contacts.faces[0].node_count = static_cast<std::uint32_t>(organ.node_count());
+  contacts.faces[1].node_count = 1;
+  contacts.face_nodes.push_back(3);
+  view.receive(contacts);
+  view.refresh();
+  const DrawList list = make_draw_list(view, {});
+  CHECK(beyond > 3);
+  CHECK(list.points.size() == before - 2 + beyond);
+  const Vec3 shown = list.points.back().position - view.probes()[0].pose.position;
+  CHECK(shown.z() == Approx(0.045).margin(1e-12));
+}
 
 TEST_CASE("draw list: nothing is drawn of what has not been heard of", "[visualizer]") {
   // Oracle: an empty session.

@@ -343,5 +343,32 @@ TEST_CASE("contact solve: a contact on fixed nodes leaves everything finite") {
   }
 }
 
+TEST_CASE("contact solve: the excess depth is what a step leaves beyond what it may") {
+  // Oracle: by hand.
+  auto organ = testing::ball_organ();
+  organ.fixed.push_back(scene::SphereRegion{Vec3(0, 0, -0.05), 0.02});
+  const auto model = testing::ball_model(1, organ);
+  const auto free = std::ranges::find_if(model.triangles, [&](const geometry::Triangle& t) {
+    return std::ranges::all_of(t, [&](std::uint32_t i) { return model.inverse_masses[i] > 0; });
+  });
+  REQUIRE(free != model.triangles.end());
+  std::vector<Vec3> velocities(model.node_count(), Vec3(0, 0, 0.2));
+  ContactRow row;
+  row.nodes = *free;
+  row.weights = Vec3(0.25, 0.25, 0.5);
+  row.normal = Vec3::UnitZ();
+  row.gap = 1e-4;
+  row.probe_velocity = Vec3(3, 0, -0.1);
+  // It moves 3e-4 m towards the probe in a millisecond, and may move 1e-4.
+  CHECK(excess_depth(model, row, 1e-3, velocities) == Approx(2e-4).epsilon(1e-12));
+  row.gap = -0.5;  // it may be pushed out at 1 m/s at most: 1e-3 m
+  CHECK(excess_depth(model, row, 1e-3, velocities) == Approx(1.3e-3).epsilon(1e-12));
+  row.gap = 1e-3;
+  CHECK(excess_depth(model, row, 1e-3, velocities) < 0);
+  row.nodes.fill(model.fixed_nodes.front());
+  row.gap = -0.5;
+  CHECK(excess_depth(model, row, 1e-3, velocities) == 0);
+}
+
 }  // namespace
 }  // namespace palpate::deformation

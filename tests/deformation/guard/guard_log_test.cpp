@@ -35,6 +35,7 @@ TEST_CASE("guard log: every guard has a code of its own, and every code a guard"
     reports.emplace_back();
     reports.back().*flag = true;
   }
+  reports.emplace_back().contacts_unsolved = 2;
   std::set<GuardCode> codes;
   for (const auto& report : reports) codes.insert(GuardLog().note(report, 0).code);
   CHECK(codes.count(GuardCode::kNone) == 0);

@@ -165,8 +165,8 @@ TEST_CASE("wire: payloads that cannot be read are counted and do not stop a read
     REQUIRE(take_soon(reader, received));
     CHECK(received.header.sequence == sequence);
   };
-  // From the end: 4 bytes of list length, 3 of padding, the boolean `truncated`.
-  check_survives("truncated", [](Payload& p) { p.data[p.length - 8] = 2; });
+  // From the end: three lengths of lists of 4 bytes, 3 of padding, the boolean `truncated`.
+  check_survives("truncated", [](Payload& p) { p.data[p.length - 16] = 2; });
   check_survives("payload", [](Payload& p) { std::memset(p.data + p.length - 4, 0xff, 4); });
   check_survives("payload", [](Payload& p) { p.length = 20; });
   check_survives("payload", [](Payload& p) { p.data[1] = 0x77; });

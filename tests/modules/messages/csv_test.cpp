@@ -102,8 +102,8 @@ TEST_CASE("csv: values stand under their names") {
   CHECK(csv_columns(contacts) ==
         "probe_position_x_m,probe_position_y_m,probe_position_z_m,probe_rotation_x,"
         "probe_rotation_y,probe_rotation_z,probe_rotation_w,node_positions_sequence,truncated,"
-        "contact_count,deepest_gap_m");
-  CHECK(values_of(contacts) == "0,0,0,0,0,0,1,8,0,2,-0.5");
+        "face_count,face_node_count,contact_count,deepest_gap_m");
+  CHECK(values_of(contacts) == "0,0,0,0,0,0,1,8,0,0,0,2,-0.5");
 
   ModuleStatus status;
   status.state = ModuleState::kDegraded;
@@ -111,7 +111,7 @@ TEST_CASE("csv: values stand under their names") {
   status.rate_hz = 250;
   status.last_error = "late, very";
   CHECK(csv_columns(status).starts_with("state,process_id,rate_hz,nominal_rate_hz,cycles,"));
-  CHECK(values_of(status) == "degraded,-4,250,0,0,0,0,0,0,0,0,\"late, very\"");
+  CHECK(values_of(status) == "degraded,-4,250,0,0,0,0,0,0,0,0,0,0,0,\"late, very\"");
 
   const ModuleStatus::Input input{"contacts", 0.5, 1, 2, 3};
   std::ostringstream row;

@@ -88,7 +88,14 @@ inline void check_same(const idl::Contact& w, const Contact& m) {
   REQUIRE(w.point_P_m() == xyz(m.point_P));
   REQUIRE(w.normal_P() == xyz(m.normal_P));
   REQUIRE(w.gap_m() == m.gap);
-  REQUIRE(w.time_of_impact() == m.time_of_impact);
+}
+
+inline void check_same(const idl::FaceContacts& w, const FaceContacts& m) {
+  REQUIRE(w.organ() == m.organ);
+  REQUIRE(w.point_P_m() == xyz(m.point_P));
+  REQUIRE(w.normal_P() == xyz(m.normal_P));
+  REQUIRE(w.gap_m() == m.gap);
+  REQUIRE(w.node_count() == m.node_count);
 }
 
 inline void check_same(const idl::Contacts& w, const Contacts& m) {
@@ -98,6 +105,9 @@ inline void check_same(const idl::Contacts& w, const Contacts& m) {
   REQUIRE(w.probe_rotation_xyzw() == xyzw(m.probe_pose.rotation));
   REQUIRE(w.node_positions_sequence() == m.node_positions_sequence);
   REQUIRE(w.truncated() == m.truncated);
+  REQUIRE(w.faces().size() == m.faces.size());
+  for (std::size_t i = 0; i < m.faces.size(); ++i) check_same(w.faces()[i], m.faces[i]);
+  REQUIRE(w.face_nodes() == m.face_nodes);
   REQUIRE(w.contacts().size() == m.contacts.size());
   for (std::size_t i = 0; i < m.contacts.size(); ++i) check_same(w.contacts()[i], m.contacts[i]);
 }
@@ -190,6 +200,10 @@ inline void check_same(const idl::ModuleStatus& w, const ModuleStatus& m) {
   REQUIRE(w.busy_fraction() == m.busy_fraction);
   REQUIRE(w.real_time_factor() == m.real_time_factor);
   REQUIRE(w.realtime_priority() == m.realtime_priority);
+  REQUIRE(w.packets_refused() == m.packets_refused);
+  REQUIRE(w.contacts_truncated() == m.contacts.truncated);
+  REQUIRE(w.contacts_lost() == m.contacts.lost);
+  REQUIRE(w.contacts_unsolved() == m.contacts.unsolved);
   REQUIRE(w.last_error() == m.last_error);
   REQUIRE(w.inputs().size() == m.inputs.size());
   for (std::size_t i = 0; i < m.inputs.size(); ++i) check_same(w.inputs()[i], m.inputs[i]);

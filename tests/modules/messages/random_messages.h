@@ -84,7 +84,7 @@ class RandomFiller {
     x = static_cast<E>(whole(random_, 0, Words<E>::texts.size() - 1));
   }
   void fill(double& x, Rule rule) {
-    x = real(random_, rule == Rule::kPlain ? -5 : 0, rule == Rule::kFraction ? 1 : 5);
+    x = real(random_, rule == Rule::kPlain ? -5 : 0, 5);
     if (rule == Rule::kAge && x < 1) x = std::numeric_limits<double>::infinity();
   }
   void fill(Vec3& v, Rule rule) {
@@ -118,6 +118,17 @@ inline void mend(Random& random, ContactModel& m) {
   for (double& x : m.compliance) x = real(random, -1, 1);
 }
 
+/// Gives each face some nodes.
+inline void mend(Random& random, Contacts& m) {
+  m.face_nodes.clear();
+  for (FaceContacts& face : m.faces) {
+    face.node_count = static_cast<std::uint32_t>(whole(random, 1, 20));
+    for (std::uint32_t i = 0; i < face.node_count; ++i) {
+      m.face_nodes.push_back(static_cast<std::uint32_t>(whole(random, 0, 1000)));
+    }
+  }
+}
+
 /// Makes indices exist and differ.
 inline void mend(Random& random, SurfaceTopology& m) {
   const std::size_t nodes = m.rest_positions.size() / 3;
@@ -147,6 +158,7 @@ void fill(Random& random, Message& message) {
     while (message.rest_positions.size() < 9) message.rest_positions.push_back(1);
     mend(random, message);
   }
+  if constexpr (std::same_as<Message, Contacts>) mend(random, message);
   if constexpr (std::same_as<Message, ContactModel>) mend(random, message);
 }
 
@@ -241,6 +253,7 @@ class Corrupter {
     if (rule == Rule::kSinceSetUp && here(name)) x = -2;
   }
   void corrupt(const char* name, std::uint32_t& x, Rule rule) {
+    if (rule == Rule::kFromOne && here(name)) x = 0;
     if (rule == Rule::kForceLimits && here(name)) x = kAllForceLimits + 1;
   }
   void corrupt(const char*, bool&, Rule) {}
@@ -252,7 +265,6 @@ class Corrupter {
     if (here(name)) x = kNan;
     if (rule != Rule::kAge && here(name)) x = std::numeric_limits<double>::infinity();
     if (rule != Rule::kPlain && here(name)) x = -1e-300;
-    if (rule == Rule::kFraction && here(name)) x = 1 + 1e-9;
   }
   template <Composed T>
   void corrupt(const char* name, T& value, Rule rule) {

@@ -69,6 +69,7 @@ std::string idl_type() {
   if constexpr (std::is_same_v<T, ModuleState>) return "ModuleState";
   if constexpr (std::is_same_v<T, SessionCommand>) return "SessionCommand";
   if constexpr (std::is_same_v<T, SpringFamily>) return "octet";
+  if constexpr (std::is_same_v<T, FaceContacts>) return "FaceContacts";
   if constexpr (std::is_same_v<T, Contact>) return "Contact";
   if constexpr (std::is_same_v<T, LawRow>) return "LawRow";
   if constexpr (std::is_same_v<T, ModuleStatus::Input>) return "InputStatus";
@@ -85,8 +86,6 @@ std::pair<std::string, std::string> words_of(Rule rule) {
       return {"≥ −1", ">= -1"};
     case Rule::kAge:
       return {"≥ 0, or infinity", ">= 0; infinity before the first"};
-    case Rule::kFraction:
-      return {"0 … 1", "[0, 1]"};
     case Rule::kUnit:
       return {"length 1", "unit"};
     case Rule::kWeights:

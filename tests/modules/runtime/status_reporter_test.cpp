@@ -103,6 +103,17 @@ TEST_CASE("status: an input written after the cycle began is of age zero, and th
   CHECK(r.newest.inputs[0].age == 0);
 }
 
+TEST_CASE("status: tells what went wrong with contacts") {
+  // Oracle: by hand.
+  Reported r;
+  r.reporter.set_contact_troubles({1, 2, 3});
+  r.reporter.publish(kSecond, 0, r.loop);
+  REQUIRE(r.take());
+  CHECK(r.newest.contacts.truncated == 1);
+  CHECK(r.newest.contacts.lost == 2);
+  CHECK(r.newest.contacts.unsolved == 3);
+}
+
 TEST_CASE("status: an endless error is cut, not lost") {
   // Oracle: the limit it documents.
   Reported r;

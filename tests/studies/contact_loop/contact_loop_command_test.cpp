@@ -19,7 +19,7 @@ TEST_CASE("contact loop command: a line for each ball and their sum, stopped, it
   CHECK(run_contact_loop(
             options, [] { return false; }, out) == kExitDone);
   const std::string said = out.str();
-  CHECK(std::count(said.begin(), said.end(), '\n') == 5);
+  CHECK(std::count(said.begin(), said.end(), '\n') == 6);
   CHECK(said.find("2 runs:") != std::string::npos);
   CHECK(said.find(" 0 of them without contact") != std::string::npos);
   CHECK(run_contact_loop(

@@ -34,7 +34,8 @@ TEST_CASE("contact loop: no ball at any speed is inside the stomach without a co
         INFO(radius << " m at " << speed << " m/s, " << rate << " Hz");
         CHECK(result.lost == 0);
         CHECK(result.crossings == 0);
-        CHECK(result.truncated == 0);
+        CHECK(result.troubles.truncated == 0);
+        CHECK(result.troubles.lost == 0);
         inside += result.inside;
       }
     }
