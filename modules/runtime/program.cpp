@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 
 #include "modules/core/error.h"
 #include "modules/messages/messages.h"

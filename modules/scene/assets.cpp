@@ -1,7 +1,11 @@
 #include "modules/scene/assets.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/geometry/bisection.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/models.h"
@@ -21,7 +25,37 @@ bool holds_tetrahedra(const std::filesystem::path& file) {
   return file.extension() == ".msh" || file.extension() == ".vtk";
 }
 
-geometry::OrganShape load_tetrahedra(const Mesh& mesh, const std::string& owner) {
+/// Of a refined mesh; a step of so many is minutes.
+constexpr std::size_t kMostRefinedNodes = 50'000;
+
+double distance(const Region& region, const Vec3& x) {
+  if (const auto* sphere = std::get_if<SphereRegion>(&region)) {
+    return std::max(0.0, (x - sphere->center).norm() - sphere->radius);
+  }
+  const auto& box = std::get<BoxRegion>(region);
+  return (x - x.cwiseMax(box.min).cwiseMin(box.max)).norm();
+}
+
+/// The mesh, in its own frame, with smaller tetrahedra near the organ's regions, which are in W.
+geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
+  const Refinement& refine = organ.solid.refine;
+  if (refine.near.empty()) return mesh;
+  const auto longest_edge = [&](const Vec3& x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Region& region : refine.near) {
+      least = std::min(least, distance(region, organ.pose.to_world(x)));
+    }
+    return refine.edge_length + refine.growth * least;
+  };
+  try {
+    return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);
+  } catch (const InputError& error) {
+    throw InputError(std::string("key 'solid.refine': ") + error.what());
+  }
+}
+
+geometry::OrganShape load_tetrahedra(const Organ& organ, const std::string& owner) {
+  const Mesh& mesh = organ.mesh;
   try {
     if (mesh.nodes != 0) {
       throw InputError(mesh.file.string() +
@@ -30,18 +64,18 @@ geometry::OrganShape load_tetrahedra(const Mesh& mesh, const std::string& owner)
     auto tetrahedra = geometry::read_tetrahedra(mesh.file);
     const double scale = metres_per_unit(mesh.unit);
     for (Vec3& node : tetrahedra.nodes) node *= scale;
-    return geometry::shape_of(tetrahedra);
+    return geometry::shape_of(refined(tetrahedra, organ));
   } catch (const InputError& error) {
     throw InputError(owner + ": " + error.what());
   }
 }
 
-geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Solid& solid,
+geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Organ& organ,
                             const std::string& owner) {
   try {
-    const double size =
-        solid.element_size > 0 ? solid.element_size : geometry::mean_edge_length(surface);
-    return geometry::shape_of(geometry::fill_surface(surface, size));
+    const double size = organ.solid.element_size > 0 ? organ.solid.element_size
+                                                     : geometry::mean_edge_length(surface);
+    return geometry::shape_of(refined(geometry::fill_surface(surface, size), organ));
   } catch (const InputError& error) {
     throw InputError(owner + ": " + error.what());
   }
@@ -54,11 +88,11 @@ geometry::OrganShape load_organ(const Organ& organ) {
   const ModelFormat& format = format_of(organ.model);
   geometry::OrganShape shape;
   if (holds_tetrahedra(organ.mesh.file)) {
-    shape = load_tetrahedra(organ.mesh, owner);
+    shape = load_tetrahedra(organ, owner);
     if (!format.is_solid()) shape = geometry::OrganShape(std::move(shape.surface));
   } else {
     shape = geometry::OrganShape(load(organ.mesh, owner));
-    if (format.is_solid()) shape = filled(shape.surface, organ.solid, owner);
+    if (format.is_solid()) shape = filled(shape.surface, organ, owner);
   }
   if (format.is_quadratic()) shape = geometry::with_edge_nodes(shape);
   for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {

@@ -121,6 +121,9 @@ const std::array kOptionalKeys{
     OptionalKey{"solid.element_size_m", of_solids,
                 [](const Organ& o) { return o.solid.element_size == kDefaults.solid.element_size; },
                 [](Organ& o) { o.solid.element_size = kDefaults.solid.element_size; }},
+    OptionalKey{"solid.refine", of_solids,
+                [](const Organ& o) { return o.solid.refine.near.empty(); },
+                [](Organ& o) { o.solid.refine = kDefaults.solid.refine; }},
     OptionalKey{"solid.modes", [](const ModelFormat& f) { return f.has_modes; },
                 [](const Organ& o) { return o.solid.modes == kDefaults.solid.modes; },
                 [](Organ& o) { o.solid.modes = kDefaults.solid.modes; }}};

@@ -45,11 +45,19 @@ struct BoxRegion {
 };
 using Region = std::variant<SphereRegion, BoxRegion>;  ///< keys `sphere`, `box`
 
+/// Where a solid's tetrahedra are smaller than elsewhere.
+struct Refinement {
+  std::vector<Region> near;   ///< `near`; none: nowhere
+  double edge_length = 4e-3;  ///< `edge_m`, longest edge inside them [1e-4 … 1]
+  double growth = 0.5;        ///< `growth`: longer by this per metre of distance [0.05 … 100]
+};
+
 /// Parameters that models of solids need beside the tissue.
 struct Solid {
   double poisson_ratio = 0.499;  ///< `poisson_ratio` [0 … 0.5]
   double element_size = 0;       ///< `element_size_m`, edges inside; 0 = mean edge of the surface
   std::size_t modes = 40;        ///< `modes` of model modal, beside rigid motion [1 … 400]
+  Refinement refine;             ///< `refine`
 };
 
 enum class Integrator { kAutomatic, kSymplecticEuler, kBackwardEuler };

@@ -72,11 +72,21 @@ void describe(V& v, Springs& springs) {
 }
 
 template <class V>
+void describe(V& v, Refinement& refine) {
+  v.field("near", refine.near, plain("regions of W that are touched; none = nowhere"));
+  v.field("edge_m", refine.edge_length,
+          ranged("m", 1e-4, 1, "longest edge there; half a probe's radius is a start"));
+  v.field("growth", refine.growth,
+          ranged("", 0.05, 100, "how much longer edges may be per metre beyond the regions"));
+}
+
+template <class V>
 void describe(V& v, Solid& solid) {
   v.field("poisson_ratio", solid.poisson_ratio, ranged("", 0, 0.5, "of the tissue"));
   v.field("element_size_m", solid.element_size,
           ranged("m", 0, 1, "wanted edges inside; 0 = as long as the surface's"));
   v.field("modes", solid.modes, ranged("", 1, 400, "vibrations of model modal, lowest first"));
+  v.field("refine", solid.refine, plain("smaller tetrahedra where it will be touched"));
 }
 
 template <class V>

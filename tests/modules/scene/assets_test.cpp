@@ -1,9 +1,11 @@
 #include "modules/scene/assets.h"
 
+#include <fstream>
 #include <numbers>
 
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
+#include "tests/modules/geometry/tetrahedra.h"
 #include "tests/modules/scene/scene_text.h"
 
 using namespace palpate;
@@ -33,7 +35,72 @@ std::array<Vec3, 2> extent(const geometry::TriangleSurface& surface) {
   return result;
 }
 
+/// A block of tetrahedra, 8 cm a side, 2 cm an edge, in a file.
+Organ block_organ(const ScratchFolder& folder) {
+  const auto mesh = geometry::testing::block({0.08, 0.08, 0.08}, 4, 4, 4);
+  Organ organ;
+  organ.name = "block";
+  organ.model = "nodal_pressure";
+  organ.mesh.file = folder.path() / "block.vtk";
+  std::ofstream file(organ.mesh.file);
+  file << "# vtk DataFile Version 2.0\nblock\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS "
+       << mesh.nodes.size() << " double\n";
+  for (const Vec3& x : mesh.nodes) file << x.x() << ' ' << x.y() << ' ' << x.z() << '\n';
+  file << "CELLS " << mesh.tetrahedra.size() << ' ' << 5 * mesh.tetrahedra.size() << '\n';
+  for (const auto& [a, b, c, d] : mesh.tetrahedra) {
+    file << "4 " << a << ' ' << b << ' ' << c << ' ' << d << '\n';
+  }
+  file << "CELL_TYPES " << mesh.tetrahedra.size() << '\n';
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) file << "10\n";
+  return organ;
+}
+
 }  // namespace
+
+TEST_CASE("assets: tetrahedra are small near the regions that a solid is refined at, in W") {
+  // Oracle: definition, at the middle of each edge; corners alone count of quadratic tetrahedra.
+  const ScratchFolder folder;
+  Organ organ = block_organ(folder);
+  organ.pose.position = Vec3(0.1, 0, 0);
+  const auto coarse = load_organ(organ);
+  const Vec3 touched(0.14, 0.04, 0.08);
+  organ.solid.refine = {{SphereRegion{touched, 0.01}}, 5e-3, 0.5};
+  for (const char* model : {"nodal_pressure", "quadratic_elements"}) {
+    organ.model = model;
+    const auto fine = load_organ(organ);
+    INFO(model << ": " << fine.node_count() << " nodes");
+    CHECK(fine.tetrahedra.size() > 2 * coarse.tetrahedra.size());
+    double shortest = 1;
+    for (const auto& t : fine.tetrahedra) {
+      for (const auto& [a, b] : geometry::kTetrahedronEdges) {
+        const Vec3 &p = fine.node(t[static_cast<std::size_t>(a)]),
+                   &q = fine.node(t[static_cast<std::size_t>(b)]);
+        const double away = std::max(0.0, ((p + q) / 2 - touched).norm() - 0.01);
+        CHECK((p - q).norm() < 5e-3 + 0.5 * away + 1e-12);
+        shortest = std::min(shortest, (p - q).norm());
+      }
+    }
+    CHECK(shortest > 2e-3);  // a halving more than needed at most, of a longest edge
+    CHECK(geometry::enclosed_volume(fine.surface.nodes, fine.surface.triangles) ==
+          Approx(0.08 * 0.08 * 0.08));
+  }
+}
+
+TEST_CASE("assets: near a box is on its faces' side, and too many nodes are refused by key") {
+  // Oracle: the count of those of equal distance; the message.
+  const ScratchFolder folder;
+  Organ organ = block_organ(folder);
+  organ.solid.refine = {{BoxRegion{Vec3(-1, -1, 0.07), Vec3(1, 1, 1)}}, 1e-2, 100};
+  const auto fine = load_organ(organ);
+  std::size_t above = 0, below = 0;
+  for (std::size_t i = 0; i < fine.node_count(); ++i) {
+    ++(fine.node(i).z() > 0.04 ? above : below);
+  }
+  CHECK(above > 3 * below);
+  organ.solid.refine.edge_length = 2e-4;
+  CHECK_THROWS_WITH(load_organ(organ), Catch::Contains("organ 'block': key 'solid.refine': ") &&
+                                           Catch::Contains("more than 50000 nodes"));
+}
 
 TEST_CASE("assets: an organ is loaded and placed by its pose") {
   // Oracle: by hand; a quarter turn about z swaps the box's x and y extents.

@@ -31,13 +31,14 @@ TEST_CASE("scene models: dropping what a model ignores leaves it nothing to refu
     organ.springs.inner_ratio = 1;
     organ.tissue.wall_thickness = 0.01;
     organ.tissue.damping_ratio = 0.3;
-    organ.solid = {0.3, 0.01, 12};
+    organ.solid = {0.3, 0.01, 12, {{SphereRegion{}}, 0.01, 1}};
     INFO(format.word);
     CHECK_FALSE(ignored_by_model(organ).none());
     drop_ignored_keys(organ);
     CHECK(ignored_by_model(organ).none());
     CHECK((organ.iterations == 3) == (format.iterations > 0));
     CHECK((organ.solid.modes == 12) == format.has_modes);
+    CHECK(organ.solid.refine.near.empty() != format.is_solid());
     CHECK((organ.tissue.wall_thickness == 0.01) != format.is_solid());
   }
 }

@@ -66,6 +66,7 @@ TEST_CASE("schema: a key that the model does not read is refused, whatever the m
     CHECK(accepts("solid: {poisson_ratio: 0.3}") == format.is_solid());
     CHECK(accepts("solid: {element_size_m: 0.02}") == format.is_solid());
     CHECK(accepts("solid: {modes: 7}") == format.has_modes);
+    CHECK(accepts("solid: {refine: {near: [sphere: {center_m: [0, 0, 0]}]}}") == format.is_solid());
     CHECK(accepts("tissue: {wall_thickness_m: 0.01}") == !format.is_solid());
     CHECK(accepts("tissue: {damping_ratio: 0.3}") == (!format.is_solid() || format.has_modes));
   }
