@@ -45,6 +45,8 @@ constexpr std::array<Text, kGuardCodes> kTexts{{
      "contacts were not solved to the end in a step: tissue is deeper in a probe than it may be"},
     {GuardCode::kStepReduced,
      "an organ held more energy than it was given: its steps are shortened"},
+    {GuardCode::kLawBounded,
+     "a sliding touch would have been stiffer than a sticking one: its law tells the latter"},
 }};
 
 }  // namespace

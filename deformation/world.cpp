@@ -39,8 +39,9 @@ struct DeformationWorld::Impl {
   /// Mean forces on a probe over the last advances, the newest first [N].
   using Forces = std::array<Vec3, kGrowthPeriods + 1>;
   std::vector<Forces> forces;
-  double time = 0, period = 0;   ///< simulated; of the last advance [s]
-  bool contact_refused = false;  ///< since the last advance
+  double time = 0, period = 0;  ///< simulated; of the last advance [s]
+  // Since the last advance:
+  bool contact_refused = false, law_bounded = false;
 
   bool names_our_triangle(const Contact& contact) const {
     return contact.organ < organs.size() &&
@@ -295,6 +296,7 @@ void DeformationWorld::set_contacts(const ContactSet& contacts) {
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
   report.contact_refused = std::exchange(impl_->contact_refused, false);
+  report.law_bounded = std::exchange(impl_->law_bounded, false);
   impl_->period = period;
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
   if (impl_->organ_contacts) {
@@ -384,7 +386,9 @@ LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {
   }
   law.compliance = impl_->compliance_of(contacts, law.directions());
   law.growth = impl_->growth(probe_index);
-  law.stiffness = stiffness_of(law);
+  const RowStiffness stiffness = stiffness_of(law);
+  law.stiffness = stiffness.matrix;
+  impl_->law_bounded |= stiffness.bounded;
   return law;
 }
 

@@ -29,8 +29,15 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
 void append_compliance_rows(const CondensedContact& contact, std::size_t directions,
                             std::vector<ComplianceRow>& rows);
 
-/// −∂f/∂x of the law's rows that press, symmetric part; friction of those that slide is the same
-/// part of what presses them [N/m]. Zero where W is not regular.
-Mat3 stiffness_of(const LocalLaw& law);
+/// −∂f/∂x of a law's rows that press [N/m].
+struct RowStiffness {
+  Mat3 matrix = Mat3::Zero();  ///< symmetric part
+  bool bounded = false;        ///< sliding would be stiffer than sticking: taken as sticking
+};
+
+/// Rows on their cone slide, with friction the same part of what presses them, as long as that is
+/// no stiffer than sticking: no force along a normal grows faster than that of rows that stick.
+/// Zero where W is not regular.
+RowStiffness stiffness_of(const LocalLaw& law);
 
 }  // namespace palpate::deformation

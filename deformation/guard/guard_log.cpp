@@ -42,6 +42,8 @@ bool acted(GuardCode code, const AdvanceReport& r) {
       return r.contacts_unsolved > 0;
     case GuardCode::kStepReduced:
       return r.step_reduced;
+    case GuardCode::kLawBounded:
+      return r.law_bounded;
     case GuardCode::kNone:
       break;
   }

@@ -29,6 +29,7 @@ enum class GuardCode : std::uint8_t {
   kOrganContactsUnsolved,
   kContactsUnsolved,
   kStepReduced,
+  kLawBounded,
   kNone
 };
 inline constexpr auto kGuardCodes = static_cast<std::size_t>(GuardCode::kNone);

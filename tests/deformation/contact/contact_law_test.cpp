@@ -1,6 +1,9 @@
 #include "deformation/contact/contact_law.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "deformation/models.h"
 #include "modules/scene/models.h"
@@ -93,11 +96,12 @@ TEST_CASE("contact law: the stiffness of rows is that of springs beside each oth
   law.rows.resize(2);
   for (LawRow& row : law.rows) row.force = Vec3(0, 0, 1);
   law.compliance = {0.01, 0, 0.005};
-  CHECK(stiffness_of(law)(2, 2) == Approx(300).epsilon(1e-5));
+  CHECK(stiffness_of(law).matrix(2, 2) == Approx(300).epsilon(1e-5));
   law.compliance = {0.01, 0.004, 0.005};
-  CHECK(stiffness_of(law)(2, 2) == Approx((0.01 + 0.005 - 0.008) / (0.01 * 0.005 - 0.000016)));
+  CHECK(stiffness_of(law).matrix(2, 2) ==
+        Approx((0.01 + 0.005 - 0.008) / (0.01 * 0.005 - 0.000016)));
   law.rows[1].force.setZero();
-  CHECK(stiffness_of(law)(2, 2) == Approx(100).epsilon(1e-5));
+  CHECK(stiffness_of(law).matrix(2, 2) == Approx(100).epsilon(1e-5));
 }
 
 TEST_CASE("contact law: a row that slides resists along its normal, and friction grows with it") {
@@ -109,18 +113,92 @@ TEST_CASE("contact law: a row that slides resists along its normal, and friction
   law.rows.resize(1);
   law.compliance = {0.01, 0, 0.02, 0, 0, 0.02};
   law.rows[0].force = Vec3(0.05, 0, 1);
-  const Mat3 sticking = stiffness_of(law);
+  const Mat3 sticking = stiffness_of(law).matrix;
   CHECK((sticking - Mat3(Vec3(50, 50, 100).asDiagonal())).norm() < 1e-3);
   law.rows[0].force = Vec3(0.1, 0, 1);
   Mat3 sliding = Mat3::Zero();
   sliding(2, 2) = 100;
   sliding(0, 2) = sliding(2, 0) = 5;  // the symmetric part
-  CHECK((stiffness_of(law) - sliding).norm() < 1e-3);
+  CHECK((stiffness_of(law).matrix - sliding).norm() < 1e-3);
   law.rows[0].radius = 0.008;
   sliding(0, 0) = sliding(1, 1) = -1 / 0.008;
-  CHECK((stiffness_of(law) - sliding).norm() < 1e-3);
+  CHECK((stiffness_of(law).matrix - sliding).norm() < 1e-3);
   law.compliance.assign(6, 0);
-  CHECK(stiffness_of(law).isZero(0));
+  CHECK(stiffness_of(law).matrix.isZero(0));
+}
+
+/// A row of z with friction along its first tangent, W coupling the two: pressed along z it needs
+/// friction −W_nt/W_tt of what its normal force grows by to stick.
+LocalLaw coupled_row(double friction) {
+  LocalLaw law;
+  law.friction_coefficient = friction;
+  law.rows.resize(1);
+  law.compliance = {0.01, -0.02, 0.05, 0, 0, 0.05};
+  law.rows[0].force = Vec3::UnitZ() + friction * contact_basis(Vec3::UnitZ()).col(1);
+  return law;
+}
+
+/// −df/dx along z: the row pressed by a µm, Coulomb's law by projected Gauss–Seidel to the end.
+double pressed_row(const LocalLaw& law) {
+  const double press = 1e-6, mu = law.friction_coefficient;
+  const auto& w = law.compliance;
+  const double first = 1, first_t = mu;
+  double n = first, t = first_t;
+  for (int sweep = 0; sweep < 100'000; ++sweep) {
+    n = std::max(0.0, n - (w[0] * (n - first) + w[1] * (t - first_t) - press) / w[0]);
+    t = std::clamp(t - (w[1] * (n - first) + w[2] * (t - first_t)) / w[2], -mu * n, mu * n);
+  }
+  return (n - first) / press;
+}
+
+TEST_CASE("contact law: where sliding would be stiffer than sticking, a row sticks") {
+  // Oracle: Coulomb's law solved at the row pressed by a µm. At μ 0.3 it slides, 250 N/m; at 0.5,
+  // where sliding would be 1/0, and at 0.6, where it would be negative, it sticks at 500 N/m.
+  for (const double friction : {0.3, 0.5, 0.6}) {
+    INFO("μ " << friction);
+    const LocalLaw law = coupled_row(friction);
+    const RowStiffness found = stiffness_of(law);
+    CHECK(found.matrix(2, 2) == Approx(pressed_row(law)).epsilon(1e-4));
+    CHECK(found.bounded == (friction > 0.4));
+  }
+}
+
+TEST_CASE("contact law: no friction makes a law stiffer than rows that stick, and its cone") {
+  // Oracle: the inverse of W, as regular as the law takes it, over all rows. Random W, many nearly
+  // singular, some rows on their cone.
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  int bounded = 0, slid = 0;
+  for (int k = 0; k < 2000; ++k) {
+    LocalLaw law;
+    law.friction_coefficient = std::abs(normal(random));
+    law.rows.resize(1 + random() % 5);
+    const auto size = static_cast<Eigen::Index>(3 * law.rows.size());
+    Eigen::MatrixXd half(size, 1 + static_cast<Eigen::Index>(random() % 12)), axes(size, 3);
+    for (double& x : half.reshaped()) x = 0.1 * normal(random);
+    Eigen::MatrixXd W = half * half.transpose();
+    W.diagonal().array() += 1e-9;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) law.compliance.push_back(W(i, j));
+    }
+    for (std::size_t r = 0; r < law.rows.size(); ++r) {
+      LawRow& row = law.rows[r];
+      row.normal = Vec3(normal(random), normal(random), normal(random)).normalized();
+      const Mat3 basis = contact_basis(row.normal);
+      axes.middleRows<3>(static_cast<Eigen::Index>(3 * r)) = basis.transpose();
+      row.force = row.normal;
+      if (random() % 4 != 0) row.force += law.friction_coefficient * basis.col(1);
+    }
+    W.diagonal() *= 1 + 1e-6;
+    const Mat3 sticking = axes.transpose() * W.inverse() * axes;
+    const RowStiffness found = stiffness_of(law);
+    const double most = std::hypot(1, law.friction_coefficient) * sticking.operatorNorm();
+    REQUIRE(found.matrix.allFinite());
+    CHECK(found.matrix.operatorNorm() <= 1.001 * most);
+    (found.bounded ? bounded : slid) += 1;
+  }
+  CHECK(bounded > 50);
+  CHECK(slid > 100);
 }
 
 /// A ball of 642 nodes on its lower part, pressed by a fingertip.
