@@ -8,18 +8,11 @@ namespace {
 /// Contacts may depend on each other (two on one node): this part of S's diagonal is added, which
 /// leaves as much of a velocity along a row as it should remove.
 constexpr double kCompliance = 1e-9;
-/// A contact whose friction is nearer to its cone than this slides.
-constexpr double kSlidingFraction = 0.999;
 /// Below this part of gᵀWg the contacts hold all the volume that can move.
 constexpr double kVanishedInverseMass = 1e-9;
 /// A projection that leaves less than this part of r·W r is mostly rounding: it is done again,
 /// without what the rows took.
 constexpr double kMostlyTaken = 1e-4;
-
-bool sticks(const ContactRow& contact) {
-  return contact.tangential_impulse.norm() <
-         kSlidingFraction * contact.friction * contact.normal_impulse;
-}
 
 /// Whether none of the nodes it acts on can move.
 bool is_held(std::span<const Mat3> inverse_mass_blocks, const ContactRow& contact) {
@@ -58,11 +51,7 @@ void ConstraintProjection::collect_rows(std::span<const Mat3> inverse_mass_block
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactRow& contact = contacts[c];
     if (contact.normal_impulse <= 0 || is_held(inverse_mass_blocks, contact)) continue;
-    rows_.push_back({c, contact.nodes, contact.weights, contact.normal, true});
-    if (!sticks(contact)) continue;
-    const Vec3 tangent = contact.normal.unitOrthogonal();
-    rows_.push_back({c, contact.nodes, contact.weights, tangent, false});
-    rows_.push_back({c, contact.nodes, contact.weights, contact.normal.cross(tangent), false});
+    rows_.push_back({c, contact.nodes, contact.weights, contact.normal});
   }
 }
 
@@ -77,7 +66,7 @@ void ConstraintProjection::factor_contacts(std::span<const Mat3> inverse_mass_bl
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     for (int k = 0; k < 3; ++k) {
       if (rows_[r].weights[k] == 0) continue;
-      const Vec3 arm = rows_[r].weights[k] * rows_[r].direction;
+      const Vec3 arm = rows_[r].weights[k] * rows_[r].normal;
       visits.push_back({rows_[r].nodes[k], static_cast<int>(r), arm,
                         inverse_mass_blocks[rows_[r].nodes[k]] * arm});
     }
@@ -182,15 +171,8 @@ void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double&
                                          std::vector<Vec4f>& r) {
   if (volume_inverse_mass_ > 0 && !rows_.empty()) all_mu_ -= all_volume_mu_ * volume_shares_;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const Row& row = rows_[k];
-    const double mu = all_mu_[static_cast<Eigen::Index>(k)];
-    ContactRow& contact = contacts[row.contact];
     // μ is what r had along the row; the contact's impulse takes it away.
-    if (row.normal) {
-      contact.normal_impulse += mu;
-    } else {
-      contact.tangential_impulse -= mu * row.direction;
-    }
+    contacts[rows_[k].contact].normal_impulse += all_mu_[static_cast<Eigen::Index>(k)];
   }
   add(-volume_mu_, gradient_, r);
   volume_mu_ = 0;
@@ -205,7 +187,7 @@ Eigen::VectorXd ConstraintProjection::times_rows(const std::vector<Vec4f>& v) co
       if (rows_[r].weights[k] == 0) continue;
       sum += rows_[r].weights[k] * v[rows_[r].nodes[k]].head<3>().cast<double>();
     }
-    out[static_cast<Eigen::Index>(r)] = rows_[r].direction.dot(sum);
+    out[static_cast<Eigen::Index>(r)] = rows_[r].normal.dot(sum);
   }
   return out;
 }
@@ -217,7 +199,7 @@ void ConstraintProjection::subtract_rows(const Eigen::VectorXd& mu, std::vector<
     const double row_mu = mu[static_cast<Eigen::Index>(k)];
     for (int n = 0; n < 3; ++n) {
       if (row.weights[n] == 0) continue;
-      const Vec4f impulse = wide((row.weights[n] * row_mu) * row.direction);
+      const Vec4f impulse = wide((row.weights[n] * row_mu) * row.normal);
       r[row.nodes[n]] -= impulse;
       z[row.nodes[n]] -= apply_inverse_mass(row.nodes[n], impulse);
     }

@@ -1,7 +1,7 @@
 // Projection onto velocities that change neither the volume nor any active contact.
 //
-// With rows B (the volume gradient g; per closed contact n, and two tangents if it sticks) and node
-// inverse_mass_blocks W, the projection of a force r is
+// With rows B (the volume gradient g, and n of each closed contact) and node inverse_mass_blocks W,
+// the projection of a force r is
 //     z = W (r − Bᵀμ),   B z = 0
 // As preconditioner of conjugate gradients it keeps every iterate on the rows, however few
 // iterations: N. Gould, M. Hribar, J. Nocedal, "On the Solution of Equality Constrained Quadratic
@@ -30,7 +30,7 @@ namespace palpate::deformation {
 
 class ConstraintProjection {
  public:
-  /// Takes as active the contacts with a normal impulse; those below the cone stick.
+  /// Takes as active the contacts with a normal impulse.
   /// @param inverse_mass_blocks  W, zero for fixed nodes [1/kg]  (node_count)
   /// @param gradient    g [m²]  (surface_node_count); empty: no volume row
   void prepare(std::span<const Mat3> inverse_mass_blocks, std::span<const Vec3> gradient,
@@ -57,12 +57,11 @@ class ConstraintProjection {
   void take_impulses(std::span<ContactRow> contacts, double& volume_impulse, std::vector<Vec4f>& r);
 
  private:
-  /// One scalar row of C: Σ_k weight_k direction·v_k.
+  /// A row of C: Σ_k weight_k normal·v_k.
   struct Row {
     std::size_t contact = 0;
     std::array<std::uint32_t, 3> nodes{};
-    Vec3 weights = Vec3::Zero(), direction = Vec3::Zero();
-    bool normal = false;
+    Vec3 weights = Vec3::Zero(), normal = Vec3::Zero();
   };
 
   void take_inverse_masses(std::span<const Mat3> inverse_mass_blocks);

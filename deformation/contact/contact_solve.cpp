@@ -36,7 +36,8 @@ class Solver {
         volume_(volume),
         rows_(rows),
         velocities_(velocities),
-        volume_velocity_(volume_velocity) {
+        volume_velocity_(volume_velocity),
+        friction_is_kept_(start == WarmStart::kFrictionKept) {
     sigma_is_held_ = std::all_of(rows.begin(), rows.end(),
                                  [](const ContactRow& row) { return only_node(row) >= 0; });
     prepared_.resize(rows.size());
@@ -139,7 +140,7 @@ class Solver {
 
   double relax_friction(std::size_t r) {
     ContactRow& row = rows_[r];
-    if (!may_rub(row)) return 0;
+    if (friction_is_kept_ || !may_rub(row)) return 0;
     const Vec3 velocity =
         tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
     const Vec3 change = rub(row, velocity, prepared_[r].tangential_inverse_mass);
@@ -153,6 +154,7 @@ class Solver {
   std::vector<Vec3>& velocities_;
   std::vector<PreparedRow> prepared_;
   double volume_velocity_;  ///< g·w [m³/s]; every impulse updates it
+  bool friction_is_kept_;
   /// Whether σ stays as it is during a sweep. Rows that act on one node each are independent but
   /// for σ: then Newton on σ needs a few sweeps where elimination, which couples all, needs many.
   bool sigma_is_held_ = false;

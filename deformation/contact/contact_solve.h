@@ -30,6 +30,7 @@ struct ContactRow {
   double gap = 0;               ///< n·(probe point − tissue point) at the step's start [m]
   Vec3 probe_velocity = Vec3::Zero();  ///< v_c of the probe's surface there [m/s]
   double friction = 0;                 ///< Coulomb coefficient
+  double radius = 0;                   ///< of a round probe; 0: flat [m]
   // In: impulses to start from (those of the last step). Out: the solution.
   double normal_impulse = 0;               ///< j ≥ 0, on the tissue along −n [N·s]
   Vec3 tangential_impulse = Vec3::Zero();  ///< on the tissue, ⟂ n, norm ≤ friction·j [N·s]
@@ -72,8 +73,8 @@ inline double allowed_approach(const ContactRow& row, double h) {
 double excess_depth(const Body& body, const ContactRow& row, double h,
                     std::span<const Vec3> velocities);
 
-/// Whether the impulses the rows bring are already in the velocities.
-enum class WarmStart { kToApply, kApplied };
+/// Whether the impulses the rows bring are already in the velocities; and friction stays as it is.
+enum class WarmStart { kToApply, kApplied, kFrictionKept };
 
 /// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.
 /// Sweeps end when no contact velocity changes by more than 1e-9 m/s, or after 60.

@@ -70,7 +70,7 @@ class IndependentContacts {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const Contact& c = contacts_[r];
       ContactRow& row = rows[r];
-      const double last = start == WarmStart::kApplied ? row.normal_impulse : 0;
+      const double last = start == WarmStart::kToApply ? 0 : row.normal_impulse;
       const double pressing = std::max(c.approach - sigma_ * c.coupling, 0.0);
       row.normal_impulse = c.inverse_mass > 0 ? pressing / c.inverse_mass : 0;
       row.tangential_impulse.setZero();
@@ -104,7 +104,7 @@ class IndependentContacts {
     if (volume != nullptr) contact.coupling = answer.dot(volume->at.gradient[contact.node]);
     if (contact.inverse_mass > 0)
       contact.impulse_coupling = contact.coupling / contact.inverse_mass;
-    if (start == WarmStart::kApplied) {
+    if (start != WarmStart::kToApply) {
       contact.approach += contact.inverse_mass * row.normal_impulse;
       started_ += contact.coupling * row.normal_impulse;
     }

@@ -202,6 +202,7 @@ ContactRow ProbeContacts::row_of(const CarriedContact& contact, const Body& body
   row.gap = row.normal.dot(point - tissue);
   row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
   row.friction = friction_;
+  row.radius = radius();
   row.normal_impulse = contact.normal_impulse;
   row.tangential_impulse = contact.tangential_impulse;
   return row;

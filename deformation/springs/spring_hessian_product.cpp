@@ -100,6 +100,7 @@ void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, const S
   h_ = static_cast<float>(h);
   damping_ = static_cast<float>(shares.damping / h);
   take_positions(positions);
+  contacts_.clear();
   functions_.linearise(layout_.view(), couplings(), {slices.data(), slices.size()}, blocks_.data(),
                        virtual_blocks_.data());
   for (const std::uint32_t slice : slices) {
@@ -114,6 +115,7 @@ void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double 
   h_ = static_cast<float>(h);
   damping_ = 1;
   take_positions(positions);
+  contacts_.clear();
   const kernel::Layout layout = layout_.view();
   const kernel::Couplings out = couplings();
   const std::size_t stride = kBlockNumbers * kLanes * layout.virtual_node_count;
@@ -179,13 +181,30 @@ double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
     out[node] = sum;
     dot += static_cast<double>(p.dot(sum));
   }
-  return dot;
+  return dot + apply_contacts(out);
 }
 
 double SpringHessianProduct::apply(std::span<const std::uint32_t> slices, std::vector<Vec4f>& out) {
   functions_.apply(layout_.view(), couplings(), {slices.data(), slices.size()}, masses_.data(),
                    out.data()->data(), virtual_sums_.data(), dots_.data());
-  return std::accumulate(dots_.begin(), dots_.begin() + kLanes, 0.0);
+  return std::accumulate(dots_.begin(), dots_.begin() + kLanes, 0.0) + apply_contacts(out);
+}
+
+void SpringHessianProduct::couple(std::span<const ContactCoupling> couplings) {
+  contacts_.assign(couplings.begin(), couplings.end());
+}
+
+double SpringHessianProduct::apply_contacts(std::vector<Vec4f>& out) const {
+  double dot = 0;
+  for (const ContactCoupling& contact : contacts_) {
+    float speed = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      speed += contact.arms[k].dot(nodes_[contact.nodes[k]].vector);
+    }
+    for (std::size_t k = 0; k < 3; ++k) out[contact.nodes[k]] += speed * contact.arms[k];
+    dot += static_cast<double>(speed * speed);
+  }
+  return dot;
 }
 
 }  // namespace palpate::deformation

@@ -7,6 +7,7 @@
 // found from the slices of a patch's nodes alone.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct SpringShares {
   double mass = 0, damping = 0, stiffness = 0;
 };
 
+/// What a contact adds to such a matrix: a aᵀ, a of three nodes.
+struct ContactCoupling {
+  std::array<std::uint32_t, 3> nodes{};
+  std::array<Vec4f, 3> arms{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};  ///< [√kg]
+};
+
 class SpringHessianProduct {
  public:
   /// @param body         outlives this
@@ -37,6 +44,9 @@ class SpringHessianProduct {
   /// The same in some slices, of any shares of M, D and K with some K among them.
   void linearise(const std::vector<Vec3>& positions, const SpringShares& shares,
                  std::span<const std::uint32_t> slices);
+
+  /// Adds couplings to A, not to its diagonal, instead of those before; linearise() drops them.
+  void couple(std::span<const ContactCoupling> couplings);
 
   /// Slices that hold these surface nodes, rising.
   void find_slices(std::span<const std::uint32_t> nodes, std::vector<std::uint32_t>& slices) const;
@@ -55,6 +65,7 @@ class SpringHessianProduct {
 
  private:
   kernel::Couplings couplings();
+  double apply_contacts(std::vector<Vec4f>& out) const;
   void run(ChunkBody body);
   kernel::SliceList slices_of(std::size_t chunk) const;
   void take_positions(const std::vector<Vec3>& positions);
@@ -75,6 +86,7 @@ class SpringHessianProduct {
   AlignedVector<float> virtual_sums_;    ///< likewise
   AlignedVector<float> dots_;            ///< of p and A p, by chunk and lane
   std::vector<Mat3> diagonal_;
+  std::vector<ContactCoupling> contacts_;
 };
 
 }  // namespace palpate::deformation

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "deformation/contact/contact_tilt.h"
+#include "deformation/contact/gauss_seidel.h"
 #include "deformation/linear_algebra/conjugate_gradients.h"
 
 namespace palpate::deformation {
@@ -35,7 +37,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
 StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
   StepReport report;
   // 1. springs, volume and forces after free flight
-  linearise_springs(h, state);
+  linearise_springs(h, rows, state);
   report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
 
   // 2.-5. contacts, springs and volume
@@ -54,27 +56,38 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
 }
 
 void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
-  // 2. which contacts close, which slide
+  // 2. which contacts close
   volume_impulse_ = 0;
   forces_ = residual_;
+  friction_.begin(rows);
   solve_impulses(h, rows, state, WarmStart::kToApply);
 
-  // 3. springs, with those contacts and the volume held
+  // 3. springs and friction, with those contacts and the volume held
+  linearise_friction(rows);
   update_residual(rows);
-  relax_springs(rows);
+  relax_springs(rows, state);
 
-  // 4. what opened, closed or began to slide meanwhile
-  solve_impulses(h, rows, state, WarmStart::kApplied);
+  // 4. what opened or closed meanwhile
+  solve_impulses(h, rows, state, WarmStart::kFrictionKept);
 
-  // 5. the springs about the contacts
+  // 5. springs and friction about the contacts
   relax_contacts(h, rows, state);
+  for (ContactRow& row : rows) clamp_to_cone(row);
   keep_momentum(h, rows, state);
+}
+
+/// At trial_. The residual has the friction there, the matrix how it changes.
+void BackwardEuler::linearise_friction(std::span<ContactRow> rows) {
+  couplings_.resize(tilt_count_);
+  springs_.couple(couplings_);
+  friction_.linearise(inverse_mass_blocks_, trial_, rows);
+  friction_.append_couplings(rows, couplings_);
 }
 
 /// Solves with a given impulse of the contents, which is one more outside force.
 void BackwardEuler::push_with(double volume_impulse, double h, std::span<ContactRow> rows,
                               const OrganState& state) {
-  linearise_springs(h, state);
+  linearise_springs(h, rows, state);
   volume_row_.reset();
   const auto& gradient = free_.volume.gradient;
   for (std::size_t i = 0; i < gradient.size(); ++i) {
@@ -84,7 +97,8 @@ void BackwardEuler::push_with(double volume_impulse, double h, std::span<Contact
   volume_impulse_ = volume_impulse;
 }
 
-void BackwardEuler::linearise_springs(double h, const OrganState& state) {
+void BackwardEuler::linearise_springs(double h, std::span<const ContactRow> rows,
+                                      const OrganState& state) {
   predicted_.positions = state.positions;
   predicted_.velocities = state.velocities;
   add(h, state.velocities, predicted_.positions);
@@ -96,6 +110,28 @@ void BackwardEuler::linearise_springs(double h, const OrganState& state) {
     if (model_.inverse_masses[i] == 0) continue;
     residual_[i] = model_.masses[i] * (free_.velocities[i] - state.velocities[i]);
     inverse_mass_blocks_[i] = 0.5 * springs_.diagonal()[i].inverse();
+  }
+  couplings_.clear();
+  append_tilt_couplings(rows, state.positions, h, couplings_);
+  tilt_count_ = couplings_.size();
+  take_tilts(state);
+}
+
+/// In A, in D, whose inverse changes by Sherman's and Morrison's formula, and at this velocity.
+void BackwardEuler::take_tilts(const OrganState& state) {
+  for (const ContactCoupling& coupling : couplings_) {
+    double speed = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      speed += coupling.arms[k].head<3>().cast<double>().dot(state.velocities[coupling.nodes[k]]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t node = coupling.nodes[k];
+      if (model_.inverse_masses[node] == 0) continue;
+      const Vec3 arm = coupling.arms[k].head<3>().cast<double>();
+      const Vec3 answer = inverse_mass_blocks_[node] * arm;
+      inverse_mass_blocks_[node] -= 2 / (1 + 2 * arm.dot(answer)) * answer * answer.transpose();
+      residual_[node] -= speed * arm;
+    }
   }
 }
 
@@ -171,7 +207,8 @@ void BackwardEuler::take_impulses_from(std::span<const ContactRow> rows) {
   }
 }
 
-void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
+void BackwardEuler::relax_springs(std::span<ContactRow> rows, const OrganState& state) {
+  springs_.couple(couplings_);
   using Gradient = std::span<const Vec3>;
   projection_.prepare(inverse_mass_blocks_,
                       volume_row_ ? Gradient(volume_row_->at.gradient) : Gradient(), rows);
@@ -187,19 +224,26 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows) {
   projection_.take_impulses(rows, volume_impulse_, inner_residual_);
   for (std::size_t i = 0; i < residual_.size(); ++i) {
     change_[i] += inner_change_[i].head<3>().cast<double>();
+    trial_[i] = state.velocities[i] + change_[i];
     residual_[i] = inner_residual_[i].head<3>().cast<double>();
   }
+  friction_.apply(trial_, rows);
 }
 
 void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state) {
   if (rows.empty() || !contacts_.choose(h, predicted_.positions, rows)) return;
-  update_local_residual(rows);
-  contacts_.solve(inverse_mass_blocks_, residual_, rows);
-  for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
-    trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
+  for (int pass = 0; pass < kFrictionPasses; ++pass) {
+    linearise_friction(rows);
+    update_local_residual(rows);
+    springs_.couple(couplings_);
+    contacts_.solve(inverse_mass_blocks_, residual_, rows);
+    for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
+      trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
+    }
+    friction_.apply(trial_, rows);
+    hold_rows(h, rows, WarmStart::kFrictionKept);
+    for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
   }
-  hold_rows(h, rows, WarmStart::kApplied);
-  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
 }
 
 /// Truncated iterations leave a little of the total momentum undone. An organ that nothing holds
@@ -224,7 +268,8 @@ void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganSt
   evaluate_volume(model_, state.positions, free_.volume);
   if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
   trial_ = state.velocities;
-  hold_rows(h, rows, WarmStart::kApplied);
+  hold_rows(h, rows, WarmStart::kFrictionKept);
+  for (ContactRow& row : rows) clamp_to_cone(row);
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     state.positions[i] += h * (trial_[i] - state.velocities[i]);
   }

@@ -11,9 +11,11 @@
 // effective mass:
 //   impulses   one step down the gradient, Δv ← Δv + W r, then contacts and volume by Gauss–Seidel.
 //              W is half the inverse blocks: A ⪯ 2 D, so this never overshoots. It decides which
-//              contacts are closed and which slide.
+//              contacts are closed.
 //   springs    conjugate gradients with closed contacts and the volume held in every iterate
-//              (constraint_projection.h), at most `iterations` of them.
+//              (constraint_projection.h), at most `iterations` of them. A has by then how friction
+//              changes with the velocity (lagged_friction.h), and that triangles under a round
+//              probe resist tilting (contact_tilt.h).
 // and the impulses once more; then, on a fine wall, the springs about the contacts to the end, with
 // what has closed by now (contact_relaxation.h), so that every condition holds at the step's end,
 // however few iterations were made, and a probe feels the step it is in. What they leave of the
@@ -28,6 +30,7 @@
 #include <vector>
 
 #include "deformation/contact/constraint_projection.h"
+#include "deformation/contact/lagged_friction.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/springs/spring_hessian_product.h"
@@ -41,6 +44,9 @@ class BackwardEuler : public OrganDynamics {
   static constexpr int kIterations = 12;
   /// Not for stability: contacts and volume are taken as flat over a step [s].
   static constexpr double kLargestStep = 0.01;
+  /// Picard iterations of friction where a wall is fine; one more changes a press's force by less
+  /// than 2 %.
+  static constexpr int kFrictionPasses = 2;
   /// Passes over all springs in a step: forces, residual, one product per iteration.
   static constexpr int passes(int iterations) { return iterations + 2; }
 
@@ -62,7 +68,9 @@ class BackwardEuler : public OrganDynamics {
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
   void push_with(double volume_impulse, double h, std::span<ContactRow> rows,
                  const OrganState& state);
-  void linearise_springs(double h, const OrganState& state);
+  void linearise_springs(double h, std::span<const ContactRow> rows, const OrganState& state);
+  void take_tilts(const OrganState& state);
+  void linearise_friction(std::span<ContactRow> rows);
   /// Φ + h g·(v⁺ − velocities) = 0 with `volume` as it would be by these velocities.
   /// @returns false if g vanished
   bool linearise_volume(double h, double target_volume, VolumeGradient& volume,
@@ -77,7 +85,7 @@ class BackwardEuler : public OrganDynamics {
   /// The same of the nodes of contacts_ alone.
   void update_local_residual(std::span<const ContactRow> rows);
   void take_impulses_from(std::span<const ContactRow> rows);
-  void relax_springs(std::span<ContactRow> rows);
+  void relax_springs(std::span<ContactRow> rows, const OrganState& state);
   void relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state);
   void keep_momentum(double h, std::span<const ContactRow> rows, const OrganState& state);
   void correct_volume(double h, std::span<ContactRow> rows, OrganState& state);
@@ -90,6 +98,9 @@ class BackwardEuler : public OrganDynamics {
   ConstraintProjection projection_;
   ContactRelaxation contacts_;
   SpringKernel kernel_;
+  LaggedFriction friction_;
+  std::vector<ContactCoupling> couplings_;  ///< of the contacts: tilts, then friction
+  std::size_t tilt_count_ = 0;
   OrganState predicted_;                   ///< x̃, v
   FreeStep free_;                          ///< what the springs do there in h, and the volume
   std::optional<VolumeRow> volume_row_;    ///< none: contents not kept, or g vanished

@@ -33,13 +33,11 @@ struct Fixture {
     inverse_mass_blocks[3].setZero();  // fixed
   }
 
-  /// On a triangle; sticking ones hold three directions.
-  void add_contact(std::size_t triangle, bool sticking) {
+  void add_contact(std::size_t triangle) {
     ContactRow row;
     row.nodes = model.triangles[triangle];
     row.weights = Vec3(0.5, 0.3, 0.2);
     row.normal = random_vector().normalized();
-    row.friction = sticking ? 0.5 : 0;
     row.normal_impulse = 1;
     contacts.push_back(row);
   }
@@ -51,16 +49,11 @@ struct Fixture {
       rows[0].segment<3>(3 * static_cast<Eigen::Index>(i)) = volume.gradient[i];
     }
     for (const ContactRow& contact : contacts) {
-      const Vec3 tangent = contact.normal.unitOrthogonal();
-      for (const Vec3& direction :
-           {contact.normal, tangent, contact.normal.cross(tangent).eval()}) {
-        Eigen::VectorXd row = Eigen::VectorXd::Zero(size());
-        for (int k = 0; k < 3; ++k) {
-          row.segment<3>(3 * contact.nodes[k]) = contact.weights[k] * direction;
-        }
-        rows.push_back(row);
-        if (contact.friction == 0) break;
+      Eigen::VectorXd row = Eigen::VectorXd::Zero(size());
+      for (int k = 0; k < 3; ++k) {
+        row.segment<3>(3 * contact.nodes[k]) = contact.weights[k] * contact.normal;
       }
+      rows.push_back(row);
     }
     Eigen::MatrixXd dense(static_cast<Eigen::Index>(rows.size()), size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -82,9 +75,9 @@ Eigen::VectorXd flat(const std::vector<Vec4f>& v) {
 TEST_CASE("constraint projection: agrees with dense linear algebra") {
   // Oracle: z = W r − W Bᵀ (B W Bᵀ)⁻¹ B W r by a dense LU. 1e-5: float.
   Fixture f;
-  f.add_contact(0, false);
-  f.add_contact(1, true);
-  f.add_contact(12, true);
+  f.add_contact(0);
+  f.add_contact(1);
+  f.add_contact(12);
   ConstraintProjection projection;
   projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   std::vector<Vec4f> z(f.r.size());
@@ -116,8 +109,8 @@ TEST_CASE("constraint projection: agrees with dense linear algebra") {
 TEST_CASE("constraint projection: a step in one pass is the same as its parts") {
   // Oracle: x + s p, r − s q, project() and a dot product; both leave the same of r. 1e-5: float.
   Fixture f;
-  f.add_contact(0, false);
-  f.add_contact(12, true);
+  f.add_contact(0);
+  f.add_contact(12);
   ConstraintProjection projection;
   projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   const double step = 0.3, kept = 0.6;
@@ -154,8 +147,8 @@ TEST_CASE("constraint projection: rows that take all but a millionth leave the r
   // Oracle: r = Bᵀ10⁶ + s has the projection of s, and r·z is zᵀW⁻¹z. 0.1: floats know r to 0.06.
   // Without a second projection r·z is rounding of 10¹², a thousand times itself and of any sign.
   Fixture f;
-  f.add_contact(0, false);
-  f.add_contact(12, true);
+  f.add_contact(0);
+  f.add_contact(12);
   ConstraintProjection projection;
   projection.prepare(f.inverse_mass_blocks, f.volume.gradient, f.contacts);
   auto small = f.r;
@@ -178,8 +171,8 @@ TEST_CASE("constraint projection: rows that take all but a millionth leave the r
 TEST_CASE("constraint projection: dependent contacts hold what one of them would") {
   // Oracle: definition. Twice the same contact: B W Bᵀ is singular.
   Fixture once, twice;
-  once.add_contact(5, true);
-  twice.add_contact(5, true);
+  once.add_contact(5);
+  twice.add_contact(5);
   twice.contacts.push_back(twice.contacts[0]);
   std::vector<Vec4f> z(once.r.size()), z_twice(once.r.size());
   ConstraintProjection projection;
@@ -193,9 +186,9 @@ TEST_CASE("constraint projection: dependent contacts hold what one of them would
 TEST_CASE("constraint projection: without rows it is W r, and held nodes do not move") {
   // Oracle: definition; a contact that holds fixed nodes only, or gives no impulse, is no row.
   Fixture f;
-  f.add_contact(5, false);
+  f.add_contact(5);
   f.contacts[0].normal_impulse = 0;
-  f.add_contact(6, true);
+  f.add_contact(6);
   for (const std::uint32_t node : f.contacts[1].nodes) f.inverse_mass_blocks[node].setZero();
   ConstraintProjection projection;
   projection.prepare(f.inverse_mass_blocks, {}, f.contacts);
@@ -212,7 +205,7 @@ TEST_CASE("constraint projection: contacts that hold every node leave the volume
   Fixture f;
   for (std::size_t t = 0; t < f.model.triangles.size(); ++t) {
     for (int corner = 0; corner < 3; ++corner) {
-      f.add_contact(t, true);
+      f.add_contact(t);
       f.contacts.back().weights = Vec3::Unit(corner);
     }
   }
