@@ -47,7 +47,10 @@ class Certifying {
       begin("link: " + d.name());
       add(disturbance_lines(subject_, d, push_, keep_going_));
     }
-    if (!options_.lockstep) real_processes();
+    if (!options_.lockstep) {
+      real_processes();
+      beside_others();
+    }
     contacts();
     certificate_.complete = true;
   }
@@ -144,9 +147,35 @@ class Certifying {
     }
     const auto timing = measure_timing(processes, options_.quick ? 10 : 60);
     write_timing(timing, options_.out);
-    add(timing_lines(timing, 1 / subject_.scene.rates.haptics));
+    add(timing_lines("timing", timing, 1 / subject_.scene.rates.haptics));
     hold_over_dds(processes);
     release(processes, pressed);
+  }
+
+  /// The same times, a session of their own with pictures and something else that wants to run.
+  void beside_others() {
+    const std::string group = "timing with pictures and a CPU hog";
+    begin(group);
+    if (!std::filesystem::exists(program_folder() / "palpate-visualizer")) {
+      add({not_measured(group, "the real processes", "no visualizer is installed")});
+      return;
+    }
+    bus::BusOptions bus = options_.bus;
+    bus.session += "_beside";
+    Processes processes(subject_, bus, options_.out, keep_going_, Beside::kPicturesAndHog);
+    const bool ready = processes.start();
+    processes.hold(pressing_hand());
+    const auto feels = [&](const Heard& heard) {
+      const auto pictures = heard.modules.find("visualizer");
+      return heard.force.force.norm() > kPressed * push_ && pictures != heard.modules.end() &&
+             pictures->second.state >= ModuleState::kRunning;
+    };
+    if (!ready || !processes.wait(feels, kFeltWithin)) {
+      add({not_measured(group, "the real processes", "they did not press within a minute")});
+      return;
+    }
+    add(timing_lines(group, measure_timing(processes, options_.quick ? 10 : 60),
+                     1 / subject_.scene.rates.haptics));
   }
 
   scene::EmulatedDevice pressing_hand() const {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "haptics/local_law.h"
 #include "studies/report/measures.h"
 #include "studies/rigs/pressed_organ.h"
 
@@ -16,9 +17,27 @@ constexpr double kSpeed = 0.02, kApproach = 1e-3, kOff = 2e-5;  // [m/s], [m], [
 constexpr double kDepths[] = {1. / 12, 1. / 6, 1. / 3, 2. / 3, 1, 4. / 3};
 constexpr double kMedian = 10, kWorst = 20;  // [%]
 
-/// Force against the press after a period that ends `off` beside it; the law before.
-double force(const Subject& subject, double depth, double off, LocalLaw& law,
-             const KeepGoing& keep_going) {
+/// Forces against the press after a period that ends `off` beside it.
+struct Forces {
+  double law = 0, organ = 0;  ///< what the law made before it gives then; the organ's own [N]
+};
+
+/// What the haptic loop makes of the law on its way to `end`, tick by tick.
+double law_force(const Subject& subject, const LocalLaw& law, const Vec3& end) {
+  const scene::Rates& rates = subject.scene.rates;
+  const int ticks = std::max(1, static_cast<int>(std::lround(rates.haptics / rates.deformation)));
+  haptics::LawSolver solver;
+  solver.take(law);
+  haptics::LawForce found;
+  for (int i = 1; i <= ticks; ++i) {
+    Pose pose = law.anchor;
+    pose.position += double(i) / ticks * (end - law.anchor.position);
+    found = solver.evaluate(pose, i * law.period / ticks);
+  }
+  return -found.wrench.force.dot(subject.place.into);
+}
+
+Forces forces_after(const Subject& subject, double depth, double off, const KeepGoing& keep_going) {
   scene::Scene scene = subject.scene;
   scene.organs = {subject.scene.organs[subject.place.organ]};
   const auto at = [&](double below) { return pose_below(subject.place, below); };
@@ -29,23 +48,23 @@ double force(const Subject& subject, double depth, double off, LocalLaw& law,
     keep_going();
     organ.advance({at(i * way - kApproach)});
   }
-  law = organ.law(0);
-  organ.advance({at((periods + 1) * way - kApproach + off)});
+  const LocalLaw law = organ.law(0);
+  const Pose end = at((periods + 1) * way - kApproach + off);
+  organ.advance({end});
   *subject.contacts += organ.contact_troubles();
-  return -organ.force(0).dot(subject.place.into);
+  return {law_force(subject, law, end.position), -organ.force(0).dot(subject.place.into)};
 }
 
 }  // namespace
 
 std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going) {
   std::vector<LawStiffness> found;
-  const Vec3& into = subject.place.into;
   for (const double share : kDepths) {
     const double depth = share * subject.depth;
-    LocalLaw law;
-    const double more = force(subject, depth, kOff, law, keep_going);
-    const double less = force(subject, depth, -kOff, law, keep_going);
-    found.push_back({depth, into.dot(law.stiffness * into), (more - less) / (2 * kOff)});
+    const Forces more = forces_after(subject, depth, kOff, keep_going);
+    const Forces less = forces_after(subject, depth, -kOff, keep_going);
+    found.push_back(
+        {depth, (more.law - less.law) / (2 * kOff), (more.organ - less.organ) / (2 * kOff)});
   }
   return found;
 }

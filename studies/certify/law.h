@@ -1,5 +1,5 @@
 // The stiffness of the hand's law against the organ's own: along a press, the force over one period
-// more, ended a little further and a little less far.
+// more, ended a little further and a little less far; of the law as the haptic loop evaluates it.
 #pragma once
 
 #include "studies/certify/line.h"

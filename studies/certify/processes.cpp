@@ -67,7 +67,7 @@ struct Processes::Bus {
 };
 
 Processes::Processes(const Subject& subject, const bus::BusOptions& bus,
-                     const std::filesystem::path& folder, KeepGoing keep_going)
+                     const std::filesystem::path& folder, KeepGoing keep_going, Beside beside)
     : subject_(subject),
       options_(bus),
       keep_going_(std::move(keep_going)),
@@ -77,6 +77,11 @@ Processes::Processes(const Subject& subject, const bus::BusOptions& bus,
   std::ofstream(file_) << scene::resolved_text(scene_);
   scene_ = scene::load_scene(file_);  // its digest is what the others compare
   for (const char* module : kModules) start_module(module);
+  if (beside == Beside::kPicturesAndHog) {
+    start_module("visualizer", {"--headless"});
+    children_["hog"] = std::make_unique<launcher::ChildProcess>(
+        "/bin/sh", std::vector<std::string>{"-c", "while :; do :; done"});
+  }
   bus_ = std::make_unique<Bus>(options_, scene_);
   hold(firm_hand(subject.device, subject.place, {}));
   began_ns_ = 0;
@@ -94,11 +99,12 @@ Processes::~Processes() {
   }
 }
 
-void Processes::start_module(const std::string& module) {
-  children_[module] = std::make_unique<launcher::ChildProcess>(
-      program_folder() / ("palpate-" + module),
-      std::vector<std::string>{file_.string(), "--session", options_.session, "--domain",
-                               std::to_string(options_.domain)});
+void Processes::start_module(const std::string& module, std::vector<std::string> more) {
+  std::vector<std::string> arguments{file_.string(), "--session", options_.session, "--domain",
+                                     std::to_string(options_.domain)};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  children_[module] =
+      std::make_unique<launcher::ChildProcess>(program_folder() / ("palpate-" + module), arguments);
 }
 
 bool Processes::start() {

@@ -28,13 +28,19 @@ struct Heard {
   std::vector<Tick> held;         ///< time and depth of the body, since a hand took the device
 };
 
+/// What else runs on the machine.
+enum class Beside {
+  kNothing,
+  kPicturesAndHog  ///< the visualizer, without a window, and a program that takes what it gets
+};
+
 class Processes {
  public:
   /// Starts deformation, collision and haptics on the subject's scene, whose probe becomes a
   /// `topic`, written to `folder`. What they say is dropped.
   /// @throws std::runtime_error if one cannot be started
   Processes(const Subject& subject, const bus::BusOptions& bus, const std::filesystem::path& folder,
-            KeepGoing keep_going);
+            KeepGoing keep_going, Beside beside = Beside::kNothing);
   ~Processes();
 
   /// Waits until all are ready and starts the session. False after a minute.
@@ -55,7 +61,7 @@ class Processes {
 
  private:
   struct Bus;
-  void start_module(const std::string& module);
+  void start_module(const std::string& module, std::vector<std::string> more = {});
   void tick();
   void drive_device(std::int64_t now_ns);
   void listen(std::int64_t now_ns);

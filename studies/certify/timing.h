@@ -11,6 +11,7 @@ struct Timing {
   std::uint64_t cycles = 0, overruns = 0;  ///< of haptics
   bool realtime = false;                   ///< haptics was granted SCHED_FIFO
   double factor = 0;                       ///< real-time factor of deformation at the end
+  double stolen = 0;                       ///< by the host of the machine, of its cores' time
 };
 
 /// Of a started session, whose hand presses.
@@ -19,7 +20,8 @@ Timing measure_timing(Processes& processes, double seconds);
 /// Value below which `part` of them are; 0 if there are none.
 double quantile(std::vector<double> values, double part);
 
+/// @param group   of the lines
 /// @param period  T of the scene [s]
-std::vector<Line> timing_lines(const Timing& timing, double period);
+std::vector<Line> timing_lines(const std::string& group, const Timing& timing, double period);
 
 }  // namespace palpate::certify

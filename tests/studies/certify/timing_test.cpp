@@ -23,11 +23,12 @@ TEST_CASE("certify timing: a loop that misses ticks, or answers late, fails the 
   timing.latencies.assign(10'000, 2e-3);
   timing.cycles = 9980;
   timing.overruns = 20;
-  for (const Line& line : timing_lines(timing, 1e-3)) {
+  for (const Line& line : timing_lines("timing", timing, 1e-3)) {
     INFO(text_of(line));
     const bool broken = line.name == "loop period, p99.9" || line.name == "ticks on time" ||
                         (line.name.starts_with("pose to force") && !line.name.ends_with("max"));
     CHECK((line.verdict == Verdict::kFail) == broken);
   }
-  for (const Line& line : timing_lines({}, 1e-3)) CHECK(line.verdict == Verdict::kNotMeasured);
+  for (const Line& line : timing_lines("timing", {}, 1e-3))
+    CHECK(line.verdict == Verdict::kNotMeasured);
 }
