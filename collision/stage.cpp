@@ -37,18 +37,30 @@ class OrganInputs {
   struct OrganInput {
     std::uint32_t generation = 0;
     std::vector<geometry::Triangle> triangles;
+    std::vector<std::uint32_t> triangle_blocks;
     std::size_t surface_node_count = 0;
     std::vector<float> rest_positions;  ///< x, y, z per node [m]
   };
+
+  static void read_boxes(std::span<const float> from, std::vector<geometry::BlockBox>& boxes) {
+    boxes.resize(from.size() / 6);
+    for (geometry::BlockBox& box : boxes) {
+      std::copy_n(from.begin(), 3, box.lower.begin());
+      std::copy_n(from.begin() + 3, 3, box.upper.begin());
+      from = from.subspan(6);
+    }
+  }
 
   /// A surface starts its organ anew: what was remembered of the search before no longer holds.
   void take_surface() {
     if (surface_.organ >= organs_.size()) return;
     OrganInput& organ = organs_[surface_.organ];
-    const bool same_shape = finder_ && organ.triangles == surface_.triangles;
+    const bool same_shape = finder_ && organ.triangles == surface_.triangles &&
+                            organ.triangle_blocks == surface_.triangle_blocks;
     organ.generation = surface_.generation;
     organ.surface_node_count = surface_.surface_node_count;
     organ.triangles = surface_.triangles;
+    organ.triangle_blocks = surface_.triangle_blocks;
     organ.rest_positions = surface_.rest_positions;
     if (!same_shape) return make_finder();
     finder_->reset();
@@ -64,11 +76,13 @@ class OrganInputs {
   void make_finder() {
     finder_.reset();
     std::vector<std::vector<geometry::Triangle>> triangles;
+    std::vector<std::vector<std::uint32_t>> blocks;
     for (const OrganInput& organ : organs_) {
       if (organ.triangles.empty()) return;
       triangles.push_back(organ.triangles);
+      blocks.push_back(organ.triangle_blocks);
     }
-    finder_.emplace(std::move(triangles), probes_);
+    finder_.emplace(std::move(triangles), probes_, blocks);
     for (std::size_t i = 0; i < organs_.size(); ++i) put_at_rest(i);
   }
 
@@ -80,7 +94,7 @@ class OrganInputs {
         newest_.positions.size() < 3 * organ.surface_node_count) {
       return;
     }
-    boxes_.clear();
+    read_boxes(newest_.block_boxes, boxes_);
     finder_->take_organ(newest_.organ, newest_.positions, boxes_);
     sequence_ = newest_.header.sequence;
     if (newest_.organ != 0) return;

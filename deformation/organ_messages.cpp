@@ -23,6 +23,7 @@ SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ
   message.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count);
   write_float32(model.rest_positions, message.rest_positions);
   message.triangles = model.triangles;
+  message.triangle_blocks = geometry::SurfaceBlocks::split(model.rest_positions, model.triangles);
   message.fixed_nodes = model.fixed_nodes;
   if (model.is_solid()) return message;
   const SpringNetwork& network = model.network();
@@ -44,6 +45,15 @@ void write_node_positions(const DeformationWorld& world, std::size_t organ, Node
   out.elastic_energy = reading.elastic_energy;
   out.organ_contacts = static_cast<std::uint32_t>(reading.organ_contacts);
   write_float32(reading.positions, out.positions);
+}
+
+void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out) {
+  out.block_boxes.clear();
+  for (std::size_t block = 0; block < blocks.count(); ++block) {
+    const geometry::BlockBox box = blocks.box_of(block, out.positions);
+    out.block_boxes.insert(out.block_boxes.end(), box.lower.begin(), box.lower.end());
+    out.block_boxes.insert(out.block_boxes.end(), box.upper.begin(), box.upper.end());
+  }
 }
 
 ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "deformation/world.h"
+#include "modules/geometry/surface_blocks.h"
 #include "modules/messages/messages.h"
 
 namespace palpate::deformation {
@@ -13,6 +14,10 @@ SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ
 /// Positions (float32), volume, pressure and energies of an organ. No allocation once `out` has
 /// held the organ.
 void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out);
+
+/// The box of every block of the organ's surface, of the positions that `out` holds.
+/// @param blocks  those of surface_message()
+void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out);
 
 /// The tissue's local law for a probe.
 ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe);

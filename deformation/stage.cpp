@@ -93,8 +93,10 @@ class Outputs {
         models_(bus.writer(bus::kContactModel)) {}
 
   void publish_surfaces(const DeformationWorld& world) {
+    blocks_.clear();
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
       SurfaceTopology surface = surface_message(world, organ);
+      blocks_.emplace_back(surface.triangles, surface.triangle_blocks);
       surfaces_.write(surface);
     }
   }
@@ -103,6 +105,7 @@ class Outputs {
     const Header header{0, ns_from_seconds(sim_time), 0};
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
       write_node_positions(world, organ, node_positions_);
+      write_block_boxes(blocks_[organ], node_positions_);
       node_positions_.header = header;
       positions_.write(node_positions_);
     }
@@ -125,6 +128,7 @@ class Outputs {
   bus::Writer<SurfaceTopology> surfaces_;
   bus::Writer<NodePositions> positions_;
   bus::Writer<ContactModel> models_;
+  std::vector<geometry::SurfaceBlocks> blocks_;  ///< by organ
   NodePositions node_positions_;
   ContactModel model_;
 };

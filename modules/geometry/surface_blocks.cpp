@@ -131,18 +131,20 @@ void SurfaceBlocks::bound(std::span<const Vec3> nodes, std::vector<BlockBox>& bo
   }
 }
 
-void SurfaceBlocks::bound(std::span<const float> nodes, std::vector<BlockBox>& boxes) const {
-  boxes.assign(count(), BlockBox());
-  for (std::size_t block = 0; block < boxes.size(); ++block) {
-    BlockBox box;
-    for (const std::uint32_t node : nodes_of(block)) {
-      for (int k = 0; k < 3; ++k) {
-        box.lower[k] = std::min(box.lower[k], nodes[3 * node + k]);
-        box.upper[k] = std::max(box.upper[k], nodes[3 * node + k]);
-      }
+BlockBox SurfaceBlocks::box_of(std::size_t block, std::span<const float> nodes) const {
+  BlockBox box;
+  for (const std::uint32_t node : nodes_of(block)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.lower[k] = std::min(box.lower[k], nodes[3 * node + k]);
+      box.upper[k] = std::max(box.upper[k], nodes[3 * node + k]);
     }
-    boxes[block] = box;
   }
+  return box;
+}
+
+void SurfaceBlocks::bound(std::span<const float> nodes, std::vector<BlockBox>& boxes) const {
+  boxes.resize(count());
+  for (std::size_t block = 0; block < boxes.size(); ++block) boxes[block] = box_of(block, nodes);
 }
 
 }  // namespace palpate::geometry

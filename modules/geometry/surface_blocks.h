@@ -55,6 +55,8 @@ class SurfaceBlocks {
     return std::span(corners_).subspan(first_triangle_[block], triangles_of(block).size());
   }
 
+  /// @param nodes  three floats per node [m]
+  BlockBox box_of(std::size_t block, std::span<const float> nodes) const;
   /// The box of every block. @param nodes  doubles or, as on the wire, floats, three per node [m]
   void bound(std::span<const Vec3> nodes, std::vector<BlockBox>& boxes) const;
   void bound(std::span<const float> nodes, std::vector<BlockBox>& boxes) const;

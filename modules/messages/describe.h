@@ -76,6 +76,19 @@ constexpr const char* word_of(Enum value) {
   return is_word(value) ? Words<Enum>::texts[static_cast<std::size_t>(value)] : "unknown";
 }
 
+/// Whether every number from 0 to the greatest is there.
+inline bool counts_without_gaps(const std::vector<std::uint32_t>& numbers) {
+  std::vector<bool> seen(numbers.size(), false);
+  std::size_t greatest = 0, different = 0;
+  for (const std::uint32_t number : numbers) {
+    if (number >= seen.size()) return false;
+    greatest = std::max<std::size_t>(greatest, number);
+    if (!seen[number]) ++different;
+    seen[number] = true;
+  }
+  return numbers.empty() || different == greatest + 1;
+}
+
 /// A T, constant or not.
 template <class M, class T>
 concept Is = std::same_as<std::remove_const_t<M>, T>;
@@ -196,6 +209,7 @@ void describe(V& v, M& m) {
   v.field("kinetic_energy_j", m.kinetic_energy, Rule::kAtLeastZero);
   v.field("elastic_energy_j", m.elastic_energy, Rule::kAtLeastZero);
   v.field("organ_contacts", m.organ_contacts, Rule::kPlain);
+  v.numbers("block_boxes_m", m.block_boxes, Bounds{6, 0, kMaxTriangles, nullptr});
   v.numbers("positions_m", m.positions, Bounds{3, 1, kMaxNodes, "node_count"});
 }
 
@@ -208,6 +222,7 @@ void describe(V& v, M& m) {
   v.field("surface_node_count", m.surface_node_count, Rule::kPlain);
   v.numbers("rest_positions_m", m.rest_positions, Bounds{3, 1, kMaxNodes, "node_count"});
   v.numbers("triangle_nodes", m.triangles, Bounds{3, 0, kMaxTriangles, "triangle_count"});
+  v.numbers("triangle_blocks", m.triangle_blocks, Bounds{1, 0, kMaxTriangles, nullptr});
   v.numbers("fixed_nodes", m.fixed_nodes, Bounds{1, 0, kMaxNodes, "fixed_count"});
   v.numbers("spring_nodes", m.springs, Bounds{2, 0, kMaxSprings, "spring_count"}, [](auto& spring) {
     return std::array{&spring.node_a, &spring.node_b};
@@ -222,6 +237,10 @@ void describe(V& v, M& m) {
       return t[0] != t[1] && t[1] != t[2] && t[2] != t[0] &&
              std::max({t[0], t[1], t[2]}) < m.surface_node_count;
     });
+  });
+  v.require("triangle_blocks", [&] {
+    const auto& blocks = m.triangle_blocks;
+    return blocks.empty() || (blocks.size() == m.triangles.size() && counts_without_gaps(blocks));
   });
   v.require("fixed_nodes", [&] {
     return m.fixed_nodes.size() <= nodes() &&

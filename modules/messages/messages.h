@@ -64,6 +64,8 @@ struct NodePositions {
   double elastic_energy = 0;         ///< in all springs [J]
   std::uint32_t organ_contacts = 0;  ///< places where it presses on another organ or on itself
   std::vector<float> positions;      ///< x, y, z per node, in W [m]  (node_count × 3)
+  std::vector<float> block_boxes;  ///< least and greatest x, y, z of the triangles of each block of
+                                   ///< SurfaceTopology [m]  (block_count × 6); none: not told
 };
 
 /// What does not change while an organ deforms.
@@ -79,6 +81,8 @@ struct SurfaceTopology {
   std::uint32_t surface_node_count = 0;
   std::vector<float> rest_positions;                    ///< (node_count × 3) in W [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< outward orientation
+  std::vector<std::uint32_t> triangle_blocks;           ///< of each triangle, see
+                                                        ///< geometry::SurfaceBlocks; none: not told
   std::vector<std::uint32_t> fixed_nodes;
   std::vector<Spring> springs;
 };

@@ -30,7 +30,8 @@ struct Session {
 
   CollisionStage stage() { return {scene, collision::load_probes(scene), bus}; }
 
-  void publish_ball() {
+  /// @param blocks  told of it, at most one
+  void publish_ball(std::size_t blocks = 0) {
     const auto ball = geometry::make_ball(kRadius, 2);
     SurfaceTopology surface;
     surface.generation = 1;
@@ -42,6 +43,7 @@ struct Session {
       }
     }
     surface.triangles = ball.triangles;
+    surface.triangle_blocks.assign(blocks * ball.triangles.size(), 0);
     REQUIRE(surfaces.write(surface));
   }
 
@@ -88,6 +90,36 @@ TEST_CASE("collision stage: a finger in the ball touches it, one far away does n
   session.move_finger(0.055, 5 * kMs);
   CHECK(session.search(stage, 5 * kMs) > 0);
   CHECK(session.newest.probe_pose.position.z() == 0.055);
+}
+
+TEST_CASE(
+    "collision stage: where an organ is, is told by its blocks' boxes, or seen without them") {
+  // Oracle: by construction; the ball's only block is told to be elsewhere, then truly, then not.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball(1);
+  auto positions = session.bus.writer(bus::kNodePositions);
+  NodePositions told;
+  told.generation = 1;
+  for (const Vec3& x : geometry::make_ball(kRadius, 2).nodes) {
+    for (int axis = 0; axis < 3; ++axis) told.positions.push_back(static_cast<float>(x[axis]));
+  }
+  const float radius = 0.051F;
+  std::int64_t now_ns = kMs;
+  for (const auto& [boxes, is_found] :
+       {std::pair(std::vector<float>{1, 1, 1, 2, 2, 2}, false),
+        std::pair(std::vector<float>{-radius, -radius, -radius, radius, radius, radius}, true),
+        std::pair(std::vector<float>{}, true)}) {
+    told.block_boxes = boxes;
+    // Twice, for a search goes from the shape before to the newest.
+    for (int k = 0; k < 2; ++k, now_ns += 4 * kMs) {
+      NodePositions message = told;
+      REQUIRE(positions.write(message));
+      session.move_finger(0.0605, now_ns);
+      session.search(stage, now_ns);
+    }
+    CHECK(session.newest.contacts.empty() != is_found);
+  }
 }
 
 TEST_CASE("collision stage: a probe that fell silent touches nothing, and its status says so") {

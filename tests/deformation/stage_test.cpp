@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/memory_bus.h"
+#include "modules/geometry/surface_blocks.h"
 #include "tests/deformation/organs.h"
 
 using namespace palpate;
@@ -60,6 +61,33 @@ TEST_CASE(
   CHECK(session.positions.header.sim_time_ns == 4'000'000);
   CHECK(health.least_advance > 0);
   CHECK(health.least_advance <= kPeriod);
+}
+
+TEST_CASE(
+    "deformation stage: tells the box of every block of triangles, of the positions it tells") {
+  // Oracle: brute force over the corners of each block's triangles.
+  Session session;
+  REQUIRE(session.surfaces.take(session.surface));
+  const auto& blocks = session.surface.triangle_blocks;
+  REQUIRE(blocks.size() == session.surface.triangles.size());
+  for (int cycle = 0; cycle < 3; ++cycle) {
+    session.cycle(true);
+    REQUIRE(session.nodes.take(session.positions));
+    std::vector<geometry::BlockBox> boxes(session.positions.block_boxes.size() / 6);
+    for (std::size_t t = 0; t < blocks.size(); ++t) {
+      REQUIRE(blocks[t] < boxes.size());
+      for (const std::uint32_t node : session.surface.triangles[t]) {
+        const float* x = session.positions.positions.data() + 3 * node;
+        boxes[blocks[t]].add(Vec3(x[0], x[1], x[2]));
+      }
+    }
+    std::vector<float> expected;
+    for (const geometry::BlockBox& box : boxes) {
+      expected.insert(expected.end(), box.lower.begin(), box.lower.end());
+      expected.insert(expected.end(), box.upper.begin(), box.upper.end());
+    }
+    CHECK(session.positions.block_boxes == expected);
+  }
 }
 
 TEST_CASE("deformation stage: a law is given by a cycle that advances, not by one that waits") {

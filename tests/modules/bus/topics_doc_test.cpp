@@ -43,8 +43,10 @@ std::string bytes(const Wire& wire) {
   return std::to_string(4 + Wire::getCdrSerializedSize(wire));
 }
 
-std::string node_positions_bytes(std::size_t nodes) {
+/// @param blocks  of triangles
+std::string node_positions_bytes(std::size_t nodes, std::size_t blocks) {
   idl::NodePositions wire;
+  wire.block_boxes_m().resize(6 * blocks);
   wire.positions_m().resize(3 * nodes);
   return bytes(wire);
 }
@@ -85,10 +87,11 @@ TEST_CASE("docs/topics.md: sizes are those of the wire types", "[bus]") {
   CHECK(row_with("contact_model", bytes(idl::ContactModel()) + " B"));
   CHECK(row_with("haptic_force", bytes(idl::HapticForce()) + " B"));
   CHECK(row_with("session_control", bytes(idl::SessionControl()) + " B"));
-  CHECK(row_with("contacts", bytes(idl::Contacts()) + " B \\+ 96 B per contact"));
-  CHECK(node_positions_bytes(550) == "6684");
-  CHECK(node_positions_bytes(19'500) == "234084");
-  CHECK(row_with("node_positions", "6.7 KB / 234 KB"));
+  CHECK(row_with("contacts", bytes(idl::Contacts()) + " B \\+ 88 B per contact"));
+  // Halved until no block has more than 128 of 1,096 and of 38,996 triangles.
+  CHECK(node_positions_bytes(550, 16) == "7072");
+  CHECK(node_positions_bytes(19'500, 512) == "246376");
+  CHECK(row_with("node_positions", "7.1 KB / 246 KB"));
 }
 
 }  // namespace palpate::bus

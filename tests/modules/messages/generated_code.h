@@ -146,6 +146,7 @@ inline void check_same(const idl::NodePositions& w, const NodePositions& m) {
   REQUIRE(w.elastic_energy_j() == m.elastic_energy);
   REQUIRE(w.organ_contacts() == m.organ_contacts);
   REQUIRE(w.positions_m() == m.positions);
+  REQUIRE(w.block_boxes_m() == m.block_boxes);
 }
 
 inline void check_same(const idl::SurfaceTopology& w, const SurfaceTopology& m) {
@@ -155,6 +156,7 @@ inline void check_same(const idl::SurfaceTopology& w, const SurfaceTopology& m) 
   REQUIRE(w.name() == m.name);
   REQUIRE(w.surface_node_count() == m.surface_node_count);
   REQUIRE(w.rest_positions_m() == m.rest_positions);
+  REQUIRE(w.triangle_blocks() == m.triangle_blocks);
   REQUIRE(w.fixed_nodes() == m.fixed_nodes);
   REQUIRE(w.triangle_nodes().size() == 3 * m.triangles.size());
   for (std::size_t i = 0; i < w.triangle_nodes().size(); ++i) {

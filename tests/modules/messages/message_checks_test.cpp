@@ -225,6 +225,14 @@ TEST_CASE("message checks: SurfaceTopology", "[messages]") {
   CHECK(named<M>([](M& m) {
           m.triangles.resize(kMaxTriangles + 1, {0, 1, 2});
         }) == "triangle_nodes");
+  CHECK(named<M>([](M& m) { m.triangle_blocks.push_back(0); }) == "triangle_blocks");
+  for (const std::vector<std::uint32_t>& blocks :
+       {std::vector<std::uint32_t>{0, 2}, {1, 1}, {0, 4'000'000'000}}) {
+    CHECK(named<M>([&](M& m) {
+            m.triangles = {{0, 1, 2}, {0, 2, 1}};
+            m.triangle_blocks = blocks;
+          }) == "triangle_blocks");
+  }
   CHECK(named<M>([&](M& m) { m.fixed_nodes = {nodes(m)}; }) == "fixed_nodes");
   CHECK(named<M>([&](M& m) { m.fixed_nodes.assign(nodes(m) + 1, 0); }) == "fixed_nodes");
   CHECK(named<M>([](M& m) { m.springs = {{1, 1, SpringFamily::kInner}}; }) == "spring_nodes");

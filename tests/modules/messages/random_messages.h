@@ -142,6 +142,12 @@ inline void mend(Random& random, SurfaceTopology& m) {
     t[1] = after(t[0], 1);
     t[2] = after(t[0], 2);
   }
+  m.triangle_blocks.resize(m.triangles.size());
+  std::uint32_t block = 0;
+  for (std::uint32_t& of_triangle : m.triangle_blocks) {
+    of_triangle = block;
+    block += static_cast<std::uint32_t>(whole(random, 0, 1));
+  }
   for (auto& spring : m.springs) {
     spring.node_a = node();
     spring.node_b = after(spring.node_a, 1);
@@ -210,12 +216,12 @@ class Corrupter {
     corrupt(name, value, rule);
   }
   template <std::floating_point T>
-  void numbers(const char* name, std::vector<T>& list, const Bounds&) {
+  void numbers(const char* name, std::vector<T>& list, const Bounds& bounds) {
     for (T& x : list) {
       if (here(name)) x = std::numeric_limits<T>::infinity();
     }
     if (here(name)) list.push_back(0);
-    if (here(name)) list.clear();
+    if (bounds.min_entries > 0 && here(name)) list.clear();
   }
   template <class List>
   void numbers(const char* name, List& list, const Bounds& bounds) {
