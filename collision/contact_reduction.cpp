@@ -22,8 +22,10 @@ bool same(const FoundContact& a, const FoundContact& b) {
 
 void merge_duplicates(std::vector<FoundContact>& found) {
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
-    return std::tuple_cat(std::tie(a.organ, a.feature, a.triangle), order_within(a)) <
-           std::tuple_cat(std::tie(b.organ, b.feature, b.triangle), order_within(b));
+    if (a.organ != b.organ) return a.organ < b.organ;
+    if (a.feature != b.feature) return a.feature < b.feature;
+    if (a.triangle != b.triangle) return a.triangle < b.triangle;
+    return order_within(a) < order_within(b);
   });
   std::size_t kept = 0, group = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -44,6 +46,7 @@ auto deepest_first(const FoundContact& c) {
 }
 
 bool deeper(const FoundContact& a, const FoundContact& b) {
+  if (a.gap != b.gap) return a.gap < b.gap;  // nearly always decides
   return deepest_first(a) < deepest_first(b);
 }
 
@@ -51,29 +54,32 @@ bool deeper(const FoundContact& a, const FoundContact& b) {
 /// @returns the end of those kept
 std::vector<FoundContact>::iterator spread(std::vector<FoundContact>::iterator first,
                                            std::vector<FoundContact>::iterator last) {
-  const auto tissue = [](const FoundContact& c) -> Vec3 { return c.point_P - c.gap * c.normal_P; };
   if (last - first <= std::ptrdiff_t{kMostOfRound}) return last;
   std::sort(first, last, deeper);
-  auto kept = first + kMostOfRound / 2;
-  std::vector<double> apart(static_cast<std::size_t>(last - kept),
-                            std::numeric_limits<double>::infinity());
-  const auto note = [&](const FoundContact& other) {
-    const Vec3 x = tissue(other);
-    auto distance = apart.end() - (last - kept);
-    for (auto c = kept; c != last; ++c, ++distance) {
-      *distance = std::min(*distance, (tissue(*c) - x).squaredNorm());
+  struct Place {
+    Vec3 tissue;
+    double apart = std::numeric_limits<double>::infinity();  ///< from what is kept, squared [m²]
+  };
+  std::vector<Place> places;
+  for (auto c = first; c != last; ++c) places.push_back({c->point_P - c->gap * c->normal_P});
+  std::size_t kept = kMostOfRound / 2;
+  const auto note = [&](std::size_t other) {
+    const Vec3 x = places[other].tissue;
+    for (std::size_t i = kept; i < places.size(); ++i) {
+      places[i].apart = std::min(places[i].apart, (places[i].tissue - x).squaredNorm());
     }
   };
-  for (auto c = first; c != kept; ++c) note(*c);
-  while (kept != first + kMostOfRound) {
-    const auto from = apart.end() - (last - kept);
-    const auto farthest = std::max_element(from, apart.end());
-    std::swap(*kept, *(kept + (farthest - from)));
+  for (std::size_t i = 0; i < kept; ++i) note(i);
+  for (; kept < kMostOfRound; note(kept - 1)) {
+    const auto from = places.begin() + static_cast<std::ptrdiff_t>(kept);
+    const auto farthest = std::max_element(
+        from, places.end(),
+        [](const Place& one, const Place& other) { return one.apart < other.apart; });
+    std::swap(first[static_cast<std::ptrdiff_t>(kept)], first[farthest - places.begin()]);
     std::swap(*from, *farthest);
     ++kept;
-    note(*(kept - 1));
   }
-  return kept;
+  return first + static_cast<std::ptrdiff_t>(kept);
 }
 
 /// The same of each organ. @param found  sorted by organ

@@ -85,9 +85,10 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
   const double limit = kSameWall * outward.norm();
   const auto visit = [&](std::uint32_t triangle) {
     const std::uint32_t place = marks.at(triangle);
-    if (place == IndexMarks::kNone || candidates[place].on_wall) return;
+    if (place == IndexMarks::kNone) return;
+    marks.set(triangle, IndexMarks::kNone);  // decided here, once for all
     CoreCandidate& c = candidates[place];
-    if (!(c.triangle.normal_end.dot(outward) > limit)) return;
+    if (c.on_wall || !(c.triangle.normal_end.dot(outward) > limit)) return;
     c.on_wall = true;
     waiting.push_back(&c);
   };
