@@ -35,8 +35,7 @@ class ProbeInputs {
     }
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
       if (!states_heard_.silent(probe, now_ns) && !contacts_heard_.silent(probe, now_ns)) continue;
-      none_.probe = probe;
-      world.set_contacts(none_);
+      world.forget_contacts(probe);
     }
   }
 
@@ -55,7 +54,7 @@ class ProbeInputs {
   runtime::SilenceWatch states_heard_, contacts_heard_;
   std::vector<std::int64_t> sampled_ns_;  ///< the newest pose of each probe
   ProbeState state_;
-  Contacts newest_, none_;
+  Contacts newest_;
 };
 
 /// Simulated time on the session's clock: a world that joins late begins at the time it joins.

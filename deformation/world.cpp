@@ -293,6 +293,10 @@ void DeformationWorld::set_contacts(const ContactSet& contacts) {
   impl_->probes[contacts.probe].set_contacts(impl_->accepted);
 }
 
+void DeformationWorld::forget_contacts(std::size_t probe) {
+  if (probe < impl_->probes.size()) impl_->probes[probe].forget_contacts();
+}
+
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
   report.contact_refused = std::exchange(impl_->contact_refused, false);

@@ -51,6 +51,9 @@ class DeformationWorld {
   /// too, and the next advance says so.
   void set_contacts(const ContactSet& contacts);
 
+  /// Nobody knows where this probe touches any more: it touches nothing until set_contacts().
+  void forget_contacts(std::size_t probe);
+
   /// Advances every organ by `period` [s] in its stable sub-steps. Contacts hold unilaterally,
   /// with friction, inside the volume solve.
   AdvanceReport advance(double period);

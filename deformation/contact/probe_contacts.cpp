@@ -29,6 +29,13 @@ void ProbeContacts::reset() {
   begun_.clear();
 }
 
+void ProbeContacts::forget_contacts() {
+  contacts_.clear();
+  near_.clear();
+  gentle_.clear();
+  begun_.clear();
+}
+
 void ProbeContacts::set_pose(const Pose& pose) {
   target_ = pose;
   if (!placed_) start_ = pose;
@@ -72,7 +79,7 @@ void ProbeContacts::note_begun() {
     return std::ranges::find(contacts, organ, &CarriedContact::organ) != contacts.end();
   };
   std::erase_if(gentle_, [&](const GentleOrgan& g) { return !among(contacts_, g.organ); });
-  std::erase_if(near_, [&](const Near& n) { return !among(contacts_, n.organ); });
+  std::erase_if(near_, [&](const Near& n) { return !n.watched && !among(contacts_, n.organ); });
   std::erase_if(begun_, [&](std::uint32_t organ) { return !among(contacts_, organ); });
   for (const CarriedContact& contact : contacts_) {
     const bool known = std::ranges::find(begun_, contact.organ) != begun_.end();
@@ -165,9 +172,10 @@ void ProbeContacts::look_around(std::uint32_t organ, SurfaceWalk& surface, const
   });
   // A search that saw a resting probe inside knows better.
   if (near.inside || (found_behind && way() < kResting)) near.inside = is_behind_nearest(found_);
-  near.crossed = false;
+  near.crossed = near.watched = false;
   near.triangles.clear();
   for (const NearTriangle& found : found_) {
+    near.watched |= found.pair.distance <= core_->radius + kWatched;
     near.triangles.push_back(found.index);
     const bool touched = found.facing > 0 && found.pair.distance <= core_->radius + kTouched;
     if (!near.inside && touched) contact_on(organ, found.index);
@@ -212,7 +220,7 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
                                 double h, double fraction, std::vector<ContactRow>& rows) {
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   const std::size_t first = rows.size();
-  if (!has_contacts(organ)) return;
+  if (!has_contacts(organ) && !may_cross(organ)) return;
   if (core_) look_around(organ, surface, state, before);
   const bool inside = core_ && near_of(organ).inside;
   for (CarriedContact& contact : contacts_) {
@@ -288,6 +296,11 @@ Vec3 ProbeContacts::impulse() const {
 
 bool ProbeContacts::has_contacts(std::uint32_t organ) const {
   return std::ranges::find(contacts_, organ, &CarriedContact::organ) != contacts_.end();
+}
+
+bool ProbeContacts::is_watched(std::uint32_t organ) const {
+  const auto at = std::ranges::find(near_, organ, &Near::organ);
+  return at != near_.end() && at->watched;
 }
 
 bool ProbeContacts::touches(std::uint32_t organ) const {

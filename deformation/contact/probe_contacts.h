@@ -33,6 +33,8 @@ class ProbeContacts {
  public:
   /// A round probe's rows are those of all tissue nearer to it than this [m].
   static constexpr double kTouched = 1e-3;
+  /// Tissue this near is watched even when a search, which was earlier, found it out of reach [m].
+  static constexpr double kWatched = 0.03;
   static constexpr double kSeenDepth = 1e-3;    ///< [m]
   static constexpr double kGentleRise = 0.03;   ///< to the speed of a gentle push [s]
   static constexpr double kGentleEnd = 0.2;     ///< its speed falls with the depth over this [s]
@@ -42,6 +44,8 @@ class ProbeContacts {
   explicit ProbeContacts(const scene::Probe& probe);
 
   void reset();
+  /// Nobody knows where it touches: contacts are dropped, and nothing is watched.
+  void forget_contacts();
   void set_pose(const Pose& pose);
   /// Replaces the contacts; a contact on a triangle that had one starts from its impulses. Where
   /// the probe had no contact with an organ and now has one deeper than kSeenDepth and its own way,
@@ -68,8 +72,11 @@ class ProbeContacts {
   std::size_t take_rows(std::uint32_t organ, std::span<const ContactRow> rows);
 
   bool touches(std::uint32_t organ) const;
-  /// Whether a round probe has contacts there, so that it may cross the wall.
-  bool may_cross(std::uint32_t organ) const { return core_ && has_contacts(organ); }
+  /// Whether a round probe has contacts there, or had and is still near, so that it may cross the
+  /// wall.
+  bool may_cross(std::uint32_t organ) const {
+    return core_ && (has_contacts(organ) || is_watched(organ));
+  }
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance
@@ -85,6 +92,7 @@ class ProbeContacts {
     /// pass: where a wall is folded through itself the nearest triangle tells nothing.
     bool inside = true;
     bool crossed = false;                  ///< in the sub-step as it was last taken
+    bool watched = false;                  ///< nearer than kWatched
     std::vector<std::uint32_t> triangles;  ///< the nearest among them
   };
   Near& near_of(std::uint32_t organ);
@@ -104,6 +112,7 @@ class ProbeContacts {
   double way() const { return (target_.position - start_.position).norm(); }
   bool is_behind(const Contact& contact) const;
   bool has_contacts(std::uint32_t organ) const;
+  bool is_watched(std::uint32_t organ) const;
   void note_begun();
   void be_gentle(std::uint32_t organ, const OrganState& state, double h,
                  std::span<ContactRow> rows);

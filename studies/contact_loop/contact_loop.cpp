@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 
+#include "modules/core/error.h"
+#include "modules/core/rotation_vector.h"
 #include "modules/geometry/closest_points.h"
+#include "modules/geometry/primitives.h"
 #include "studies/contact_loop/winding_number.h"
 #include "studies/rigs/poked_organ.h"
 
 namespace palpate::contact_loop {
 namespace {
 
-constexpr double kShallow = -7e-3, kDeep = 15e-3;  // the ball's front below the skin at rest [m]
+constexpr double kShallow = -7e-3, kDeep = 15e-3;  // the tip below the skin at rest [m]
 constexpr double kMiddle = (kShallow + kDeep) / 2, kHalf = (kDeep - kShallow) / 2;
 constexpr double kHeldDepth = 10e-3;            // at the end [m]
 constexpr double kSideways = 8e-3;              // [m]
@@ -24,7 +28,8 @@ constexpr double kLeastPresses = 2;
 class Sliding final : public haptics::Device {
  public:
   Sliding(const Vec3& skin, const LoopCase& loop)
-      : skin_(skin - loop.radius * Vec3::UnitY()),
+      : skin_(skin - loop.tool.reach * Vec3::UnitY()),
+        rotation_(loop.tool.rotation),
         rate_(loop.speed / std::hypot(kHalf, kTurnX * kSideways, kTurnZ * kSideways)),
         last_turn_(2 * M_PI * std::ceil(std::max(kLeastPresses, kLeastMotion * rate_ / 2 / M_PI)) +
                    std::acos((kMiddle - kHeldDepth) / kHalf)) {}
@@ -36,6 +41,7 @@ class Sliding final : public haptics::Device {
     const double turn = std::clamp(rate_ * (time - kWait), 0.0, last_turn_);
     const double depth = kMiddle - kHalf * std::cos(turn);
     haptics::DeviceSample sample;
+    sample.pose.rotation = rotation_;
     sample.pose.position = skin_ + Vec3(kSideways * std::sin(kTurnX * turn), depth,
                                         kSideways * std::sin(kTurnZ * turn));
     if (turn <= 0 || turn >= last_turn_) return sample;
@@ -47,12 +53,13 @@ class Sliding final : public haptics::Device {
 
  private:
   Vec3 skin_;
+  Quat rotation_;
   double rate_, last_turn_;
 };
 
 scene::Scene scene_of(scene::Scene scene, const LoopCase& loop) {
   scene.probes.clear();
-  scene.probes.push_back({"ball", scene::SphereShape{loop.radius}, 0.1, scene::ScriptedDevice{}});
+  scene.probes.push_back({"tool", loop.tool.shape, 0.1, scene::ScriptedDevice{}});
   scene.rates.haptics = 1000;
   scene.rates.collision = loop.collision_hz;
   scene.rates.deformation = loop.deformation_hz;
@@ -62,8 +69,9 @@ scene::Scene scene_of(scene::Scene scene, const LoopCase& loop) {
 /// Looks at every search with the surface it was made on.
 class Judge {
  public:
-  explicit Judge(session::InProcess& session)
+  Judge(session::InProcess& session, const Tool& tool)
       : session_(session),
+        tool_(tool),
         contacts_(session.bus().reader(bus::kContacts)),
         positions_(session.bus().reader(bus::kNodePositions)),
         laws_(session.bus().reader(bus::kContactModel)) {}
@@ -86,9 +94,8 @@ class Judge {
     });
     if (at == surfaces_.rend()) return;
     ++result.advances;
-    const bool inside =
-        winding_number(law_.anchor.position, at->positions, session_.surface(0).triangles) > 0.5;
-    result.crossings += inside && !was_inside_;
+    const bool inside = !points_inside(law_.anchor, at->positions).empty();
+    result.crossings += tool_.is_round() && inside && !was_inside_;
     was_inside_ = inside;
   }
 
@@ -98,24 +105,16 @@ class Judge {
       return s.header.sequence == newest_.node_positions_sequence;
     });
     if (on == surfaces_.end()) return;
-    const Vec3& p = newest_.probe_pose.position;
-    const auto& triangles = session_.surface(0).triangles;
-    if (winding_number(p, on->positions, triangles) < 0.5) {
+    const auto points = points_inside(newest_.probe_pose, on->positions);
+    if (points.empty()) {
       lost_since_ = -1;
       return;
     }
     ++result.inside;
-    double nearest = 1e300;
-    const auto at = [&](std::uint32_t node) -> Vec3 {
-      return Eigen::Map<const Eigen::Vector3f>(&on->positions[3 * node]).cast<double>();
-    };
-    for (const auto& t : triangles) {
-      const auto q = geometry::closest_on_triangle(p, {at(t[0]), at(t[1]), at(t[2])});
-      nearest = std::min(nearest, (q.point - p).norm());
+    for (const Vec3& p : points) {
+      result.deepest = std::max(result.deepest, depth_of(p, on->positions));
     }
-    result.deepest = std::max(result.deepest, nearest);
-    const bool held = std::any_of(newest_.contacts.begin(), newest_.contacts.end(),
-                                  [](const Contact& c) { return c.gap < 0; });
+    const bool held = newest_.deepest_gap() < 0;
     if (held) {
       lost_since_ = -1;
       return;
@@ -127,7 +126,29 @@ class Judge {
         std::max(result.longest_lost, now - lost_since_ + 1 / session_.scene().rates.collision);
   }
 
+  std::vector<Vec3> points_inside(const Pose& pose, std::span<const float> positions) const {
+    std::vector<Vec3> points;
+    for (const Vec3& p_P : tool_.inside) {
+      const Vec3 p = pose.to_world(p_P);
+      if (winding_number(p, positions, session_.surface(0).triangles) > 0.5) points.push_back(p);
+    }
+    return points;
+  }
+
+  double depth_of(const Vec3& p, std::span<const float> positions) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    const auto at = [&](std::uint32_t node) -> Vec3 {
+      return Eigen::Map<const Eigen::Vector3f>(&positions[3 * node]).cast<double>();
+    };
+    for (const auto& t : session_.surface(0).triangles) {
+      const auto q = geometry::closest_on_triangle(p, {at(t[0]), at(t[1]), at(t[2])});
+      nearest = std::min(nearest, (q.point - p).norm());
+    }
+    return nearest;
+  }
+
   session::InProcess& session_;
+  const Tool& tool_;
   bus::Reader<Contacts> contacts_;
   bus::Reader<NodePositions> positions_;
   bus::Reader<ContactModel> laws_;
@@ -138,11 +159,49 @@ class Judge {
   double lost_since_ = -1;
 };
 
+Tool ball_of(double radius) {
+  return {"ball", scene::SphereShape{radius}, {}, Quat::Identity(), radius, {Vec3::Zero()}};
+}
+
+Tool needle() {
+  const scene::CapsuleShape shape{5e-4, 0.04};
+  Tool tool{"needle", shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitY()), 0, {}};
+  tool.reach = shape.length / 2 + shape.radius;
+  for (int i = 0; i <= 8; ++i)
+    tool.inside.push_back((i / 8.0 - 0.5) * shape.length * Vec3::UnitZ());
+  return tool;
+}
+
+Tool box_of(const std::string& name, const Vec3& size) {
+  return {name,         scene::BoxShape{size},         {}, Quat::Identity(),
+          size.y() / 2, geometry::make_box(size).nodes};
+}
+
+/// No two corners at one distance from the middle.
+Tool pebble() {
+  Tool tool{"mesh", scene::MeshShape{}, geometry::make_ball(5e-3, 1), Quat::Identity(), 0, {}};
+  for (std::size_t i = 0; i < tool.mesh.nodes.size(); ++i) {
+    tool.mesh.nodes[i] *= 1 + 0.1 * std::sin(7.0 * static_cast<double>(i));
+    tool.reach = std::max(tool.reach, tool.mesh.nodes[i].y());
+  }
+  tool.inside = tool.mesh.nodes;
+  return tool;
+}
+
 }  // namespace
+
+Tool make_tool(const std::string& name, double radius) {
+  if (name == "ball") return ball_of(radius);
+  if (name == "needle") return needle();
+  if (name == "box") return box_of(name, Vec3::Constant(0.01));
+  if (name == "blade") return box_of(name, Vec3(1e-3, 0.02, 0.015));
+  if (name == "mesh") return pebble();
+  throw InputError("tool '" + name + "': one of ball, needle, box, blade, mesh");
+}
 
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
                     const LoopCase& loop) {
-  session::InProcess session(scene_of(scene, loop), assets);
+  session::InProcess session(scene_of(scene, loop), {{assets.organs[0]}, {loop.tool.mesh}});
   const Vec3 skin(place.x(), rigs::front_of(assets.organs[0].surface, place.x(), place.z()),
                   place.z());
   auto device = std::make_unique<Sliding>(skin, loop);
@@ -151,7 +210,7 @@ LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, co
   session.haptics().set_device(0, std::move(device));
   LoopResult result;
   result.presses = presses;
-  Judge judge(session);
+  Judge judge(session, loop.tool);
   while (session.time() < duration) {
     session.tick();
     judge.look(result);

@@ -1,37 +1,60 @@
-// Does a session lose a contact? A ball goes in and out of an organ while it slides over it, and
-// every search for contacts is judged by the closed surface it was made on.
+// Does a session lose a contact? A ball, or another tool, goes in and out of an organ while it
+// slides over it, and every search for contacts is judged by the closed surface it was made on.
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "palpate/session/in_process.h"
 
 namespace palpate::contact_loop {
 
+/// What goes in and out: tip first, the tip in front.
+struct Tool {
+  std::string name;
+  scene::ProbeShape shape;
+  geometry::TriangleSurface mesh;  ///< of a MeshShape
+  Quat rotation = Quat::Identity();
+  double reach = 0;          ///< of the tip before the probe's origin, along +y in W [m]
+  std::vector<Vec3> inside;  ///< points in P that are judged: a ball's centre, corners, … [m]
+
+  /// Its points are its core, which goes through no wall. Corners are in it by what contacts give.
+  bool is_round() const {
+    return std::holds_alternative<scene::SphereShape>(shape) ||
+           std::holds_alternative<scene::CapsuleShape>(shape);
+  }
+};
+/// "ball", "needle" (1 mm thick, 40 mm long), "box" (10 mm), "blade" (1 mm thick, edge first),
+/// "mesh" (a rough pebble of 42 corners, 10 mm).
+/// @param radius  of the ball [m]
+/// @throws InputError for another name
+Tool make_tool(const std::string& name, double radius);
+
 struct LoopCase {
-  double radius = 2e-3;  ///< of the ball [m]
-  double speed = 0.1;    ///< largest [m/s]
+  Tool tool;
+  double speed = 0.1;  ///< largest [m/s]
   double deformation_hz = 100;
   double collision_hz = 250;
 };
 
-/// What a run did and its searches found. A search sees the ball where it is and the surface as it
+/// What a run did and its searches found. A search sees the tool where it is and the surface as it
 /// was up to a period ago: a ball that is faster than its radius in a period is inside that.
 struct LoopResult {
   long presses = 0;   ///< in and out
   long advances = 0;  ///< of deformation
-  /// Of these: the ball's centre was inside the surface they left at the pose they left it for, and
-  /// outside before.
+  /// Of these, of a round tool: a point of its core was inside the surface they left at the pose
+  /// they left it for, and none before.
   long crossings = 0;
   long searches = 0;
-  long inside = 0;           ///< the ball's centre was inside the surface
+  long inside = 0;           ///< a point of the tool was inside the surface
   long lost = 0;             ///< of these: no contact that pushes it out
   double longest_lost = 0;   ///< the longest such time [s]
   ContactTroubles troubles;  ///< as the session counts them
-  double deepest = 0;        ///< centre below the nearest point of the surface, when inside [m]
+  double deepest = 0;        ///< such a point below the nearest of the surface [m]
 };
 
-/// The first organ of the scene and one ball, from the front (-y) at `place` (x, z) [m].
+/// The first organ of the scene and one tool, from the front (-y) at `place` (x, z) [m].
 /// @param scene  its probes are replaced
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
                     const LoopCase& loop);

@@ -38,6 +38,10 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
                             : Files{folder / "stomach_probe.yaml", folder / "liver_solid.yaml",
                                     folder / "stomach_probe_refined.yaml"});
   using Numbers = std::vector<double>;
+  using Names = std::vector<std::string>;
+  const Names names =
+      or_else(options.tools, options.quick ? Names{"ball", "needle", "mesh"}
+                                           : Names{"ball", "needle", "box", "blade", "mesh"});
   const Numbers radii = or_else(
       options.radii, options.quick ? Numbers{1e-3, 4e-3} : Numbers{5e-4, 1e-3, 2e-3, 4e-3, 8e-3});
   const Numbers speeds =
@@ -45,7 +49,14 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
               options.quick ? Numbers{0.1, 1.0} : Numbers{0.05, 0.1, 0.25, 0.63, 1.26, 2.5});
   const Numbers rates =
       or_else(options.rates, options.quick ? Numbers{100} : Numbers{50, 100, 250});
-  out << "scene                   r [mm] v [m/s] [Hz]  searches inside   lost longest [s] "
+  std::vector<Tool> tools;
+  for (const std::string& name : names) {
+    if (name != "ball") tools.push_back(make_tool(name, 0));
+    for (const double radius : radii) {
+      if (name == "ball") tools.push_back(make_tool(name, radius));
+    }
+  }
+  out << "scene                   tool   r [mm] v [m/s] [Hz]  searches inside   lost longest [s] "
          "deepest [mm] presses advances crossings truncated unsolved\n";
   Sum sum;
   for (const auto& file : files) {
@@ -53,18 +64,20 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
     const session::Assets assets = session::load_assets(scene);
     const bool is_liver = scene.organs.at(0).name == "liver";
     for (const double rate : rates) {
-      for (const double radius : radii) {
+      for (const Tool& tool : tools) {
         for (const double speed : speeds) {
           if (stop()) return kExitFailed;
           const LoopResult r =
-              run_loop(scene, {{assets.organs[0]}, {geometry::TriangleSurface{}}},
-                       is_liver ? kOnLiver : kOnStomach, {radius, speed, rate, 250});
+              run_loop(scene, assets, is_liver ? kOnLiver : kOnStomach, {tool, speed, rate, 250});
+          const auto* ball = std::get_if<scene::SphereShape>(&tool.shape);
           out << fmt::format(
-                     "{:<23} {:6g} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:7} {:8} {:9} "
+                     "{:<23} {:<6} {:>6} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:7} {:8} "
+                     "{:9} "
                      "{:9} {:8}\n",
-                     file.stem().string(), 1e3 * radius, speed, rate, r.searches, r.inside, r.lost,
-                     r.longest_lost, 1e3 * r.deepest, r.presses, r.advances, r.crossings,
-                     r.troubles.truncated, r.troubles.unsolved)
+                     file.stem().string(), tool.name,
+                     ball != nullptr ? fmt::format("{:g}", 1e3 * ball->radius) : "", speed, rate,
+                     r.searches, r.inside, r.lost, r.longest_lost, 1e3 * r.deepest, r.presses,
+                     r.advances, r.crossings, r.troubles.truncated, r.troubles.unsolved)
               << std::flush;
           ++sum.runs;
           sum.inside += r.inside;
@@ -79,7 +92,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
   out << fmt::format(
              "{} runs: {} searches inside an organ, {} of them without contact\n{} presses: {} "
              "times "
-             "the organ was left with the ball's centre inside\n",
+             "the organ was left with a point of the tool inside\n",
              sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings)
       << session::contact_line(sum.troubles) << '\n';
   return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone

@@ -12,12 +12,13 @@ namespace {
 constexpr double kRadius = 8e-3, kStep = 0.01, kForce = 0.5e-3;
 
 /// A triangle, and a core over the place of these weights, at the radius; outside of an edge.
-struct Touched {
+struct TiltedContact {
   std::vector<Vec3> positions;
   ContactRow row;
   Vec3 core;
 
-  Touched(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& weights) : positions{a, b, c} {
+  TiltedContact(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& weights)
+      : positions{a, b, c} {
     row.nodes = {0, 1, 2};
     row.weights = weights;
     row.normal = (b - a).cross(c - a).normalized();
@@ -64,7 +65,8 @@ TEST_CASE("contact tilt: resists as much as the distance to the core bends, time
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (const Vec3& weights : {Vec3(0.2, 0.3, 0.5), Vec3(0, 0.4, 0.6), Vec3(0.7, 0, 0.3)}) {
-    const Touched touched(Vec3(0, 0, 0), Vec3(2e-3, 0, 0.3e-3), Vec3(0.8e-3, 1.9e-3, 0), weights);
+    const TiltedContact touched(Vec3(0, 0, 0), Vec3(2e-3, 0, 0.3e-3), Vec3(0.8e-3, 1.9e-3, 0),
+                                weights);
     for (int k = 0; k < 10; ++k) {
       const Vec3 heights = 1e-5 * Vec3(uniform(random), uniform(random), uniform(random));
       const double bend = touched.distance(heights) - 2 * touched.distance(Vec3::Zero()) +
@@ -76,8 +78,8 @@ TEST_CASE("contact tilt: resists as much as the distance to the core bends, time
 
 TEST_CASE("contact tilt: on an obtuse triangle it is no smaller, and no lift is resisted") {
   // Oracle: as above; what does not tilt costs nothing.
-  const Touched touched(Vec3(0, 0, 0), Vec3(2e-3, 0, 0), Vec3(2.6e-3, 0.9e-3, 0),
-                        Vec3(0.3, 0.4, 0.3));
+  const TiltedContact touched(Vec3(0, 0, 0), Vec3(2e-3, 0, 0), Vec3(2.6e-3, 0.9e-3, 0),
+                              Vec3(0.3, 0.4, 0.3));
   std::mt19937 random(4);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int k = 0; k < 10; ++k) {
@@ -93,19 +95,19 @@ TEST_CASE("contact tilt: a flat probe, a row that does not press and a corner re
   // Oracle: definition.
   const Vec3 a(0, 0, 0), b(2e-3, 0, 0), c(0, 2e-3, 0);
   std::vector<ContactCoupling> couplings;
-  const auto count = [&](const Touched& touched) {
+  const auto count = [&](const TiltedContact& touched) {
     couplings.clear();
     append_tilt_couplings({&touched.row, 1}, touched.positions, kStep, couplings);
     return couplings.size();
   };
-  Touched touched(a, b, c, Vec3(0.2, 0.3, 0.5));
+  TiltedContact touched(a, b, c, Vec3(0.2, 0.3, 0.5));
   CHECK(count(touched) > 0);
   touched.row.radius = 0;
   CHECK(count(touched) == 0);
   touched.row.radius = kRadius;
   touched.row.normal_impulse = 0;
   CHECK(count(touched) == 0);
-  CHECK(count(Touched(a, b, c, Vec3(0, 1, 0))) == 0);
+  CHECK(count(TiltedContact(a, b, c, Vec3(0, 1, 0))) == 0);
 }
 
 }  // namespace

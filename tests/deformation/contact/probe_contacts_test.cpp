@@ -231,5 +231,29 @@ TEST_CASE("probe contacts: a core that went through the wall gets a row where it
   CHECK_FALSE(tip.held(yielded));
 }
 
+TEST_CASE("probe contacts: tissue a search found out of reach is watched while it is near") {
+  // Oracle: analytic: an empty list, then straight down through the top; and no watch where nobody
+  // knows, far away, or for a flat probe.
+  constexpr double kLong = 0.1;  // in which it goes 60 mm and is no jump [s]
+  for (const double height : {4e-3, 0.5 * ProbeContacts::kWatched, 2 * ProbeContacts::kWatched}) {
+    Tip tip;
+    tip.go(height, height);
+    tip.probe.set_contacts({});
+    const bool is_near = height < ProbeContacts::kWatched;
+    CHECK(tip.probe.may_cross(0) == is_near);
+    tip.probe.end();
+    tip.probe.set_pose(pose_at(tip.above(-3e-3)));
+    REQUIRE(tip.probe.begin(kLong));
+    tip.rows.clear();
+    const auto& x = tip.organ.state.positions;
+    tip.probe.append_rows(0, tip.organ.surface, tip.organ.state, kLong, 1.0, tip.rows);
+    CHECK(tip.rows.empty());
+    CHECK(tip.probe.hold_crossed(0, tip.organ.surface, x, x, kLong, 1.0, tip.rows) == is_near);
+    CHECK(tip.rows.size() == (is_near ? 1 : 0));
+    tip.probe.forget_contacts();
+    CHECK_FALSE(tip.probe.may_cross(0));
+  }
+}
+
 }  // namespace
 }  // namespace palpate::deformation

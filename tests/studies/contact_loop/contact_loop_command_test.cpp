@@ -12,6 +12,7 @@ TEST_CASE("contact loop command: a line for each ball and their sum, stopped, it
   // Oracle: the options.
   ContactLoopOptions options;
   options.scenes = {data_file("scenes/stomach_probe.yaml")};
+  options.tools = {"ball"};
   options.radii = {2e-3, 8e-3};
   options.speeds = {0.63};
   options.rates = {100};

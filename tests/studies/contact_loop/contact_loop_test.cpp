@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/core/data_folder.h"
+#include "modules/core/error.h"
 #include "modules/geometry/primitives.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/contact_loop/winding_number.h"
@@ -29,8 +30,8 @@ TEST_CASE("contact loop: no ball at any speed is inside the stomach without a co
   for (const double rate : {50.0, 100.0, 250.0}) {
     for (const double radius : {5e-4, 2e-3, 8e-3}) {
       for (const double speed : {0.1, 0.63, 2.5}) {
-        const LoopResult result =
-            run_loop(scene, assets, {0.022, 0, -0.004}, {radius, speed, rate, 250});
+        const LoopResult result = run_loop(scene, assets, {0.022, 0, -0.004},
+                                           {make_tool("ball", radius), speed, rate, 250});
         INFO(radius << " m at " << speed << " m/s, " << rate << " Hz");
         CHECK(result.lost == 0);
         CHECK(result.crossings == 0);
@@ -41,6 +42,41 @@ TEST_CASE("contact loop: no ball at any speed is inside the stomach without a co
     }
   }
   CHECK(inside > 100);  // else nothing was tried
+}
+
+TEST_CASE("contact loop: no needle, box, blade or mesh is inside the stomach without a contact") {
+  // Oracle: winding numbers of the core's points and of all corners.
+  const auto scene = scene::load_scene(data_file("scenes/stomach_probe.yaml"));
+  const session::Assets assets = session::load_assets(scene);
+  for (const char* name : {"needle", "box", "blade", "mesh"}) {
+    const Tool tool = make_tool(name, 0);
+    long inside = 0;
+    for (const double rate : {50.0, 100.0, 250.0}) {
+      for (const double speed : {0.1, 2.5}) {
+        const LoopResult result =
+            run_loop(scene, assets, {0.022, 0, -0.004}, {tool, speed, rate, 250});
+        INFO(name << " at " << speed << " m/s, " << rate << " Hz");
+        CHECK(result.lost == 0);
+        CHECK(result.crossings == 0);
+        CHECK(result.troubles.lost == 0);
+        inside += result.inside;
+      }
+    }
+    CHECK(inside > 100);  // else nothing was tried
+  }
+}
+
+TEST_CASE("contact loop: a tool reaches as far before its origin as its points say") {
+  // Oracle: brute force over the surface of each shape.
+  for (const char* name : {"ball", "needle", "box", "blade", "mesh"}) {
+    const Tool tool = make_tool(name, 3e-3);
+    const auto surface = geometry::surface_of(scene::form_of(tool.shape, tool.mesh), 1);
+    double reach = 0;
+    for (const Vec3& x : surface.nodes) reach = std::max(reach, (tool.rotation * x).y());
+    CHECK(reach == Approx(tool.reach).epsilon(0.02));
+    for (const Vec3& x : tool.inside) CHECK((tool.rotation * x).y() <= reach + 1e-12);
+  }
+  CHECK_THROWS_AS(make_tool("hammer", 1), InputError);
 }
 
 }  // namespace palpate::contact_loop
