@@ -242,9 +242,7 @@ TEST_CASE("backward Euler: steps ten times its largest, from a wild state, stay 
 TEST_CASE(
     "backward Euler: a fingertip held still comes to rest on a fine wall, whatever friction") {
   // Oracle: energy: drag and friction take it, nobody gives any. 0.5 %: what a swing leaves of a
-  // press's 20 % by exp(−5/s t/2) in 3 s is 0.01 %. Without the triangles' tilt in the matrix the
-  // force goes up and down by 4 % for ever, with friction given to the springs as a force by up to
-  // 40 %.
+  // press's 20 % by exp(−5/s t/2) in 3 s is 0.01 %.
   scene::Scene scene;
   scene::Organ organ = ball_organ();
   organ.tissue.youngs_modulus = 10e3;
