@@ -170,6 +170,12 @@ class LockstepRun {
         if (ended.failed) failures_[ended.module] = ended.how;
       }
     }
+    if (complete && modules_.any_running() && !stop_.requested()) {
+      log_ << "palpate: a process has not ended within 10 s of the session; a recording may lack "
+              "its "
+              "last samples\n";
+      exit_code_ = kExitFailed;
+    }
     modules_.stop();
     monitor_.poll();
     if (wall_time > 0) {

@@ -113,6 +113,16 @@ class LockstepModule {
       missing->wait(kLongestWait);
     }
     cursor_->finish(*stage_, end_ns);
+    wait_until_heard();
+  }
+
+  /// A writer that leaves takes along what a reader has not yet got: one that was stopped for a
+  /// while would wait for it in vain. A signal ends it.
+  void wait_until_heard() {
+    for (bus::Output* output : bus_.outputs()) {
+      while (!stop_.requested() && !output->raw().wait_until_received(kLongestWait)) {
+      }
+    }
   }
 
   void wait_for_command() { session_.wait(kLongestWait); }
