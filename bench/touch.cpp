@@ -9,10 +9,10 @@
 
 #include "deformation/model/organ_model.h"
 #include "modules/core/error.h"
-#include "modules/geometry/bisection.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/runtime/program.h"
+#include "modules/scene/assets.h"
 #include "studies/chart/equilibria.h"
 #include "studies/report/measures.h"
 #include "studies/rigs/poked_organ.h"
@@ -25,7 +25,7 @@ namespace {
 constexpr double kRate = 100;                                        // [Hz]
 constexpr double kSpeed = 10e-3;                                     // of the press [m/s]
 constexpr double kYoungsModulus = 5e3, kDensity = 1060, kDrag = 40;  // [Pa], [kg/m³], [1/s]
-constexpr std::size_t kSurfaceNodes = 300, kMostNodes = 50'000;
+constexpr std::size_t kSurfaceNodes = 300;
 constexpr std::array kDepths{3e-3, 6e-3, 9e-3};  // [m]
 
 struct Options {
@@ -176,14 +176,12 @@ class Bench {
 
   geometry::TetMesh halved(const Site& site, const Mesh& mesh) const {
     if (mesh.edge_over_radius == 0) return mesh_;
-    return geometry::bisected(
-        mesh_,
-        [&](const Vec3& x) {
-          return mesh.edge_over_radius * radius_ +
-                 mesh.growth *
-                     std::max(0.0, (x - site.touched).norm() - mesh.plateau_over_radius * radius_);
-        },
-        kMostNodes);
+    scene::Organ organ = organ_;
+    organ.pose = {};  // the mesh is placed already
+    organ.solid.refine = {{scene::SphereRegion{site.touched, mesh.plateau_over_radius * radius_}},
+                          mesh.edge_over_radius * radius_,
+                          mesh.growth};
+    return scene::refined(mesh_, organ);
   }
 
   double radius_;

@@ -36,24 +36,6 @@ double distance(const Region& region, const Vec3& x) {
   return (x - x.cwiseMax(box.min).cwiseMin(box.max)).norm();
 }
 
-/// The mesh, in its own frame, with smaller tetrahedra near the organ's regions, which are in W.
-geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
-  const Refinement& refine = organ.solid.refine;
-  if (refine.near.empty()) return mesh;
-  const auto longest_edge = [&](const Vec3& x) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const Region& region : refine.near) {
-      least = std::min(least, distance(region, organ.pose.to_world(x)));
-    }
-    return refine.edge_length + refine.growth * least;
-  };
-  try {
-    return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);
-  } catch (const InputError& error) {
-    throw InputError(std::string("key 'solid.refine': ") + error.what());
-  }
-}
-
 geometry::OrganShape load_tetrahedra(const Organ& organ, const std::string& owner) {
   const Mesh& mesh = organ.mesh;
   try {
@@ -82,6 +64,23 @@ geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Orga
 }
 
 }  // namespace
+
+geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
+  const Refinement& refine = organ.solid.refine;
+  if (refine.near.empty()) return mesh;
+  const auto longest_edge = [&](const Vec3& x) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Region& region : refine.near) {
+      least = std::min(least, distance(region, organ.pose.to_world(x)));
+    }
+    return refine.edge_length + refine.growth * least;
+  };
+  try {
+    return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);
+  } catch (const InputError& error) {
+    throw InputError(std::string("key 'solid.refine': ") + error.what());
+  }
+}
 
 geometry::OrganShape load_organ(const Organ& organ) {
   const std::string owner = "organ '" + organ.name + "'";

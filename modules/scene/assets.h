@@ -13,6 +13,11 @@ namespace palpate::scene {
 /// @throws InputError naming organ, file and problem
 geometry::OrganShape load_organ(const Organ& organ);
 
+/// `mesh`, in the organ's own frame, with smaller tetrahedra near the regions of its
+/// `solid.refine`.
+/// @throws InputError naming the key if it would have too many nodes
+geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ);
+
 /// Surface of a probe whose shape names a mesh, in its own frame [m]; empty for every other.
 /// @throws InputError naming probe, file and problem
 geometry::TriangleSurface load_probe_mesh(const Probe& probe);

@@ -24,17 +24,6 @@ SizeField about(const Vec3& centre, double radius, double finest, double growth)
       [=](const Vec3& x) { return finest + growth * std::max(0.0, (x - centre).norm() - radius); };
 }
 
-double volume_of_all(const TetMesh& mesh) {
-  double sum = 0;
-  for (const auto& [a, b, c, d] : mesh.tetrahedra) {
-    const double volume =
-        tetrahedron_volume(mesh.nodes[a], mesh.nodes[b], mesh.nodes[c], mesh.nodes[d]);
-    CHECK(volume > 0);
-    sum += volume;
-  }
-  return sum;
-}
-
 /// 1 for a regular one, 0 for a flat one.
 double mean_ratio(const TetMesh& mesh, const Tetrahedron& t) {
   double squares = 0;
@@ -114,8 +103,8 @@ TEST_CASE("bisection: the mesh stays conforming and keeps its volume and its sur
     INFO(fine.nodes.size() << " nodes");
     CHECK(fine.nodes.size() > 4 * coarse.nodes.size());
     check_conforming(fine);
-    const double volume = volume_of_all(coarse);
-    CHECK(volume_of_all(fine) == Approx(volume).epsilon(1e-12));
+    const double volume = testing::volume_of(coarse);
+    CHECK(testing::volume_of(fine) == Approx(volume).epsilon(1e-12));
     const OrganShape shape = shape_of(fine);
     CHECK(enclosed_volume(shape.surface.nodes, shape.surface.triangles) ==
           Approx(volume).epsilon(1e-12));

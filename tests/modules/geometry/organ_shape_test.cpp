@@ -11,14 +11,7 @@ namespace palpate::geometry {
 namespace {
 
 double tetrahedra_volume(const OrganShape& shape) {
-  double volume = 0;
-  for (const auto& [a, b, c, d] : shape.tetrahedra) {
-    const double part =
-        tetrahedron_volume(shape.node(a), shape.node(b), shape.node(c), shape.node(d));
-    CHECK(part > 0);
-    volume += part;
-  }
-  return volume;
+  return testing::volume_of(shape.tetrahedra, [&](std::uint32_t i) { return shape.node(i); });
 }
 
 TEST_CASE("organ shape: boundary nodes come first and the surface encloses the tetrahedra") {

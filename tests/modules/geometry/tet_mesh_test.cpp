@@ -10,13 +10,7 @@ namespace {
 TEST_CASE("tet mesh: the boundary of a block is closed, outward and encloses the tetrahedra") {
   // Oracle: divergence theorem against the sum of the tetrahedra; counts 12 n² triangles.
   const auto mesh = testing::block({0.1, 0.2, 0.3}, 3, 3, 3);
-  double volume = 0;
-  for (const auto& [a, b, c, d] : mesh.tetrahedra) {
-    const double part =
-        tetrahedron_volume(mesh.nodes[a], mesh.nodes[b], mesh.nodes[c], mesh.nodes[d]);
-    CHECK(part > 0);
-    volume += part;
-  }
+  const double volume = testing::volume_of(mesh);
   const auto boundary = boundary_triangles(mesh);
   REQUIRE(boundary.size() == 12 * 9);
   std::vector<Triangle> triangles;

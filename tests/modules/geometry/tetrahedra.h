@@ -1,9 +1,13 @@
 // Tetrahedra for tests, made without Gmsh.
 #pragma once
 
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
+#include <vector>
 
 #include "modules/geometry/tet_mesh.h"
 
@@ -40,6 +44,22 @@ inline TetMesh block(const Vec3& size, int nx, int ny, int nz) {
     }
   }
   return mesh;
+}
+
+/// Σ of its tetrahedra [m³]; each must be positive.
+template <class NodeAt>
+double volume_of(const std::vector<Tetrahedron>& tetrahedra, const NodeAt& node) {
+  double volume = 0, least = 1;
+  for (const auto& [a, b, c, d] : tetrahedra) {
+    const double part = tetrahedron_volume(node(a), node(b), node(c), node(d));
+    least = std::min(least, part);
+    volume += part;
+  }
+  CHECK(least > 0);
+  return volume;
+}
+inline double volume_of(const TetMesh& mesh) {
+  return volume_of(mesh.tetrahedra, [&](std::uint32_t i) { return mesh.nodes[i]; });
 }
 
 /// True, and says so, where Gmsh is not installed.

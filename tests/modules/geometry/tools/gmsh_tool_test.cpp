@@ -18,14 +18,6 @@
 namespace palpate::geometry {
 namespace {
 
-double tetrahedra_volume(const TetMesh& mesh) {
-  double volume = 0;
-  for (const auto& [a, b, c, d] : mesh.tetrahedra) {
-    volume += tetrahedron_volume(mesh.nodes[a], mesh.nodes[b], mesh.nodes[c], mesh.nodes[d]);
-  }
-  return volume;
-}
-
 /// Stands for a Gmsh that works for long: the first in PATH as long as this object lives.
 class SlowGmsh {
  public:
@@ -123,7 +115,7 @@ TEST_CASE("gmsh tool: a filled surface keeps its nodes and triangles, first and 
   std::sort(wanted.begin(), wanted.end());
   std::sort(found.begin(), found.end());
   CHECK(found == wanted);
-  CHECK(tetrahedra_volume(mesh) == Approx(enclosed_volume(ball.nodes, ball.triangles)));
+  CHECK(testing::volume_of(mesh) == Approx(enclosed_volume(ball.nodes, ball.triangles)));
 }
 
 TEST_CASE("gmsh tool: an octant of a ball lies on its planes and its sphere, a block is a block") {
@@ -136,9 +128,9 @@ TEST_CASE("gmsh tool: an octant of a ball lies on its planes and its sphere, a b
     farthest = std::max(farthest, p.norm());
   }
   CHECK(farthest == Approx(0.05).epsilon(1e-12));
-  CHECK(tetrahedra_volume(octant) == Approx(3.14159265 * 0.05 * 0.05 * 0.05 / 6).epsilon(0.05));
+  CHECK(testing::volume_of(octant) == Approx(3.14159265 * 0.05 * 0.05 * 0.05 / 6).epsilon(0.05));
   const auto block = mesh_block({0, 0, 0}, {0.04, 0.04, 0.08}, "0.02 + 0*x");
-  CHECK(tetrahedra_volume(block) == Approx(0.04 * 0.04 * 0.08));
+  CHECK(testing::volume_of(block) == Approx(0.04 * 0.04 * 0.08));
 }
 
 TEST_CASE("gmsh tool: what it cannot do is said") {
