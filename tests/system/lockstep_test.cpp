@@ -1,13 +1,21 @@
 // Lockstep over DDS with the real processes, beside the same session in one process.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <memory>
 #include <optional>
 #include <random>
 
+#include "modules/bus/dds_bus.h"
 #include "modules/recording/inspect.h"
+#include "modules/runtime/session.h"
+#include "modules/runtime/wiring.h"
+#include "modules/scene/scene_reader.h"
 #include "palpate/child_process.h"
 #include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/ball_scene.h"
@@ -19,7 +27,7 @@ namespace {
 
 constexpr const char* kPress =
     "scripted: {start_m: [0, 0, 0.065], moves: [{to_m: [0.01, 0, 0.045], duration_s: 0.3}]}";
-constexpr double kDeadline = 100;  // [s]; a run takes about one
+constexpr double kRunDeadline = 100;  // [s]; a run takes about one
 
 /// `palpate run` to its end. @param meddle  called again and again while it runs
 int run(const BallScene& scene, std::vector<std::string> more,
@@ -36,7 +44,7 @@ int run(const BallScene& scene, std::vector<std::string> more,
         if (meddle) meddle(child.process_id());
         return child.ended().has_value();
       },
-      kDeadline);
+      kRunDeadline);
   if (!ended || !WIFEXITED(*child.ended())) return -1;
   return WEXITSTATUS(*child.ended());
 }
@@ -82,6 +90,77 @@ TEST_CASE(
           0);
   CHECK(stops > 3);
   CHECK(bytes(four) == expected);
+}
+
+TEST_CASE("lockstep: a recorder that was stopped gets what the others said before they left") {
+  // Oracle: the same session in one process. The recorder sleeps from the middle to the end of the
+  // session, and wakes when whoever would leave without waiting for it has had time to.
+  const BallScene scene(kPress, "rates: {collision_hz: 300, deformation_hz: 100}\n");
+  const auto one = scene.folder() / "one.mcap", late = scene.folder() / "late.mcap";
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.5", "--record", one.string()}) == 0);
+
+  const scene::Scene loaded = scene::load_scene(scene.file());
+  const bus::BusOptions options = own_bus_options();
+  std::map<std::string, std::unique_ptr<launcher::ChildProcess>> children;
+  for (const char* name : {"deformation", "collision", "haptics", "recorder"}) {
+    std::vector<std::string> arguments{scene.file().string()};
+    if (name == std::string("recorder")) {
+      arguments = {late.string(), "--scene", scene.file().string()};
+    }
+    arguments.insert(arguments.end(),
+                     {"--session", options.session, "--domain", std::to_string(options.domain),
+                      "--lockstep", "haptics,collision,deformation,recorder"});
+    children[name] = std::make_unique<launcher::ChildProcess>(
+        std::filesystem::path(PALPATE_BIN_DIR) / (std::string("palpate-") + name), arguments);
+  }
+  bus::BusOptions every_sample = options;
+  every_sample.every_sample = true;
+  bus::DdsBus bus(every_sample);
+  runtime::Session session(bus, scene::scene_digest(loaded));
+  runtime::SessionConductor conductor(bus);
+  auto scenes = bus.writer(bus::kScene);
+  auto statuses = bus.reader(bus::kModuleStatus);
+  SceneDescription description = runtime::scene_description(loaded);
+  description.header.source_time_ns = runtime::CycleGrid::kSetUp;
+  scenes.write(description);
+  std::map<std::string, ModuleStatus> heard;
+  const auto wait_for = [&](const auto& condition) {
+    return wait_until(
+        [&] {
+          session.poll();
+          ModuleStatus status;
+          while (statuses.take(status)) heard[status.module] = status;
+          return condition();
+        },
+        kRunDeadline);
+  };
+  const auto done = [&](std::size_t modules, std::int64_t until_ns) {
+    return std::count_if(heard.begin(), heard.end(), [&](const auto& module) {
+             return module.second.state >= ModuleState::kReady &&
+                    module.second.header.sim_time_ns >= until_ns;
+           }) >= std::ptrdiff_t(modules);
+  };
+  constexpr std::int64_t kHalf = 250'000'000, kEnd = 500'000'000;
+  REQUIRE(wait_for([&] { return done(4, 0); }));
+  conductor.grant(session.state(), kHalf);
+  REQUIRE(wait_for([&] { return done(4, kHalf); }));
+  children.at("recorder")->signal(SIGSTOP);
+  conductor.grant(session.state(), kEnd);
+  REQUIRE(wait_for([&] { return done(3, kEnd); }));
+  conductor.command(session.state(), SessionCommand::kStop);
+  const auto all_ended = [&] {
+    return std::all_of(children.begin(), children.end(),
+                       [](const auto& child) { return child.second->ended().has_value(); });
+  };
+  wait_until([&] { return children.at("deformation")->ended().has_value(); }, 0.5);
+  children.at("recorder")->signal(SIGCONT);
+  REQUIRE(wait_until(all_ended));
+  for (const auto& [name, child] : children) {
+    INFO(name);
+    for (const auto& line : child->take_lines()) UNSCOPED_INFO(line);
+    CHECK(child->ended() == 0);
+  }
+  CHECK(bytes(late) == bytes(one));
 }
 
 TEST_CASE("lockstep: two runs that were given one session's name do not hear each other") {
