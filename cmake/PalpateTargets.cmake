@@ -30,6 +30,10 @@ target_compile_options(palpate_warnings INTERFACE
   -ffp-contract=off
   # GCC 12 (bug 105651) takes short strings inlined from precompiled headers for overruns.
   -Wno-array-bounds -Wno-restrict -Wno-stringop-overread -Wno-stringop-overflow)
+# What may become part of a shared object, Python's module. Hidden symbols: calls and variables of our
+# own stay as direct as in a program.
+add_library(palpate_shareable INTERFACE)
+target_compile_options(palpate_shareable INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
 # Sources compiled together look like headers with types of their own.
 target_compile_options(palpate_warnings INTERFACE
   $<$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>:-Wno-subobject-linkage>)
@@ -50,6 +54,9 @@ function(palpate_precompile target kind)
     add_library(palpate_precompiled_${kind} OBJECT ${source})
     set_target_properties(palpate_precompiled_${kind} PROPERTIES UNITY_BUILD OFF)
     target_link_libraries(palpate_precompiled_${kind} PRIVATE palpate_warnings Eigen3::Eigen)
+    if(kind STREQUAL "core")
+      target_link_libraries(palpate_precompiled_core PRIVATE palpate_shareable)
+    endif()
     set(headers <Eigen/Core> <Eigen/Geometry> <algorithm> <array> <filesystem> <functional> <map>
                 <memory> <optional> <span> <sstream> <string> <variant> <vector>)
     if(kind STREQUAL "tests")
@@ -90,7 +97,8 @@ function(palpate_library name)
   add_library(palpate::${name} ALIAS palpate_${name})
   target_include_directories(palpate_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(palpate_${name} PUBLIC ${ARG_DEPENDS}
-                        PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:palpate_warnings>)
+                        PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:palpate_warnings>
+                                $<BUILD_INTERFACE:palpate_shareable>)
   palpate_precompile(palpate_${name} core)
   if(ARG_APART)
     set_target_properties(palpate_${name} PROPERTIES UNITY_BUILD OFF)
@@ -119,7 +127,7 @@ function(palpate_program name)
   string(REPLACE "-" "_" target ${name})
   add_executable(${target}_program ${ARG_SOURCES})
   set_target_properties(${target}_program PROPERTIES OUTPUT_NAME ${name})
-  target_link_libraries(${target}_program PRIVATE ${ARG_DEPENDS} palpate_warnings)
+  target_link_libraries(${target}_program PRIVATE ${ARG_DEPENDS} palpate_warnings palpate_shareable)
   palpate_precompile(${target}_program core)
   if(NOT ARG_NOT_INSTALLED)
     install(TARGETS ${target}_program RUNTIME COMPONENT programs)

@@ -58,7 +58,8 @@ class SimulatedOrgan {
 
   /// Starts from any state. V* begins at its volume.
   void put(const OrganState& state);
-  void reset();  ///< at rest, at time 0
+  void reset();                                                     ///< at rest, at time 0
+  void ask_for_volume(double ratio) { target_volume_.ask(ratio); }  ///< target_volume.h
 
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);

@@ -209,6 +209,9 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
 }
 
 const DeformationWorld& DeformationStage::world() const { return impl_->world; }
+void DeformationStage::ask_for_volume(std::size_t organ, double ratio) {
+  impl_->world.ask_for_volume(organ, ratio);
+}
 const AdvanceReport& DeformationStage::report() const { return impl_->report; }
 
 }  // namespace palpate::deformation

@@ -27,6 +27,7 @@ class DeformationStage : public runtime::Stage {
   runtime::Health cycle(const runtime::Cycle& now) override;
 
   const DeformationWorld& world() const;
+  void ask_for_volume(std::size_t organ, double ratio);  ///< as DeformationWorld does
   /// Of the last cycle that ran.
   const AdvanceReport& report() const;
 

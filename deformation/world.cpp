@@ -287,6 +287,10 @@ void DeformationWorld::set_probe(std::size_t probe, const Pose& pose) {
   if (probe < impl_->probes.size()) impl_->probes[probe].set_pose(pose);
 }
 
+void DeformationWorld::ask_for_volume(std::size_t organ, double ratio) {
+  impl_->organs.at(organ).simulated.ask_for_volume(ratio);
+}
+
 void DeformationWorld::set_contacts(const ContactSet& contacts) {
   if (contacts.probe >= impl_->probes.size()) return;
   impl_->accept(contacts);

@@ -51,6 +51,10 @@ class DeformationWorld {
   /// too, and the next advance says so.
   void set_contacts(const ContactSet& contacts);
 
+  /// V*/V₀ of an organ from now on, until reset(), in place of the scene's filling; followed no
+  /// faster than that.
+  void ask_for_volume(std::size_t organ, double ratio);
+
   /// Nobody knows where this probe touches any more: it touches nothing until set_contacts().
   void forget_contacts(std::size_t probe);
 

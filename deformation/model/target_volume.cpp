@@ -30,7 +30,7 @@ double TargetVolume::asked(const scene::Filling& filling, double time) {
 
 double TargetVolume::follow(double time, double h) {
   const double change = filling_.max_rate * h;
-  ratio_ = std::clamp(asked(filling_, time), ratio_ - change, ratio_ + change);
+  ratio_ = std::clamp(told_ ? *told_ : asked(filling_, time), ratio_ - change, ratio_ + change);
   return ratio_;
 }
 

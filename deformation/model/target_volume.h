@@ -1,6 +1,8 @@
 // The volume an organ is asked for: filling, breathing, insufflation.
 #pragma once
 
+#include <optional>
+
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
@@ -12,7 +14,12 @@ class TargetVolume {
  public:
   explicit TargetVolume(scene::Filling filling) : filling_(std::move(filling)) {}
 
-  void reset() { ratio_ = 1; }
+  void reset() {
+    ratio_ = 1;
+    told_.reset();
+  }
+  /// Asks for `ratio` from now on, until reset(), whatever the scene says; followed as that is.
+  void ask(double ratio) { told_ = ratio; }
   /// Follows from `ratio` on, wherever it was.
   void restart(double ratio) { ratio_ = ratio; }
   /// V*/V₀ at the end of a step of h [s] that ends at `time` [s].
@@ -24,6 +31,7 @@ class TargetVolume {
  private:
   scene::Filling filling_;
   double ratio_ = 1;
+  std::optional<double> told_;
 };
 
 }  // namespace palpate::deformation

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <set>
 
-#include "modules/core/error.h"
+#include "modules/scene/scene_error.h"
 
 namespace palpate::scene {
 namespace {
@@ -59,7 +59,8 @@ ObjectReader::ObjectReader(const YamlValue& object, const KeyList& allowed) : ob
   if (allowed.choose_one) check_options(allowed);
   for (const auto& key : allowed.required) {
     if (!find(key)) {
-      throw InputError(object_.place() + ": key '" + object_.key_below(key) + "' is missing");
+      throw SceneError(object_.source->name, object_.line, object_.key_below(key),
+                       "key '" + object_.key_below(key) + "' is missing");
     }
   }
 }
@@ -68,16 +69,17 @@ void ObjectReader::check_keys(const KeyList& allowed) const {
   std::set<std::string> seen;
   for (const auto& entry : object_.node) {
     if (!entry.first.IsScalar()) {
-      throw InputError(place_in(*object_.source, line_of(entry.first)) + ": a key of '" +
-                       object_.key + "' is not a plain word");
+      throw SceneError(object_.source->name, line_of(entry.first, object_.line), object_.key,
+                       "a key of '" + object_.key + "' is not a plain word");
     }
     const std::string& key = entry.first.Scalar();
     if (std::find(allowed.keys.begin(), allowed.keys.end(), key) == allowed.keys.end()) {
       refuse_key(entry.first, allowed);
     }
     if (!seen.insert(key).second) {
-      throw InputError(place_in(*object_.source, line_of(entry.first)) + ": key '" +
-                       object_.key_below(key) + "' is given twice");
+      throw SceneError(object_.source->name, line_of(entry.first, object_.line),
+                       object_.key_below(key),
+                       "key '" + object_.key_below(key) + "' is given twice");
     }
   }
 }
@@ -89,22 +91,22 @@ void ObjectReader::check_options(const KeyList& allowed) const {
 }
 
 void ObjectReader::refuse_key(const YAML::Node& key, const KeyList& allowed) const {
-  std::string message = place_in(*object_.source, line_of(key)) + ": key '" +
-                        object_.key_below(shortened(key.Scalar())) + "' is not known";
+  const std::string full = object_.key_below(shortened(key.Scalar()));
+  std::string message = "key '" + full + "' is not known";
   const std::string meant = nearest(key.Scalar(), allowed.keys);
   message += meant.empty() ? "." : "; did you mean '" + meant + "'?";
-  throw InputError(message + (allowed.keys.empty() ? " None is allowed here"
-                                                   : " Allowed: " + joined(allowed.keys)));
+  message += allowed.keys.empty() ? " None is allowed here" : " Allowed: " + joined(allowed.keys);
+  throw SceneError(object_.source->name, line_of(key, object_.line), full, message);
 }
 
 void ObjectReader::refuse_name(const char* key, std::size_t index, std::size_t same_as,
                                const std::string& name) const {
   const auto list = find(key);
   const std::string prefix = list->key + "[";
-  throw InputError(place_in(*object_.source, line_of(list->node[index])) + ": key '" + prefix +
-                   std::to_string(index) + "].name' = '" + name +
-                   "': must be unique, but is the name of " + prefix + std::to_string(same_as) +
-                   "] too");
+  const std::string full = prefix + std::to_string(index) + "].name";
+  throw SceneError(object_.source->name, line_of(list->node[index], list->line), full,
+                   "key '" + full + "' = '" + name + "': must be unique, but is the name of " +
+                       prefix + std::to_string(same_as) + "] too");
 }
 
 YamlValue ObjectReader::value_at(const std::string& path) const {
@@ -120,7 +122,8 @@ YamlValue ObjectReader::value_at(const std::string& path) const {
 std::optional<YamlValue> ObjectReader::find(const std::string& key) const {
   for (const auto& entry : object_.node) {
     if (entry.first.Scalar() == key) {
-      return YamlValue{entry.second, line_of(entry.first), object_.key_below(key), object_.source};
+      return YamlValue{entry.second, line_of(entry.first, object_.line), object_.key_below(key),
+                       object_.source};
     }
   }
   return std::nullopt;

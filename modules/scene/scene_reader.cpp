@@ -3,66 +3,75 @@
 #include <fstream>
 #include <sstream>
 
-#include "modules/core/error.h"
 #include "modules/core/organ_limits.h"
 #include "modules/scene/object_reader.h"
+#include "modules/scene/scene_error.h"
+#include "modules/scene/scene_tree.h"
 
 namespace palpate::scene {
-namespace {
 
 YAML::Node parse_yaml(std::string_view text, const Source& source) {
+  if (text.size() > kMaxTextBytes) {
+    throw SceneError(source.name, 0, "",
+                     "longer than a scene may be (" + std::to_string(kMaxTextBytes) + " bytes)");
+  }
   try {
     // The end mark makes yaml-cpp refuse a quoted text that is never closed.
     const auto documents = YAML::LoadAll(std::string(text) + "\n...\n");
     if (documents.size() > 1) {
-      throw InputError(source.name + ": holds more than one YAML document ('---' or '...')");
+      throw SceneError(source.name, 0, "", "holds more than one YAML document ('---' or '...')");
     }
     return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& error) {
     const bool is_open = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
-    throw InputError(place_in(source, error.mark.line + 1) +
-                     ": not valid YAML: " + (is_open ? "a quoted text is not closed" : error.msg));
+    throw SceneError(source.name, error.mark.line + 1, "",
+                     "not valid YAML: " + (is_open ? "a quoted text is not closed" : error.msg));
   }
 }
 
+namespace {
+
 void check_first_key(const YamlValue& root) {
   const std::string wanted = std::string(kFormatKey) + ": " + std::to_string(kSceneFormat);
-  if (root.node.IsNull()) throw InputError(root.place() + ": the scene is empty");
+  if (root.node.IsNull()) throw SceneError(root.source->name, root.line, "", "the scene is empty");
   if (!root.node.IsMap() || root.node.size() == 0) {
     root.refuse("must be a mapping that begins with " + wanted);
   }
   const YAML::Node first = root.node.begin()->first;
   if (!first.IsScalar() || first.Scalar() != kFormatKey) {
-    throw InputError(place_in(*root.source, line_of(first)) + ": the first key must be " + wanted);
+    throw SceneError(root.source->name, line_of(first, root.line), kFormatKey,
+                     "the first key must be " + wanted);
   }
   // Before what else is missing: another version may name it otherwise.
   About version;
   version.min = version.max = kSceneFormat;
-  count_from({root.node.begin()->second, line_of(first), kFormatKey, root.source}, version);
+  count_from({root.node.begin()->second, line_of(first, root.line), kFormatKey, root.source},
+             version);
 }
 
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw InputError(file.string() + ": no such file");
+  if (!std::filesystem::exists(file, error)) throw SceneError(file.string(), 0, "", "no such file");
   if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(file.string() + ": not a scene file but a folder or device");
+    throw SceneError(file.string(), 0, "", "not a scene file but a folder or device");
   }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError(file.string() + ": cannot be read");
+  if (!stream) throw SceneError(file.string(), 0, "", "cannot be read");
   return parse_scene(text.str(), file);
 }
 
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const Source source{file.string(), file.parent_path()};
-  if (text.size() > kMaxTextBytes) {
-    throw InputError(source.name + ": longer than a scene may be (" +
-                     std::to_string(kMaxTextBytes) + " bytes)");
-  }
-  const YamlValue root{parse_yaml(text, source), 1, "", &source};
+  return scene_from(parse_yaml(text, source), file);
+}
+
+Scene scene_from(const YAML::Node& tree, const std::filesystem::path& file) {
+  const Source source{file.string(), file.parent_path()};
+  const YamlValue root{tree, 1, "", &source};
   check_first_key(root);
   Scene scene;
   ObjectReader::read_object(root, scene);

@@ -8,6 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
+#include "modules/scene/scene_error.h"
 #include "modules/scene/value_text.h"
 
 namespace palpate::scene {
@@ -72,10 +73,6 @@ void check_range(const YamlValue& value, double number, const About& about, cons
 
 }  // namespace
 
-std::string place_in(const Source& source, int line) {
-  return source.name + ":" + std::to_string(line);
-}
-
 std::string shortened(std::string text) {
   for (char& c : text) {
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
@@ -86,7 +83,9 @@ std::string shortened(std::string text) {
   return text.substr(0, cut) + "…";
 }
 
-int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
+int line_of(const YAML::Node& node, int otherwise) {
+  return node.Mark().line < 0 ? otherwise : node.Mark().line + 1;
+}
 
 std::string YamlValue::key_below(const std::string& name) const {
   return key.empty() ? name : key + "." + name;
@@ -95,7 +94,7 @@ std::string YamlValue::key_below(const std::string& name) const {
 void YamlValue::refuse(const std::string& must) const {
   const std::string subject =
       key.empty() ? "the scene" : "key '" + key + "' = '" + shown(node) + "'";
-  throw InputError(place() + ": " + subject + ": " + must);
+  throw SceneError(source->name, line, key, subject + ": " + must);
 }
 
 double number_from(const YamlValue& value, const About& about) {
@@ -200,7 +199,7 @@ std::vector<YamlValue> entries_of(const YamlValue& value) {
   std::vector<YamlValue> entries;
   for (const auto& node : value.node) {
     const std::string key = value.key + "[" + std::to_string(entries.size()) + "]";
-    entries.push_back({node, line_of(node), key, value.source});
+    entries.push_back({node, line_of(node, value.line), key, value.source});
   }
   return entries;
 }

@@ -20,9 +20,8 @@ struct Source {
 
 /// The part of a text that a message repeats: one line, at most 60 bytes.
 std::string shortened(std::string text);
-/// "file:line"
-std::string place_in(const Source& source, int line);
-int line_of(const YAML::Node& node);  ///< where a key, or an entry of a list, begins
+/// Where a key, or an entry of a list, begins; one that is not of a text has the line `otherwise`.
+int line_of(const YAML::Node& node, int otherwise);
 
 struct YamlValue {
   YAML::Node node;
@@ -30,7 +29,6 @@ struct YamlValue {
   std::string key;  ///< full, "organs[0].tissue.drag_per_s"; empty for the whole scene
   const Source* source;
 
-  std::string place() const { return place_in(*source, line); }
   std::string key_below(const std::string& name) const;     ///< full key of an entry
   [[noreturn]] void refuse(const std::string& must) const;  ///< throws; `must` says what is allowed
 };

@@ -13,28 +13,37 @@
 namespace palpate::session {
 namespace {
 
-/// Keeps the newest message of each key.
+/// Keeps the newest message of each key. One that somebody holds stays as it is; the next one then
+/// gets memory of its own.
 template <class Message>
 class Newest {
  public:
   Newest(bus::Bus& bus, const bus::TopicOf<Message>& topic, std::uint32_t Message::*key,
          std::size_t keys)
-      : reader_(bus.reader(topic)), key_(key), newest_(keys) {}
-
-  void listen() {
-    while (reader_.take(arrived_)) {
-      const std::uint32_t key = arrived_.*key_;
-      if (key < newest_.size()) std::swap(newest_[key], arrived_);
+      : reader_(bus.reader(topic)), key_(key), arrived_(std::make_shared<Message>()) {
+    for (std::size_t i = 0; i < keys; ++i) {
+      newest_.push_back(std::make_shared<Message>());
+      (*newest_.back()).*key = static_cast<std::uint32_t>(i);
     }
   }
-  Message& operator[](std::size_t key) { return newest_.at(key); }
-  const Message& operator[](std::size_t key) const { return newest_.at(key); }
+
+  void listen() {
+    while (reader_.take(*arrived_)) {
+      const std::uint32_t key = (*arrived_).*key_;
+      if (key >= newest_.size()) continue;
+      std::swap(newest_[key], arrived_);
+      if (arrived_.use_count() > 1) arrived_ = std::make_shared<Message>();
+    }
+  }
+  Message& operator[](std::size_t key) { return *newest_.at(key); }
+  const Message& operator[](std::size_t key) const { return *newest_.at(key); }
+  std::shared_ptr<const Message> shared(std::size_t key) const { return newest_.at(key); }
 
  private:
   bus::Reader<Message> reader_;
   std::uint32_t Message::*key_;
-  std::vector<Message> newest_;
-  Message arrived_;
+  std::vector<std::shared_ptr<Message>> newest_;
+  std::shared_ptr<Message> arrived_;
 };
 
 /// A stage with its place in the session.
@@ -200,6 +209,11 @@ const runtime::Health& InProcess::health(const std::string& module) const {
   return found->health;
 }
 
+void InProcess::ask_for_volume(std::size_t organ, double ratio) {
+  PALPATE_DEMAND(impl_->deformation != nullptr);
+  impl_->deformation->ask_for_volume(organ, ratio);
+}
+
 ContactTroubles InProcess::contact_troubles() const { return impl_->contact_troubles(); }
 
 const ProbeState& InProcess::probe(std::size_t probe) const { return impl_->probes[probe]; }
@@ -213,6 +227,31 @@ const NodePositions& InProcess::node_positions(std::size_t organ) const {
 }
 const SurfaceTopology& InProcess::surface(std::size_t organ) const {
   return impl_->surfaces[organ];
+}
+
+template <>
+std::shared_ptr<const ProbeState> InProcess::shared(std::size_t probe) const {
+  return impl_->probes.shared(probe);
+}
+template <>
+std::shared_ptr<const Contacts> InProcess::shared(std::size_t probe) const {
+  return impl_->contacts.shared(probe);
+}
+template <>
+std::shared_ptr<const ContactModel> InProcess::shared(std::size_t probe) const {
+  return impl_->models.shared(probe);
+}
+template <>
+std::shared_ptr<const HapticForce> InProcess::shared(std::size_t probe) const {
+  return impl_->forces.shared(probe);
+}
+template <>
+std::shared_ptr<const NodePositions> InProcess::shared(std::size_t organ) const {
+  return impl_->nodes.shared(organ);
+}
+template <>
+std::shared_ptr<const SurfaceTopology> InProcess::shared(std::size_t organ) const {
+  return impl_->surfaces.shared(organ);
 }
 
 InProcess load_session(const scene::Scene& scene) { return InProcess(scene, load_assets(scene)); }

@@ -68,6 +68,8 @@ class InProcess {
   haptics::HapticsStage& haptics();
   const deformation::DeformationStage& deformation() const;
   const deformation::DeformationWorld& world() const { return deformation().world(); }
+  /// As TargetVolume::ask() of that organ.
+  void ask_for_volume(std::size_t organ, double ratio);
   const runtime::Health& health(const std::string& module) const;  ///< after its last cycle
   ContactTroubles contact_troubles() const;                        ///< of all stages so far
 
@@ -79,6 +81,9 @@ class InProcess {
   const HapticForce& haptic_force(std::size_t probe) const;
   const NodePositions& node_positions(std::size_t organ) const;
   const SurfaceTopology& surface(std::size_t organ) const;
+  /// The same, of whichever of these kinds, to keep: it stays as it is when newer ones come.
+  template <class Message>
+  std::shared_ptr<const Message> shared(std::size_t key) const;
 
  private:
   struct Impl;

@@ -1,7 +1,7 @@
 # Oracle: .clang-format. Every source file is formatted as it says.
 set(patterns)
 foreach(folder IN ITEMS modules deformation collision haptics visualizer palpate studies bench scenes
-                        tests)
+                        python tests)
   list(APPEND patterns ${SOURCE_DIR}/${folder}/*.h ${SOURCE_DIR}/${folder}/*.cpp)
 endforeach()
 file(GLOB_RECURSE files RELATIVE ${SOURCE_DIR} ${patterns})

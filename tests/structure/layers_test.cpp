@@ -43,6 +43,7 @@ std::map<std::string, Names> allowed_layers() {
           {"meshes", {"core", "geometry"}},
           {"session", stages},
           {"palpate", stages + Names{"visualizer"}},
+          {"python", stages},
           {"studies", stages + Names{"visualizer", "palpate"}},
           {"bench", stages + Names{"visualizer", "studies"}}};
 }
@@ -134,6 +135,7 @@ TEST_CASE("structure: each foreign library is known to its one folder only") {
       {"^vtk", R"(^visualizer/.*\.cpp$)"},
       {"^Bullet|^btBullet", "^bench/bullet/"},
       {"^yaml-cpp/", "^modules/scene/"},
+      {"^(pybind11/|Python\\.h)", "^python/"},
       {"^json/", "^studies/certify/"},
       {"^CLI/", R"(^modules/runtime/program\.cpp$)"},
       {"^(thread|mutex|condition_variable|chrono|future)$|^(time|signal|pthread)\\.h$", no_physics},

@@ -107,7 +107,7 @@ TEST_CASE("pages: a linked source file declares the name it is linked from") {
 TEST_CASE("pages: source files they name exist") {
   // Oracle: the tree. A path begins with a folder of the tree's top; what it names has a slash.
   static const std::regex kPath(
-      R"(`((?:modules|deformation|collision|haptics|visualizer|palpate|studies|bench|tests|idl|docs|scenes|scripts|cmake)/[a-z0-9_/]*(?:\.[a-z]+)?)`)");
+      R"(`((?:modules|deformation|collision|haptics|visualizer|palpate|studies|bench|python|tests|idl|docs|scenes|scripts|cmake)/[a-z0-9_/]*(?:\.[a-z]+)?)`)");
   std::size_t named = 0;
   for (const auto& page : pages()) {
     // The changelog tells of what was; the pipeline page has a test of its own.
@@ -152,7 +152,7 @@ TEST_CASE("pages: every folder of sources says what lives there") {
   // Oracle: a README in each folder that holds code; tests mirror the tree and need none.
   std::size_t folders = 0;
   for (const char* top : {"modules", "deformation", "collision", "haptics", "visualizer", "palpate",
-                          "studies", "bench"}) {
+                          "studies", "bench", "python"}) {
     std::vector<fs::path> found{kRoot / top};
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
       if (entry.is_directory()) found.push_back(entry.path());

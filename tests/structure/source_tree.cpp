@@ -14,9 +14,9 @@ const fs::path& root() {
 }
 
 const std::vector<std::string>& code_folders() {
-  static const std::vector<std::string> kFolders{"modules", "deformation", "collision",
-                                                 "haptics", "visualizer",  "palpate",
-                                                 "studies", "bench",       "scenes"};
+  static const std::vector<std::string> kFolders{
+      "modules", "deformation", "collision", "haptics", "visualizer",
+      "palpate", "studies",     "bench",     "scenes",  "python"};
   return kFolders;
 }
 

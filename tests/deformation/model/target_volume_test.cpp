@@ -70,5 +70,18 @@ TEST_CASE("target volume: a curve that begins elsewhere is reached at the larges
   CHECK(target.follow(0.01, 0.01) == Approx(1.005).epsilon(1e-12));
 }
 
+TEST_CASE(
+    "target volume: what is asked for at run time replaces the scene's, as slowly, until reset") {
+  // Oracle: definition; 0.5 per second is a filling's own rate.
+  TargetVolume target{filled_by_a_quarter()};
+  target.ask(1.1);
+  CHECK(target.follow(0.1, 0.1) == Approx(1.05).epsilon(1e-14));
+  CHECK(target.follow(0.2, 0.1) == Approx(1.1).epsilon(1e-14));
+  CHECK(target.follow(9, 0.1) == Approx(1.1).epsilon(1e-14));
+  target.reset();
+  CHECK(target.follow(0.1, 0.1) == 1);
+  CHECK(target.follow(9, 1) == 1.25);
+}
+
 }  // namespace
 }  // namespace palpate::deformation

@@ -1,0 +1,184 @@
+#include "python/live.h"
+
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "modules/bus/dds_bus.h"
+#include "modules/messages/describe.h"
+#include "modules/messages/key_of.h"
+#include "modules/runtime/clock.h"
+#include "python/bindings.h"
+#include "python/busy.h"
+#include "python/errors.h"
+#include "python/message_arrays.h"
+#include "python/numbers.h"
+#include "python/topic_columns.h"
+
+namespace py = pybind11;
+
+namespace palpate::python {
+namespace {
+
+constexpr std::chrono::milliseconds kLookAgain{2};
+constexpr double kLongestWait = 1e6;           ///< [s]
+constexpr std::size_t kMostUntaken = 100'000;  ///< messages of a topic that nobody takes
+constexpr const char* kWhat = "the connection";
+
+std::string key_text_of(const messages::AnyMessage& message) {
+  messages::KeyOf key;
+  std::visit([&](const auto& m) { messages::describe(key, m); }, message);
+  return key.text;
+}
+
+bus::BusOptions options_of(const std::string& session, int domain) {
+  bus::BusOptions options;
+  options.session = session;
+  options.domain = domain;
+  options.participant_name = "palpate python";
+  return options;
+}
+
+}  // namespace
+
+Live::Live(const std::string& session, int domain)
+    : bus_(std::make_unique<bus::DdsBus>(options_of(session, domain))) {
+  input_.emplace(bus_->writer(bus::kProbeInput));
+  controls_.emplace(bus_->reader(bus::kSessionControl));
+  conductor_.emplace(*bus_);
+}
+
+void Live::check_open() const {
+  if (closed_) throw ClosedError("the connection is closed");
+}
+
+Live::Topic& Live::topic_of(const std::string& name) {
+  const auto found = topics_.find(name);
+  if (found != topics_.end()) return found->second;
+  const bus::TopicInfo* info = bus::find_topic(name);
+  if (info == nullptr) throw py::key_error("no topic '" + name + "'");
+  auto reader = bus_->raw_reader(*info, bus::Keep::kBacklog);
+  return topics_.emplace(name, Topic{info, std::move(reader), {}, {}, {}}).first->second;
+}
+
+void Live::receive(Topic& topic) {
+  bus::RawSample sample;
+  while (topic.reader->take(sample)) {
+    auto message = std::make_shared<messages::AnyMessage>();
+    if (topic.info->type->decode(sample.payload, *message) != nullptr) continue;
+    topic.last_key = key_text_of(*message);
+    topic.newest[topic.last_key] = message;
+    if (topic.untaken.size() < kMostUntaken) topic.untaken.push_back(std::move(message));
+  }
+}
+
+void Live::poll_controls() {
+  SessionControl control;
+  while (controls_->take(control)) state_.apply(control);
+}
+
+/// Without the GIL, looking for Ctrl-C meanwhile.
+template <class Done>
+bool Live::wait_until(double timeout, const Done& done) {
+  if (!(timeout >= 0 && timeout <= kLongestWait))
+    throw py::value_error("timeout must be between 0 and 1e6 s");
+  const py::gil_scoped_release release;
+  using Clock = std::chrono::steady_clock;
+  const auto began = Clock::now();
+  auto look_at = began + kLookForSignals;
+  while (!done()) {
+    const auto now = Clock::now();
+    if (std::chrono::duration<double>(now - began).count() >= timeout) return false;
+    if (now >= look_at) {
+      look_for_signals();
+      look_at = now + kLookForSignals;
+    }
+    std::this_thread::sleep_for(kLookAgain);
+  }
+  return true;
+}
+
+py::object Live::newest(const std::string& name, const std::string& key, double timeout) {
+  const InUse use(in_use_, kWhat);
+  check_open();
+  Topic& topic = topic_of(name);
+  std::shared_ptr<const messages::AnyMessage> found;
+  wait_until(timeout, [&] {
+    receive(topic);
+    const auto it = topic.newest.find(key.empty() ? topic.last_key : key);
+    if (it != topic.newest.end()) found = it->second;
+    return found != nullptr;
+  });
+  if (!found) return py::none();
+  return arrays_of_any(std::move(found));
+}
+
+py::tuple Live::take(const std::string& name) {
+  const InUse use(in_use_, kWhat);
+  check_open();
+  Topic& topic = topic_of(name);
+  TopicColumns columns;
+  {
+    const py::gil_scoped_release release;
+    receive(topic);
+    for (const auto& message : topic.untaken) columns.add(*message);
+    topic.untaken.clear();
+  }
+  const std::size_t messages = columns.size();
+  return py::make_tuple(columns.take(), messages);
+}
+
+bool Live::write_probe_input(const ProbeState& state) {
+  const InUse use(in_use_, kWhat);
+  check_open();
+  ProbeState said = state;
+  return input_->write(said);
+}
+
+bool Live::control(SessionCommand command, double timeout) {
+  const InUse use(in_use_, kWhat);
+  check_open();
+  const bool heard = wait_until(timeout, [&] {
+    poll_controls();
+    return state_.last_command().header.source_time_ns != 0;
+  });
+  if (heard) conductor_->command(state_, command);
+  return heard;
+}
+
+std::string Live::phase() {
+  const InUse use(in_use_, kWhat);
+  check_open();
+  poll_controls();
+  switch (state_.phase()) {
+    case runtime::SessionPhase::kWaiting:
+      return "waiting";
+    case runtime::SessionPhase::kRunning:
+      return "running";
+    case runtime::SessionPhase::kPaused:
+      return "paused";
+    default:
+      return "stopped";
+  }
+}
+
+bool Live::wait_for_haptics(double timeout) {
+  const InUse use(in_use_, kWhat);
+  check_open();
+  return wait_until(timeout, [&] { return input_->matched_readers() > 0; });
+}
+
+void Live::close() {
+  const InUse use(in_use_, kWhat);
+  if (closed_.exchange(true)) return;
+  const py::gil_scoped_release release;
+  topics_.clear();
+  conductor_.reset();
+  controls_.reset();
+  input_.reset();
+  bus_.reset();
+}
+
+}  // namespace palpate::python

@@ -1,0 +1,71 @@
+// A session of other processes, heard and spoken to over DDS.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "modules/bus/bus.h"
+#include "modules/messages/messages.h"
+#include "modules/runtime/session.h"
+
+namespace palpate::python {
+
+/// Readers are made when a topic is first asked for. One thread at a time, as Session (session.h).
+class Live {
+ public:
+  /// @throws InputError, std::runtime_error as bus::DdsBus does
+  Live(const std::string& session, int domain);
+
+  /// The newest message of a topic and key; waits until one has come, at most `timeout` [s].
+  /// @param key  "0" of probe or organ 0, "haptics" of a module; empty: whichever came last
+  /// @return None if none came
+  pybind11::object newest(const std::string& topic, const std::string& key, double timeout);
+  /// All that came since the topic was asked for last, (columns, messages). A reader that looks too
+  /// rarely loses the oldest (bus::kBacklogDepth per key).
+  pybind11::tuple take(const std::string& topic);
+
+  /// False if the bus refused it. @param source_time  by this host's monotonic clock
+  bool write_probe_input(const ProbeState& state);
+  /// Gives a command once the session's own commands have been heard; false if none came within
+  /// `timeout` [s].
+  bool control(SessionCommand command, double timeout);
+  /// running, paused, …
+  std::string phase();
+  /// Waits until somebody reads probe_input, at most `timeout` [s].
+  bool wait_for_haptics(double timeout);
+
+  void close();
+  bool closed() const { return closed_; }
+
+ private:
+  struct Topic {
+    const bus::TopicInfo* info;
+    std::unique_ptr<bus::RawReader> reader;
+    std::vector<std::shared_ptr<const messages::AnyMessage>> untaken;
+    std::map<std::string, std::shared_ptr<const messages::AnyMessage>> newest;
+    std::string last_key;
+  };
+  void check_open() const;
+  Topic& topic_of(const std::string& name);
+  void receive(Topic& topic);
+  void poll_controls();
+  template <class Done>
+  bool wait_until(double timeout, const Done& done);
+
+  std::atomic_flag in_use_;
+  std::atomic<bool> closed_{false};
+  std::unique_ptr<bus::Bus> bus_;
+  std::map<std::string, Topic> topics_;
+  std::optional<bus::Writer<ProbeState>> input_;
+  std::optional<bus::Reader<SessionControl>> controls_;
+  std::optional<runtime::SessionConductor> conductor_;
+  runtime::SessionState state_;
+};
+
+}  // namespace palpate::python

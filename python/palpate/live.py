@@ -1,0 +1,133 @@
+"""Sessions of other processes on this host, heard and spoken to over DDS."""
+
+from __future__ import annotations
+
+import atexit
+import weakref
+from types import TracebackType
+from typing import Any
+
+import numpy.typing as npt
+
+from palpate import _core
+from palpate.messages import Message, Topic, topic_from
+
+
+class Live:
+    """A connection to a running session (`palpate run`); connect() makes it.
+
+    Every topic can be read. A topic is heard from the first time it is asked for. One thread at a time.
+    """
+
+    def __init__(self, session: str, domain: int) -> None:
+        self._session = session
+        self._core = _core.Live(session, domain)
+        _open.add(self)
+
+    def latest(self, topic: str, key: int | str | None = None, timeout_s: float = 1.0) -> Message:
+        """The newest message of a topic; waits for the first one. Its arrays are read-only views that keep it.
+
+        Args:
+            key: a probe's or organ's index, or a module's name; None: whichever came last.
+
+        Raises:
+            KeyError: there is no such topic.
+            TimeoutError: none came within `timeout_s`.
+            KeyboardInterrupt, ClosedError, BusyError.
+        """
+        fields = self._core.newest(topic, "" if key is None else str(key), timeout_s)
+        if fields is None:
+            raise TimeoutError(f"no {topic} was heard in session {self._session!r} within {timeout_s} s")
+        return Message(topic, fields)
+
+    def take(self, topic: str) -> Topic:
+        """All that came of a topic since it was asked for last, as arrays of their own. Who looks less often than
+        every 50 ms may miss some of the fastest topics (`sequence_number` tells).
+
+        Raises:
+            KeyError, ClosedError, BusyError.
+        """
+        return topic_from(topic, *self._core.take(topic))
+
+    def write_probe_input(
+        self,
+        position_m: npt.ArrayLike,
+        rotation_xyzw: npt.ArrayLike = (0, 0, 0, 1),
+        *,
+        probe: int = 0,
+        linear_velocity_m_per_s: npt.ArrayLike = (0, 0, 0),
+        angular_velocity_rad_per_s: npt.ArrayLike = (0, 0, 0),
+        buttons: int = 0,
+    ) -> None:
+        """Moves a probe whose device in the scene is `topic`, as a driver does: say it at least every 50 ms, or
+        the force fades (docs/haptic_safety.md).
+
+        Raises:
+            TypeError, ValueError: another shape, or not finite.
+            RuntimeError: it could not be sent.
+        """
+        if not self._core.write_probe_input(
+            probe, position_m, rotation_xyzw, linear_velocity_m_per_s, angular_velocity_rad_per_s, buttons
+        ):
+            raise RuntimeError("probe_input could not be sent")
+
+    def wait_for_haptics(self, timeout_s: float = 5.0) -> bool:
+        """Waits until somebody hears probe_input; False if nobody did within `timeout_s`."""
+        return self._core.wait_for_haptics(timeout_s)
+
+    def control(self, command: str, timeout_s: float = 5.0) -> None:
+        """Says `start` (or go on), `pause`, `reset` or `stop` to every process of the session (`session_control`).
+
+        Raises:
+            ValueError: another command.
+            TimeoutError: the session was not heard within `timeout_s`.
+        """
+        if not self._core.control(command, timeout_s):
+            raise TimeoutError(f"session {self._session!r} was not heard within {timeout_s} s")
+
+    @property
+    def phase(self) -> str:
+        """What the session does by its own commands: waiting, running, paused or stopped."""
+        return self._core.phase()
+
+    def close(self) -> None:
+        """Leaves the session, which goes on. Views stay good."""
+        self._core.close()
+
+    @property
+    def closed(self) -> bool:
+        """Whether close() was called."""
+        return self._core.closed
+
+    def __enter__(self) -> Live:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<palpate.Live session {self._session!r}{', closed' if self.closed else ''}>"
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a connection cannot be pickled")
+
+
+def connect(session: str = "default", domain: int = 0) -> Live:
+    """Connects to a session of other processes: its name (`palpate run --session`) and DDS domain [0 … 200].
+
+    Raises:
+        InputError: no such name or domain can be. RuntimeError: DDS cannot start.
+    """
+    return Live(session, domain)
+
+
+_open: weakref.WeakSet[Live] = weakref.WeakSet()
+
+
+@atexit.register
+def _close_all() -> None:
+    """DDS has threads of its own, which must end before the interpreter does."""
+    for live in list(_open):
+        live.close()

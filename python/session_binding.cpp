@@ -1,0 +1,47 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "python/bindings.h"
+#include "python/numbers.h"
+#include "python/session.h"
+
+namespace py = pybind11;
+
+namespace palpate::python {
+namespace {
+
+constexpr double kFurthest = 100;  ///< as any point of a scene [m]
+constexpr double kFastest = 100;   ///< no instrument is [m/s, rad/s]
+
+void guide_probe(Session& session, std::size_t probe, py::handle position, py::handle rotation,
+                 py::handle linear, py::handle angular) {
+  const Pose pose{vector_from(position, "position_m", kFurthest),
+                  rotation_from(rotation, "rotation_xyzw")};
+  const Twist twist{vector_from(linear, "linear_velocity_m_per_s", kFastest),
+                    vector_from(angular, "angular_velocity_rad_per_s", kFastest)};
+  session.guide_probe(probe, pose, twist);
+}
+
+}  // namespace
+
+void bind_session(py::module_& module) {
+  py::class_<Session>(module, "Session")
+      .def(py::init([](const scene::SceneDocument& scene, const std::string& record) {
+             return std::make_unique<Session>(scene.scene(), record);
+           }),
+           py::arg("scene"), py::arg("record"))
+      .def("run_until", &Session::run_until)
+      .def("step", &Session::step)
+      .def("settle", &Session::settle)
+      .def("run_keeping", &Session::run_keeping)
+      .def("close", &Session::close)
+      .def("guide_probe", &guide_probe)
+      .def("ask_for_volume", &Session::ask_for_volume)
+      .def("newest", &Session::newest)
+      .def("guards", &Session::guards)
+      .def_property_readonly("time", &Session::time)
+      .def_property_readonly("period", &Session::period)
+      .def_property_readonly("closed", &Session::closed);
+}
+
+}  // namespace palpate::python
