@@ -21,8 +21,10 @@
 #include <string>
 #include <utility>
 
+#include "visualizer/lamps.h"
 #include "visualizer/overlay_actor.h"
 #include "visualizer/scene_actors.h"
+#include "visualizer/shared_picture.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingContextOpenGL2)
@@ -36,16 +38,7 @@ namespace {
 constexpr double kBottom[3] = {0.055, 0.07, 0.095};
 constexpr double kTop[3] = {0.17, 0.205, 0.26};
 
-/// Key light from the upper left, warm; weak cool fill from the right; rim light from behind.
 void light(vtkRenderer& layer) {
-  struct Lamp {
-    std::array<double, 3> from;  // in the camera's frame: right, up, towards the eye
-    std::array<double, 3> color;
-    double intensity;
-  };
-  constexpr std::array<Lamp, 3> kLamps{{{{-0.7, 0.9, 0.9}, {1.0, 0.97, 0.92}, 0.92},
-                                        {{0.9, -0.25, 0.7}, {0.86, 0.92, 1.0}, 0.34},
-                                        {{0.55, 0.7, -0.8}, {0.9, 0.95, 1.0}, 0.55}}};
   layer.AutomaticLightCreationOff();
   for (const Lamp& lamp : kLamps) {
     vtkNew<vtkLight> made;
@@ -120,11 +113,14 @@ struct Renderer::Impl {
   vtkNew<vtkCallbackCommand> listener;
   std::unique_ptr<SceneActors> actors;
   std::unique_ptr<OverlayActor> overlay;
+  std::unique_ptr<SharedPicture> screen;  // without a graphics card: the way into the window
+  vtkNew<vtkUnsignedCharArray> drawn;
   std::vector<InputEvent> events;
 
   void set_up_window(const RendererOptions& options);
   void set_up_layers();
-  void smooth_edges(bool live);
+  void suit_driver(bool live);
+  void show();
   void listen();
   void aim(const Camera& camera);
 };
@@ -158,9 +154,9 @@ void Renderer::Impl::set_up_layers() {
   }
 }
 
-/// FXAA takes two thirds of a picture's time in software: a live window without a graphics card
-/// does without it.
-void Renderer::Impl::smooth_edges(bool live) {
+/// Without a graphics card a live window does without FXAA, which takes two thirds of a picture's
+/// time, and without VTK's way from memory to the window, which takes half of the rest.
+void Renderer::Impl::suit_driver(bool live) {
   solids->UseFXAAOn();
   if (!live) return;
   window->Render();  // the driver is not known before
@@ -168,6 +164,20 @@ void Renderer::Impl::smooth_edges(bool live) {
   const bool software =
       driver.find("llvmpipe") != std::string::npos || driver.find("softpipe") != std::string::npos;
   solids->SetUseFXAA(!software);
+  if (!software) return;
+  screen = SharedPicture::make(static_cast<_XDisplay*>(window->GetGenericDisplayId()),
+                               reinterpret_cast<unsigned long>(window->GetGenericWindowId()));
+  window->SetSwapBuffers(screen == nullptr);
+}
+
+void Renderer::Impl::show() {
+  if (!screen) return;
+  const int width = window->GetSize()[0], height = window->GetSize()[1];
+  window->GetRGBACharPixelData(0, 0, width - 1, height - 1, /*front=*/0, drawn);
+  const auto size = static_cast<std::size_t>(drawn->GetNumberOfValues());
+  if (screen->show({drawn->GetPointer(0), size}, width, height)) return;
+  screen.reset();
+  window->SwapBuffersOn();
 }
 
 void Renderer::Impl::listen() {
@@ -219,11 +229,12 @@ Renderer::Renderer(const RendererOptions& options,
       std::make_unique<SceneActors>(*impl_->solids, *impl_->see_through, std::move(probe_surfaces));
   impl_->overlay = std::make_unique<OverlayActor>(*impl_->flat);
   if (options.window) impl_->listen();
-  impl_->smooth_edges(options.window);
+  impl_->suit_driver(options.window);
 }
 
 Renderer::~Renderer() {
   if (impl_->interactor) impl_->interactor->RemoveObserver(impl_->listener);
+  impl_->screen.reset();
   impl_->window->Finalize();
 }
 
@@ -232,6 +243,7 @@ void Renderer::draw(const DrawList& list, const Overlay& overlay, const Camera& 
   impl_->overlay->update(overlay);
   impl_->aim(camera);
   impl_->window->Render();
+  impl_->show();
 }
 
 int Renderer::width() const { return impl_->window->GetSize()[0]; }

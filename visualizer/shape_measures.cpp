@@ -31,7 +31,8 @@ float strain_of(std::span<const float> rest, std::span<const float> now, const T
   const Eigen::Vector3d u = a.cast<double>() / p;
   const Eigen::Vector3d v = (b.cast<double>() - q * u) / r;
   const double mean = 0.5 * (u.squaredNorm() + v.squaredNorm());
-  const double spread = std::hypot(0.5 * (u.squaredNorm() - v.squaredNorm()), u.dot(v));
+  const double half_difference = 0.5 * (u.squaredNorm() - v.squaredNorm()), shear = u.dot(v);
+  const double spread = std::sqrt(half_difference * half_difference + shear * shear);
   const double largest = std::sqrt(mean + spread);
   const double smallest = std::sqrt(std::max(0.0, mean - spread));
   return static_cast<float>(std::max(std::abs(largest - 1), std::abs(smallest - 1)));
@@ -49,7 +50,7 @@ void node_normals(std::span<const float> positions, std::span<const TriangleIndi
     }
   }
   for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
-    const float length = std::hypot(normals[i], normals[i + 1], normals[i + 2]);
+    const float length = node(normals, static_cast<std::uint32_t>(i / 3)).norm();
     if (length > 0) {
       for (int c = 0; c < 3; ++c) normals[i + c] /= length;
     }
