@@ -1,5 +1,5 @@
-# What `cmake --install` puts beside programs, data and headers, and what CPack makes of it: two
-# Debian packages, palpate (component "programs") and palpate-dev (component "dev").
+# What `cmake --install` puts beside programs, data and headers, and what CPack makes of it: three
+# Debian packages, palpate (component "programs"), palpate-dev ("dev") and python3-palpate ("python").
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY idl/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/idl COMPONENT dev
@@ -20,11 +20,10 @@ install(EXPORT palpate-bus NAMESPACE palpate:: DESTINATION ${package_folder} COM
 set(CPACK_PACKAGE_CONTACT "Palpate maintainers <maintainers@palpate.example>")
 
 # Debian wants licence, changes and reasons for what lintian is told to overlook with each package.
-foreach(package IN ITEMS palpate palpate-dev)
-  set(component programs)
-  if(package STREQUAL "palpate-dev")
-    set(component dev)
-  endif()
+foreach(component IN ITEMS programs dev python)
+  string(REPLACE "programs" "palpate" package ${component})
+  string(REPLACE "dev" "palpate-dev" package ${package})
+  string(REPLACE "python" "python3-palpate" package ${package})
   set(made ${PROJECT_BINARY_DIR}/packaging/${package})
   configure_file(packaging/debian/changelog.in ${made}/changelog @ONLY)
   execute_process(COMMAND gzip -9nf ${made}/changelog COMMAND_ERROR_IS_FATAL ANY)
@@ -40,7 +39,7 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-set(CPACK_COMPONENTS_ALL programs dev)
+set(CPACK_COMPONENTS_ALL programs dev python)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -62,4 +61,14 @@ the topics of a session, and the message types as IDL for any other DDS.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME palpate-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "libfastrtps-dev, libeigen3-dev")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"From Python: sessions, scenes, recordings and meshes as NumPy arrays.
+Runs a session in the interpreter's own process, as fast as the machine allows,
+or joins one of other processes.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-palpate)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.11), python3 (<< 3.12), python3-numpy, palpate (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-pandas, python3-scipy")
 include(CPack)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    import pandas
+    import pandas  # type: ignore[import]
 
 _KEYS = ("probe", "organ", "module_name")
 
@@ -130,7 +130,7 @@ class Topic(Mapping[str, Any]):
         name = next((name for name in _KEYS if name in self._columns), None)
         if name is None:
             raise KeyError(f"topic {self._name} has no keys")
-        wanted = np.asarray(self._columns[name]) == key
+        wanted = np.array([value == key for value in self._columns[name]], dtype=bool)
         return Topic(self._name, {n: _chosen(c, wanted) for n, c in self._columns.items()}, int(wanted.sum()))
 
     def to_pandas(self) -> pandas.DataFrame:

@@ -141,6 +141,8 @@ class Scene:
         return (Scene.parse, (self.text(), str(self.file)))
 
     def __eq__(self, other: object) -> bool:
-        return self.text() == other.text() if isinstance(other, Scene) else NotImplemented
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self.text() == other.text()
 
     __hash__ = None  # type: ignore[assignment]  # it can change
