@@ -7,6 +7,8 @@
 #include <numbers>
 #include <span>
 
+#include "visualizer/surface_pick.h"
+
 namespace palpate::visualizer {
 namespace {
 
@@ -16,7 +18,12 @@ constexpr std::array<Rgb, 3> kSpringColors{{{205, 215, 225}, {255, 196, 84}, {96
 constexpr Rgb kVirtualNodeColor{96, 214, 214};
 constexpr Rgb kContactColor{255, 255, 255};
 constexpr Rgb kForceColor{255, 236, 90};
+constexpr Rgb kPlumbColor{190, 200, 214};
+constexpr Rgb kPatchColor{255, 250, 235};
 constexpr double kSmallestForce = 1e-3;  // shown as an arrow [N]
+constexpr double kPatchTint = 0.8;
+constexpr double kDarkest = 0.5;      // of a shadow
+constexpr double kShadowWidth = 1.5;  // in radii of the probe
 
 void add_organ(const OrganView& organ, std::size_t index, const SceneView& view,
                const ViewOptions& options, DrawList& list) {
@@ -44,6 +51,63 @@ void add_organ(const OrganView& organ, std::size_t index, const SceneView& view,
   for (auto i = organ.surface.surface_node_count; i < organ.node_count(); ++i) {
     list.points.push_back({organ.node(i), kVirtualNodeColor, 12});
   }
+}
+
+/// A touched place is as bright as nothing else: its nodes by their weights.
+void tint(DrawList& list, std::uint32_t organ, std::uint32_t node, double weight) {
+  for (SurfaceItem& item : list.surfaces) {
+    if (item.organ != organ || 3 * std::size_t{node} + 2 >= item.colors.size()) continue;
+    std::uint8_t* color = item.colors.data() + 3 * std::size_t{node};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double mixed = (1 - weight) * color[c] + weight * kPatchColor[c];
+      color[c] = static_cast<std::uint8_t>(mixed);
+    }
+  }
+}
+
+void tint_patch(const ProbeView& probe, const SceneView& view, DrawList& list) {
+  for (const Contact& contact : probe.contacts.contacts) {
+    if (contact.gap > 0) continue;
+    for (const SurfaceItem& item : list.surfaces) {
+      if (item.organ != contact.organ || contact.triangle >= item.triangles.size()) continue;
+      const TriangleIndices& nodes = item.triangles[contact.triangle];
+      for (int k = 0; k < 3; ++k) {
+        tint(list, contact.organ, nodes[static_cast<std::size_t>(k)],
+             kPatchTint * std::clamp(contact.barycentric[k], 0.0, 1.0));
+      }
+    }
+  }
+  std::span<const std::uint32_t> nodes = probe.contacts.face_nodes;
+  for (const FaceContacts& face : probe.contacts.faces) {
+    const auto own = nodes.first(face.node_count);
+    nodes = nodes.subspan(face.node_count);
+    if (face.organ >= view.organs().size()) continue;
+    const OrganView& organ = view.organs()[face.organ];
+    for (const std::uint32_t node : own) {
+      if (node >= organ.node_count()) continue;
+      const Vec3 tissue_P = probe.contacts.probe_pose.to_body(organ.node(node));
+      if (contact_on_face(face, tissue_P).gap <= 0) tint(list, face.organ, node, kPatchTint);
+    }
+  }
+}
+
+double shadow_radius(const scene::ProbeShape& shape, const SceneView& view) {
+  if (const auto* sphere = std::get_if<scene::SphereShape>(&shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<scene::CapsuleShape>(&shape)) return capsule->radius;
+  return 0.08 * view.radius();
+}
+
+/// How far a probe is: a line to the surface below it, and a shadow there that darkens as it nears.
+void add_plumb_line(const ProbeView& probe, const SceneView& view, DrawList& list) {
+  const auto foot = foot_on_surface(view, probe.pose.position);
+  if (!foot) return;
+  const Vec3 up = probe.pose.position - foot->point;
+  if (!(up.dot(foot->normal) > 0)) return;
+  list.lines.push_back({probe.pose.position, foot->point, kPlumbColor});
+  const double radius = shadow_radius(probe.description.shape, view);
+  const double nearness = std::clamp(1.5 - up.norm() / view.radius(), 0.0, 1.0);
+  list.shadows.push_back({foot->point + 0.15 * radius * foot->normal, foot->normal,
+                          kShadowWidth * radius, kDarkest * nearness});
 }
 
 void add_contact(const ProbeView& probe, const Contact& contact, double normal_length,
@@ -85,6 +149,8 @@ void add_probe(const ProbeView& probe, std::size_t index, const SceneView& view,
   body.opacity = plane ? 0.35 : 1;
   list.bodies.push_back(body);
   add_contacts(probe, view, list);
+  tint_patch(probe, view, list);
+  if (!plane) add_plumb_line(probe, view, list);
 
   const double force = probe.has_force ? probe.force.force.norm() : 0;
   if (force < kSmallestForce) return;
@@ -117,6 +183,18 @@ DrawList make_draw_list(const SceneView& view, const ViewOptions& options) {
     if (view.probes()[i].seen) add_probe(view.probes()[i], i, view, list);
   }
   return list;
+}
+
+void append_disc(const DiscItem& disc, geometry::TriangleSurface& out) {
+  constexpr std::uint32_t kSides = 24;
+  const Vec3 u = disc.normal.unitOrthogonal(), v = disc.normal.cross(u);
+  const auto middle = static_cast<std::uint32_t>(out.nodes.size());
+  out.nodes.push_back(disc.center);
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    out.nodes.push_back(disc.center + disc.radius * (std::cos(angle) * u + std::sin(angle) * v));
+    out.triangles.push_back({middle, middle + 1 + i, middle + 1 + (i + 1) % kSides});
+  }
 }
 
 void append_arrow(const ArrowItem& arrow, geometry::TriangleSurface& out) {

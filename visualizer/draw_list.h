@@ -61,12 +61,20 @@ struct ArrowItem {
   std::string label;  ///< beside the tip
 };
 
+/// A flat round shadow on a surface.
+struct DiscItem {
+  Vec3 center, normal;  ///< in W [m], unit
+  double radius = 0;    ///< [m]
+  double opacity = 0;
+};
+
 struct DrawList {
   std::vector<SurfaceItem> surfaces;
   std::vector<SpringItem> springs;
   std::vector<BodyItem> bodies;
   std::vector<PointItem> points;
   std::vector<LineItem> lines;
+  std::vector<DiscItem> shadows;
   std::vector<ArrowItem> arrows;
 };
 
@@ -78,6 +86,9 @@ Rgb probe_color(std::size_t probe);
 /// Length that 1 N has in the picture [m]: a round number, such that the largest force the scene
 /// allows is about as long as the organs' radius.
 double force_scale(const SceneView& view);
+
+/// The disc as a fan of triangles, appended to `out`.
+void append_disc(const DiscItem& disc, geometry::TriangleSurface& out);
 
 /// The arrow as a solid: a shaft and a head, appended to `out`. Nothing if tail = tip.
 void append_arrow(const ArrowItem& arrow, geometry::TriangleSurface& out);

@@ -1,24 +1,34 @@
 #include "visualizer/interaction.h"
 
+#include <cmath>
+
 namespace palpate::visualizer {
 namespace {
 
 constexpr double kPixelsPerWheelStep = 15;
+constexpr double kDepthPerWheelStep = 1e-3;  // [m]
 
-bool follows_mouse(const ProbeView& probe) {
-  return std::holds_alternative<scene::MouseDevice>(probe.description.device);
+template <class Device>
+bool has_device(const ProbeView& probe) {
+  return std::holds_alternative<Device>(probe.description.device);
+}
+
+/// A script or a recording yields to the mouse; who moves by themselves do not.
+bool yields(const ProbeView& probe) {
+  return has_device<scene::MouseDevice>(probe) || has_device<scene::ScriptedDevice>(probe) ||
+         has_device<scene::TrajectoryDevice>(probe);
+}
+
+Pose pose_of(const ProbeView& probe) {
+  if (probe.seen) return probe.pose;
+  const auto* mouse = std::get_if<scene::MouseDevice>(&probe.description.device);
+  return mouse ? Pose{mouse->start, mouse->rotation} : probe.pose;
 }
 
 }  // namespace
 
-std::optional<std::size_t> first_mouse_probe(const SceneView& view) {
-  for (std::size_t i = 0; i < view.probes().size(); ++i) {
-    if (follows_mouse(view.probes()[i])) return i;
-  }
-  return std::nullopt;
-}
-
 std::optional<std::size_t> Interaction::held_probe() const {
+  if (press_) return press_->probe();
   return drag_ ? std::optional(drag_->probe()) : std::nullopt;
 }
 
@@ -36,65 +46,111 @@ Requests Interaction::handle(const std::vector<InputEvent>& events, const SceneV
         wheel(event);
         break;
       case InputEvent::Kind::kKey:
-        key(event.key, requests);
+        key(event.key, requests, view);
         break;
       case InputEvent::Kind::kClose:
         requests.close = true;
         break;
       case InputEvent::Kind::kRelease:
-        drag_.reset();
-        camera_button_ = MouseButton::kNone;
+        let_go();
         break;
     }
   }
-  if (drag_) request_held(requests);
+  hold(view);
+  for (const auto& [probe, pose] : taken_) {
+    ProbeState wanted;
+    wanted.probe = static_cast<std::uint32_t>(probe);
+    wanted.pose = pose;
+    requests.probe_inputs.push_back(wanted);
+  }
   return requests;
 }
 
 void Interaction::press(const InputEvent& event, const SceneView& view) {
-  last_x_ = event.x;
-  last_y_ = event.y;
+  last_x_ = press_x_ = event.x;
+  last_y_ = press_y_ = event.y;
   notice_.clear();
   if (event.x > camera.width) return;  // beside the 3-D part
   if (event.button == MouseButton::kLeft) {
-    std::vector<Handle> handles;
-    for (std::size_t i = 0; i < view.probes().size(); ++i) {
-      // A probe not heard of yet is nowhere: behind the eye, so that it is not picked.
-      const Vec3 nowhere = camera.position - camera.view_direction();
-      const ProbeView& probe = view.probes()[i];
-      handles.push_back({probe.seen ? probe.pose.position : nowhere, reaches_.at(i)});
-    }
-    if (const auto picked = pick(camera, handles, event.x, event.y)) {
-      return take_probe(*picked, view);
-    }
-    if (event.shift) {
-      if (const auto probe = first_mouse_probe(view)) return take_probe(*probe, view);
-      notice_ = "No probe of this scene has the device 'mouse': none follows it.";
-      return;
-    }
+    if (!event.shift && press_probe(event, view)) return;
+    if (press_surface(event, view)) return;
+    if (event.shift) notice_ = "No organ under the pointer: shift-drag presses one.";
+    if (event.shift) return;
   }
   camera_button_ = event.shift ? MouseButton::kMiddle : event.button;
 }
 
-void Interaction::take_probe(std::size_t probe, const SceneView& view) {
-  const ProbeView& taken = view.probes()[probe];
-  if (!follows_mouse(taken)) {
-    notice_ = "Probe '" + taken.description.name +
-              "' does not follow the mouse: its device is not 'mouse'.";
-    return;
+/// A probe under the pointer is dragged. @returns false if there is none
+bool Interaction::press_probe(const InputEvent& event, const SceneView& view) {
+  std::vector<Handle> handles;
+  for (std::size_t i = 0; i < view.probes().size(); ++i) {
+    // A probe not heard of yet is nowhere: behind the eye, so that it is not picked.
+    const Vec3 nowhere = camera.position - camera.view_direction();
+    const ProbeView& probe = view.probes()[i];
+    const bool pickable = probe.seen && !bodies_.at(i).plane;
+    handles.push_back({pickable ? probe.pose.position : nowhere, bodies_.at(i).reach});
   }
-  const auto& device = std::get<scene::MouseDevice>(taken.description.device);
-  const Pose start{device.start, device.rotation};
-  const Pose& pose = taken.seen ? taken.pose : start;
-  drag_.emplace(probe, pose.position);
+  const auto picked = pick(camera, handles, event.x, event.y);
+  if (!picked) return false;
+  if (!may_take(*picked, view)) return true;
+  const Pose pose = pose_of(view.probes()[*picked]);
+  drag_.emplace(*picked, pose.position);
   held_rotation_ = pose.rotation;
+  preferred_ = picked;
+  return true;
+}
+
+/// The organ under the pointer is pressed. @returns false if there is none
+bool Interaction::press_surface(const InputEvent& event, const SceneView& view) {
+  const auto place = pick_surface(view, camera, event.x, event.y);
+  if (!place) return false;
+  const auto probe = probe_to_press_with(view);
+  if (!probe) return true;
+  press_.emplace(*probe, bodies_.at(*probe), pose_of(view.probes()[*probe]), *place, view, camera);
+  pressed_view_ = view;
+  preferred_ = probe;
+  return true;
+}
+
+bool Interaction::may_take(std::size_t probe, const SceneView& view) {
+  const ProbeView& wanted = view.probes()[probe];
+  if (yields(wanted)) return true;
+  notice_ = "Probe '" + wanted.description.name + "' is moved by its own device, not by the mouse.";
+  return false;
+}
+
+/// The one held last, else the first that follows the mouse, else the first that yields to it.
+std::optional<std::size_t> Interaction::probe_to_press_with(const SceneView& view) {
+  if (preferred_) return preferred_;
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < view.probes().size(); ++i) {
+    if (has_device<scene::MouseDevice>(view.probes()[i])) return i;
+    if (!first && yields(view.probes()[i])) first = i;
+  }
+  if (!first) {
+    notice_ = view.probes().empty() ? "This scene has no probe to press with."
+                                    : "Every probe of this scene is moved by its own device.";
+  }
+  return first;
 }
 
 void Interaction::move(const InputEvent& event) {
   const double dx = event.x - last_x_, dy = event.y - last_y_;
   last_x_ = event.x;
   last_y_ = event.y;
-  if (drag_) {
+  if (press_) {
+    if (event.control) {
+      const auto place = pick_surface(*pressed_view_, camera, event.x, event.y);
+      if (place) press_->slide_to(*place);
+      press_x_ += dx;  // sliding drags nothing deeper
+      press_y_ += dy;
+    } else {
+      const double away = (press_->place().point - camera.position).dot(camera.view_direction());
+      const double pixels = std::hypot(event.x - press_x_, event.y - press_y_);
+      press_->drag(pixels * camera.pixel_size(away));
+      notice_ = press_->deepest() ? "As deep as the mouse goes." : "";
+    }
+  } else if (drag_) {
     if (event.control) {
       drag_->along_view(camera, dy);
     } else {
@@ -110,21 +166,53 @@ void Interaction::move(const InputEvent& event) {
 }
 
 void Interaction::wheel(const InputEvent& event) {
-  if (drag_) {
+  if (press_) {
+    press_->deepen(event.wheel_steps * kDepthPerWheelStep);
+  } else if (drag_) {
     drag_->along_view(camera, event.wheel_steps * kPixelsPerWheelStep);
   } else {
     zoom(camera, event.wheel_steps);
   }
 }
 
-void Interaction::request_held(Requests& requests) const {
-  ProbeState wanted;
-  wanted.probe = static_cast<std::uint32_t>(drag_->probe());
-  wanted.pose = {drag_->position(), held_rotation_};
-  requests.probe_input = wanted;
+/// A press ends off the organ; a dragged probe stays where it was put.
+void Interaction::let_go() {
+  if (press_) taken_[press_->probe()] = press_->stood_off();
+  press_.reset();
+  pressed_view_.reset();
+  drag_.reset();
+  camera_button_ = MouseButton::kNone;
 }
 
-void Interaction::key(const std::string& name, Requests& requests) {
+/// Where the held probe is wanted now.
+void Interaction::hold(const SceneView& view) {
+  if (press_) {
+    taken_[press_->probe()] = press_->wanted(pose_of(view.probes()[press_->probe()]).position);
+  }
+  if (drag_) taken_[drag_->probe()] = {drag_->position(), held_rotation_};
+}
+
+/// Silence gives a script its probe back; one that has no script goes where it began.
+void Interaction::give_back(const SceneView& view) {
+  let_go();
+  notice_ = taken_.empty() ? "No probe is taken over: there is none to give back." : "Given back: ";
+  std::string names;
+  for (const auto& [probe, pose] : taken_) {
+    if (!names.empty()) names += ", ";
+    names += view.probes()[probe].description.name;
+  }
+  notice_ += names;
+  std::erase_if(taken_, [&](const auto& taken) {
+    return !has_device<scene::MouseDevice>(view.probes()[taken.first]);
+  });
+  for (auto& [probe, pose] : taken_) {
+    const auto& mouse = std::get<scene::MouseDevice>(view.probes()[probe].description.device);
+    pose = {mouse.start, mouse.rotation};
+  }
+  preferred_.reset();
+}
+
+void Interaction::key(const std::string& name, Requests& requests, const SceneView& view) {
   if (name == "h") options.help = !options.help;
   if (name == "c") {
     options.coloring =
@@ -134,9 +222,14 @@ void Interaction::key(const std::string& name, Requests& requests) {
     bool& family = options.springs[static_cast<std::size_t>(name[0] - '1')];
     family = !family;
   }
+  if (name == "g") give_back(view);
   if (name == "s") requests.screenshot = true;
   if (name == "space") requests.pause_or_resume = true;
-  if (name == "r") requests.reset = true;
+  if (name == "r") {  // all is as at the start, probes with their scripts, too
+    let_go();
+    taken_.clear();
+    requests.reset = true;
+  }
   if (name == "q" || name == "Escape") requests.close = true;
 }
 

@@ -1,6 +1,8 @@
-// Keys and mouse → view options, camera, dragged probes, session commands. No window needed.
+// Keys and mouse → view options, camera, pressing and dragged probes, session commands. No window
+// needed.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "visualizer/camera.h"
 #include "visualizer/probe_drag.h"
 #include "visualizer/scene_view.h"
+#include "visualizer/surface_press.h"
 #include "visualizer/view_options.h"
 
 namespace palpate::visualizer {
@@ -28,13 +31,13 @@ struct InputEvent {
 /// Requests of the person that others have to carry out.
 struct Requests {
   bool close = false, screenshot = false, pause_or_resume = false, reset = false;
-  std::optional<ProbeState> probe_input;  ///< pose of the held probe; header is the sender's
+  std::vector<ProbeState> probe_inputs;  ///< of probes taken over; headers are the sender's
 };
 
 class Interaction {
  public:
-  /// @param reaches  of each probe's surface from its origin, at most [m]
-  explicit Interaction(std::vector<double> reaches) : reaches_(std::move(reaches)) {}
+  /// @param bodies  of the scene's probes
+  explicit Interaction(std::vector<ProbeBody> bodies) : bodies_(std::move(bodies)) {}
 
   /// Carries out what concerns the picture; returns the rest.
   Requests handle(const std::vector<InputEvent>& events, const SceneView& view);
@@ -44,26 +47,37 @@ class Interaction {
 
   /// The probe held by the mouse.
   std::optional<std::size_t> held_probe() const;
-  /// A line for the screen when a drag is refused; empty if all is well.
+  /// The press that goes on; nullptr: none.
+  const SurfacePress* surface_press() const { return press_ ? &*press_ : nullptr; }
+  /// Taken over from its script, held or not.
+  bool taken(std::size_t probe) const { return taken_.contains(probe); }
+  /// A line for the screen: why something is not done, or what was; empty if there is nothing to
+  /// say.
   const std::string& notice() const { return notice_; }
 
  private:
   void press(const InputEvent& event, const SceneView& view);
+  bool press_probe(const InputEvent& event, const SceneView& view);
+  bool press_surface(const InputEvent& event, const SceneView& view);
   void move(const InputEvent& event);
   void wheel(const InputEvent& event);
-  void key(const std::string& name, Requests& requests);
-  void take_probe(std::size_t probe, const SceneView& view);
-  void request_held(Requests& requests) const;
+  void let_go();
+  void key(const std::string& name, Requests& requests, const SceneView& view);
+  void give_back(const SceneView& view);
+  bool may_take(std::size_t probe, const SceneView& view);
+  std::optional<std::size_t> probe_to_press_with(const SceneView& view);
+  void hold(const SceneView& view);
 
-  std::vector<double> reaches_;
+  std::vector<ProbeBody> bodies_;
   std::optional<ProbeDrag> drag_;
+  std::optional<SurfacePress> press_;
+  std::optional<SceneView> pressed_view_;  // as it was at the press: a dent moves no press
+  std::map<std::size_t, Pose> taken_;      // where each is wanted
+  std::optional<std::size_t> preferred_;   // presses where none is under the pointer
   Quat held_rotation_ = Quat::Identity();
   MouseButton camera_button_ = MouseButton::kNone;
-  double last_x_ = 0, last_y_ = 0;
+  double last_x_ = 0, last_y_ = 0, press_x_ = 0, press_y_ = 0;
   std::string notice_;
 };
-
-/// Index of the scene's first probe whose device is `mouse`.
-std::optional<std::size_t> first_mouse_probe(const SceneView& view);
 
 }  // namespace palpate::visualizer

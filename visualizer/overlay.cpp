@@ -30,6 +30,27 @@ std::string what_is_missing(const SceneView& view) {
   return {};
 }
 
+/// What the mouse does with a probe, in words: its depth, its force, how to give it back.
+void add_hand(const SceneView& view, const Interaction& interaction, Overlay& out,
+              const Box2& box) {
+  std::string line;
+  if (const SurfacePress* press = interaction.surface_press()) {
+    const ProbeView& probe = view.probes()[press->probe()];
+    line = probe.description.name + text_of(": %.1f mm deep", 1000 * press->depth());
+    line += text_of(", %.2f N", probe.has_force ? probe.force.force.norm() : 0.0);
+  } else if (const auto held = interaction.held_probe()) {
+    line = view.probes()[*held].description.name + ": held";
+  } else {
+    for (std::size_t i = 0; i < view.probes().size(); ++i) {
+      const bool mouse =
+          std::holds_alternative<scene::MouseDevice>(view.probes()[i].description.device);
+      if (!interaction.taken(i) || mouse) continue;
+      line = view.probes()[i].description.name + ": taken over; g gives it back";
+    }
+  }
+  out.texts.push_back({kMargin, box.top() - 72, line, 14, palette::kWarning});
+}
+
 void add_scale_bar(const SceneView& view, const Camera& camera, const Box2& box, Overlay& out) {
   const double size = camera.pixel_size((camera.target - camera.position).norm());
   const double length = round_up(50 * size);
@@ -116,7 +137,7 @@ void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out) 
 }
 
 void add_help(const Box2& box, Overlay& out) {
-  constexpr std::array<std::array<const char*, 2>, 13> kKeys{
+  constexpr std::array<std::array<const char*, 2>, 15> kKeys{
       {{"h", "this help"},
        {"c", "colour by strain / displacement"},
        {"1 2 3", "structural / bending / inner springs"},
@@ -124,10 +145,12 @@ void add_help(const Box2& box, Overlay& out) {
        {"r", "reset"},
        {"s", "screenshot (PNG)"},
        {"q", "close this window"},
-       {"drag probe", "move it in the picture plane"},
-       {"ctrl + drag, wheel", "move the held probe along the view"},
-       {"shift + drag", "move the first probe, wherever"},
-       {"drag", "turn the camera"},
+       {"g", "give a probe back to its script"},
+       {"drag on an organ", "press it there: the further, the deeper"},
+       {"wheel, ctrl + drag", "while pressing: depth; slide over the organ"},
+       {"drag a probe", "move it in the picture plane; wheel: in and out"},
+       {"shift + drag", "press the organ, whatever is before it"},
+       {"drag beside", "turn the camera"},
        {"middle drag", "shift the camera"},
        {"wheel, right drag", "nearer, further"}}};
   const double width = 440, line = 21, height = line * kKeys.size() + 28;
@@ -147,6 +170,7 @@ Overlay make_overlay(const SceneView& view, const DrawList& list, const Interact
   Overlay out;
   const Box2& box = layout.scene;
   add_title(view, box, now_ns, out);
+  add_hand(view, interaction, out, box);
   add_scale_bar(view, interaction.camera, box, out);
   add_color_bar(view, interaction.options.coloring, {box.right() - 276, box.y + 36, 240, 14}, out);
   add_arrow_labels(list, interaction.camera, out);

@@ -217,7 +217,7 @@ struct BodyPart {
 /// Contacts, virtual nodes and arrows: few, made anew for each frame.
 struct Marks {
   Part lines;
-  std::vector<std::unique_ptr<Part>> points, arrows;
+  std::vector<std::unique_ptr<Part>> points, shadows, arrows;
 
   explicit Marks(vtkRenderer& layer) : lines(layer) {
     lines.actor->GetProperty()->LightingOff();
@@ -235,6 +235,7 @@ struct Marks {
 
   void update_points(const std::vector<PointItem>& items, vtkRenderer& layer);
   void update_lines(const std::vector<LineItem>& items);
+  void update_shadows(const std::vector<DiscItem>& items, vtkRenderer& layer);
   void update_arrows(const std::vector<ArrowItem>& items, vtkRenderer& layer);
 };
 
@@ -279,6 +280,21 @@ void Marks::update_lines(const std::vector<LineItem>& items) {
   lines.data->GetPointData()->SetScalars(colors);
 }
 
+void Marks::update_shadows(const std::vector<DiscItem>& items, vtkRenderer& layer) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    Part& drawn = part(shadows, i, layer);
+    geometry::TriangleSurface disc;
+    append_disc(items[i], disc);
+    set_surface(*drawn.data, disc);
+    vtkProperty* look = drawn.actor->GetProperty();
+    look->LightingOff();
+    look->SetColor(0, 0, 0);
+    look->SetOpacity(items[i].opacity);
+    look->BackfaceCullingOn();  // on the far side of an organ there is nothing to see
+  }
+  hide_from(shadows, items.size());
+}
+
 void Marks::update_arrows(const std::vector<ArrowItem>& items, vtkRenderer& layer) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     Part& drawn = part(arrows, i, layer);
@@ -306,10 +322,11 @@ struct SceneActors::Impl {
   void draw_last_what_is_seen_through();
 };
 
-/// Blending needs it: organs, then probes, then their ghosts.
+/// Blending needs it: organs, then shadows on them, then probes, then probes' ghosts.
 void SceneActors::Impl::draw_last_what_is_seen_through() {
   std::vector<vtkActor*> wanted;
   for (const auto& [index, organ] : organs) wanted.push_back(organ->surface.actor);
+  for (const auto& shadow : marks.shadows) wanted.push_back(shadow->actor);
   for (const auto& body : bodies) wanted.push_back(body->solid.actor);
   std::erase_if(wanted, [](vtkActor* actor) { return actor->GetProperty()->GetOpacity() == 1; });
   const int count =
@@ -354,6 +371,7 @@ void SceneActors::update(const DrawList& list) {
   for (const BodyItem& item : list.bodies) impl_->bodies.at(item.probe)->update(item);
   impl_->marks.update_points(list.points, impl_->see_through);
   impl_->marks.update_lines(list.lines);
+  impl_->marks.update_shadows(list.shadows, impl_->solids);
   impl_->marks.update_arrows(list.arrows, impl_->see_through);
   impl_->draw_last_what_is_seen_through();
 }

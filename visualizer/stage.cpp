@@ -61,14 +61,17 @@ std::vector<geometry::TriangleSurface> probe_surfaces(const scene::Scene& scene)
   return surfaces;
 }
 
-std::vector<double> reaches_of(const std::vector<geometry::TriangleSurface>& surfaces) {
-  std::vector<double> reaches;
-  for (const auto& surface : surfaces) {
-    double furthest = 0;
-    for (const Vec3& node : surface.nodes) furthest = std::max(furthest, node.norm());
-    reaches.push_back(furthest);
+std::vector<ProbeBody> probe_bodies(const scene::Scene& scene,
+                                    const std::vector<geometry::TriangleSurface>& surfaces) {
+  std::vector<ProbeBody> bodies;
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    ProbeBody body;
+    for (const Vec3& node : surfaces[i].nodes) body.reach = std::max(body.reach, node.norm());
+    body.nodes = surfaces[i].nodes;
+    body.plane = std::holds_alternative<geometry::HalfSpace>(scene::form_of(scene.probes[i].shape));
+    bodies.push_back(std::move(body));
   }
-  return reaches;
+  return bodies;
 }
 
 /// The picture and what happens in it.
@@ -77,7 +80,7 @@ class Studio {
   Studio(const scene::Scene& scene, bool window)
       : view(scene),
         surfaces_(probe_surfaces(scene)),
-        interaction(reaches_of(surfaces_)),
+        interaction(probe_bodies(scene, surfaces_)),
         renderer({.window = window, .title = "Palpate: " + scene.name}, surfaces_) {
     aim();
   }
@@ -174,10 +177,9 @@ class VisualizerStage : public runtime::Stage {
   }
 
   void carry_out(const Requests& requests, const runtime::Cycle& now) {
-    if (requests.probe_input) {
-      ProbeState wanted = *requests.probe_input;
+    for (ProbeState wanted : requests.probe_inputs) {
       wanted.header = now.header();
-      probe_inputs_.write(wanted);
+      if (commands_) probe_inputs_.write(wanted);
     }
     if (requests.pause_or_resume && commands_) {
       conductor_.command(session_, session_.phase() == runtime::SessionPhase::kRunning

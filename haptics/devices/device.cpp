@@ -6,6 +6,7 @@
 #include "haptics/devices/topic_device.h"
 #include "haptics/devices/trajectory.h"
 #include "haptics/devices/trajectory_file.h"
+#include "haptics/devices/yielding_device.h"
 
 namespace palpate::haptics {
 namespace {
@@ -38,10 +39,11 @@ class TrajectoryDevice final : public Device {
 std::unique_ptr<Device> make_device(const scene::Device& device, const scene::Haptics& haptics,
                                     std::vector<std::string>& warnings) {
   if (const auto* trajectory = std::get_if<scene::TrajectoryDevice>(&device)) {
-    return std::make_unique<TrajectoryDevice>(*trajectory, warnings);
+    return std::make_unique<YieldingDevice>(
+        std::make_unique<TrajectoryDevice>(*trajectory, warnings));
   }
   if (const auto* script = std::get_if<scene::ScriptedDevice>(&device)) {
-    return std::make_unique<ScriptedDevice>(*script);
+    return std::make_unique<YieldingDevice>(std::make_unique<ScriptedDevice>(*script));
   }
   if (const auto* emulated = std::get_if<scene::EmulatedDevice>(&device)) {
     return std::make_unique<EmulatedDevice>(*emulated);

@@ -89,7 +89,7 @@ TEST_CASE("draw list: one surface, the probes seen, the contacts that touch, one
   CHECK(list.surfaces[0].opacity == 1);
   CHECK(list.bodies.size() == 1);
   CHECK(list.points.size() == 2);
-  CHECK(list.lines.size() == 2);
+  CHECK(list.lines.size() == 3);  // two normals, and the line to the surface
   REQUIRE(list.arrows.size() == 1);
   CHECK(list.arrows[0].label == "1.50 N");
   CHECK(list.springs.empty());
@@ -110,7 +110,7 @@ TEST_CASE("draw list: a contact is drawn where its probe is drawn", "[visualizer
   const DrawList list = make_draw_list(view, {});
   REQUIRE(list.points.size() == 1);
   CHECK((list.points[0].position - moved.pose.to_world(contacts.contacts[0].point_P)).norm() == 0);
-  REQUIRE(list.lines.size() == 1);
+  REQUIRE(list.lines.size() == 2);
   const Vec3 along = (list.lines[0].to - list.lines[0].from).normalized();
   CHECK((along - moved.pose.rotation * Vec3::UnitZ()).norm() < 1e-12);
 }
@@ -203,4 +203,45 @@ TEST_CASE("arrow solid: closed, outward, from tail to tip", "[visualizer][analyt
   geometry::TriangleSurface nothing;
   append_arrow({Vec3::Zero(), Vec3::Zero(), 0.001, {}, ""}, nothing);
   CHECK(nothing.nodes.empty());
+}
+
+TEST_CASE(
+    "draw list: a probe above an organ has a line to it and a shadow that darkens as it nears",
+    "[visualizer]") {
+  // Oracle: the ball: the foot lies below the probe; a probe inside has neither.
+  SceneView view(two_probe_scene());
+  view.receive(topology_of(geometry::make_ball(0.05, 3)));
+  view.refresh();
+  double before = 0;
+  for (const double height : {0.11, 0.09, 0.06}) {
+    ProbeState probe;
+    probe.pose.position = Vec3(0, 0, height);
+    view.receive(probe);
+    const DrawList list = make_draw_list(view, {});
+    REQUIRE(list.shadows.size() == 1);
+    REQUIRE(list.lines.size() == 1);
+    CHECK((list.lines[0].to - Vec3(0, 0, 0.05)).norm() < 1e-3);
+    CHECK(list.shadows[0].opacity > before);
+    before = list.shadows[0].opacity;
+  }
+  ProbeState probe;
+  probe.pose.position = Vec3(0, 0, 0.03);
+  view.receive(probe);
+  CHECK(make_draw_list(view, {}).shadows.empty());
+}
+
+TEST_CASE("draw list: a touched place is brighter, by the weights of its nodes", "[visualizer]") {
+  // Oracle: the triangle and the weights of the contact.
+  SceneView view = pressed_ball();
+  const auto plain = make_draw_list(view, {}).surfaces[0].colors;
+  Contacts contacts;
+  contacts.contacts.resize(1);
+  contacts.contacts[0].triangle = 7;
+  contacts.contacts[0].barycentric = Vec3(1, 0, 0);
+  contacts.contacts[0].gap = -1e-3;
+  view.receive(contacts);
+  const auto touched = make_draw_list(view, {}).surfaces[0].colors;
+  const auto& nodes = view.organs()[0].surface.triangles[7];
+  CHECK(touched[3 * nodes[0] + 2] > plain[3 * nodes[0] + 2]);
+  CHECK(touched[3 * nodes[1] + 2] == plain[3 * nodes[1] + 2]);
 }

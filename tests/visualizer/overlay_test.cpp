@@ -149,7 +149,7 @@ TEST_CASE("overlay: help lists every key that does something", "[visualizer]") {
   // Oracle: the keys Interaction knows.
   Overlay overlay;
   add_help({0, 0, 920, 720}, overlay);
-  for (const char* key : {"h", "c", "1 2 3", "space", "r", "s", "q"}) {
+  for (const char* key : {"h", "c", "1 2 3", "space", "r", "s", "q", "g"}) {
     const auto found = std::find_if(overlay.texts.begin(), overlay.texts.end(),
                                     [&](const TextItem& text) { return text.text == key; });
     INFO(key);

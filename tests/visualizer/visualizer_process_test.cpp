@@ -20,7 +20,7 @@
 #include "tests/visualizer/fake_session.h"
 #include "visualizer/offscreen_display.h"
 #include "visualizer/overlay.h"
-#include "visualizer/probe_drag.h"
+#include "visualizer/surface_press.h"
 
 using namespace palpate;
 using visualizer::testing::positions_of;
@@ -86,7 +86,9 @@ class Session {
     positions.write(ball);
     ProbeState probe;
     probe.header.sim_time_ns = ball.header.sim_time_ns;
-    probe.pose.position = Vec3(0, 0, 0.1);
+    ProbeState wanted;  // the finger is where the mouse wants it
+    while (inputs.take(wanted)) finger = wanted.pose.position;
+    probe.pose.position = finger;
     probes.write(probe);
   }
   bool play_until(const std::function<bool()>& condition) {
@@ -150,6 +152,7 @@ class Session {
   bus::Reader<ProbeState> inputs;
   bus::Reader<SessionControl> commands;
   SurfaceTopology topology;
+  Vec3 finger = Vec3(0, 0, 0.1);
 
  private:
   pid_t child_ = -1;
@@ -208,10 +211,10 @@ TEST_CASE("visualizer process: goes on when the deformation falls silent", "[vis
 }
 
 TEST_CASE(
-    "visualizer process: a mouse drag in the window publishes the probe, keys command the "
-    "session, q closes",
+    "visualizer process: a drag in the window presses with the probe, keys command the session, q "
+    "closes",
     "[visualizer][system]") {
-  // Oracle: the drag's analytic result for the frontal camera; commands as in SessionControl.
+  // Oracle: geometry of the ball and the frontal camera; commands as in SessionControl.
   if (!visualizer::testing::xvfb_or_skip()) return;
   const visualizer::OffscreenDisplay display;
   Session session({});
@@ -222,24 +225,24 @@ TEST_CASE(
   REQUIRE(session.play_until([&] { return mouse.find_window("Palpate: scene"); }));
 
   const auto view = visualizer::make_layout(1280, 720).scene;
+  const int x = int(view.width / 2), y = int(view.height / 2);
   const auto camera =
       visualizer::frontal_camera(Vec3::Zero(), 1.25 * 0.05, int(view.width), int(view.height));
-  visualizer::ProbeDrag expected(0, Vec3(0, 0, 0.1));
-  expected.in_picture_plane(camera, 40, 30);
-  ProbeState wanted;
-  mouse.press(300, 300, true);
-  REQUIRE(session.play_until([&] { return session.inputs.take(wanted); }));
-  const auto moved = [&] {
-    mouse.move(340, 270);
-    while (session.inputs.take(wanted)) {
-      // The nodes came as floats: the camera's place is known to 1e-7 of its distance.
-      if ((wanted.pose.position - expected.position()).norm() < 1e-7) return true;
-    }
-    return false;
-  };
-  REQUIRE(session.play_until(moved));
-  CHECK(wanted.probe == 0);
-  mouse.release(340, 270);
+  const double away = camera.position.norm() - 0.05;
+  mouse.press(x, y, true);
+  // The finger's own radius, less the depth: at first, then by the 50 pixels of the drag. The
+  // ball's 320 triangles lie up to 1.5 % of its radius inside it.
+  const auto height = [&] { return session.finger.norm() - 0.05; };
+  const double first = visualizer::SurfacePress::kFirstDepth;
+  REQUIRE(session.play_until([&] { return std::abs(height() - (0.01 - first)) < 0.015 * 0.05; }));
+  CHECK(session.finger.y() < -0.04);
+  const double deep = visualizer::SurfacePress::kPerDrag * 50 * camera.pixel_size(away);
+  REQUIRE(session.play_until([&] {
+    mouse.move(x + 40, y - 30);
+    return std::abs(height() - (0.01 - first - deep)) < 0.015 * 0.05;
+  }));
+  mouse.release(x + 40, y - 30);
+  REQUIRE(session.play_until([&] { return height() > 0.01; }));
 
   SessionControl command;
   const auto heard = [&](SessionCommand awaited) {
