@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What driving a session from Python costs: to a first curve, a step, and a sweep on two cores beside one.
 
 Usage: bench/python_cost.py [--pairs N]     (after a build, on an idle machine; least and median of N pairs)

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Makes the examples' part of docs/python.md: runs examples/python/*.py and puts in their text, code, output and picture.
 
 Usage: scripts/python_page.py [--check]     (after a build; PYTHONPATH and PALPATE_BIN name another than build/release)

@@ -2,7 +2,8 @@
 
 A session of other processes, here `palpate run stomach_probe.yaml --headless --session press` in another terminal, heard
 over DDS. `take()` gives what came since the last call. In a window the curve grows; without a display the last one is
-saved all the same.
+saved all the same. Drawn while other programs kept both cores busy: processes that are called late give a rougher force than
+the same way in process, above.
 """
 import sys
 
@@ -13,7 +14,7 @@ import palpate
 name, domain, seconds = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
 with palpate.connect(name, domain) as live:
     scene = live.latest("scene", timeout_s=20)
-    print(f"session {live.phase}, scene {scene['name']}")
+    print(f"hearing scene {scene['name']}")
     figure, axes = plt.subplots()
     (curve,) = axes.plot([], [])
     axes.set(xlabel="time [s]", ylabel="force [N]", title=scene["name"])
