@@ -45,7 +45,7 @@ def section(name, folder):
     """An example's part of the page: its text, its code, what it prints, what it draws."""
     source = (ROOT / "examples" / "python" / f"{name}.py").read_text()
     text = ast.get_docstring(ast.parse(source))
-    code = source.split('"""\n', 2)[1]
+    code = source.split('"""\n', 1)[1]
     printed = "".join(f"    {line}\n" for line in run(name, folder).splitlines())
     title = text.splitlines()[0].removeprefix("# ")
     path = f"../examples/python/{name}.py"

@@ -10,7 +10,7 @@ import palpate
 session = palpate.Session(palpate.scene_path("stomach_probe"))
 said = session.run(20, keep=["probe_state", "haptic_force"])
 force = np.linalg.norm(said["haptic_force"]["force_n"], axis=1)
-touch, deepest = np.argmax(force > 0), np.searchsorted(said["probe_state"].time, 4.0)
+touch, deepest = int(np.argmax(force > 0)), int(np.searchsorted(said["probe_state"].time, 4.0))
 position = said["probe_state"]["position_m"][touch:deepest]
 depth = np.linalg.norm(position - position[0], axis=1)
 plt.plot(1e3 * depth, force[touch:deepest])
