@@ -71,7 +71,7 @@ class Picture {
   Picture(const scene::Scene& scene, const View& how)
       : how_(how),
         view_(scene),
-        interaction_(std::vector<double>(scene.probes.size(), 0)),
+        interaction_(std::vector<visualizer::ProbeBody>(scene.probes.size())),
         renderer_({how.width, how.height, /*window=*/true}, probe_surfaces(scene)) {}
 
   void draw(const session::InProcess& pipeline, bool first) {
