@@ -26,7 +26,7 @@ def start_display():
 
 def measure(palpate, scene, seconds, display, domain):
     text = subprocess.run(
-        [palpate, "run", scene, "--duration", str(seconds), "--domain", str(domain)],
+        [palpate, "run", scene, "--duration", str(seconds), "--domain", str(domain), "--close"],
         env={**os.environ, "DISPLAY": display}, capture_output=True, text=True, check=False)
     said = text.stdout + text.stderr
 

@@ -1,5 +1,10 @@
 #include "deformation/organ_messages.h"
 
+#include <algorithm>
+#include <array>
+
+#include "modules/core/sort_unique.h"
+
 namespace palpate::deformation {
 namespace {
 
@@ -10,6 +15,20 @@ void write_float32(std::span<const Vec3> positions, std::vector<float>& out) {
       out[3 * i + axis] = static_cast<float>(positions[i][static_cast<Eigen::Index>(axis)]);
     }
   }
+}
+
+/// Each edge of the tetrahedra between their corners, once.
+std::vector<std::array<std::uint32_t, 2>> edges_of(const TetMesh& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const geometry::Tetrahedron& corners : mesh.tetrahedra) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        edges.push_back({std::min(corners[i], corners[j]), std::max(corners[i], corners[j])});
+      }
+    }
+  }
+  sort_unique(edges);
+  return edges;
 }
 
 }  // namespace
@@ -25,7 +44,12 @@ SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ
   message.triangles = model.triangles;
   message.triangle_blocks = geometry::SurfaceBlocks::split(model.rest_positions, model.triangles);
   message.fixed_nodes = model.fixed_nodes;
-  if (model.is_solid()) return message;
+  if (model.is_solid()) {
+    for (const auto& [a, b] : edges_of(model.mesh())) {
+      message.springs.push_back({a, b, SpringFamily::kInner});
+    }
+    return message;
+  }
   const SpringNetwork& network = model.network();
   for (std::size_t s = 0; s < network.springs.size(); ++s) {
     const Spring& spring = network.springs[s];

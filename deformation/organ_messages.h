@@ -8,7 +8,7 @@
 
 namespace palpate::deformation {
 
-/// Rest shape, triangles and springs of an organ.
+/// Rest shape, triangles and springs of an organ; of a solid the edges of its tetrahedra, as inner.
 SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ);
 
 /// Positions (float32), volume, pressure and energies of an organ. No allocation once `out` has

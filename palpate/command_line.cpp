@@ -54,6 +54,7 @@ void add_run_options(Options& command, RunOptions& options) {
   command.add("--only", options.only, "Start only these modules, joining a running session")
       .excludes(lockstep)
       .excludes(in_process);
+  command.flag("--close", options.close, "Close the window when the run ends; else it stays");
   command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer");
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
 }

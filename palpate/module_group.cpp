@@ -50,15 +50,18 @@ std::vector<ModuleEnd> ModuleGroup::poll() {
   return ends;
 }
 
-void ModuleGroup::stop() {
-  stop(true);
-  stop(false);
+void ModuleGroup::stop() { stop_all_but({}); }
+
+void ModuleGroup::stop_all_but(const std::string& module) {
+  stop(true, module);
+  stop(false, module);
 }
 
-void ModuleGroup::stop(bool reporting) {
+void ModuleGroup::stop(bool reporting, const std::string& but) {
   std::vector<Member*> stopping;
   for (auto& member : members_) {
-    if (member.command.reports_status == reporting) stopping.push_back(&member);
+    const bool meant = member.command.reports_status == reporting;
+    if (meant && member.command.module != but) stopping.push_back(&member);
   }
   for (auto* member : stopping) member->process->signal(SIGTERM);
   const auto deadline = runtime::monotonic_now_ns() + ns_from_seconds(kPatience);
@@ -79,6 +82,12 @@ void ModuleGroup::stop(bool reporting) {
 bool ModuleGroup::any_running() {
   return std::any_of(members_.begin(), members_.end(),
                      [](Member& member) { return !member.process->ended(); });
+}
+
+bool ModuleGroup::running(const std::string& module) {
+  return std::any_of(members_.begin(), members_.end(), [&](Member& member) {
+    return member.command.module == module && !member.process->ended();
+  });
 }
 
 std::vector<std::string> ModuleGroup::reporting_modules() const {

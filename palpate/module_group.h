@@ -34,8 +34,11 @@ class ModuleGroup {
   /// SIGTERM to all, SIGKILL to whoever is still there after kPatience. The recorder ends last, so
   /// that it hears the others' goodbyes.
   void stop();
+  /// The same, but for one module.
+  void stop_all_but(const std::string& module);
 
   bool any_running();
+  bool running(const std::string& module);
   /// Those that publish a module_status.
   std::vector<std::string> reporting_modules() const;
   std::map<std::string, std::string> last_words() const;  ///< last line of each
@@ -50,7 +53,7 @@ class ModuleGroup {
     std::string last_line, last_error;
   };
   void listen(Member& member);
-  void stop(bool reporting);
+  void stop(bool reporting, const std::string& but);
 
   std::vector<Member> members_;
   std::ostream& log_;

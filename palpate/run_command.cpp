@@ -128,14 +128,31 @@ class Run {
   void finish() {
     const std::int64_t now = runtime::monotonic_now_ns();
     SessionEnd end{scene_.name, session_.time(now), 0, {}, failures_, false};
-    if (began_ns_ != 0) end.wall_time = seconds_from_ns(now - began_ns_);
-    if (!joined_) conductor_.command(session_.state(), SessionCommand::kStop);
-    modules_.stop();
+    if (begun()) end.wall_time = seconds_from_ns(now - began_ns_);
+    const bool window = begun() && window_stays(options_) && !joined_ && !stop_.requested() &&
+                        session_.phase() != runtime::SessionPhase::kStopped &&
+                        modules_.running("visualizer");
+    if (!joined_) {
+      conductor_.command(session_.state(), window ? SessionCommand::kPause : SessionCommand::kStop);
+    }
+    modules_.stop_all_but(window ? "visualizer" : "");
     monitor_.poll();
-    if (began_ns_ == 0) return;
+    if (!begun()) return;
     end.last_words = modules_.last_words();
     const std::string text = summary(monitor_.tally(), end);
     write_run_summary(options_, text, out_);
+    if (window) wait_for_window();
+  }
+
+  bool begun() const { return began_ns_ != 0; }
+
+  /// What was felt stays to be looked at, until the person closes it.
+  void wait_for_window() {
+    log_ << "palpate: the run has ended; its window stays until q closes it\n" << std::flush;
+    while (next_cycle() && session_.phase() != runtime::SessionPhase::kStopped) {
+    }
+    conductor_.command(session_.state(), SessionCommand::kStop);
+    modules_.stop();
   }
 
   const RunOptions& options_;

@@ -60,6 +60,7 @@ ModuleCommand module_command(const RunOptions& options, std::string_view module,
   add_lockstep(options, command);
   if (module == "visualizer") {
     if (options.headless) command.arguments.push_back("--headless");
+    if (!options.lockstep && options.only.empty()) command.arguments.push_back("--ends-run");
     if (!options.frames.empty()) {
       command.arguments.insert(command.arguments.end(),
                                {"--frames", options.frames.string(), "--frame-interval-s",
@@ -92,6 +93,11 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
       commands.push_back(module_command(options, module, program_folder));
   }
   return commands;
+}
+
+bool window_stays(const RunOptions& options) {
+  return !options.headless && !options.close && options.only.empty() &&
+         wanted(options, "visualizer");
 }
 
 std::string command_text(const ModuleCommand& command) {

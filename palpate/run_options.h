@@ -16,6 +16,7 @@ struct RunOptions {
   double duration = 0;    ///< of the session [s]; 0: the scene's, and if 0, until stopped
   bool headless = false;  ///< no window
   bool visualizer = true;
+  bool close = false;  ///< the window, too, when the run ends; else it stays
   bool realtime = true;
   bool lockstep = false;          ///< without a wall clock, as fast as the machine allows
   bool in_process = false;        ///< the same in one process
@@ -41,6 +42,9 @@ struct ModuleCommand {
 /// @throws InputError for a module name that does not exist
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder);
+
+/// A window of this run that stays when the run has ended.
+bool window_stays(const RunOptions& options);
 
 /// As one types it.
 std::string command_text(const ModuleCommand& command);

@@ -37,17 +37,19 @@ void add_organ(const OrganView& organ, std::size_t index, const SceneView& view,
   item.triangles = organ.surface.triangles;
   append_colors(by_strain ? organ.node_strain : organ.displacement,
                 by_strain ? view.strain_top() : view.displacement_top(), item.colors);
-  const bool looks_inside = options.springs[static_cast<std::size_t>(SpringFamily::kInner)] ||
+  const bool looks_inside = (options.tetrahedra && organ.solid) ||
+                            options.springs[static_cast<std::size_t>(SpringFamily::kInner)] ||
                             options.springs[static_cast<std::size_t>(SpringFamily::kBending)];
-  item.opacity = looks_inside ? 0.35 : 1;
+  item.opacity = looks_inside && !options.wireframe ? 0.35 : 1;
+  item.wireframe = options.wireframe;
   list.surfaces.push_back(std::move(item));
 
   for (std::size_t f = 0; f < organ.springs.size(); ++f) {
-    if (!options.springs[f]) continue;
+    if (organ.solid ? !options.tetrahedra : !options.springs[f]) continue;
     list.springs.push_back(
         {index, static_cast<SpringFamily>(f), organ.springs[f], kSpringColors[f]});
   }
-  if (!options.springs[static_cast<std::size_t>(SpringFamily::kInner)]) return;
+  if (organ.solid || !options.springs[static_cast<std::size_t>(SpringFamily::kInner)]) return;
   for (auto i = organ.surface.surface_node_count; i < organ.node_count(); ++i) {
     list.points.push_back({organ.node(i), kVirtualNodeColor, 12});
   }
@@ -174,8 +176,13 @@ double force_scale(const SceneView& view) {
   return round_up(longest / 2);
 }
 
-DrawList make_draw_list(const SceneView& view, const ViewOptions& options) {
+DrawList make_draw_list(const SceneView& view, const ViewOptions& options,
+                        const Vec3& view_direction) {
   DrawList list;
+  if (options.cut) {
+    const Vec3 point = view.center() - *options.cut * view.radius() * view_direction;
+    list.cut = CutItem{point, view_direction};
+  }
   for (std::size_t i = 0; i < view.organs().size(); ++i) {
     if (view.organs()[i].known) add_organ(view.organs()[i], i, view, options, list);
   }

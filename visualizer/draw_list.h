@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct SurfaceItem {
   std::span<const TriangleIndices> triangles;
   std::vector<std::uint8_t> colors;  ///< (node_count × 3)
   double opacity = 1;
+  bool wireframe = false;
 };
 
 /// One spring family of one organ, between nodes of its SurfaceItem.
@@ -61,6 +63,11 @@ struct ArrowItem {
   std::string label;  ///< beside the tip
 };
 
+/// A plane: organs are drawn on its far side only.
+struct CutItem {
+  Vec3 point, normal;  ///< in W [m], unit, to what is drawn
+};
+
 /// A flat round shadow on a surface.
 struct DiscItem {
   Vec3 center, normal;  ///< in W [m], unit
@@ -76,9 +83,12 @@ struct DrawList {
   std::vector<LineItem> lines;
   std::vector<DiscItem> shadows;
   std::vector<ArrowItem> arrows;
+  std::optional<CutItem> cut;
 };
 
-DrawList make_draw_list(const SceneView& view, const ViewOptions& options);
+/// @param view_direction  unit, of the camera: the cut is across it
+DrawList make_draw_list(const SceneView& view, const ViewOptions& options,
+                        const Vec3& view_direction = Vec3::UnitY());
 
 /// Colour of a probe in the picture and in the plots.
 Rgb probe_color(std::size_t probe);

@@ -71,7 +71,9 @@ void Interaction::press(const InputEvent& event, const SceneView& view) {
   last_y_ = press_y_ = event.y;
   notice_.clear();
   if (event.x > camera.width) return;  // beside the 3-D part
-  if (event.button == MouseButton::kLeft) {
+  const bool hand = event.button == MouseButton::kLeft;
+  if (hand && !hands_off.empty() && event.shift) notice_ = hands_off;
+  if (hand && hands_off.empty()) {
     if (!event.shift && press_probe(event, view)) return;
     if (press_surface(event, view)) return;
     if (event.shift) notice_ = "No organ under the pointer: shift-drag presses one.";
@@ -210,27 +212,6 @@ void Interaction::give_back(const SceneView& view) {
     pose = {mouse.start, mouse.rotation};
   }
   preferred_.reset();
-}
-
-void Interaction::key(const std::string& name, Requests& requests, const SceneView& view) {
-  if (name == "h") options.help = !options.help;
-  if (name == "c") {
-    options.coloring =
-        options.coloring == Coloring::kStrain ? Coloring::kDisplacement : Coloring::kStrain;
-  }
-  if (name == "1" || name == "2" || name == "3") {
-    bool& family = options.springs[static_cast<std::size_t>(name[0] - '1')];
-    family = !family;
-  }
-  if (name == "g") give_back(view);
-  if (name == "s") requests.screenshot = true;
-  if (name == "space") requests.pause_or_resume = true;
-  if (name == "r") {  // all is as at the start, probes with their scripts, too
-    let_go();
-    taken_.clear();
-    requests.reset = true;
-  }
-  if (name == "q" || name == "Escape") requests.close = true;
 }
 
 }  // namespace palpate::visualizer

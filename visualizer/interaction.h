@@ -4,6 +4,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,22 @@ struct InputEvent {
   std::string key;         ///< of kKey: "h", "1", "space", …
 };
 
+/// What the keys do, for the help: key and meaning, in the help's order.
+struct KeyMeaning {
+  const char* key;
+  const char* meaning;
+};
+std::span<const KeyMeaning> key_meanings();
+
+/// The scene's camera, else all organs from the front.
+Camera home_camera(const SceneView& view, int width, int height);
+
 /// Requests of the person that others have to carry out.
 struct Requests {
-  bool close = false, screenshot = false, pause_or_resume = false, reset = false;
+  bool close = false;    ///< this window
+  bool end_run = false;  ///< and the run
+  bool screenshot = false, pause_or_resume = false, reset = false;
+  bool step = false, slow_motion = false, record = false;  ///< the latter two: on or off
   std::vector<ProbeState> probe_inputs;  ///< of probes taken over; headers are the sender's
 };
 
@@ -44,6 +58,10 @@ class Interaction {
 
   ViewOptions options;
   Camera camera;
+  /// Why the hand and the session's keys do nothing here; empty: they do.
+  std::string hands_off;
+  /// A line for the screen, until the next key or press.
+  void say(const std::string& line) { notice_ = line; }
 
   /// The probe held by the mouse.
   std::optional<std::size_t> held_probe() const;
@@ -63,6 +81,12 @@ class Interaction {
   void wheel(const InputEvent& event);
   void let_go();
   void key(const std::string& name, Requests& requests, const SceneView& view);
+  bool session_key(const std::string& name, Requests& requests);
+  bool view_key(const std::string& name, const SceneView& view);
+  void toggle_springs(std::size_t family, const SceneView& view);
+  void toggle_tetrahedra(const SceneView& view);
+  void move_cut(double by);
+  void go_home(const SceneView& view);
   void give_back(const SceneView& view);
   bool may_take(std::size_t probe, const SceneView& view);
   std::optional<std::size_t> probe_to_press_with(const SceneView& view);

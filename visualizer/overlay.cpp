@@ -23,6 +23,21 @@ void add_notice(const std::string& text, const Box2& box, Overlay& out) {
       {box.x + 0.5 * box.width, box.top() - 79, text, 13, palette::kWarning, Align::kCenter});
 }
 
+/// Lines in the middle of a box, one below the other.
+void add_panel(const std::vector<std::string>& lines, const Box2& box, Overlay& out) {
+  constexpr double kLine = 22;
+  std::size_t longest = 0;
+  for (const std::string& line : lines) longest = std::max(longest, line.size());
+  const double width = std::min(box.width, 7.6 * double(longest) + 40);
+  const double height = kLine * double(lines.size()) + 20, middle = box.x + 0.5 * box.width;
+  const double top = box.y + 0.5 * (box.height + height);
+  out.rects.push_back({{middle - 0.5 * width, top - height, width, height}, palette::kPanel, 0.9});
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    out.texts.push_back(
+        {middle, top - 21 - kLine * double(i), lines[i], 13, palette::kText, Align::kCenter});
+  }
+}
+
 std::string what_is_missing(const SceneView& view) {
   for (const OrganView& organ : view.organs()) {
     if (!organ.known) return "Waiting for the surface of organ '" + organ.name + "' ...";
@@ -44,7 +59,7 @@ void add_hand(const SceneView& view, const Interaction& interaction, Overlay& ou
     for (std::size_t i = 0; i < view.probes().size(); ++i) {
       const bool mouse =
           std::holds_alternative<scene::MouseDevice>(view.probes()[i].description.device);
-      if (!interaction.taken(i) || mouse) continue;
+      if (!interaction.taken(i) || mouse || view.ended()) continue;
       line = view.probes()[i].description.name + ": taken over; g gives it back";
     }
   }
@@ -86,7 +101,8 @@ Layout make_layout(int width, int height) {
   return layout;
 }
 
-void add_title(const SceneView& view, const Box2& box, std::int64_t now_ns, Overlay& out) {
+void add_title(const SceneView& view, const ViewOptions& options, const Box2& box,
+               std::int64_t now_ns, Overlay& out) {
   const double y = box.top() - 26;
   out.texts.push_back({kMargin, y, view.scene().name, 20, palette::kText, Align::kLeft, true});
   std::string line = text_of("t = %.2f s", view.sim_time());
@@ -94,10 +110,18 @@ void add_title(const SceneView& view, const Box2& box, std::int64_t now_ns, Over
   if (factor > 0) line += text_of("     real time x %.2f", factor);
   const bool paused =
       view.session().header.source_time_ns > 0 && view.session().command == SessionCommand::kPause;
-  if (paused) line += "     paused";
+  const bool steps = view.session().command == SessionCommand::kStep;
+  if (view.ended()) {
+    line += "     ended";
+  } else if (options.slow_motion) {
+    line += "     slow motion";
+  } else if (paused || steps) {
+    line += steps ? "     one step" : "     paused";
+  }
+  if (options.recording) line += "     recording";
   out.texts.push_back({kMargin, y - 24, line, 14, palette::kQuiet});
   const double age = view.positions_age(now_ns);
-  if (!paused && std::isfinite(age) && age > kStaleAge) {
+  if (!paused && !steps && std::isfinite(age) && age > kStaleAge) {
     out.texts.push_back({box.right() - kMargin, y, text_of("no new organ shape for %.1f s", age),
                          14, palette::kBad, Align::kRight});
   }
@@ -136,32 +160,36 @@ void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out) 
   }
 }
 
+/// At the end of a run: what was felt.
+void add_felt(const SceneView& view, const Box2& box, Overlay& out) {
+  std::vector<std::string> lines{text_of("The run has ended after %.1f s.", view.sim_time())};
+  for (const ProbeView& probe : view.probes()) {
+    std::string line = probe.description.name + ": ";
+    if (probe.touched_for > 0) {
+      line += text_of("at most %.2f N", probe.greatest_force) +
+              text_of(" (at %.1f s), ", probe.greatest_at) +
+              text_of("touched for %.1f s", probe.touched_for);
+    } else {
+      line += "felt nothing";
+    }
+    lines.push_back(line);
+  }
+  lines.push_back("q closes the window.");
+  add_panel(lines, box, out);
+}
+
 void add_help(const Box2& box, Overlay& out) {
-  constexpr std::array<std::array<const char*, 2>, 15> kKeys{
-      {{"h", "this help"},
-       {"c", "colour by strain / displacement"},
-       {"1 2 3", "structural / bending / inner springs"},
-       {"space", "pause, resume"},
-       {"r", "reset"},
-       {"s", "screenshot (PNG)"},
-       {"q", "close this window"},
-       {"g", "give a probe back to its script"},
-       {"drag on an organ", "press it there: the further, the deeper"},
-       {"wheel, ctrl + drag", "while pressing: depth; slide over the organ"},
-       {"drag a probe", "move it in the picture plane; wheel: in and out"},
-       {"shift + drag", "press the organ, whatever is before it"},
-       {"drag beside", "turn the camera"},
-       {"middle drag", "shift the camera"},
-       {"wheel, right drag", "nearer, further"}}};
-  const double width = 440, line = 21, height = line * kKeys.size() + 28;
-  const Box2 panel{box.x + 0.5 * (box.width - width), box.y + 0.5 * (box.height - height), width,
-                   height};
-  out.rects.push_back({panel, palette::kPanel, 0.92});
-  double y = panel.top() - 24;
-  for (const auto& [key, meaning] : kKeys) {
-    out.texts.push_back({panel.x + 150, y, key, 13, palette::kWarning, Align::kRight, true});
-    out.texts.push_back({panel.x + 166, y, meaning, 13, palette::kText});
-    y -= line;
+  constexpr double kLine = 20, kWidth = 372, kKeyWidth = 136;
+  const auto keys = key_meanings();
+  const double height = kLine * double(keys.size()) + 20;
+  const Box2 panel{std::max(box.x, box.x + 0.5 * (box.width - kWidth)),
+                   box.y + 0.5 * (box.height - height), kWidth, height};
+  out.rects.push_back({panel, palette::kPanel, 0.95});
+  double y = panel.top() - 20;
+  for (const auto& [key, meaning] : keys) {
+    out.texts.push_back({panel.x + kKeyWidth, y, key, 12, palette::kWarning, Align::kRight, true});
+    out.texts.push_back({panel.x + kKeyWidth + 12, y, meaning, 12, palette::kText});
+    y -= kLine;
   }
 }
 
@@ -169,7 +197,7 @@ Overlay make_overlay(const SceneView& view, const DrawList& list, const Interact
                      const Layout& layout, std::int64_t now_ns) {
   Overlay out;
   const Box2& box = layout.scene;
-  add_title(view, box, now_ns, out);
+  add_title(view, interaction.options, box, now_ns, out);
   add_hand(view, interaction, out, box);
   add_scale_bar(view, interaction.camera, box, out);
   add_color_bar(view, interaction.options.coloring, {box.right() - 276, box.y + 36, 240, 14}, out);
@@ -179,6 +207,7 @@ Overlay make_overlay(const SceneView& view, const DrawList& list, const Interact
   add_notice(missing.empty() ? interaction.notice() : missing, box, out);
   add_plots(view, layout.plots, out);
   add_status_table(view, layout.table, now_ns, out);
+  if (view.ended()) add_felt(view, box, out);
   if (interaction.options.help) add_help(box, out);
   return out;
 }

@@ -77,7 +77,8 @@ Overlay make_overlay(const SceneView& view, const DrawList& list, const Interact
                      const Layout& layout, std::int64_t now_ns);
 
 // The parts, each appended to `out`.
-void add_title(const SceneView& view, const Box2& box, std::int64_t now_ns, Overlay& out);
+void add_title(const SceneView& view, const ViewOptions& options, const Box2& box,
+               std::int64_t now_ns, Overlay& out);
 void add_color_bar(const SceneView& view, Coloring coloring, const Box2& box, Overlay& out);
 void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out);
 void add_help(const Box2& box, Overlay& out);

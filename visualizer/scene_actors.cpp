@@ -6,6 +6,7 @@
 #include <vtkFloatArray.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
+#include <vtkPlane.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
@@ -101,6 +102,12 @@ struct Part {
     actor->ForceOpaqueOn();
     layer.AddActor(actor);
   }
+  /// Drawn on one side of the plane only; nullptr: all.
+  void cut(vtkPlane* plane) {
+    const bool is_cut = mapper->GetNumberOfClippingPlanes() > 0;
+    if (is_cut && plane == nullptr) mapper->RemoveAllClippingPlanes();
+    if (!is_cut && plane != nullptr) mapper->AddClippingPlane(plane);
+  }
 };
 
 /// An organ and its springs, which share the organ's points.
@@ -133,7 +140,8 @@ struct OrganPart {
     look->SetDiffuse(0.9);
   }
 
-  void update(const SurfaceItem& item) {
+  void update(const SurfaceItem& item, vtkPlane* cut) {
+    surface.cut(cut);
     if (shape_version != item.shape_version) {
       vtkNew<vtkCellArray> cells;
       set_cells(*cells, item.triangles);
@@ -149,10 +157,13 @@ struct OrganPart {
     copy_triples(*colors, std::span<const std::uint8_t>(item.colors));
     surface.data->Modified();
     surface.actor->GetProperty()->SetOpacity(item.opacity);
-    surface.actor->GetProperty()->BackfaceCullingOn();  // closed: what faces away is hidden
+    vtkProperty* look = surface.actor->GetProperty();
+    look->SetRepresentation(item.wireframe ? VTK_WIREFRAME : VTK_SURFACE);
+    // Closed, so what faces away is hidden, unless one looks inside.
+    look->SetBackfaceCulling(!item.wireframe && !cut);
   }
 
-  void update(const SpringItem& item, vtkRenderer& layer) {
+  void update(const SpringItem& item, vtkPlane* cut, vtkRenderer& layer) {
     const auto family = static_cast<std::size_t>(item.family);
     auto& part = springs[family];
     if (!part) {
@@ -169,6 +180,7 @@ struct OrganPart {
       part->data->SetLines(cells);
       spring_versions[family] = shape_version;
     }
+    part->cut(cut);
     part->data->Modified();
     part->actor->VisibilityOn();
   }
@@ -315,6 +327,7 @@ struct SceneActors::Impl {
   std::map<std::size_t, std::unique_ptr<OrganPart>> organs;
   std::vector<std::unique_ptr<BodyPart>> bodies;
   Marks marks;
+  vtkNew<vtkPlane> plane;
   std::vector<vtkActor*> last;  // what is seen through, as drawn
   int actor_count = 0;
 
@@ -355,6 +368,11 @@ SceneActors::SceneActors(vtkRenderer& solids, vtkRenderer& see_through,
 SceneActors::~SceneActors() = default;
 
 void SceneActors::update(const DrawList& list) {
+  vtkPlane* cut = list.cut ? impl_->plane.Get() : nullptr;
+  if (list.cut) {
+    impl_->plane->SetOrigin(list.cut->point.x(), list.cut->point.y(), list.cut->point.z());
+    impl_->plane->SetNormal(list.cut->normal.x(), list.cut->normal.y(), list.cut->normal.z());
+  }
   for (const auto& [index, organ] : impl_->organs) {
     for (const auto& part : organ->springs) {
       if (part) part->actor->VisibilityOff();
@@ -363,10 +381,10 @@ void SceneActors::update(const DrawList& list) {
   for (const SurfaceItem& item : list.surfaces) {
     auto& organ = impl_->organs[item.organ];
     if (!organ) organ = std::make_unique<OrganPart>(impl_->solids);
-    organ->update(item);
+    organ->update(item, cut);
   }
   for (const SpringItem& item : list.springs) {
-    impl_->organs.at(item.organ)->update(item, impl_->solids);
+    impl_->organs.at(item.organ)->update(item, cut, impl_->solids);
   }
   for (const BodyItem& item : list.bodies) impl_->bodies.at(item.probe)->update(item);
   impl_->marks.update_points(list.points, impl_->see_through);

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "modules/core/units.h"
+#include "modules/scene/models.h"
 #include "visualizer/color_map.h"
 
 namespace palpate::visualizer {
 namespace {
 
 constexpr double kLeastStrainTop = 0.05;
+constexpr double kFelt = 1e-3;                   // less is no touch [N]
 constexpr double kLeastDisplacementTop = 0.005;  // [m]
 
 bool indices_fit(const SurfaceTopology& surface) {
@@ -62,7 +64,10 @@ Vec3 OrganView::node(std::uint32_t i) const {
 
 SceneView::SceneView(const scene::Scene& scene)
     : scene_(scene), organs_(scene.organs.size()), refreshed_(scene.organs.size(), 0) {
-  for (std::size_t i = 0; i < organs_.size(); ++i) organs_[i].name = scene.organs[i].name;
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    organs_[i].name = scene.organs[i].name;
+    organs_[i].solid = scene::is_solid(scene.organs[i].model);
+  }
   for (const scene::Probe& probe : scene.probes) {
     probes_.emplace_back();
     probes_.back().description = probe;
@@ -131,9 +136,17 @@ bool SceneView::receive(Contacts contacts) {
 bool SceneView::receive(const HapticForce& force) {
   if (force.probe >= probes_.size()) return ignore();
   ProbeView& probe = probes_[force.probe];
+  const double time = seconds_from_ns(force.header.sim_time_ns), newton = force.force.norm();
+  const double since = time - seconds_from_ns(probe.force.header.sim_time_ns);
+  if (since < 0) probe.greatest_force = probe.greatest_at = probe.touched_for = 0;  // a reset
+  if (probe.has_force && newton > kFelt && since > 0) probe.touched_for += since;
+  if (newton > probe.greatest_force) {
+    probe.greatest_force = newton;
+    probe.greatest_at = time;
+  }
   probe.has_force = true;
   probe.force = force;
-  probe.force_magnitude.push(seconds_from_ns(force.header.sim_time_ns), force.force.norm());
+  probe.force_magnitude.push(time, newton);
   return true;
 }
 
@@ -166,6 +179,12 @@ void SceneView::refresh() {
   if (!moved) return;
   follow(strain_top_, strain, kLeastStrainTop);
   follow(displacement_top_, displacement, kLeastDisplacementTop);
+}
+
+bool SceneView::ended() const {
+  const auto deformation = modules_.find("deformation");
+  return session_.command == SessionCommand::kPause && deformation != modules_.end() &&
+         deformation->second.status.state == ModuleState::kStopped;
 }
 
 double SceneView::real_time_factor() const {

@@ -17,6 +17,7 @@ struct OrganView {
   using SpringEnds = std::array<std::uint32_t, 2>;
 
   std::string name;
+  bool solid = false;  ///< made of tetrahedra, whose edges take the springs' place
   bool known = false;  ///< a surface has arrived
   SurfaceTopology surface;
   std::uint64_t shape_version = 0;      ///< counts accepted surfaces
@@ -44,7 +45,9 @@ struct ProbeView {
   Contacts contacts;
   bool has_force = false;
   HapticForce force;
-  History force_magnitude;  ///< [N]
+  History force_magnitude;                     ///< [N]
+  double greatest_force = 0, greatest_at = 0;  ///< of all that came [N], and when [s]
+  double touched_for = 0;                      ///< simulated time with a force [s]
 };
 
 struct ModuleView {
@@ -75,6 +78,8 @@ class SceneView {
   const std::vector<ProbeView>& probes() const { return probes_; }
   const std::map<std::string, ModuleView>& modules() const { return modules_; }
   const SessionControl& session() const { return session_; }  ///< source time 0 before the first
+  /// The run is over, and the window stays: the session stands and its modules have left.
+  bool ended() const;
   std::uint64_t ignored_messages() const { return ignored_; }
 
   double sim_time() const { return seconds_; }  ///< newest of all organs and probes [s]

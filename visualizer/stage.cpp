@@ -5,18 +5,22 @@
 #include <algorithm>
 #include <optional>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/units.h"
 #include "modules/runtime/run_stage.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
 #include "visualizer/frame_schedule.h"
 #include "visualizer/offscreen_display.h"
+#include "visualizer/recorder_child.h"
 #include "visualizer/renderer.h"
 
 namespace palpate::visualizer {
 namespace {
 
-constexpr double kMarginAroundOrgans = 1.25;
+constexpr double kSlowMotion = 0.25;    // of real time
+constexpr double kLongestBurst = 0.04;  // of slow motion, in a picture [s]
 
 /// Everything the visualizer hears.
 struct Inputs {
@@ -32,7 +36,7 @@ struct Inputs {
         positions(bus.reader(bus::kNodePositions)),
         probes(bus.reader(bus::kProbeState)),
         contacts(bus.reader(bus::kContacts)),
-        forces(bus.reader(bus::kHapticForce)),
+        forces(bus.reader(bus::kHapticForce, bus::Keep::kBacklog)),
         statuses(bus.reader(bus::kModuleStatus)) {}
 
   /// Surfaces first: node positions of a surface not known yet are of no use.
@@ -91,7 +95,8 @@ class Studio {
     interaction.camera.height = static_cast<int>(layout.scene.height);
     if (!aimed_ && anything_to_see()) aim();
     view.refresh();
-    const DrawList list = make_draw_list(view, interaction.options);
+    const DrawList list =
+        make_draw_list(view, interaction.options, interaction.camera.view_direction());
     renderer.draw(list, make_overlay(view, list, interaction, layout, now_ns), interaction.camera);
   }
 
@@ -115,13 +120,7 @@ class Studio {
   /// The scene's camera, else all organs from the front; once they are known, not again.
   void aim() {
     aimed_ = anything_to_see();
-    const Camera& old = interaction.camera;
-    const double radius = kMarginAroundOrgans * view.radius();
-    Camera camera = frontal_camera(view.center(), radius, old.width, old.height);
-    const auto& wanted = view.scene().camera;
-    if (wanted.target) camera.target = *wanted.target;
-    if (wanted.position) camera.position = *wanted.position;
-    interaction.camera = camera;
+    interaction.camera = home_camera(view, interaction.camera.width, interaction.camera.height);
   }
 
   bool aimed_ = false;
@@ -131,16 +130,21 @@ class Studio {
 class VisualizerStage : public runtime::Stage {
  public:
   VisualizerStage(const scene::Scene& scene, const VisualizerOptions& options, bool window,
-                  bool commands, bus::Bus& bus)
+                  const runtime::ModuleOptions& common, bus::Bus& bus)
       : options_(options),
         window_(window),
-        commands_(commands),
+        // In lockstep the launcher alone conducts: a key pressed at some moment would change the
+        // bits.
+        commands_(common.lockstep.empty()),
         inputs_(bus),
         controls_(bus.reader(bus::kSessionControl)),
         probe_inputs_(bus.writer(bus::kProbeInput)),
         conductor_(bus),
+        bus_(common.bus),
         schedule_(options.frame_interval),
-        studio_(scene, window) {}
+        studio_(scene, window) {
+    if (!commands_) studio_.interaction.hands_off = "In lockstep nobody but the launcher conducts.";
+  }
 
   ~VisualizerStage() override {
     if (options_.screenshot.empty()) return;
@@ -181,22 +185,63 @@ class VisualizerStage : public runtime::Stage {
       wanted.header = now.header();
       if (commands_) probe_inputs_.write(wanted);
     }
-    if (requests.pause_or_resume && commands_) {
-      conductor_.command(session_, session_.phase() == runtime::SessionPhase::kRunning
-                                       ? SessionCommand::kPause
-                                       : SessionCommand::kStart);
+    conduct(requests, now);
+    if (requests.record) toggle_recording();
+    if (requests.screenshot) {
+      const std::filesystem::path file = "palpate_" + frame_name(view().sim_time()).string();
+      studio_.renderer.write_png(file);
+      studio_.interaction.say("Written: " + file.string());
+      spdlog::info("screenshot {}", std::filesystem::absolute(file).string());
     }
-    if (requests.reset && commands_) {
+    if (requests.end_run && commands_ && options_.ends_run) {
+      conductor_.command(session_, SessionCommand::kStop);
+    }
+  }
+
+  /// Pause, step, slow motion and reset.
+  void conduct(const Requests& requests, const runtime::Cycle& now) {
+    const bool any = requests.pause_or_resume || requests.step || requests.slow_motion;
+    bool& slow = studio_.interaction.options.slow_motion;
+    if (any && view().ended()) {
+      studio_.interaction.say("The run has ended: q closes the window.");
+    } else if (requests.pause_or_resume) {
+      const bool runs = slow || (session_.phase() == runtime::SessionPhase::kRunning &&
+                                 !session_.halted(now.now_ns));
+      slow = false;
+      conductor_.command(session_, runs ? SessionCommand::kPause : SessionCommand::kStart);
+    } else if (requests.step) {
+      slow = false;
+      conductor_.step(session_, 1 / view().scene().rates.deformation);
+    } else if (requests.slow_motion) {
+      slow = !slow;
+      if (!slow) conductor_.command(session_, SessionCommand::kStart);
+    }
+    if (requests.reset) {
       runtime::SessionState after = session_;
       after.apply(next_command(session_, SessionCommand::kReset, now.now_ns));
       conductor_.command(session_, SessionCommand::kReset);
       conductor_.command(after, SessionCommand::kStart);
+    } else if (slow && !view().ended()) {
+      // In short steps, one a picture: between them time stands, for less than a law takes to age.
+      const double since = seconds_from_ns(now.now_ns - slow_ns_);
+      conductor_.step(session_, kSlowMotion * std::clamp(since, 0.0, kLongestBurst / kSlowMotion));
     }
-    if (requests.screenshot) {
-      const std::filesystem::path file = "palpate_" + frame_name(view().sim_time()).string();
-      studio_.renderer.write_png(file);
-      spdlog::info("screenshot {}", std::filesystem::absolute(file).string());
+    slow_ns_ = now.now_ns;
+  }
+
+  void toggle_recording() {
+    if (recorder_) {
+      const bool whole = recorder_->running();
+      const std::string file = recorder_->file().string();
+      recorder_.reset();
+      studio_.interaction.say(whole ? "Recorded: " + file : "Not recorded: " + file);
+      spdlog::info("recording {} {}", file, whole ? "ended" : "failed");
+    } else {
+      const std::string stem = frame_name(view().sim_time()).stem().string();
+      recorder_.emplace(program_folder() / "palpate-recorder", "palpate_" + stem + ".mcap", bus_);
+      studio_.interaction.say("Recording into " + recorder_->file().string() + " until v.");
     }
+    studio_.interaction.options.recording = recorder_.has_value();
   }
 
   VisualizerOptions options_;
@@ -206,8 +251,11 @@ class VisualizerStage : public runtime::Stage {
   bus::Writer<ProbeState> probe_inputs_;
   runtime::SessionConductor conductor_;
   runtime::SessionState session_;
+  bus::BusOptions bus_;
+  std::optional<RecorderChild> recorder_;
   FrameSchedule schedule_;
   Studio studio_;
+  std::int64_t slow_ns_ = 0;  // of the last cycle
   std::int64_t last_ns_ = 0;
 };
 
@@ -230,11 +278,9 @@ void run_visualizer(const runtime::ModuleOptions& common, const VisualizerOption
     draw_with_one_thread();
     display.emplace();
   }
-  // In lockstep the launcher alone conducts: a key pressed at some moment would change the bits.
-  const bool commands = common.lockstep.empty();
   runtime::run_stage(
       common, scene, "visualizer", runtime::Priority::kBackground, [&](bus::Bus& bus) {
-        return std::make_unique<VisualizerStage>(scene, options, window, commands, bus);
+        return std::make_unique<VisualizerStage>(scene, options, window, common, bus);
       });
 }
 

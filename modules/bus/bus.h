@@ -60,9 +60,9 @@ class Writer {
 template <class Message>
 class Reader {
  public:
-  /// The next unread valid sample (the newest of its key, unless the bus keeps every sample);
-  /// false if none. Invalid ones are counted and skipped. No allocation once message sizes have
-  /// been seen. Never throws.
+  /// The next unread valid sample (the newest of its key, unless the bus keeps every sample or the
+  /// reader a backlog); false if none. Invalid ones are counted and skipped. No allocation once
+  /// message sizes have been seen. Never throws.
   bool take(Message& message);
   /// Waits until a sample may be there. False on timeout. timeout in seconds.
   bool wait(double timeout) { return input_->wait(timeout); }
@@ -89,8 +89,8 @@ class Bus {
     return Writer<Message>(*this, std::make_unique<Output>(*this, info_of(topic)));
   }
   template <class Message>
-  Reader<Message> reader(const TopicOf<Message>& topic) {
-    return Reader<Message>(std::make_unique<Input>(*this, info_of(topic)));
+  Reader<Message> reader(const TopicOf<Message>& topic, Keep keep = Keep::kNewest) {
+    return Reader<Message>(std::make_unique<Input>(*this, info_of(topic), keep));
   }
 
   /// @throws std::runtime_error if the bus cannot

@@ -8,8 +8,8 @@
 
 namespace palpate::bus {
 
-Input::Input(Bus& bus, const TopicInfo& topic)
-    : bus_(bus), topic_(topic), raw_(bus.raw_reader(topic, Keep::kNewest)) {
+Input::Input(Bus& bus, const TopicInfo& topic, Keep keep)
+    : bus_(bus), topic_(topic), raw_(bus.raw_reader(topic, keep)) {
   bus_.inputs_.push_back(this);
 }
 

@@ -30,7 +30,7 @@ class Input {
  public:
   static constexpr std::int64_t kNoHorizon = std::numeric_limits<std::int64_t>::max();
 
-  Input(Bus& bus, const TopicInfo& topic);
+  Input(Bus& bus, const TopicInfo& topic, Keep keep = Keep::kNewest);
   ~Input();
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;

@@ -83,7 +83,7 @@ void Module::report_state() {
     status_.set_state(ModuleState::kStarting);
   } else if (session_.phase() == SessionPhase::kWaiting) {
     status_.set_state(ModuleState::kReady);
-  } else if (session_.phase() == SessionPhase::kPaused) {
+  } else if (session_.phase() == SessionPhase::kPaused || session_.state().halted(now_ns())) {
     status_.set_state(ModuleState::kPaused);
   } else if (*guard_ != '\0') {
     status_.set_state(ModuleState::kDegraded, guard_);

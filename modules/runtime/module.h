@@ -44,7 +44,7 @@ class Module {
   double period() const;                                   ///< [s]
   /// Session time of this cycle [s].
   double time() const { return session_.time(now_ns()); }
-  bool running() const { return session_.running(); }
+  bool running() const { return session_.running() && !session_.state().halted(now_ns()); }
   bool take_reset() { return session_.take_reset(); }
   const Session& session() const { return session_; }
 

@@ -43,6 +43,11 @@ void SessionConductor::command(const SessionState& state, SessionCommand wanted)
   writer_.write(message);
 }
 
+void SessionConductor::step(const SessionState& state, double duration) {
+  SessionControl message = step_command(state, duration, monotonic_now_ns());
+  writer_.write(message);
+}
+
 void SessionConductor::grant(const SessionState& state, std::int64_t until_ns) {
   SessionControl message = next_command(state, SessionCommand::kStep, monotonic_now_ns());
   message.header.sim_time_ns = state.granted_until_ns();

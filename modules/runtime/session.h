@@ -51,6 +51,8 @@ class SessionConductor {
 
   /// Gives the command that leads on from `state`, as of now. A reset is to be followed by kStart.
   void command(const SessionState& state, SessionCommand wanted);
+  /// In real time: `duration` [s] of simulated time from now, then a halt.
+  void step(const SessionState& state, double duration);
   /// Lockstep: cycles that begin before `until_ns` may run.
   void grant(const SessionState& state, std::int64_t until_ns);
   /// Says the session's last command again, for whoever missed it.

@@ -1,5 +1,7 @@
 #include "modules/runtime/session_state.h"
 
+#include <algorithm>
+
 #include "modules/core/units.h"
 
 namespace palpate::runtime {
@@ -37,14 +39,18 @@ double SessionState::time(std::int64_t now_ns) const {
     case SessionPhase::kWaiting:
       return 0;
     case SessionPhase::kRunning: {
-      const double time = seconds_from_ns(now_ns - last_.start_time_ns);
-      return time > 0 ? time : 0;
+      const std::int64_t until_ns = halted(now_ns) ? last_.until_ns : now_ns - last_.start_time_ns;
+      return std::max(0.0, seconds_from_ns(until_ns));
     }
     case SessionPhase::kPaused:
     case SessionPhase::kStopped:
       return seconds_from_ns(last_.header.sim_time_ns);
   }
   return 0;
+}
+
+bool SessionState::halted(std::int64_t now_ns) const {
+  return last_.command == SessionCommand::kStep && now_ns - last_.start_time_ns >= last_.until_ns;
 }
 
 SessionControl next_command(const SessionState& state, SessionCommand wanted, std::int64_t now_ns) {
@@ -58,6 +64,13 @@ SessionControl next_command(const SessionState& state, SessionCommand wanted, st
     ++command.reset_count;
     command.header.sim_time_ns = 0;
   }
+  return command;
+}
+
+SessionControl step_command(const SessionState& state, double duration, std::int64_t now_ns) {
+  SessionControl command = next_command(state, SessionCommand::kStart, now_ns);
+  command.command = SessionCommand::kStep;
+  command.until_ns = command.header.sim_time_ns + ns_from_seconds(duration);
   return command;
 }
 

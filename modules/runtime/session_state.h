@@ -24,8 +24,11 @@ class SessionState {
   /// True once after each reset that came after the first command heard: a module that joins late
   /// starts from rest anyway.
   bool take_reset();
-  /// Session time [s]: 0 while waiting, standing still while paused and after the end.
+  /// Session time [s]: 0 while waiting, standing still while paused, at the end of a step and after
+  /// the end.
   double time(std::int64_t now_ns) const;
+  /// In real time: a step (kStep) that has come to its end stands as a pause does.
+  bool halted(std::int64_t now_ns) const;
   /// Of a lockstep session: cycles before this simulated time may begin; 0 before the first grant.
   std::int64_t granted_until_ns() const { return last_.until_ns; }
   const SessionControl& last_command() const { return last_; }  ///< source time 0 before the first
@@ -39,5 +42,8 @@ class SessionState {
 /// The command that leads from the present state to the one wanted, given at `now_ns`. Resuming is
 /// kStart with a start time moved by the pause; kReset counts up and leaves the session waiting.
 SessionControl next_command(const SessionState& state, SessionCommand wanted, std::int64_t now_ns);
+
+/// In real time: goes on for `duration` [s] of simulated time, then stands.
+SessionControl step_command(const SessionState& state, double duration, std::int64_t now_ns);
 
 }  // namespace palpate::runtime

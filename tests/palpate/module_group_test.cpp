@@ -64,6 +64,28 @@ TEST_CASE("module group: exit code 2 is bad input, 0 is no failure") {
   CHECK_FALSE(closed_ends[0].failed);
 }
 
+TEST_CASE("module group: all but one are stopped") {
+  // Oracle: what the scripts say, and which process still runs.
+  const Scripts scripts;
+  const auto polite = [&](const char* name) {
+    return scripts.add(name, std::string("trap 'echo ") + name +
+                                 " bye; exit 0' TERM; echo up; while :; do sleep 0.05; done");
+  };
+  std::ostringstream log;
+  ModuleGroup group({{"haptics", polite("haptics"), {}}, {"visualizer", polite("visualizer"), {}}},
+                    log);
+  REQUIRE(wait_until([&] {
+    group.poll();
+    return log.str() == "up\nup\n";
+  }));
+  group.stop_all_but("visualizer");
+  CHECK(log.str() == "up\nup\nhaptics bye\n");
+  CHECK(group.running("visualizer"));
+  CHECK_FALSE(group.running("haptics"));
+  group.stop();
+  CHECK(log.str() == "up\nup\nhaptics bye\nvisualizer bye\n");
+}
+
 TEST_CASE("module group: stop is polite first, then not, and the recorder hears the goodbyes") {
   // Oracle: what the scripts say, in order; a deaf one is killed after the patience.
   const Scripts scripts;

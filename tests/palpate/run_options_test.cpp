@@ -51,6 +51,23 @@ TEST_CASE("run options: a recorder comes first and is not waited for") {
   CHECK(commands[1].reports_status);
 }
 
+TEST_CASE("run options: a window stays, and its q ends the run, where it is this run's own") {
+  // Oracle: definition.
+  auto options = some_run();
+  CHECK(window_stays(options));
+  CHECK(has(module_commands(options, "")[3], "--ends-run"));
+  options.close = true;
+  CHECK_FALSE(window_stays(options));
+  options = some_run();
+  options.only = {"visualizer"};
+  CHECK_FALSE(window_stays(options));
+  CHECK_FALSE(has(module_commands(options, "")[0], "--ends-run"));
+  options = some_run();
+  options.headless = true;
+  options.frames = "out";
+  CHECK_FALSE(window_stays(options));
+}
+
 TEST_CASE("run options: a visualizer that nobody could see is left out") {
   // Oracle: definition.
   auto options = some_run();

@@ -2,58 +2,13 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/geometry/primitives.h"
-#include "tests/visualizer/fake_session.h"
+#include "tests/visualizer/interaction_fixture.h"
 
 using namespace palpate;
 using namespace palpate::visualizer;
-using visualizer::testing::topology_of;
+using visualizer::testing::Fixture;
+using visualizer::testing::Kind;
 using visualizer::testing::two_probe_scene;
-using Kind = InputEvent::Kind;
-
-namespace {
-
-/// A scene whose probes are 6 cm left (scripted) and right (mouse) of the middle.
-struct Fixture {
-  SceneView view;
-  Interaction interaction{{0.01, 0.036}};
-
-  explicit Fixture(const scene::Scene& scene = two_probe_scene()) : view(scene) {
-    ProbeState probe;
-    for (const double side : {-1, 1}) {
-      probe.pose.position = Vec3(0.06 * side, 0, 0);
-      probe.pose.rotation = Eigen::AngleAxisd(0.3 * side, Vec3::UnitX());
-      view.receive(probe);
-      probe.probe = 1;
-    }
-    interaction.camera = frontal_camera(Vec3::Zero(), 0.12, 900, 700);
-  }
-
-  /// An organ in the middle of the picture.
-  void add_ball() { view.receive(topology_of(geometry::make_ball(0.03, 3))); }
-  Pixel pixel_of(std::size_t probe) const {
-    return *project(interaction.camera, view.probes()[probe].pose.position);
-  }
-  Requests send(Kind kind, double x, double y, bool shift = false, bool control = false,
-                MouseButton button = MouseButton::kLeft) {
-    InputEvent event;
-    event.kind = kind;
-    event.x = x;
-    event.y = y;
-    event.shift = shift;
-    event.control = control;
-    event.button = button;
-    return interaction.handle({event}, view);
-  }
-  Requests key(const std::string& name) {
-    InputEvent event;
-    event.kind = Kind::kKey;
-    event.key = name;
-    return interaction.handle({event}, view);
-  }
-};
-
-}  // namespace
 
 TEST_CASE("interaction: dragging a mouse probe asks for its new pose", "[visualizer][analytic]") {
   // Oracle: analytic projection; the rotation is kept.
@@ -189,28 +144,6 @@ TEST_CASE("interaction: a reset takes the hand off", "[visualizer]") {
   const auto requests = f.key("r");
   CHECK(requests.reset);
   CHECK(requests.probe_inputs.empty());
-}
-
-TEST_CASE("interaction: keys toggle and ask", "[visualizer]") {
-  // Oracle: the key list shown by h.
-  Fixture f;
-  f.key("1");
-  f.key("3");
-  CHECK(f.interaction.options.springs == std::array<bool, 3>{true, false, true});
-  f.key("1");
-  CHECK(f.interaction.options.springs == std::array<bool, 3>{false, false, true});
-  f.key("c");
-  CHECK(f.interaction.options.coloring == Coloring::kDisplacement);
-  f.key("c");
-  CHECK(f.interaction.options.coloring == Coloring::kStrain);
-  f.key("h");
-  CHECK(f.interaction.options.help);
-  CHECK(f.key("s").screenshot);
-  CHECK(f.key("space").pause_or_resume);
-  CHECK(f.key("r").reset);
-  CHECK(f.key("q").close);
-  const auto nothing = f.key("x");
-  CHECK_FALSE((nothing.close || nothing.reset || nothing.screenshot || nothing.pause_or_resume));
 }
 
 TEST_CASE("interaction: dragging beside the probes moves the camera only", "[visualizer]") {

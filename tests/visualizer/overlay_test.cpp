@@ -145,11 +145,32 @@ TEST_CASE("overlay: before the surface comes it says what it waits for", "[visua
                  "Waiting for the surface of organ 'ball'"));
 }
 
+TEST_CASE("overlay: a run that has ended says what was felt", "[visualizer]") {
+  // Oracle: the forces given: 4 N at most, 0.1 s apart.
+  SceneView view = busy_view();
+  CHECK_FALSE(view.ended());
+  SessionControl pause;
+  pause.header.source_time_ns = 5;
+  pause.command = SessionCommand::kPause;
+  view.receive(pause);
+  ModuleStatus status;
+  status.module = "deformation";
+  status.state = ModuleState::kStopped;
+  view.receive(status, 10 * kSecond);
+  CHECK(view.ended());
+  const Interaction interaction({0.01, 0.036});
+  const Overlay overlay = overlay_of(view, interaction, 1280, 720, 20 * kSecond);
+  CHECK(has_text(overlay, "The run has ended after 32.0 s."));
+  CHECK(has_text(overlay, "finger: at most 4.00 N (at 32.0 s), touched for 20.0 s"));
+  CHECK(has_text(overlay, "q closes the window."));
+}
+
 TEST_CASE("overlay: help lists every key that does something", "[visualizer]") {
   // Oracle: the keys Interaction knows.
   Overlay overlay;
   add_help({0, 0, 920, 720}, overlay);
-  for (const char* key : {"h", "c", "1 2 3", "space", "r", "s", "q", "g"}) {
+  for (const char* key :
+       {"h", "c", "1 2 3", "space", "r", "s", "q", "g", "n", "m", "v", "w", "x", "t", "Home, 0"}) {
     const auto found = std::find_if(overlay.texts.begin(), overlay.texts.end(),
                                     [&](const TextItem& text) { return text.text == key; });
     INFO(key);

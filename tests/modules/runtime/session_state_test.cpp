@@ -39,6 +39,33 @@ TEST_CASE("session state: time runs from start, stands in a pause and goes on wh
   CHECK(time(state, 300) == Approx(5));
 }
 
+TEST_CASE("session state: a step in real time goes on for as long as it says, and stands") {
+  // Oracle: a stop watch, by hand.
+  SessionState state;
+  const auto step = [&](double duration, double seconds) {
+    state.apply(step_command(state, duration, static_cast<std::int64_t>(seconds * 1e9)));
+  };
+  const auto halted = [&](double seconds) {
+    return state.halted(static_cast<std::int64_t>(seconds * 1e9));
+  };
+  give(state, SessionCommand::kStart, 100);
+  give(state, SessionCommand::kPause, 103);
+  CHECK_FALSE(halted(104));
+  step(0.5, 110);
+  CHECK(time(state, 110.25) == Approx(3.25));
+  CHECK_FALSE(halted(110.25));
+  CHECK(time(state, 120) == Approx(3.5));
+  CHECK(halted(120));
+  step(0.5, 130);  // a second one, from where the first ended
+  CHECK(time(state, 131) == Approx(4));
+  step(10, 140);
+  step(10, 141);  // one upon another
+  CHECK(time(state, 200) == Approx(15));
+  give(state, SessionCommand::kStart, 210);
+  CHECK(time(state, 211) == Approx(16));
+  CHECK_FALSE(halted(211));
+}
+
 TEST_CASE("session state: a reset is told once, sets time to zero and waits for start") {
   // Oracle: definition.
   SessionState state;
