@@ -23,7 +23,7 @@ constexpr Rgb kPatchColor{255, 250, 235};
 constexpr double kSmallestForce = 1e-3;  // shown as an arrow [N]
 constexpr double kPatchTint = 0.8;
 constexpr double kDarkest = 0.5;      // of a shadow
-constexpr double kShadowWidth = 1.5;  // in radii of the probe
+constexpr double kShadowWidth = 1.2;  // in radii of the probe
 
 void add_organ(const OrganView& organ, std::size_t index, const SceneView& view,
                const ViewOptions& options, DrawList& list) {

@@ -1,23 +1,25 @@
 // The newest values of one quantity over simulated time, for a plot.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 namespace palpate::visualizer {
 
-/// Ring buffer of (time, value). A time before the newest one means that the session was reset:
-/// the history starts again.
+/// Ring buffer of slots of time, each with all that came in it: its least, greatest and newest
+/// value. So a peak of one sample stays, however few slots are drawn. A time before the newest one
+/// means that the session was reset: the history starts again.
 class History {
  public:
   struct Sample {
-    double time = 0;  ///< simulated [s]
-    double value = 0;
+    double time = 0;   ///< of the slot's newest, simulated [s]
+    double value = 0;  ///< newest
+    double least = 0, greatest = 0;
   };
 
   /// @param capacity  ≥ 1 samples
-  /// @param spacing  samples closer than this to the one before are merged with it: the value
-  ///        larger in magnitude stays, so that a short peak remains visible [s]
+  /// @param spacing  length of a slot [s]
   explicit History(std::size_t capacity = 2048, double spacing = 0.005)
       : capacity_(capacity), spacing_(spacing) {
     ring_.reserve(capacity);
@@ -27,15 +29,14 @@ class History {
     if (!empty() && time < newest().time) clear();
     if (!empty() && time - slot_start_ < spacing_) {
       Sample& last = ring_[index(size() - 1)];
-      if (value * value >= last.value * last.value) last.value = value;
-      last.time = time;
+      last = {time, value, std::min(last.least, value), std::max(last.greatest, value)};
       return;
     }
     slot_start_ = time;
     if (ring_.size() < capacity_) {
-      ring_.push_back({time, value});
+      ring_.push_back({time, value, value, value});
     } else {
-      ring_[oldest_] = {time, value};
+      ring_[oldest_] = {time, value, value, value};
       oldest_ = (oldest_ + 1) % capacity_;
     }
   }

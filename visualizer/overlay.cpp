@@ -16,26 +16,33 @@ constexpr double kStaleAge = 0.5;  // organ positions older than this are marked
 
 void add_notice(const std::string& text, const Box2& box, Overlay& out) {
   if (text.empty()) return;
-  const double width = std::min(box.width - 2 * kMargin, 7.2 * double(text.size()) + 24);
-  out.rects.push_back(
-      {{box.x + 0.5 * (box.width - width), box.top() - 92, width, 26}, palette::kPanel, 0.85});
-  out.texts.push_back(
-      {box.x + 0.5 * box.width, box.top() - 79, text, 13, palette::kWarning, Align::kCenter});
+  const TextItem line = fitted(
+      {box.x + 0.5 * box.width, box.top() - 121, text, 13, palette::kWarning, Align::kCenter},
+      box.width - 2 * kMargin);
+  const Box2 around = extent_of(line);
+  const Box2 panel{around.x - 10, line.y - 13, around.width + 20, 26};
+  clear_under(panel, out);
+  out.rects.push_back({panel, palette::kPanel, 0.85});
+  out.texts.push_back(line);
 }
 
 /// Lines in the middle of a box, one below the other.
 void add_panel(const std::vector<std::string>& lines, const Box2& box, Overlay& out) {
   constexpr double kLine = 22;
-  std::size_t longest = 0;
-  for (const std::string& line : lines) longest = std::max(longest, line.size());
-  const double width = std::min(box.width, 7.6 * double(longest) + 40);
-  const double height = kLine * double(lines.size()) + 20, middle = box.x + 0.5 * box.width;
+  const double middle = box.x + 0.5 * box.width, height = kLine * double(lines.size()) + 20;
   const double top = box.y + 0.5 * (box.height + height);
-  out.rects.push_back({{middle - 0.5 * width, top - height, width, height}, palette::kPanel, 0.9});
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    out.texts.push_back(
-        {middle, top - 21 - kLine * double(i), lines[i], 13, palette::kText, Align::kCenter});
+  std::vector<TextItem> texts;
+  double width = 0;
+  for (const std::string& line : lines) {
+    const double y = top - 21 - kLine * double(texts.size());
+    texts.push_back(
+        fitted({middle, y, line, 13, palette::kText, Align::kCenter}, box.width - 2 * kMargin));
+    width = std::max(width, extent_of(texts.back()).width + 24);
   }
+  const Box2 panel{middle - 0.5 * width, top - height, width, height};
+  clear_under(panel, out);
+  out.rects.push_back({panel, palette::kPanel, 0.9});
+  out.texts.insert(out.texts.end(), texts.begin(), texts.end());
 }
 
 std::string what_is_missing(const SceneView& view) {
@@ -63,7 +70,8 @@ void add_hand(const SceneView& view, const Interaction& interaction, Overlay& ou
       line = view.probes()[i].description.name + ": taken over; g gives it back";
     }
   }
-  out.texts.push_back({kMargin, box.top() - 72, line, 14, palette::kWarning});
+  out.texts.push_back(
+      fitted({kMargin, box.top() - 72, line, 14, palette::kWarning}, box.width - 2 * kMargin));
 }
 
 void add_scale_bar(const SceneView& view, const Camera& camera, const Box2& box, Overlay& out) {
@@ -82,6 +90,38 @@ void add_scale_bar(const SceneView& view, const Camera& camera, const Box2& box,
 
 }  // namespace
 
+Box2 extent_of(const TextItem& text) {
+  const double width = (text.bold ? 0.68 : 0.6) * text.size * double(text.text.size());
+  const double left = text.align == Align::kLeft     ? text.x
+                      : text.align == Align::kCenter ? text.x - 0.5 * width
+                                                     : text.x - width;
+  return {left, text.y - 0.4 * text.size, width, 0.8 * text.size};
+}
+
+bool overlap(const Box2& a, const Box2& b) {
+  return a.x < b.right() && b.x < a.right() && a.y < b.top() && b.y < a.top();
+}
+
+TextItem fitted(TextItem text, double width) {
+  constexpr int kSmallest = 9;
+  while (text.size > kSmallest && extent_of(text).width > width) --text.size;
+  if (extent_of(text).width <= width) return text;
+  const double letter = extent_of(text).width / double(text.text.size());
+  const auto letters = static_cast<std::size_t>(std::max(3.0, width / letter));
+  text.text = text.text.substr(0, letters - 3) + "...";
+  return text;
+}
+
+void clear_under(const Box2& panel, Overlay& out) {
+  std::erase_if(out.texts, [&](const TextItem& text) { return overlap(panel, extent_of(text)); });
+  std::erase_if(out.lines, [&](const PolylineItem& line) {
+    for (std::size_t i = 0; i + 1 < line.points.size(); i += 2) {
+      if (panel.contains(line.points[i], line.points[i + 1])) return true;
+    }
+    return false;
+  });
+}
+
 std::string text_of(const char* format, double value) {
   std::array<char, 64> buffer{};
   std::snprintf(buffer.data(), buffer.size(), format, value);
@@ -89,10 +129,12 @@ std::string text_of(const char* format, double value) {
 }
 
 Layout make_layout(int width, int height) {
-  const double panel = std::min(360.0, 0.4 * width);
   Layout layout;
+  layout.scale = std::max(1.0, std::floor(2 * std::min(width / 1280.0, height / 720.0)) / 2);
+  const double panel = std::min(360.0 * layout.scale, 0.4 * width);
   layout.scene = {0, 0, std::max(1.0, width - panel), double(height)};
-  const double x = layout.scene.right(), table_height = std::min(170.0, 0.3 * height);
+  const double x = layout.scene.right(),
+               table_height = std::min(170.0 * layout.scale, 0.3 * height);
   layout.table = {x, 0, panel, table_height};
   const double each = (height - table_height) / 3;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -104,7 +146,9 @@ Layout make_layout(int width, int height) {
 void add_title(const SceneView& view, const ViewOptions& options, const Box2& box,
                std::int64_t now_ns, Overlay& out) {
   const double y = box.top() - 26;
-  out.texts.push_back({kMargin, y, view.scene().name, 20, palette::kText, Align::kLeft, true});
+  const double width = box.width - 2 * kMargin;
+  out.texts.push_back(
+      fitted({kMargin, y, view.scene().name, 20, palette::kText, Align::kLeft, true}, width));
   std::string line = text_of("t = %.2f s", view.sim_time());
   const double factor = view.real_time_factor();
   if (factor > 0) line += text_of("     real time x %.2f", factor);
@@ -119,11 +163,12 @@ void add_title(const SceneView& view, const ViewOptions& options, const Box2& bo
     line += steps ? "     one step" : "     paused";
   }
   if (options.recording) line += "     recording";
-  out.texts.push_back({kMargin, y - 24, line, 14, palette::kQuiet});
+  out.texts.push_back(fitted({kMargin, y - 24, line, 14, palette::kQuiet}, width));
   const double age = view.positions_age(now_ns);
   if (!paused && !steps && std::isfinite(age) && age > kStaleAge) {
-    out.texts.push_back({box.right() - kMargin, y, text_of("no new organ shape for %.1f s", age),
-                         14, palette::kBad, Align::kRight});
+    out.texts.push_back(
+        fitted({kMargin, y - 68, text_of("no new organ shape for %.1f s", age), 14, palette::kBad},
+               width));
   }
 }
 
@@ -146,17 +191,28 @@ void add_color_bar(const SceneView& view, Coloring coloring, const Box2& box, Ov
 }
 
 void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out) {
-  constexpr int kSize = 15;
+  constexpr int kSize = 15, kTries = 9;
+  constexpr double kStep = 13;
   for (const ArrowItem& arrow : list.arrows) {
     const auto tip = project(camera, arrow.tip), tail = project(camera, arrow.tail);
     if (!tip || !tail) continue;
     const bool to_the_left = tip->x < tail->x;
-    const double x = tip->x + (to_the_left ? -16 : 16), y = tip->y + 12;
-    const double width = 0.68 * kSize * double(arrow.label.size()) + 10;
-    out.rects.push_back(
-        {{to_the_left ? x + 5 - width : x - 5, y - 11, width, 22}, palette::kPanel, 0.6});
-    out.texts.push_back(
-        {x, y, arrow.label, kSize, arrow.color, to_the_left ? Align::kRight : Align::kLeft, true});
+    TextItem label{
+        tip->x + (to_the_left ? -16 : 16),          tip->y + 12, arrow.label, kSize, arrow.color,
+        to_the_left ? Align::kRight : Align::kLeft, true};
+    const auto free = [&] {
+      const Box2 own = extent_of(label);
+      const bool inside =
+          own.x >= 0 && own.right() <= camera.width && own.y >= 0 && own.top() <= camera.height;
+      return inside && std::ranges::none_of(out.texts, [&](const TextItem& other) {
+               return overlap(own, extent_of(other));
+             });
+    };
+    for (int i = 1; i <= kTries && !free(); ++i) label.y += (i % 2 == 0 ? -i : i) * kStep;
+    if (!free()) continue;
+    const Box2 own = extent_of(label);
+    out.rects.push_back({{own.x - 5, label.y - 11, own.width + 10, 22}, palette::kPanel, 0.6});
+    out.texts.push_back(label);
   }
 }
 
@@ -179,36 +235,71 @@ void add_felt(const SceneView& view, const Box2& box, Overlay& out) {
 }
 
 void add_help(const Box2& box, Overlay& out) {
-  constexpr double kLine = 20, kWidth = 372, kKeyWidth = 136;
+  constexpr double kWidth = 460, kKeyWidth = 158;
   const auto keys = key_meanings();
-  const double height = kLine * double(keys.size()) + 20;
+  const double line = std::min(21.0, (box.height - 4) / double(keys.size() + 1));
+  const double height = line * double(keys.size() + 1);
   const Box2 panel{std::max(box.x, box.x + 0.5 * (box.width - kWidth)),
                    box.y + 0.5 * (box.height - height), kWidth, height};
-  out.rects.push_back({panel, palette::kPanel, 0.95});
-  double y = panel.top() - 20;
+  clear_under(panel, out);
+  out.rects.push_back({panel, palette::kPanel, 1});
+  double y = panel.top() - line;
   for (const auto& [key, meaning] : keys) {
     out.texts.push_back({panel.x + kKeyWidth, y, key, 12, palette::kWarning, Align::kRight, true});
-    out.texts.push_back({panel.x + kKeyWidth + 12, y, meaning, 12, palette::kText});
-    y -= kLine;
+    out.texts.push_back(fitted({panel.x + kKeyWidth + 12, y, meaning, 12, palette::kText},
+                               kWidth - kKeyWidth - 16));
+    y -= line;
   }
 }
 
+namespace {
+
+Box2 shrunk(const Box2& box, double scale) {
+  return {box.x / scale, box.y / scale, box.width / scale, box.height / scale};
+}
+
+void enlarge(Overlay& out, double scale) {
+  for (RectItem& rect : out.rects) rect.box = shrunk(rect.box, 1 / scale);
+  for (PolylineItem& line : out.lines) {
+    for (float& coordinate : line.points) coordinate = static_cast<float>(scale * coordinate);
+    line.width *= scale;
+  }
+  for (TextItem& text : out.texts) {
+    text.x *= scale;
+    text.y *= scale;
+    text.size = static_cast<int>(std::lround(scale * text.size));
+  }
+}
+
+}  // namespace
+
+/// Laid out as for a window of ordinary size, then enlarged as a whole.
 Overlay make_overlay(const SceneView& view, const DrawList& list, const Interaction& interaction,
                      const Layout& layout, std::int64_t now_ns) {
   Overlay out;
-  const Box2& box = layout.scene;
+  const double scale = layout.scale;
+  const Box2 box = shrunk(layout.scene, scale), table = shrunk(layout.table, scale);
+  std::array<Box2, 3> plots;
+  std::ranges::transform(layout.plots, plots.begin(),
+                         [&](const Box2& plot) { return shrunk(plot, scale); });
+  Camera camera = interaction.camera;
+  camera.width = static_cast<int>(camera.width / scale);
+  camera.height = static_cast<int>(camera.height / scale);
   add_title(view, interaction.options, box, now_ns, out);
   add_hand(view, interaction, out, box);
-  add_scale_bar(view, interaction.camera, box, out);
-  add_color_bar(view, interaction.options.coloring, {box.right() - 276, box.y + 36, 240, 14}, out);
-  add_arrow_labels(list, interaction.camera, out);
+  add_scale_bar(view, camera, box, out);
+  const double bar = std::min(240.0, box.width - 230);
+  add_color_bar(view, interaction.options.coloring, {box.right() - bar - 36, box.y + 36, bar, 14},
+                out);
   out.texts.push_back({kMargin, 18, "h: keys", 12, palette::kQuiet});
+  add_plots(view, plots, out);
+  add_status_table(view, table, now_ns, out);
+  add_arrow_labels(list, camera, out);
   const std::string missing = what_is_missing(view);
   add_notice(missing.empty() ? interaction.notice() : missing, box, out);
-  add_plots(view, layout.plots, out);
-  add_status_table(view, layout.table, now_ns, out);
   if (view.ended()) add_felt(view, box, out);
-  if (interaction.options.help) add_help(box, out);
+  if (interaction.options.help) add_help({0, 0, table.right(), box.height}, out);
+  enlarge(out, scale);
   return out;
 }
 

@@ -63,8 +63,17 @@ inline constexpr Rgb kText{232, 236, 241}, kQuiet{158, 168, 182}, kPanel{22, 27,
     kCurve{126, 203, 255};
 }  // namespace palette
 
+/// Where a text lies, by the mean advance of DejaVu Sans (0.6 of the size, bold 0.68).
+Box2 extent_of(const TextItem& text);
+bool overlap(const Box2& a, const Box2& b);
+/// The text no wider than `width`: smaller, down to 9 pixels, then cut.
+TextItem fitted(TextItem text, double width);
+/// What lies under a panel is not drawn over it.
+void clear_under(const Box2& panel, Overlay& out);
+
 /// Places of the window's parts.
 struct Layout {
+  double scale = 1;           ///< of texts and lines: 1 up to 1919 × 1079, 3 on 3840 × 2160
   Box2 scene;                 ///< the 3-D part, from the lower left corner
   std::array<Box2, 3> plots;  ///< volume error, pressure, force
   Box2 table;
@@ -80,6 +89,7 @@ Overlay make_overlay(const SceneView& view, const DrawList& list, const Interact
 void add_title(const SceneView& view, const ViewOptions& options, const Box2& box,
                std::int64_t now_ns, Overlay& out);
 void add_color_bar(const SceneView& view, Coloring coloring, const Box2& box, Overlay& out);
+/// Beside the arrows' tips, moved off other texts; none where there is no room.
 void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out);
 void add_help(const Box2& box, Overlay& out);
 

@@ -9,6 +9,13 @@ namespace {
 constexpr std::array<Rgb, 4> kOrganColors{
     {{253, 155, 107}, {244, 103, 192}, {170, 200, 120}, {220, 200, 180}}};
 
+constexpr double kNumbers = 56;  // room for the vertical axis' [pixels]
+
+/// Four digits, more only of whole numbers.
+std::string number_text(double value) {
+  return text_of(std::abs(value) >= 1e4 && std::abs(value) < 1e6 ? "%.0f" : "%.4g", value);
+}
+
 /// Largest and smallest value shown, 0 included.
 std::pair<double, double> range_of(const std::vector<Curve>& curves, double since) {
   double low = 0, high = 0;
@@ -16,23 +23,29 @@ std::pair<double, double> range_of(const std::vector<Curve>& curves, double sinc
     for (std::size_t i = 0; i < curve.history->size(); ++i) {
       const auto& sample = curve.history->at(i);
       if (sample.time < since) continue;
-      low = std::min(low, curve.factor * sample.value);
-      high = std::max(high, curve.factor * sample.value);
+      low = std::min(low, curve.factor * sample.least);
+      high = std::max(high, curve.factor * sample.greatest);
     }
   }
   return {low, high};
 }
 
 void add_frame(const Axis& axis, const Box2& area, double since, Overlay& out) {
-  for (double value = axis.low; value <= axis.high + 0.5 * axis.step; value += axis.step) {
+  constexpr double kRoom = 15;  // from one number to the next [pixels]
+  const double apart = axis.step / (axis.high - axis.low) * area.height;
+  const int every = std::max(1, static_cast<int>(std::ceil(kRoom / apart)));
+  const int lowest = static_cast<int>(std::lround(axis.low / axis.step));
+  const int highest = static_cast<int>(std::lround(axis.high / axis.step));
+  for (int i = lowest; i <= highest; ++i) {
+    const double value = i * axis.step;
     const double y = area.y + (value - axis.low) / (axis.high - axis.low) * area.height;
-    const bool zero = std::abs(value) < 1e-9 * axis.step;
     out.lines.push_back({{float(area.x), float(y), float(area.right()), float(y)},
                          palette::kFrame,
                          1,
-                         zero ? 1.0 : 0.45});
-    out.texts.push_back(
-        {area.x - 7, y, text_of("%.4g", zero ? 0.0 : value), 11, palette::kQuiet, Align::kRight});
+                         i == 0 ? 1.0 : 0.45});
+    if (i % every != 0) continue;
+    out.texts.push_back(fitted(
+        {area.x - 7, y, number_text(value), 11, palette::kQuiet, Align::kRight}, kNumbers - 9));
   }
   for (double time = std::ceil(since / 2) * 2; time <= since + kPlotSpan + 1e-9; time += 2) {
     const double x = area.x + (time - since) / kPlotSpan * area.width;
@@ -47,18 +60,41 @@ void add_frame(const Axis& axis, const Box2& area, double since, Overlay& out) {
   out.texts.push_back({area.right(), area.y - 10, "time [s]", 11, palette::kQuiet, Align::kRight});
 }
 
+/// Column by column of the picture: where the curve enters, its least, its greatest, where it
+/// leaves. So every peak is drawn, and no more points than the picture can show.
 void add_curve(const Curve& curve, const Axis& axis, const Box2& area, double since, Overlay& out) {
   PolylineItem line;
   line.color = curve.color;
   line.width = 1.8;
+  const auto point = [&](double x, double value) {
+    const double height = (curve.factor * value - axis.low) / (axis.high - axis.low);
+    line.points.push_back(static_cast<float>(x));
+    line.points.push_back(static_cast<float>(area.y + std::clamp(height, 0.0, 1.0) * area.height));
+  };
+  History::Sample column;
+  double column_x = 0;
+  const auto finish = [&] {
+    if (column.least == column.greatest) return point(column_x, column.value);
+    point(column_x, column.least);
+    point(column_x, column.greatest);
+    point(column_x, column.value);
+  };
+  bool begun = false;
   for (std::size_t i = 0; i < curve.history->size(); ++i) {
     const auto& sample = curve.history->at(i);
     if (sample.time < since) continue;
-    const double height = (curve.factor * sample.value - axis.low) / (axis.high - axis.low);
-    line.points.push_back(
-        static_cast<float>(area.x + (sample.time - since) / kPlotSpan * area.width));
-    line.points.push_back(static_cast<float>(area.y + std::clamp(height, 0.0, 1.0) * area.height));
+    const double x = area.x + (sample.time - since) / kPlotSpan * area.width;
+    if (begun && std::floor(x) == std::floor(column_x)) {
+      column = {sample.time, sample.value, std::min(column.least, sample.least),
+                std::max(column.greatest, sample.greatest)};
+    } else {
+      if (begun) finish();
+      column = sample;
+      column_x = x;
+    }
+    begun = true;
   }
+  if (begun) finish();
   if (line.points.size() >= 4) out.lines.push_back(std::move(line));
 }
 
@@ -103,23 +139,27 @@ Axis round_axis(double low, double high, double least) {
 
 void add_plot(const std::string& title, const std::vector<Curve>& curves, double time,
               const Box2& box, double least_height, Overlay& out) {
-  const Box2 area{box.x + 56, box.y + 26, std::max(1.0, box.width - 76),
+  const Box2 area{box.x + kNumbers, box.y + 26, std::max(1.0, box.width - kNumbers - 20),
                   std::max(1.0, box.height - 58)};
   const double since = time - kPlotSpan;
   const auto [low, high] = range_of(curves, since);
   const Axis axis = round_axis(low, high, least_height);
   add_frame(axis, area, since, out);
   const double title_y = area.top() + 17;
-  out.texts.push_back({area.x, title_y, title, 13, palette::kText, Align::kLeft, true});
+  const TextItem heading =
+      fitted({area.x, title_y, title, 13, palette::kText, Align::kLeft, true}, 0.72 * area.width);
+  out.texts.push_back(heading);
   double x = area.right();
   for (const Curve& curve : curves) {
     add_curve(curve, axis, area, since, out);
     if (curve.history->empty()) continue;
     const double grain = 1e-3 * axis.step;  // digits that the plot cannot show are not written
     const double newest = grain * std::round(curve.factor * curve.history->newest().value / grain);
-    out.texts.push_back({x, title_y, text_of("%.4g", newest == 0 ? 0.0 : newest), 13, curve.color,
-                         Align::kRight, true});
-    x -= 62;
+    const TextItem value{
+        x, title_y, number_text(newest == 0 ? 0.0 : newest), 13, curve.color, Align::kRight, true};
+    if (extent_of(value).x < extent_of(heading).right() + 6) break;  // no room
+    out.texts.push_back(value);
+    x = extent_of(value).x - 8;
   }
 }
 

@@ -12,8 +12,11 @@ namespace {
 
 constexpr double kFirstRow = 20, kRowHeight = 18;
 
+constexpr double kNarrow = 330;  // a narrower table has no rates and overruns
+
 struct Columns {
   double name, state, rate, overruns, age;  ///< right ends but for name and state
+  bool narrow;
 };
 
 std::string age_text(const ModuleStatus& status) {
@@ -37,13 +40,13 @@ Rgb color_of(ModuleState state) {
 }
 
 /// The text broken at a space into at most two lines that fit the table; the rest is cut.
-std::array<std::string, 2> two_lines(const std::string& text) {
-  constexpr std::size_t kLetters = 50;
-  if (text.size() <= kLetters) return {text, ""};
-  const std::size_t space = text.rfind(' ', kLetters);
-  const std::size_t end = space == std::string::npos ? kLetters : space;
+std::array<std::string, 2> two_lines(const std::string& text, double width) {
+  const std::size_t letters = static_cast<std::size_t>(std::max(8.0, width / (0.6 * 11)));
+  if (text.size() <= letters) return {text, ""};
+  const std::size_t space = text.rfind(' ', letters);
+  const std::size_t end = space == std::string::npos ? letters : space;
   std::string second = text.substr(text[end] == ' ' ? end + 1 : end);
-  if (second.size() > kLetters) second.replace(kLetters - 3, std::string::npos, "...");
+  if (second.size() > letters) second.replace(letters - 3, std::string::npos, "...");
   return {text.substr(0, end), second};
 }
 
@@ -58,10 +61,12 @@ void add_row(const ModuleView& module, const Columns& columns, double y, std::in
   out.texts.push_back({columns.state, y,
                        lost ? text_of("lost %.0f s", silent) : name_of(status.state), 12,
                        lost ? palette::kBad : color_of(status.state)});
-  out.texts.push_back(
-      {columns.rate, y, text_of("%.0f", status.rate_hz), 12, numbers, Align::kRight});
-  out.texts.push_back(
-      {columns.overruns, y, std::to_string(status.overruns), 12, numbers, Align::kRight});
+  if (!columns.narrow) {
+    out.texts.push_back(
+        {columns.rate, y, text_of("%.0f", status.rate_hz), 12, numbers, Align::kRight});
+    out.texts.push_back(
+        {columns.overruns, y, std::to_string(status.overruns), 12, numbers, Align::kRight});
+  }
   out.texts.push_back({columns.age, y, age_text(status), 12, numbers, Align::kRight});
 }
 
@@ -88,12 +93,15 @@ std::string name_of(ModuleState state) {
 }
 
 void add_status_table(const SceneView& view, const Box2& box, std::int64_t now_ns, Overlay& out) {
-  const Columns columns{box.x + 16, box.x + 112, box.x + 230, box.x + 268, box.right() - 20};
+  const Columns columns{box.x + 16,  box.x + 104,      box.x + 230,
+                        box.x + 268, box.right() - 20, box.width < kNarrow};
   double y = box.top() - kFirstRow;
   out.texts.push_back({columns.name, y, "process", 12, palette::kQuiet});
   out.texts.push_back({columns.state, y, "state", 12, palette::kQuiet});
-  out.texts.push_back({columns.rate, y, "rate [Hz]", 12, palette::kQuiet, Align::kRight});
-  out.texts.push_back({columns.overruns, y, "late", 12, palette::kQuiet, Align::kRight});
+  if (!columns.narrow) {
+    out.texts.push_back({columns.rate, y, "rate [Hz]", 12, palette::kQuiet, Align::kRight});
+    out.texts.push_back({columns.overruns, y, "late", 12, palette::kQuiet, Align::kRight});
+  }
   out.texts.push_back({columns.age, y, "input age", 12, palette::kQuiet, Align::kRight});
   out.lines.push_back({{float(columns.name), float(y - 10), float(columns.age), float(y - 10)},
                        palette::kFrame,
@@ -107,7 +115,7 @@ void add_status_table(const SceneView& view, const Box2& box, std::int64_t now_n
     if (!module.status.last_error.empty()) error = name + ": " + module.status.last_error;
   }
   double line_y = box.y + 31;
-  for (const std::string& line : two_lines(error)) {
+  for (const std::string& line : two_lines(error, box.width - 36)) {
     out.texts.push_back({columns.name, line_y, line, 11, palette::kWarning});
     line_y -= 15;
   }

@@ -16,15 +16,17 @@ TEST_CASE("history: keeps the newest samples in order when full", "[visualizer]"
   CHECK(history.newest().time == 9);
 }
 
-TEST_CASE("history: close samples merge and keep the peak", "[visualizer]") {
-  // Oracle: analytic. Within the spacing the value of largest magnitude stays.
+TEST_CASE("history: close samples share a slot and keep their peaks", "[visualizer]") {
+  // Oracle: by hand. Of a slot the newest, the least and the greatest stay.
   History history(10, 0.1);
   history.push(0.00, 1);
   history.push(0.03, -7);
   history.push(0.06, 2);
   history.push(0.12, 3);
   REQUIRE(history.size() == 2);
-  CHECK(history.at(0).value == -7);
+  CHECK(history.at(0).value == 2);
+  CHECK(history.at(0).least == -7);
+  CHECK(history.at(0).greatest == 2);
   CHECK(history.at(0).time == 0.06);
   CHECK(history.at(1).value == 3);
 }

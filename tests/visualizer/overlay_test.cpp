@@ -52,19 +52,6 @@ Overlay overlay_of(const SceneView& view, const Interaction& interaction, int wi
                       make_layout(width, height), now_ns);
 }
 
-/// Where a text lies, by the mean advance of DejaVu Sans: 0.6 of the size, bold 0.68.
-Box2 extent(const TextItem& text) {
-  const double width = (text.bold ? 0.68 : 0.6) * text.size * double(text.text.size());
-  const double left = text.align == Align::kLeft     ? text.x
-                      : text.align == Align::kCenter ? text.x - 0.5 * width
-                                                     : text.x - width;
-  return {left, text.y - 0.4 * text.size, width, 0.8 * text.size};
-}
-
-bool overlap(const Box2& a, const Box2& b) {
-  return a.x < b.right() && b.x < a.right() && a.y < b.top() && b.y < a.top();
-}
-
 bool has_text(const Overlay& overlay, const std::string& part) {
   for (const TextItem& item : overlay.texts) {
     if (item.text.find(part) != std::string::npos) return true;
@@ -74,28 +61,92 @@ bool has_text(const Overlay& overlay, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("overlay: no two texts overlap and none leaves the picture", "[visualizer]") {
-  // Oracle: brute force over all pairs, at the sizes a window is likely to have. The arrow's label
-  // may lie anywhere in the 3-D part and is left out.
-  const SceneView view = busy_view();
-  for (const auto& [width, height] : {std::pair{1280, 720}, std::pair{1920, 1080}}) {
-    Interaction interaction({0.01, 0.036});
-    const Overlay overlay = overlay_of(view, interaction, width, height, 10 * kSecond);
-    const Box2 picture{0, 0, double(width), double(height)};
-    for (std::size_t i = 0; i < overlay.texts.size(); ++i) {
-      const TextItem& text = overlay.texts[i];
-      if (text.text.empty() || text.text.ends_with(" N")) continue;
-      const Box2 a = extent(text);
-      INFO("'" << text.text << "' at " << a.x << ", " << a.y);
-      CHECK(picture.contains(a.x, a.y));
-      CHECK(picture.contains(a.right(), a.top()));
-      for (std::size_t j = 0; j < i; ++j) {
-        const TextItem& other = overlay.texts[j];
-        if (other.text.empty() || other.text.ends_with(" N")) continue;
-        INFO("and '" << other.text << "'");
-        CHECK_FALSE(overlap(a, extent(other)));
-      }
+/// Every pair of texts, and the picture's edges.
+void check_readable(const Overlay& overlay, double width, double height) {
+  const Box2 picture{0, 0, width, height};
+  for (std::size_t i = 0; i < overlay.texts.size(); ++i) {
+    const TextItem& text = overlay.texts[i];
+    if (text.text.empty()) continue;
+    const Box2 a = extent_of(text);
+    INFO(width << " x " << height << ": '" << text.text << "' at " << a.x << ", " << a.y);
+    CHECK(text.size >= 9);
+    CHECK(picture.contains(a.x, a.y));
+    CHECK(picture.contains(a.right(), a.top()));
+    for (std::size_t j = 0; j < i; ++j) {
+      if (overlay.texts[j].text.empty()) continue;
+      INFO("and '" << overlay.texts[j].text << "'");
+      CHECK_FALSE(overlap(a, extent_of(overlay.texts[j])));
     }
+  }
+}
+
+TEST_CASE("overlay: no two texts overlap and none leaves the picture, from 640 x 480 to 4K",
+          "[visualizer]") {
+  // Oracle: brute force over all pairs, in a session in full swing, paused in slow motion with a
+  // press and a long notice, and ended with help.
+  SceneView view = busy_view();
+  for (const auto& [width, height] :
+       {std::pair{640, 480}, std::pair{800, 600}, std::pair{1024, 768}, std::pair{1280, 720},
+        std::pair{1366, 768}, std::pair{1920, 1080}, std::pair{2560, 1440},
+        std::pair{3840, 2160}}) {
+    Interaction interaction({0.01, 0.036});
+    const Layout layout = make_layout(width, height);
+    interaction.camera = frontal_camera(Vec3::Zero(), 0.06, static_cast<int>(layout.scene.width),
+                                        static_cast<int>(layout.scene.height));
+    check_readable(overlay_of(view, interaction, width, height, 10 * kSecond), width, height);
+    interaction.options.slow_motion = interaction.options.recording = true;
+    interaction.say("No organ here is made of tetrahedra: 1 2 3 show its springs.");
+    check_readable(overlay_of(view, interaction, width, height, 19 * kSecond), width, height);
+    interaction.options.help = true;
+    const Overlay helped = overlay_of(view, interaction, width, height, 19 * kSecond);
+    check_readable(helped, width, height);
+    for (const KeyMeaning& key : key_meanings()) CHECK(has_text(helped, key.meaning));
+  }
+  SessionControl pause;
+  pause.header.source_time_ns = 5;
+  pause.command = SessionCommand::kPause;
+  view.receive(pause);
+  ModuleStatus status;
+  status.module = "deformation";
+  status.state = ModuleState::kStopped;
+  view.receive(status, 10 * kSecond);
+  for (const auto& [width, height] :
+       {std::pair{640, 480}, std::pair{1280, 720}, std::pair{3840, 2160}}) {
+    Interaction interaction({0.01, 0.036});
+    const Layout layout = make_layout(width, height);
+    interaction.camera.width = static_cast<int>(layout.scene.width);
+    interaction.camera.height = static_cast<int>(layout.scene.height);
+    check_readable(overlay_of(view, interaction, width, height, 19 * kSecond), width, height);
+  }
+}
+
+TEST_CASE("overlay: on a window of three times the size all is three times as large",
+          "[visualizer]") {
+  // Oracle: the same overlay, enlarged.
+  const SceneView view = busy_view();
+  Interaction interaction({0.01, 0.036});
+  interaction.camera = frontal_camera(Vec3::Zero(), 0.06, 920, 720);
+  const Overlay small = overlay_of(view, interaction, 1280, 720, 10 * kSecond);
+  interaction.camera.width *= 3;
+  interaction.camera.height *= 3;
+  const Overlay large = overlay_of(view, interaction, 3840, 2160, 10 * kSecond);
+  REQUIRE(large.texts.size() == small.texts.size());
+  for (std::size_t i = 0; i < small.texts.size(); ++i) {
+    CHECK(large.texts[i].text == small.texts[i].text);
+    CHECK(large.texts[i].size == 3 * small.texts[i].size);
+    CHECK(large.texts[i].x == Approx(3 * small.texts[i].x));
+  }
+}
+
+TEST_CASE("overlay: a text is made smaller, then cut, to fit", "[visualizer]") {
+  // Oracle: its extent.
+  const TextItem text{0, 0, "a text of thirty letters, about", 14, {}};
+  CHECK(fitted(text, 300).text == text.text);
+  CHECK(fitted(text, 200).size < 14);
+  CHECK(fitted(text, 200).text == text.text);
+  CHECK(fitted(text, 100).text.ends_with("..."));
+  for (const double width : {300.0, 200.0, 100.0, 60.0}) {
+    CHECK(extent_of(fitted(text, width)).width <= width);
   }
 }
 

@@ -77,6 +77,41 @@ TEST_CASE("plot: a straight line in time is a straight line in the picture",
   CHECK(has_line(overlay, "2"));  // newest value, and the axis' top
 }
 
+TEST_CASE("plot: a peak of one tick of 1 kHz stays, at any width and whatever the picture's rate",
+          "[visualizer]") {
+  // Oracle: the height of the peak by the axis, which holds it. 10 s of 1 N with one tick of 2.5 N
+  // and one of 0, taken in as many ticks at a time as a picture of 4 to 60 Hz finds waiting.
+  for (const int ticks_a_picture : {17, 33, 250}) {
+    for (const double width : {120.0, 340.0, 1500.0}) {
+      SceneView view(visualizer::testing::two_probe_scene());
+      for (int first = 0; first < 10'000; first += ticks_a_picture) {
+        for (int tick = first; tick < std::min(10'000, first + ticks_a_picture); ++tick) {
+          HapticForce force;
+          force.header.sim_time_ns = std::int64_t{1'000'000} * tick;
+          force.force = Vec3(tick == 4711 ? 2.5 : tick == 7777 ? 0 : 1, 0, 0);
+          view.receive(force);
+        }
+      }
+      Overlay overlay;
+      const Rgb color{1, 2, 3};
+      const Box2 box{0, 0, width, 180};
+      add_plot("force [N]", {{&view.probes()[0].force_magnitude, color, 1}}, 10, box, 0.1, overlay);
+      const PolylineItem* curve = curve_of(overlay, color);
+      REQUIRE(curve != nullptr);
+      float highest = 0, lowest = 1e9f;
+      for (std::size_t i = 1; i < curve->points.size(); i += 2) {
+        highest = std::max(highest, curve->points[i]);
+        lowest = std::min(lowest, curve->points[i]);
+      }
+      const Axis axis = round_axis(0, 2.5, 0.1);
+      CHECK(highest == Approx(26 + 2.5 / axis.high * (180 - 58)));
+      CHECK(lowest == Approx(26));
+      CHECK(view.probes()[0].greatest_force == 2.5);
+      CHECK(curve->points.size() <= 2 * 3 * (std::size_t(width) + 1));  // no more than can be seen
+    }
+  }
+}
+
 TEST_CASE("plot: what is older than the span is not drawn", "[visualizer]") {
   // Oracle: count of samples within the span.
   History history;

@@ -115,6 +115,31 @@ TEMPLATE_TEST_CASE("bus contract: a busy reader finds the newest sample of each 
   CHECK(reader.statistics().received + reader.statistics().dropped == 1 + kSamples + 1);
 }
 
+TEMPLATE_TEST_CASE("bus contract: a reader with a backlog gets all that came while it was busy",
+                   "[bus]", PALPATE_BOTH_BUSES) {
+  // Oracle: the values sent, in order; fewer than the backlog holds.
+  TestType session;
+  auto writer = session.writers().writer(kHapticForce);
+  auto reader = session.readers().reader(kHapticForce, Keep::kBacklog);
+  match(writer, reader);
+  constexpr int kCount = 100;
+  static_assert(kCount < kBacklogDepth);
+  HapticForce force;
+  for (int i = 0; i < kCount; ++i) {
+    force.force.x() = i;
+    REQUIRE(writer.write(force));
+  }
+  int next = 0;
+  REQUIRE(wait_until([&] {
+    while (reader.take(force)) {
+      CHECK(force.force.x() == next);
+      ++next;
+    }
+    return next == kCount;
+  }));
+  CHECK(reader.statistics().dropped == 0);
+}
+
 TEMPLATE_TEST_CASE("bus contract: late readers get the newest state per key and no old stream",
                    "[bus]", PALPATE_BOTH_BUSES) {
   // Oracle: identity with the last message of each key; a stream is volatile.
