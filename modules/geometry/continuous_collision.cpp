@@ -9,7 +9,12 @@ namespace {
 
 // Evaluating F at a corner adds up less than 64 roundings of numbers below the largest coordinate
 // (each lerp ≤ 14 units of 2⁻⁵³ on top of its inputs; dyadic arguments are exact).
-constexpr double kRounding = 64 * 0.5 * std::numeric_limits<double>::epsilon();
+constexpr double kRoundings = 64;
+constexpr double kRounding = kRoundings * 0.5 * std::numeric_limits<double>::epsilon();
+
+/// 113 bits, by the compiler in software: unit of rounding 2⁻¹¹³.
+__extension__ using Quad = __float128;
+constexpr Quad kQuadRounding = kRoundings * 0x1p-113;
 
 /// [lower, lower + width] per argument t, u, v; all dyadic.
 struct ParameterBox {
@@ -17,18 +22,23 @@ struct ParameterBox {
   std::array<double, 3> width{1, 1, 1};
 };
 
-Vec3 lerp(const Vec3& a, const Vec3& b, double fraction) { return a + fraction * (b - a); }
+template <typename T, typename Number>
+T lerp(const T& a, const T& b, Number fraction) {
+  return a + fraction * (b - a);
+}
 
 struct PointTriangle {
   static constexpr bool kTriangular = true;
-  static Vec3 value(const FourPoints& x, double u, double v) {
+  template <typename T, typename Number>
+  static T value(const std::array<T, 4>& x, Number u, Number v) {
     return x[0] - ((x[1] + u * (x[2] - x[1])) + v * (x[3] - x[1]));
   }
 };
 
 struct EdgeEdge {
   static constexpr bool kTriangular = false;
-  static Vec3 value(const FourPoints& x, double u, double v) {
+  template <typename T, typename Number>
+  static T value(const std::array<T, 4>& x, Number u, Number v) {
     return lerp(x[0], x[1], u) - lerp(x[2], x[3], v);
   }
 };
@@ -37,15 +47,15 @@ template <typename Pair>
 class RootSearch {
  public:
   RootSearch(const FourPoints& start, const FourPoints& end, double separation)
-      : start_(start), end_(end) {
-    double largest = 0, extent = 0;
+      : start_(start), end_(end), quads_left_(separation > 0 ? 0 : kMaxQuadTests) {
+    double extent = 0;
     for (const FourPoints* points : {&start, &end}) {
       for (const Vec3& x : *points) {
-        largest = std::max(largest, x.cwiseAbs().maxCoeff());
+        largest_ = std::max(largest_, x.cwiseAbs().maxCoeff());
         extent = std::max(extent, (x - start[0]).cwiseAbs().maxCoeff());
       }
     }
-    reach_ = separation + kRounding * largest;
+    reach_ = separation + kRounding * largest_;
     tolerance_ = std::max(kImpactTolerance * extent, separation);
     set_slopes();
   }
@@ -84,13 +94,13 @@ class RootSearch {
       slopes_[0] = std::max(slopes_[0], (end_[k] - start_[k]).cwiseAbs().maxCoeff());
     }
     for (const FourPoints* x : {&start_, &end_}) {
-      const Vec3 corner = Pair::value(*x, 0, 0);
-      slopes_[1] = std::max(slopes_[1], (Pair::value(*x, 1, 0) - corner).cwiseAbs().maxCoeff());
-      slopes_[2] = std::max(slopes_[2], (Pair::value(*x, 0, 1) - corner).cwiseAbs().maxCoeff());
+      const Vec3 corner = Pair::value(*x, 0.0, 0.0);
+      slopes_[1] = std::max(slopes_[1], (Pair::value(*x, 1.0, 0.0) - corner).cwiseAbs().maxCoeff());
+      slopes_[2] = std::max(slopes_[2], (Pair::value(*x, 0.0, 1.0) - corner).cwiseAbs().maxCoeff());
     }
   }
 
-  bool may_hold_root(const ParameterBox& box, bool& is_small) const {
+  bool may_hold_root(const ParameterBox& box, bool& is_small) {
     if (Pair::kTriangular && box.lower[1] + box.lower[2] > 1) return false;
     Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
     for (int side = 0; side < 2; ++side) {
@@ -105,7 +115,31 @@ class RootSearch {
       }
     }
     is_small = (highest - lowest).maxCoeff() <= tolerance_;
-    return (lowest.array() <= reach_).all() && (highest.array() >= -reach_).all();
+    if ((lowest.array() > reach_).any() || (highest.array() < -reach_).any()) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool is_rounding = lowest[axis] >= -reach_ || highest[axis] <= reach_;
+      if (is_rounding && quads_left_-- > 0 && misses_zero(box, axis)) return false;
+    }
+    return true;
+  }
+
+  /// The same along one axis, decided with 60 bits more.
+  bool misses_zero(const ParameterBox& box, int axis) const {
+    const Quad reach = kQuadRounding * largest_;
+    bool above = true, below = true;
+    for (int side = 0; side < 2; ++side) {
+      const Quad t = Quad(box.lower[0]) + side * Quad(box.width[0]);
+      std::array<Quad, 4> x;
+      for (int k = 0; k < 4; ++k) x[k] = lerp(Quad(start_[k][axis]), Quad(end_[k][axis]), t);
+      for (int corner = 0; corner < 4; ++corner) {
+        const Quad u = Quad(box.lower[1]) + (corner & 1) * Quad(box.width[1]);
+        const Quad v = Quad(box.lower[2]) + (corner >> 1) * Quad(box.width[2]);
+        const Quad value = Pair::value(x, u, v);
+        above = above && value > reach;
+        below = below && value < -reach;
+      }
+    }
+    return above || below;
   }
 
   int widest(const ParameterBox& box) const {
@@ -118,6 +152,8 @@ class RootSearch {
 
   const FourPoints& start_;
   const FourPoints& end_;
+  int quads_left_ = 0;    ///< of kMaxQuadTests
+  double largest_ = 0;    ///< coordinate [m]
   double reach_ = 0;      ///< [m]
   double tolerance_ = 0;  ///< [m]
   std::array<double, 3> slopes_{0, 0, 0};

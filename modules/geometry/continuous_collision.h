@@ -6,8 +6,11 @@
 // in the hull of its eight corner values: if that hull, widened by the rounding error, misses zero,
 // the box holds no root and is discarded; else it is halved (inclusion-based root finding: Snyder
 // 1992; Wang et al., "A large-scale benchmark and an inclusion-based algorithm for continuous
-// collision detection", 2021). So a root is never lost. A near miss closer than kImpactTolerance of
-// the coordinates' extent, or one not decided within kMaxImpactBoxes, is reported as a meeting.
+// collision detection", 2021). So a root is never lost. Where a box stays only because of that
+// rounding error, it is looked at again in quadruple precision (kMaxQuadTests times): features made
+// of the same numbers often pass each other by less than a double tells. A near miss closer than
+// kImpactTolerance of the coordinates' extent, or one not decided within kMaxImpactBoxes, is
+// reported as a meeting.
 #pragma once
 
 #include <array>
@@ -19,6 +22,7 @@ namespace palpate::geometry {
 
 inline constexpr double kImpactTolerance = 1e-8;
 inline constexpr int kMaxImpactBoxes = 20'000;
+inline constexpr int kMaxQuadTests = 100;
 
 /// A lower bound of the first time of meeting, close to it, and where.
 struct Impact {
