@@ -26,7 +26,9 @@ namespace {
 
 void print(const std::string& name, const certify::Subject& subject) {
   std::cout << name << ", " << subject.scene.rates.deformation << " Hz:" << std::flush;
-  for (const auto& point : certify::measure_law(subject, [] {})) {
+  ContactTroubles troubles;
+  for (const auto& point : certify::measure_law(
+           subject, [] {}, troubles)) {
     std::printf("  %.1f mm %.0f/%.0f", 1e3 * point.depth, point.law, point.organ);
     if (point.organ > 0) std::printf(" = %.2f", point.law / point.organ);
   }

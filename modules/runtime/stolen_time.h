@@ -5,10 +5,17 @@
 
 namespace palpate::runtime {
 
-/// Of all cores since they began [s]; 0 if `proc_stat`, the text of /proc/stat, does not tell.
-/// @param ticks_per_second  of its numbers
-double stolen_time(std::string_view proc_stat, double ticks_per_second);
+/// Of all cores since they began, in ticks of the kernel.
+struct CoreTicks {
+  double stolen = 0;
+  double all = 0;  ///< idle ones too
+};
+
+/// Zeros if `proc_stat`, the text of /proc/stat, does not tell.
+CoreTicks core_ticks(std::string_view proc_stat);
 /// The same of this machine, now.
-double stolen_time();
+CoreTicks core_ticks();
+/// Share of the cores' time between the two that was stolen [0 … 1]; 0 if none passed.
+double stolen_share(const CoreTicks& before, const CoreTicks& after);
 
 }  // namespace palpate::runtime

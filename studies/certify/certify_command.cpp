@@ -45,7 +45,7 @@ class Certifying {
     slid();
     for (const Disturbance& d : disturbances(options_.quick)) {
       begin("link: " + d.name());
-      add(disturbance_lines(subject_, d, push_, keep_going_));
+      add(disturbance_lines(subject_, d, push_, keep_going_, troubles_));
     }
     if (!options_.lockstep) {
       real_processes();
@@ -76,11 +76,12 @@ class Certifying {
  private:
   void organ_alone() {
     begin("law");
-    const auto law = measure_law(subject_, keep_going_);
+    const auto law = measure_law(subject_, keep_going_, troubles_);
     write_law(law, options_.out);
     add(law_lines(law));
     begin("force");
-    const auto forces = measure_still_force(loop_on_organ(subject_), subject_, keep_going_);
+    const auto forces =
+        measure_still_force(loop_on_organ(subject_, &troubles_), subject_, keep_going_);
     write_still_force(forces, options_.out);
     add({still_force_line(forces)});
     push_ = forces.empty() ? 0 : std::max(0.0, forces.back().organ);
@@ -101,7 +102,7 @@ class Certifying {
 
   void pressed() {
     begin("press");
-    const Loop loop = loop_on_organ(subject_);
+    const Loop loop = loop_on_organ(subject_, &troubles_);
     const auto press = press_and_release(loop, subject_, keep_going_);
     write_ticks(press, options_.out / "press.csv");
     add({energy_line("energy", "of a press and release, on the organ", press, subject_),
@@ -118,25 +119,29 @@ class Certifying {
     begin("sliding");
     const auto path = slide_path(subject_, options_.quick ? 1 : 0);
     std::vector<SlideTick> ticks;
-    if (!path.empty()) ticks = slide(loop_on_organ(subject_), path, keep_going_);
+    if (!path.empty()) ticks = slide(loop_on_organ(subject_, &troubles_), path, keep_going_);
     write_slide(ticks, options_.out);
     add({slide_line(ticks)});
   }
 
   void contacts() {
-    const ContactTroubles& troubles = *subject_.contacts;
     const auto line = [&](const char* name, std::uint64_t count) {
       add({at_most("contacts", {name, static_cast<double>(count), 0, "", "none may be", ""})});
     };
-    line("searches truncated", troubles.truncated);
-    line("searches with the probe inside without contact", troubles.lost);
-    line("steps not solved", troubles.unsolved);
+    line("searches truncated", troubles_.truncated);
+    line("searches with the probe inside without contact", troubles_.lost);
+    line("steps not solved", troubles_.unsolved);
   }
 
   void real_processes() {
     begin("timing");
     certificate_.machine = report::machine_name();
     Processes processes(subject_, options_.bus, options_.out, keep_going_);
+    measure_alone(processes);
+    troubles_ += processes.contact_troubles();
+  }
+
+  void measure_alone(Processes& processes) {
     const double pressed = kPressed * push_;
     const bool ready = processes.start();
     processes.hold(pressing_hand());
@@ -163,6 +168,11 @@ class Certifying {
     bus::BusOptions bus = options_.bus;
     bus.session += "_beside";
     Processes processes(subject_, bus, options_.out, keep_going_, Beside::kPicturesAndHog);
+    measure_beside(processes, group);
+    troubles_ += processes.contact_troubles();
+  }
+
+  void measure_beside(Processes& processes, const std::string& group) {
     const bool ready = processes.start();
     processes.hold(pressing_hand());
     const auto feels = [&](const Heard& heard) {
@@ -222,7 +232,8 @@ class Certifying {
   std::ostream& out_;
   std::ostream& log_;
   Certificate certificate_;
-  double push_ = 0;  ///< what the organ holds at the depth of presses [N]
+  ContactTroubles troubles_;  ///< of all sessions, the real processes' too
+  double push_ = 0;           ///< what the organ holds at the depth of presses [N]
 };
 
 }  // namespace

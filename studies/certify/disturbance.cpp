@@ -72,9 +72,10 @@ Loop disturbed(Loop loop, const Disturbance& disturbance) {
 }
 
 std::vector<Line> disturbance_lines(const Subject& subject, const Disturbance& disturbance,
-                                    double push, const KeepGoing& keep_going) {
+                                    double push, const KeepGoing& keep_going,
+                                    ContactTroubles& troubles) {
   const std::string group = "link: " + disturbance.name();
-  const Loop loop = disturbed(loop_on_organ(subject), disturbance);
+  const Loop loop = disturbed(loop_on_organ(subject, &troubles), disturbance);
   const auto press = press_and_release(loop, subject, keep_going);
   const auto held = hold(loop, subject, push, keep_going);
   return {first_contact_line(group, "step of first contact", press),

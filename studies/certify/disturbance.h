@@ -23,7 +23,9 @@ std::vector<Disturbance> disturbances(bool quick);
 Loop disturbed(Loop loop, const Disturbance& disturbance);
 
 /// First contact, largest step and energy of a press, and the swing of a held contact.
+/// @param troubles  gets those of both added
 std::vector<Line> disturbance_lines(const Subject& subject, const Disturbance& disturbance,
-                                    double push, const KeepGoing& keep_going);
+                                    double push, const KeepGoing& keep_going,
+                                    ContactTroubles& troubles);
 
 }  // namespace palpate::certify

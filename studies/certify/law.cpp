@@ -37,7 +37,8 @@ double law_force(const Subject& subject, const LocalLaw& law, const Vec3& end) {
   return -found.wrench.force.dot(subject.place.into);
 }
 
-Forces forces_after(const Subject& subject, double depth, double off, const KeepGoing& keep_going) {
+Forces forces_after(const Subject& subject, double depth, double off, const KeepGoing& keep_going,
+                    ContactTroubles& troubles) {
   scene::Scene scene = subject.scene;
   scene.organs = {subject.scene.organs[subject.place.organ]};
   const auto at = [&](double below) { return pose_below(subject.place, below); };
@@ -51,18 +52,19 @@ Forces forces_after(const Subject& subject, double depth, double off, const Keep
   const LocalLaw law = organ.law(0);
   const Pose end = at((periods + 1) * way - kApproach + off);
   organ.advance({end});
-  *subject.contacts += organ.contact_troubles();
+  troubles += organ.contact_troubles();
   return {law_force(subject, law, end.position), -organ.force(0).dot(subject.place.into)};
 }
 
 }  // namespace
 
-std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going) {
+std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going,
+                                      ContactTroubles& troubles) {
   std::vector<LawStiffness> found;
   for (const double share : kDepths) {
     const double depth = share * subject.depth;
-    const Forces more = forces_after(subject, depth, kOff, keep_going);
-    const Forces less = forces_after(subject, depth, -kOff, keep_going);
+    const Forces more = forces_after(subject, depth, kOff, keep_going, troubles);
+    const Forces less = forces_after(subject, depth, -kOff, keep_going, troubles);
     found.push_back(
         {depth, (more.law - less.law) / (2 * kOff), (more.organ - less.organ) / (2 * kOff)});
   }

@@ -14,7 +14,9 @@ struct LawStiffness {
 
 /// At depths of 1/12 to 4/3 of the subject's, from first touch, at 20 mm/s. The organ is pressed
 /// anew for each.
-std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going);
+/// @param troubles  gets those of all presses added
+std::vector<LawStiffness> measure_law(const Subject& subject, const KeepGoing& keep_going,
+                                      ContactTroubles& troubles);
 
 /// In the median and at worst, of |law − organ|/|organ|; infinite where the organ's own is 0.
 std::vector<Line> law_lines(const std::vector<LawStiffness>& stiffness);

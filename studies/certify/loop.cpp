@@ -16,9 +16,9 @@ constexpr int kAskEvery = 50;           // ticks
 
 }  // namespace
 
-Loop loop_on_organ(const Subject& subject) {
+Loop loop_on_organ(const Subject& subject, ContactTroubles* troubles) {
   Loop loop{subject.scene, subject.assets, {}, subject.place};
-  loop.options.troubles = subject.contacts.get();
+  loop.options.troubles = troubles;
   return loop;
 }
 

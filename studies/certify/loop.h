@@ -13,7 +13,8 @@ struct Loop {
   session::InProcessOptions options;
   Place place;
 };
-Loop loop_on_organ(const Subject& subject);
+/// @param troubles  gets those of every session of the loop added; outlives it. None: not counted
+Loop loop_on_organ(const Subject& subject, ContactTroubles* troubles = nullptr);
 /// A lossless wall z ≤ 0 in the organ's place, its law told at the scene's rate of deformation.
 Loop loop_on_wall(const scene::Scene& scene, double stiffness);
 

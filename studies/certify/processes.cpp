@@ -73,7 +73,8 @@ Processes::Processes(const Subject& subject, const bus::BusOptions& bus,
       keep_going_(std::move(keep_going)),
       scene_(with_topic_device(subject)),
       file_(std::filesystem::absolute(folder) / "certified.yaml"),
-      written_ns_(kWritten) {
+      written_ns_(kWritten),
+      tally_(scene_) {
   std::ofstream(file_) << scene::resolved_text(scene_);
   scene_ = scene::load_scene(file_);  // its digest is what the others compare
   for (const char* module : kModules) start_module(module);
@@ -153,7 +154,10 @@ void Processes::tick() {
   while (bus_->contacts.take(bus_->touched)) {
     heard_.last_contacts_ns = bus_->touched.header.source_time_ns;
   }
-  while (bus_->statuses.take(bus_->status)) heard_.modules[bus_->status.module] = bus_->status;
+  while (bus_->statuses.take(bus_->status)) {
+    heard_.modules[bus_->status.module] = bus_->status;
+    tally_.receive(bus_->status);
+  }
   for (auto& [module, child] : children_) child->take_lines();
 }
 

@@ -7,6 +7,7 @@
 #include "modules/bus/bus.h"
 #include "palpate/child_process.h"
 #include "palpate/device/emulated_driver.h"
+#include "palpate/session_tally.h"
 #include "studies/certify/loop.h"
 
 namespace palpate::certify {
@@ -58,6 +59,8 @@ class Processes {
   void drive(bool on);
 
   Heard& heard() { return heard_; }
+  /// Of all modules as they said last, those that were killed too.
+  ContactTroubles contact_troubles() const { return tally_.contact_troubles(); }
 
  private:
   struct Bus;
@@ -80,6 +83,7 @@ class Processes {
   std::uint32_t count_ = 0, answered_ = 0;   ///< poses written, and the newest that was answered
   std::vector<std::int64_t> written_ns_;     ///< by count, a ring
   Heard heard_;
+  launcher::SessionTally tally_;
 };
 
 }  // namespace palpate::certify

@@ -20,7 +20,7 @@ constexpr double kPressSpeed = 0.02;  // of the organ alone [m/s]
 }  // namespace
 
 std::vector<double> still_forces(const Subject& subject, const std::vector<Vec3>& places,
-                                 const KeepGoing& keep_going) {
+                                 const KeepGoing& keep_going, ContactTroubles* troubles) {
   scene::Scene scene = subject.scene;
   scene.organs = {subject.scene.organs[subject.place.organ]};
   rigs::PressedOrgan organ(scene, subject.assets.organs[subject.place.organ],
@@ -30,7 +30,7 @@ std::vector<double> still_forces(const Subject& subject, const std::vector<Vec3>
     organ.move_and_settle({place}, kPressSpeed, keep_going);
     forces.push_back(-organ.force(0).dot(subject.place.into));
   }
-  *subject.contacts += organ.contact_troubles();
+  if (troubles != nullptr) *troubles += organ.contact_troubles();
   return forces;
 }
 
@@ -62,7 +62,7 @@ std::vector<StillForce> measure_still_force(const Loop& loop, const Subject& sub
     found.push_back({mean.depth / count, mean.felt / count, 0});
     places.push_back(subject.place.pose.position + off / count);
   }
-  const auto forces = still_forces(subject, places, keep_going);
+  const auto forces = still_forces(subject, places, keep_going, loop.options.troubles);
   for (std::size_t i = 0; i < forces.size(); ++i) found[i].organ = forces[i];
   return found;
 }

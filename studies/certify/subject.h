@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 
 #include "palpate/session/in_process.h"
 #include "studies/report/progress.h"
@@ -27,8 +26,6 @@ struct Subject {
   scene::EmulatedDevice device;  ///< at the place, held by nobody: the scene's, else Touch-class
   double depth = 6e-3;           ///< of presses, below the place of touch [m]
   double speed = 0.04;           ///< of presses in the mean, of slides [m/s]
-  /// What sessions of it add up to.
-  std::shared_ptr<ContactTroubles> contacts = std::make_shared<ContactTroubles>();
 };
 
 /// Loads the scene and finds the place, by playing it in one process until its first probe touches.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "modules/runtime/stolen_time.h"
 
@@ -54,11 +53,10 @@ Timing measure_timing(Processes& processes, double seconds) {
   const ModuleStatus before = heard.modules["haptics"];
   heard.periods.clear();
   heard.latencies.clear();
-  const double stolen = runtime::stolen_time();
+  const runtime::CoreTicks ticks = runtime::core_ticks();
   heard.timing = true;
   processes.wait([](const Heard&) { return false; }, seconds);
   heard.timing = false;
-  const double cores = seconds * std::max(1u, std::thread::hardware_concurrency());
   const ModuleStatus &after = heard.modules["haptics"], &tissue = heard.modules["deformation"];
   return {heard.periods,
           heard.latencies,
@@ -66,7 +64,7 @@ Timing measure_timing(Processes& processes, double seconds) {
           after.overruns - before.overruns,
           after.realtime_priority,
           tissue.real_time_factor,
-          (runtime::stolen_time() - stolen) / cores};
+          runtime::stolen_share(ticks, runtime::core_ticks())};
 }
 
 std::vector<Line> timing_lines(const std::string& group, const Timing& timing, double period) {

@@ -33,7 +33,8 @@ TEST_CASE("certify law: it finds the stiffness of a ball") {
   const BallScene scene(kFingerFromAbove);
   Subject subject = load_subject(scene.file(), kGoOn);
   subject.depth = 3e-3;
-  const auto found = measure_law(subject, kGoOn);
+  ContactTroubles troubles;
+  const auto found = measure_law(subject, kGoOn, troubles);
   REQUIRE(found.size() == 6);
   for (const LawStiffness& point : found) CHECK(point.organ > 0);
   CHECK(found.back().depth == Approx(4e-3));
