@@ -106,7 +106,7 @@ class OurSearch {
     const Pose now{centre_at(site, height_, k_), Quat::Identity()};
     update_s = seconds_of([&] { finder_.take_organ(0, message_, boxes_); });
     search_s = seconds_of([&] {
-      finder_.find(0, {before_, now}, margin_, kMaxContactsPerProbe, contacts);
+      finder_.find(0, {before_, now}, margin_, {kMaxContactsPerProbe, 0, 0}, contacts);
     });
     before_ = now;
   }

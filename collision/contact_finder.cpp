@@ -32,7 +32,7 @@ class ProbeSearch {
   }
 
   SearchReport find(const ProbeMotion& motion, double margin, std::vector<OrganSurface>& organs,
-                    std::size_t at_most, ContactSet& result) {
+                    const ContactLimits& limits, ContactSet& result) {
     SearchReport report;
     const RelativeMotion relative(motion, model_.reach, model_.is_round);
     cores_.begin_step();
@@ -54,7 +54,7 @@ class ProbeSearch {
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
-    reduce_contacts(found_, model_.is_round, at_most, result);
+    reduce_contacts(found_, model_.is_round, limits, result);
     return report;
   }
 
@@ -247,14 +247,14 @@ void ContactFinder::forget(std::size_t probe) {
 }
 
 SearchReport ContactFinder::find(std::size_t probe, const ProbeMotion& motion, double margin,
-                                 std::size_t at_most, ContactSet& result) {
+                                 const ContactLimits& limits, ContactSet& result) {
   PALPATE_DEMAND(probe < impl_->probes.size());
   PALPATE_DEMAND(margin > 0 && std::isfinite(margin));
   result.probe = static_cast<std::uint32_t>(probe);
   result.probe_pose = motion.pose_t1;
   result.clear();
   if (!is_believable(motion.pose_t0) || !is_believable(motion.pose_t1)) return {};
-  return impl_->probes[probe].find(motion, margin, impl_->organs, at_most, result);
+  return impl_->probes[probe].find(motion, margin, impl_->organs, limits, result);
 }
 
 }  // namespace palpate::collision

@@ -16,6 +16,12 @@ struct ProbeMotion {
   Pose pose_t0, pose_t1;
 };
 
+/// At most so many are handed out.
+struct ContactLimits {
+  std::size_t contacts = 0;  ///< beside faces
+  std::size_t faces = 0, face_nodes = 0;
+};
+
 /// What a search found out beside contacts.
 struct SearchReport {
   bool begun_inside = false;  ///< first heard of inside an organ: the nearest wall pushes it out
@@ -51,10 +57,10 @@ class ContactFinder {
 
   /// Contacts of one probe that moved from pose_t0 to pose_t1 since the last call, all with
   /// gap ≤ margin at t1 or swept through in between. Weights and gap hold at pose_t1.
-  /// Reduced (contact_reduction.h); at most `at_most` beside faces.
+  /// Reduced (contact_reduction.h) to the limits.
   /// @param margin  how far tissue and probe may approach until the next search [m], > 0
   SearchReport find(std::size_t probe, const ProbeMotion& motion, double margin,
-                    std::size_t at_most, ContactSet& result);
+                    const ContactLimits& limits, ContactSet& result);
 
  private:
   struct Impl;

@@ -122,7 +122,7 @@ void append_face(std::vector<FoundContact>::iterator first,
 }
 
 /// Takes nodes on one plane out of `found`.
-void take_faces(std::vector<FoundContact>& found, ContactSet& result) {
+void take_faces(std::vector<FoundContact>& found, const ContactLimits& limits, ContactSet& result) {
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(plane_order(a), std::tuple(offset(a), a.feature)) <
            std::tuple_cat(plane_order(b), std::tuple(offset(b), b.feature));
@@ -134,7 +134,9 @@ void take_faces(std::vector<FoundContact>& found, ContactSet& result) {
            offset(*last) - offset(*(last - 1)) < kDirectionless) {
       ++last;
     }
-    if (last - first >= std::ptrdiff_t{kFewestOnFace} && result.faces.size() < kMostFaces) {
+    const auto count = static_cast<std::size_t>(last - first);
+    if (count >= kFewestOnFace && result.faces.size() < limits.faces &&
+        count <= limits.face_nodes - result.face_nodes.size()) {
       append_face(first, last, result);
     } else {
       kept = std::move(first, last, kept);
@@ -163,20 +165,20 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
   append_contact(contact, nodes, found);
 }
 
-void reduce_contacts(std::vector<FoundContact>& found, bool is_round, std::size_t at_most,
+void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
                      ContactSet& result) {
   result.clear();
   merge_duplicates(found);
   if (is_round) {
     keep_of_round(found);
   } else {
-    take_faces(found, result);
+    take_faces(found, limits, result);
   }
-  result.truncated = found.size() > at_most;
+  result.truncated = found.size() > limits.contacts;
   if (result.truncated) {
-    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(at_most),
+    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(limits.contacts),
                      found.end(), deeper);
-    found.resize(at_most);
+    found.resize(limits.contacts);
   }
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.triangle), order_within(a)) <

@@ -29,16 +29,16 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
 
 /// A plane of the probe that so many nodes of an organ touch is told as a face.
 inline constexpr std::size_t kFewestOnFace = 16;
-inline constexpr std::size_t kMostFaces = 1024;
 /// Contacts of a round probe with an organ: half of them the deepest, half spread over the others.
 /// They say where tissue is; deformation finds its own rows around them (deformation/contact).
 inline constexpr std::size_t kMostOfRound = 64;
 
 /// The same place and normal found twice (over triangles that share it) becomes one contact, of the
 /// lowest triangle. Then they are reduced: of a round probe to kMostOfRound of an organ; of others
-/// nodes on one plane become a face, and where the rest is more than `at_most` the deepest are kept
-/// and result.truncated says so. Writes them into result.
-void reduce_contacts(std::vector<FoundContact>& found, bool is_round, std::size_t at_most,
+/// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more
+/// than `limits.contacts` the deepest are kept and result.truncated says so. Writes them into
+/// result.
+void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
                      ContactSet& result);
 
 }  // namespace palpate::collision

@@ -32,6 +32,11 @@ class OrganInputs {
   std::uint64_t sequence() const { return sequence_; }  ///< of the newest node positions
   /// Of node positions, as they come [s]; 0 before the second.
   double interval() const { return interval_; }
+  /// Are the newest boxes of an organ so many that they cannot be its blocks'?
+  bool boxes_misfit() const {
+    return std::any_of(organs_.begin(), organs_.end(),
+                       [](const OrganInput& organ) { return organ.boxes_misfit; });
+  }
 
  private:
   struct OrganInput {
@@ -40,6 +45,8 @@ class OrganInputs {
     std::vector<std::uint32_t> triangle_blocks;
     std::size_t surface_node_count = 0;
     std::vector<float> rest_positions;  ///< x, y, z per node [m]
+    std::size_t block_count = 0;        ///< of triangle_blocks
+    bool boxes_misfit = false;          ///< of the newest node positions
   };
 
   static void read_boxes(std::span<const float> from, std::vector<geometry::BlockBox>& boxes) {
@@ -61,6 +68,10 @@ class OrganInputs {
     organ.surface_node_count = surface_.surface_node_count;
     organ.triangles = surface_.triangles;
     organ.triangle_blocks = surface_.triangle_blocks;
+    organ.block_count = 0;
+    for (const std::uint32_t block : organ.triangle_blocks) {
+      organ.block_count = std::max(organ.block_count, std::size_t{block} + 1);
+    }
     organ.rest_positions = surface_.rest_positions;
     if (!same_shape) return make_finder();
     finder_->reset();
@@ -89,12 +100,13 @@ class OrganInputs {
   /// Positions of another generation than the surface's wait for their surface.
   void take_positions() {
     if (newest_.organ >= organs_.size() || !finder_) return;
-    const OrganInput& organ = organs_[newest_.organ];
+    OrganInput& organ = organs_[newest_.organ];
     if (newest_.generation != organ.generation ||
         newest_.positions.size() < 3 * organ.surface_node_count) {
       return;
     }
     read_boxes(newest_.block_boxes, boxes_);
+    organ.boxes_misfit = !boxes_.empty() && boxes_.size() != organ.block_count;
     finder_->take_organ(newest_.organ, newest_.positions, boxes_);
     sequence_ = newest_.header.sequence;
     if (newest_.organ != 0) return;
@@ -187,11 +199,12 @@ scene::Rates present_rates(scene::Rates rates, double interval) {
 
 /// What acted in a cycle, on any probe.
 struct Acted {
-  bool silent = false, truncated = false;
+  bool silent = false, truncated = false, boxes_misfit = false;
   SearchReport found;
 };
 
-static_assert(kMostFaces <= kMaxFacesPerProbe);
+/// What a message holds.
+constexpr ContactLimits kLimits{kMaxContactsPerProbe, kMaxFacesPerProbe, kMaxFaceNodes};
 
 const char* acting_guard(const Acted& acted) {
   if (acted.found.was_lost) {
@@ -201,6 +214,9 @@ const char* acting_guard(const Acted& acted) {
     return "more contacts than a message holds: the deepest are kept, the others pass";
   if (acted.found.begun_inside) {
     return "a probe was first heard of inside an organ: the nearest wall pushes it out, gently";
+  }
+  if (acted.boxes_misfit) {
+    return "node_positions tells boxes of other blocks than surface: they are made here";
   }
   return acted.silent ? "no news of a probe: it touches nothing until it is heard again" : "";
 }
@@ -233,7 +249,7 @@ struct CollisionStage::Impl {
     const double margin =
         activation_distance(present_rates(rates, organs.interval()), state.twist.linear.norm());
     const SearchReport found =
-        organs.finder()->find(probe, probes.motion(probe), margin, kMaxContactsPerProbe, contacts);
+        organs.finder()->find(probe, probes.motion(probe), margin, kLimits, contacts);
     acted.found.begun_inside |= found.begun_inside;
     acted.found.was_lost |= found.was_lost;
     acted.truncated |= contacts.truncated;
@@ -286,6 +302,7 @@ runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
     impl_->contacts.node_positions_sequence = impl_->organs.sequence();
     impl_->writer.write(impl_->contacts);
   }
+  acted.boxes_misfit = impl_->organs.boxes_misfit();
   health.guard = acting_guard(acted);
   health.contacts = impl_->troubles;
   return health;

@@ -17,6 +17,7 @@
 #include <array>
 #include <concepts>
 #include <limits>
+#include <span>
 
 #include "modules/messages/messages.h"
 
@@ -87,6 +88,14 @@ inline bool counts_without_gaps(const std::vector<std::uint32_t>& numbers) {
     seen[number] = true;
   }
   return numbers.empty() || different == greatest + 1;
+}
+
+/// Of so many times six numbers: is none of the first three greater than its like of the others?
+inline bool are_boxes(std::span<const float> numbers) {
+  for (; numbers.size() >= 6; numbers = numbers.subspan(6)) {
+    if (numbers[0] > numbers[3] || numbers[1] > numbers[4] || numbers[2] > numbers[5]) return false;
+  }
+  return true;
 }
 
 /// A T, constant or not.
@@ -211,6 +220,7 @@ void describe(V& v, M& m) {
   v.field("organ_contacts", m.organ_contacts, Rule::kPlain);
   v.numbers("block_boxes_m", m.block_boxes, Bounds{6, 0, kMaxTriangles, nullptr});
   v.numbers("positions_m", m.positions, Bounds{3, 1, kMaxNodes, "node_count"});
+  v.require("block_boxes_m", [&] { return are_boxes(m.block_boxes); });
 }
 
 template <class V, Is<SurfaceTopology> M>

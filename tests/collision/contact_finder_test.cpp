@@ -289,7 +289,8 @@ TEST_CASE("contact finder: a plane tells of every node it touches, however many"
   FinderScene scene(ball, scene::PlaneShape{});
   const Quat down(Eigen::AngleAxisd(M_PI, Vec3::UnitX()));
   ContactSet found;
-  scene.finder.find(0, {at({0, 0, 0.06}, down), at({0, 0, 0.03}, down)}, 0.002, 10, found);
+  scene.finder.find(0, {at({0, 0, 0.06}, down), at({0, 0, 0.03}, down)}, 0.002, {10, 1, 10'000},
+                    found);
   CHECK_FALSE(found.truncated);
   CHECK(found.contacts.empty());
   REQUIRE(found.faces.size() == 1);
@@ -297,7 +298,7 @@ TEST_CASE("contact finder: a plane tells of every node it touches, however many"
   for (std::uint32_t i = 0; i < ball.nodes.size(); ++i) {
     if (0.03 - ball.nodes[i][2] <= 0.002) above.insert(i);
   }
-  CHECK(above.size() > kMostContacts);
+  CHECK(above.size() > kMost.contacts);
   CHECK(std::set(found.face_nodes.begin(), found.face_nodes.end()) == above);
   CHECK(found.face_nodes.size() == above.size());
   CHECK(found.deepest_gap() == Approx(-0.02).margin(1e-12));
@@ -310,8 +311,8 @@ TEST_CASE("contact finder: a list that is too long keeps the deepest and says so
   FinderScene all({ball}, {small}), few({ball}, {small});
   const ProbeMotion motion = resting({0, 0, 0.055});
   ContactSet unlimited, limited;
-  all.finder.find(0, motion, 0.002, 100000, unlimited);
-  few.finder.find(0, motion, 0.002, 20, limited);
+  all.finder.find(0, motion, 0.002, {100'000, 0, 0}, unlimited);
+  few.finder.find(0, motion, 0.002, {20, 0, 0}, limited);
   CHECK_FALSE(unlimited.truncated);
   CHECK(limited.truncated);
   REQUIRE(limited.contacts.size() == 20);
@@ -357,10 +358,10 @@ TEST_CASE("contact finder: degenerate triangles and an organ without positions a
         other.find(resting(touching), 0.002).contacts.size());
   ContactFinder empty({slab().triangles, {}}, {probe_of(scene::SphereShape{})});
   ContactSet result;
-  empty.find(0, resting(touching), 0.002, kMostContacts, result);
+  empty.find(0, resting(touching), 0.002, kMost, result);
   CHECK(result.contacts.empty());
   empty.update_organ(1, {});
-  empty.find(0, resting(touching), 0.002, kMostContacts, result);
+  empty.find(0, resting(touching), 0.002, kMost, result);
   CHECK(result.contacts.empty());
 }
 

@@ -34,7 +34,7 @@ TEST_CASE("contact reduction: a place named by two triangles is one contact, of 
   CHECK(found[0].feature == std::array{4u, 5u, kNoNode});
   CHECK(found[0].feature == found[1].feature);
   ContactSet result;
-  reduce_contacts(found, false, kMostContacts, result);
+  reduce_contacts(found, false, kMost, result);
   REQUIRE(result.contacts.size() == 2);
   CHECK(result.contacts[0].triangle == 3);
   CHECK(result.contacts[1].organ == 1);
@@ -50,7 +50,7 @@ TEST_CASE("contact reduction: the same place with another normal or probe point 
   append_contact(turned, {4, 5, 6}, found);
   append_contact(moved, {4, 5, 6}, found);
   ContactSet result;
-  reduce_contacts(found, false, kMostContacts, result);
+  reduce_contacts(found, false, kMost, result);
   CHECK(result.contacts.size() == 3);
 }
 
@@ -58,7 +58,7 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   // Oracle: brute force sort.
   RandomShapes random(81);
   std::vector<FoundContact> found;
-  for (std::uint32_t t = 0; t < 2 * kMostContacts; ++t) {
+  for (std::uint32_t t = 0; t < 2 * kMost.contacts; ++t) {
     append_contact(contact(t % 2, t, {0.2, 0.3, 0.5}, random.number(-1, 1)),
                    {3 * t, 3 * t + 1, 3 * t + 2}, found);
   }
@@ -68,13 +68,13 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   auto reversed = found;
   std::reverse(reversed.begin(), reversed.end());
   ContactSet one, other;
-  reduce_contacts(found, false, kMostContacts, one);
-  reduce_contacts(reversed, false, kMostContacts, other);
+  reduce_contacts(found, false, kMost, one);
+  reduce_contacts(reversed, false, kMost, other);
   CHECK(one.truncated);
-  REQUIRE(one.contacts.size() == kMostContacts);
-  REQUIRE(other.contacts.size() == kMostContacts);
-  for (std::size_t i = 0; i < kMostContacts; ++i) {
-    CHECK(one.contacts[i].gap <= gaps[kMostContacts - 1]);
+  REQUIRE(one.contacts.size() == kMost.contacts);
+  REQUIRE(other.contacts.size() == kMost.contacts);
+  for (std::size_t i = 0; i < kMost.contacts; ++i) {
+    CHECK(one.contacts[i].gap <= gaps[kMost.contacts - 1]);
     CHECK(one.contacts[i].gap == other.contacts[i].gap);
     CHECK(one.contacts[i].triangle == other.contacts[i].triangle);
     if (i == 0) continue;
@@ -105,7 +105,7 @@ TEST_CASE("contact reduction: nodes on one plane are a face, all of them, and tr
   }
   std::shuffle(found.begin(), found.end(), std::mt19937(1));
   ContactSet result;
-  reduce_contacts(found, false, 3000, result);
+  reduce_contacts(found, false, {3000, 4, 4000}, result);
   CHECK_FALSE(result.truncated);
   CHECK(result.contacts.size() == 2000);  // each on a plane of its own
   CHECK(result.count() == 6000);
@@ -121,8 +121,41 @@ TEST_CASE("contact reduction: nodes on one plane are a face, all of them, and tr
     CHECK(face.normal_P == Vec3::UnitZ());
   }
   CHECK(result.faces[0].organ + result.faces[1].organ == 0);
-  reduce_contacts(found, false, 1999, result);  // what is left of `found` is what is on no face
+  reduce_contacts(found, false, {1999, 4, 4000},
+                  result);  // what is left of `found` is what is on no face
   CHECK(result.truncated);
+}
+
+TEST_CASE("contact reduction: faces that do not fit are contacts, and what is left out is said") {
+  // Oracle: counts; 400 nodes are laid on ten planes, 40 on each.
+  const auto reduced = [](const ContactLimits& limits) {
+    std::vector<FoundContact> found;
+    for (std::uint32_t node = 0; node < 400; ++node) {
+      FoundContact c;
+      c.triangle = node;
+      c.organ = node % 2;
+      c.gap = 1e-3 * node;
+      c.point_P = Vec3(1e-3 * node, 0, node % 10);
+      c.barycentric = Vec3::UnitX();
+      append_contact(c, {node, node + 1, node + 2}, found);
+    }
+    ContactSet result;
+    reduce_contacts(found, false, limits, result);
+    CHECK(result.faces.size() <= limits.faces);
+    CHECK(result.face_nodes.size() <= limits.face_nodes);
+    CHECK(result.contacts.size() <= limits.contacts);
+    CHECK(result.deepest_gap() == 0);
+    return result;
+  };
+  CHECK_FALSE(reduced({1024, 10, 400}).truncated);
+  for (const ContactLimits& limits : {ContactLimits{240, 10, 199}, {240, 4, 400}, {240, 10, 160}}) {
+    const ContactSet all = reduced(limits);
+    CHECK_FALSE(all.truncated);
+    CHECK(all.faces.size() == 4);
+    CHECK(all.count() == 400);
+  }
+  CHECK(reduced({239, 10, 199}).truncated);
+  CHECK(reduced({10, 0, 0}).truncated);
 }
 
 TEST_CASE("contact reduction: of a round probe the deepest and a spread remain, of each organ") {
@@ -138,7 +171,7 @@ TEST_CASE("contact reduction: of a round probe the deepest and a spread remain, 
   }
   const auto all = found;
   ContactSet result;
-  reduce_contacts(found, true, 1024, result);
+  reduce_contacts(found, true, kMost, result);
   CHECK_FALSE(result.truncated);  // deformation finds the rest around them
   CHECK(result.contacts.size() == 2 * kMostOfRound);
   const auto tissue = [](const Contact& c) -> Vec3 { return c.point_P - c.gap * c.normal_P; };
@@ -182,7 +215,7 @@ TEST_CASE("contact reduction: hands out what was found, its normal made unit") {
   c.normal_P = (1 + 1e-9) * direction;
   append_contact(c, {0, 1, 2}, found);
   ContactSet result;
-  reduce_contacts(found, false, kMostContacts, result);
+  reduce_contacts(found, false, kMost, result);
   REQUIRE(result.contacts.size() == 1);
   CHECK_FALSE(result.truncated);
   CHECK(result.contacts[0].point_P == c.point_P);

@@ -13,6 +13,11 @@ bool same_contact(const Contact& a, const Contact& b) {
          a.point_P == b.point_P && a.normal_P == b.normal_P && a.gap == b.gap;
 }
 
+bool same_face(const FaceContacts& a, const FaceContacts& b) {
+  return a.organ == b.organ && a.point_P == b.point_P && a.normal_P == b.normal_P &&
+         a.gap == b.gap && a.node_count == b.node_count;
+}
+
 /// Two organs that swing, and a probe that comes, goes, turns, is pushed in and jumps.
 struct SwingingScene {
   RandomShapes random;
@@ -53,7 +58,7 @@ TEST_CASE("contact finder: the same bits whatever the blocks, told or not, of ev
                                                probe_of(scene::BoxShape{Vec3(0.02, 0.01, 0.03)}),
                                                probe_of(scene::PlaneShape{}),
                                                scene::form_of(mesh, geometry::make_ball(0.01, 1))};
-  std::size_t contacts = 0, pushed = 0;
+  std::size_t contacts = 0, face_nodes = 0, pushed = 0;
   for (std::size_t f = 0; f < forms.size(); ++f) {
     SwingingScene motion(static_cast<unsigned>(100 + f));
     const auto triangles = FinderScene::triangles_of(motion.organs);
@@ -85,19 +90,25 @@ TEST_CASE("contact finder: the same bits whatever the blocks, told or not, of ev
       std::array<SearchReport, 3> reports;
       const std::array<ContactFinder*, 3> finders{&brute, &by_blocks, &own};
       for (std::size_t i = 0; i < 3; ++i) {
-        reports[i] = finders[i]->find(0, way, 0.002, kMostContacts, found[i]);
+        reports[i] = finders[i]->find(0, way, 0.002, kMost, found[i]);
       }
       for (std::size_t i = 1; i < 3; ++i) {
         CHECK(reports[i].begun_inside == reports[0].begun_inside);
         CHECK(reports[i].was_lost == reports[0].was_lost);
         CHECK(std::equal(found[0].contacts.begin(), found[0].contacts.end(),
                          found[i].contacts.begin(), found[i].contacts.end(), same_contact));
+        CHECK(std::equal(found[0].faces.begin(), found[0].faces.end(), found[i].faces.begin(),
+                         found[i].faces.end(), same_face));
+        CHECK(found[i].face_nodes == found[0].face_nodes);
+        CHECK(found[i].truncated == found[0].truncated);
       }
       contacts += found[0].contacts.size();
+      face_nodes += found[0].face_nodes.size();
       pushed += !found[0].contacts.empty() && deepest_gap(found[0]) < -0.002;
     }
   }
   CHECK(contacts > 5000);
+  CHECK(face_nodes > 5000);
   CHECK(pushed > 100);
 }
 

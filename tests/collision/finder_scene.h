@@ -11,7 +11,7 @@
 namespace palpate::collision {
 
 /// More than these are reduced to the deepest.
-inline constexpr std::size_t kMostContacts = 1024;
+inline constexpr ContactLimits kMost{1024, 1024, 200'000};
 
 inline Pose at(const Vec3& position, const Quat& rotation = Quat::Identity()) {
   return {position, rotation};
@@ -49,8 +49,8 @@ struct FinderScene {
   /// Faces spelled out node by node.
   ContactSet find(const ProbeMotion& motion, double margin, std::size_t probe = 0) {
     ContactSet result;
-    report = finder.find(probe, motion, margin, kMostContacts, result);
-    CHECK(result.contacts.size() <= kMostContacts);
+    report = finder.find(probe, motion, margin, kMost, result);
+    CHECK(result.contacts.size() <= kMost.contacts);
     spell_out(result);
     check(result, margin);
     return result;

@@ -22,6 +22,7 @@ struct Session {
   bus::Writer<ProbeState> probes = bus.writer(bus::kProbeState);
   bus::Reader<Contacts> contacts = bus.reader(bus::kContacts);
   Contacts newest;
+  std::string guard;  ///< of the last search
 
   Session() {
     scene.organs.resize(1);
@@ -59,7 +60,7 @@ struct Session {
     runtime::Cycle now;
     now.now_ns = now_ns;
     now.running = true;
-    stage.cycle(now);
+    guard = stage.cycle(now).guard;
     while (contacts.take(newest)) {
     }
     return newest.contacts.size();
@@ -119,7 +120,13 @@ TEST_CASE(
       session.search(stage, now_ns);
     }
     CHECK(session.newest.contacts.empty() != is_found);
+    CHECK(session.guard.empty());
   }
+  told.block_boxes.assign(12, 0);  // of two blocks
+  REQUIRE(positions.write(told));
+  session.move_finger(0.0605, now_ns);
+  CHECK(session.search(stage, now_ns) > 0);
+  CHECK(session.guard.find("node_positions tells boxes of other blocks") == 0);
 }
 
 TEST_CASE("collision stage: a probe that fell silent touches nothing, and its status says so") {

@@ -93,7 +93,7 @@ TEST_CASE("world contacts: a held organ is felt as a probe of the same shape is"
     const Pose pose{below, Quat::Identity()};
     ContactSet contacts;
     finder.update_organ(0, probed.positions(0));
-    finder.find(1, {pose, pose}, 2e-3, 1024, contacts);
+    finder.find(1, {pose, pose}, 2e-3, {1024, 0, 0}, contacts);
     probed.set_probe(1, pose);
     probed.set_contacts(contacts);
     probed.advance(kPeriod);
@@ -171,7 +171,7 @@ TEST_CASE("world contacts: a wall pushed onto the far wall touches it and does n
       const Pose pose{Vec3(0, 0, 0.07 - 0.11 * std::min(time / 2, 1.0)), Quat::Identity()};
       ContactSet contacts;
       finder.update_organ(0, world.positions(0));
-      finder.find(0, {last, pose}, 2e-3, 1024, contacts);
+      finder.find(0, {last, pose}, 2e-3, {1024, 0, 0}, contacts);
       last = pose;
       world.set_probe(0, pose);
       world.set_contacts(contacts);

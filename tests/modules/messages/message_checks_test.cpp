@@ -195,6 +195,17 @@ TEST_CASE("message checks: NodePositions", "[messages]") {
   CHECK(named<M>([](M& m) { m.positions.resize(4); }) == "positions_m");
   CHECK(named<M>([](M& m) { m.positions.resize(3 * kMaxNodes + 3); }) == "positions_m");
   CHECK(named<M>([](M& m) { m.positions.resize(3 * kMaxNodes); }).empty());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto of_box = [&](float lower, float upper) {
+      return named<M>([&](M& m) {
+        m.block_boxes = {0, 0, 0, 1, 1, 1, 0, 0, 0, 1, 1, 1};
+        m.block_boxes[6 + axis] = lower;
+        m.block_boxes[9 + axis] = upper;
+      });
+    };
+    CHECK(of_box(2, 1) == "block_boxes_m");
+    CHECK(of_box(2, 2).empty());
+  }
   // One value that is not finite, or too large, is found anywhere, however the loop is vectorized.
   Random random(22);
   for (std::size_t place = 0; place < 3 * 20; ++place) {

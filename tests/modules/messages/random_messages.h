@@ -156,6 +156,15 @@ inline void mend(Random& random, SurfaceTopology& m) {
   for (std::uint32_t& fixed : m.fixed_nodes) fixed = node();
 }
 
+inline void mend(NodePositions& m) {
+  for (std::size_t i = 0; i + 6 <= m.block_boxes.size(); i += 6) {
+    for (std::size_t k = i; k < i + 3; ++k) {
+      if (m.block_boxes[k] > m.block_boxes[k + 3])
+        std::swap(m.block_boxes[k], m.block_boxes[k + 3]);
+    }
+  }
+}
+
 template <class Message>
 void fill(Random& random, Message& message) {
   RandomFiller filler(random);
@@ -164,6 +173,7 @@ void fill(Random& random, Message& message) {
     while (message.rest_positions.size() < 9) message.rest_positions.push_back(1);
     mend(random, message);
   }
+  if constexpr (std::same_as<Message, NodePositions>) mend(message);
   if constexpr (std::same_as<Message, Contacts>) mend(random, message);
   if constexpr (std::same_as<Message, ContactModel>) mend(random, message);
 }

@@ -270,6 +270,13 @@ TEST_CASE("wire page: docs/topics.md holds it word by word") {
        << std::filesystem::absolute("wire_page.md"));
 }
 
+TEST_CASE("wire page: idl/ and page say which version of the protocol they describe") {
+  // Oracle: kProtocolVersion.
+  const std::string told = "this text describes version " + std::to_string(kProtocolVersion);
+  CHECK(text_of_file("idl/SceneDescription.idl").find(told + "\n") != std::string::npos);
+  CHECK(text_of_file("docs/topics.md").find(told + " |") != std::string::npos);
+}
+
 TEST_CASE("wire page: idl/ declares what describe() names, with its type, in its order") {
   // Oracle: the declarations, read as text.
   for (const Described& message : all_described()) {
