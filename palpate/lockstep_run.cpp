@@ -172,8 +172,7 @@ class LockstepRun {
     }
     if (complete && modules_.any_running() && !stop_.requested()) {
       log_ << "palpate: a process has not ended within 10 s of the session; a recording may lack "
-              "its "
-              "last samples\n";
+              "its last samples\n";
       exit_code_ = kExitFailed;
     }
     modules_.stop();

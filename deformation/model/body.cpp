@@ -2,26 +2,15 @@
 
 #include <algorithm>
 #include <string>
-#include <variant>
 
 #include "modules/core/error.h"
+#include "modules/scene/region.h"
 
 namespace palpate::deformation {
-namespace {
-
-bool contains(const scene::Region& region, const Vec3& p) {
-  if (const auto* sphere = std::get_if<scene::SphereRegion>(&region)) {
-    return (p - sphere->center).norm() <= sphere->radius;
-  }
-  const auto& box = std::get<scene::BoxRegion>(region);
-  return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
-}
-
-}  // namespace
 
 bool is_fixed(const scene::Organ& organ, const Vec3& rest_position) {
   return std::any_of(organ.fixed.begin(), organ.fixed.end(),
-                     [&](const auto& region) { return contains(region, rest_position); });
+                     [&](const auto& region) { return scene::contains(region, rest_position); });
 }
 
 void fix_nodes(const scene::Organ& organ, std::size_t count, Body& body) {

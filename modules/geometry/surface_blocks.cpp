@@ -1,5 +1,6 @@
 #include "modules/geometry/surface_blocks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 

@@ -2,8 +2,11 @@
 // block without a look at its nodes.
 #pragma once
 
-#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "modules/geometry/triangle_surface.h"
 

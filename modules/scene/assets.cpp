@@ -9,6 +9,7 @@
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/models.h"
+#include "modules/scene/region.h"
 
 namespace palpate::scene {
 namespace {
@@ -27,14 +28,6 @@ bool holds_tetrahedra(const std::filesystem::path& file) {
 
 /// Of a refined mesh; a step of so many is minutes.
 constexpr std::size_t kMostRefinedNodes = 50'000;
-
-double distance(const Region& region, const Vec3& x) {
-  if (const auto* sphere = std::get_if<SphereRegion>(&region)) {
-    return std::max(0.0, (x - sphere->center).norm() - sphere->radius);
-  }
-  const auto& box = std::get<BoxRegion>(region);
-  return (x - x.cwiseMax(box.min).cwiseMin(box.max)).norm();
-}
 
 geometry::OrganShape load_tetrahedra(const Organ& organ, const std::string& owner) {
   const Mesh& mesh = organ.mesh;

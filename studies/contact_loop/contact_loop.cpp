@@ -9,7 +9,7 @@
 #include "modules/core/rotation_vector.h"
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/primitives.h"
-#include "studies/contact_loop/winding_number.h"
+#include "modules/geometry/winding_number.h"
 #include "studies/rigs/poked_organ.h"
 
 namespace palpate::contact_loop {
@@ -130,7 +130,9 @@ class Judge {
     std::vector<Vec3> points;
     for (const Vec3& p_P : tool_.inside) {
       const Vec3 p = pose.to_world(p_P);
-      if (winding_number(p, positions, session_.surface(0).triangles) > 0.5) points.push_back(p);
+      if (geometry::winding_number(p, positions, session_.surface(0).triangles) > 0.5) {
+        points.push_back(p);
+      }
     }
     return points;
   }

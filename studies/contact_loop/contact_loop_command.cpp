@@ -22,7 +22,8 @@ std::vector<T> or_else(const std::vector<T>& given, std::vector<T> usual) {
 }
 
 struct Sum {
-  long runs = 0, inside = 0, lost = 0, presses = 0, crossings = 0;
+  long runs = 0, inside = 0, lost = 0;
+  long presses = 0, crossings = 0;  ///< of round tools
   ContactTroubles troubles;
 };
 
@@ -72,8 +73,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
           const auto* ball = std::get_if<scene::SphereShape>(&tool.shape);
           out << fmt::format(
                      "{:<23} {:<6} {:>6} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:7} {:8} "
-                     "{:9} "
-                     "{:9} {:8}\n",
+                     "{:9} {:9} {:8}\n",
                      file.stem().string(), tool.name,
                      ball != nullptr ? fmt::format("{:g}", 1e3 * ball->radius) : "", speed, rate,
                      r.searches, r.inside, r.lost, r.longest_lost, 1e3 * r.deepest, r.presses,
@@ -83,16 +83,15 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
           sum.inside += r.inside;
           sum.lost += r.lost;
           sum.troubles += r.troubles;
-          sum.presses += r.presses;
+          sum.presses += tool.is_round() ? r.presses : 0;
           sum.crossings += r.crossings;
         }
       }
     }
   }
   out << fmt::format(
-             "{} runs: {} searches inside an organ, {} of them without contact\n{} presses: {} "
-             "times "
-             "the organ was left with a point of the tool inside\n",
+             "{} runs: {} searches inside an organ, {} of them without contact\n{} presses of "
+             "round tools: {} times the organ was left with a point of the core inside\n",
              sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings)
       << session::contact_line(sum.troubles) << '\n';
   return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone

@@ -4,23 +4,11 @@
 
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/primitives.h"
+#include "modules/geometry/winding_number.h"
 #include "tests/collision/random_shapes.h"
 
 namespace palpate::collision {
 namespace {
-
-/// Solid angles of all triangles over 4π (Van Oosterom & Strackee 1983).
-double winding_number(const geometry::TriangleSurface& surface, const Vec3& p) {
-  double solid_angle = 0;
-  for (const auto& t : surface.triangles) {
-    const Vec3 a = surface.nodes[t[0]] - p, b = surface.nodes[t[1]] - p,
-               c = surface.nodes[t[2]] - p;
-    const double below = a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
-                         a.dot(c) * b.norm() + b.dot(c) * a.norm();
-    solid_angle += 2 * std::atan2(a.dot(b.cross(c)), below);
-  }
-  return solid_angle / (4 * M_PI);
-}
 
 OrganSurface organ_of(const geometry::TriangleSurface& surface) {
   OrganSurface organ(surface.triangles);
@@ -48,7 +36,7 @@ TEST_CASE("closed surface: encloses what it winds around, folded through itself 
       const OrganSurface organ = organ_of(surface);
       for (int trial = 0; trial < 300; ++trial) {
         const Vec3 p = random.number(0, 1.5) * random.direction();
-        const double winding = winding_number(surface, p);
+        const double winding = geometry::winding_number(p, surface.nodes, surface.triangles);
         REQUIRE(closed.encloses(organ, p) == (winding > 0.5));
         inside += winding > 0.5;
       }

@@ -1,12 +1,13 @@
 // The scenes that ship: they load, start clear of the organ, press it as deep and as fast as a
 // surgeon does.
 #include <algorithm>
-#include <numbers>
 #include <set>
 #include <sstream>
 #include <vector>
 
+#include "modules/geometry/winding_number.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/region.h"
 #include "tests/modules/scene/scene_text.h"
 
 using namespace palpate;
@@ -70,18 +71,15 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
   return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
-/// Distance to the surface, negative inside: the sign is that of the winding number (van Oosterom
-/// and Strackee 1983).
+/// Distance to the surface, negative inside.
 double signed_distance(const Vec3& p, const geometry::TriangleSurface& surface) {
-  double distance = std::numeric_limits<double>::infinity(), solid_angle = 0;
+  double distance = std::numeric_limits<double>::infinity();
   for (const auto& [i, j, k] : surface.triangles) {
     const Vec3 a = surface.nodes[i] - p, b = surface.nodes[j] - p, c = surface.nodes[k] - p;
     distance = std::min(distance, distance_to_triangle(Vec3::Zero(), a, b, c));
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    solid_angle += 2 * std::atan2(a.dot(b.cross(c)),
-                                  la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
-  return solid_angle > 2 * std::numbers::pi ? -distance : distance;
+  const bool inside = geometry::winding_number(p, surface.nodes, surface.triangles) > 0.5;
+  return inside ? -distance : distance;
 }
 
 /// How deep a sphere-tipped probe presses into the rest surface at each point of its path [m].
@@ -92,14 +90,6 @@ std::vector<double> depths(const Probe& probe, const geometry::TriangleSurface& 
     result.push_back(radius - signed_distance(point, surface));
   }
   return result;
-}
-
-bool is_inside(const Region& region, const Vec3& point) {
-  if (const auto* sphere = std::get_if<SphereRegion>(&region)) {
-    return (point - sphere->center).norm() <= sphere->radius;
-  }
-  const auto& box = std::get<BoxRegion>(region);
-  return (point.array() >= box.min.array()).all() && (point.array() <= box.max.array()).all();
 }
 
 const std::vector<std::string> kOneProbeScenes{"stomach_probe", "stomach_probe_refined",
@@ -183,7 +173,7 @@ TEST_CASE("shipped scenes: fixed regions hold some nodes of the organ, and not m
     CHECK_FALSE(scene.organs[0].fixed.empty());
     for (const Region& region : scene.organs[0].fixed) {
       const auto held = std::count_if(surface.nodes.begin(), surface.nodes.end(),
-                                      [&](const Vec3& node) { return is_inside(region, node); });
+                                      [&](const Vec3& node) { return contains(region, node); });
       CHECK(held >= 3);
       CHECK(held < static_cast<std::ptrdiff_t>(surface.nodes.size()) / 5);
     }

@@ -6,6 +6,7 @@
 
 #include "haptics/devices/placed_device.h"
 #include "modules/geometry/primitives.h"
+#include "modules/geometry/winding_number.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/session/timed_stage.h"
 
@@ -36,23 +37,6 @@ InProcess ball_session(const scene::Scene& scene, int levels = 3) {
 }
 
 Vec3 at_depth(double depth) { return Vec3(0, 0, kRadius + kTip - depth); }
-
-/// How often a closed surface winds around p: 1 inside, 0 outside (Van Oosterom & Strackee 1983).
-double winding_number(const Vec3& p, const NodePositions& nodes,
-                      const std::vector<geometry::Triangle>& triangles) {
-  double solid_angle = 0;
-  for (const auto& t : triangles) {
-    Vec3 r[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      r[k] = Eigen::Map<const Eigen::Vector3f>(&nodes.positions[3 * t[k]]).cast<double>() - p;
-    }
-    const double n0 = r[0].norm(), n1 = r[1].norm(), n2 = r[2].norm();
-    const double below =
-        n0 * n1 * n2 + r[0].dot(r[1]) * n2 + r[0].dot(r[2]) * n1 + r[1].dot(r[2]) * n0;
-    solid_angle += 2 * std::atan2(r[0].dot(r[1].cross(r[2])), below);
-  }
-  return solid_angle / (4 * M_PI);
-}
 
 TEST_CASE("session in process: a pressed ball pushes back along the normal and keeps its volume") {
   // Oracle: invariants; nothing touches before, everything is pushed up after.
@@ -152,8 +136,8 @@ TEST_CASE("session in process: a tip at 500 mm/s does not pass through, at any c
     force = std::max(force, session.contact_model(0).force().z());
     if (tick % 10 != 0) continue;
     INFO("collision at " << scene.rates.collision << " Hz, t = " << session.time() << " s");
-    CHECK(winding_number(session.probe(0).pose.position, session.node_positions(0), triangles) <
-          0.5);
+    CHECK(geometry::winding_number(session.probe(0).pose.position,
+                                   session.node_positions(0).positions, triangles) < 0.5);
   }
   CHECK(fastest > 0.5);
   CHECK(force > 0.1);

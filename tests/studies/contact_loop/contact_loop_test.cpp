@@ -6,20 +6,8 @@
 #include "modules/core/error.h"
 #include "modules/geometry/primitives.h"
 #include "modules/scene/scene_reader.h"
-#include "studies/contact_loop/winding_number.h"
 
 namespace palpate::contact_loop {
-
-TEST_CASE("contact loop: the winding number is 1 inside a ball, 0 outside") {
-  // Oracle: analytic; of a closed surface it is whole.
-  const auto ball = geometry::make_ball(1, 2);
-  std::vector<float> positions;
-  for (const Vec3& x : ball.nodes) {
-    for (int axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(x[axis]));
-  }
-  CHECK(winding_number({0.3, -0.5, 0.2}, positions, ball.triangles) == Approx(1).margin(1e-6));
-  CHECK(winding_number({0.3, -0.9, 0.9}, positions, ball.triangles) == Approx(0).margin(1e-6));
-}
 
 TEST_CASE("contact loop: no ball at any speed is inside the stomach without a contact") {
   // Oracle: winding number over all triangles of the surface each search was made on. Before, most
