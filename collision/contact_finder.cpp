@@ -54,23 +54,25 @@ class ProbeSearch {
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
+    report.wall_was_cut = cores_.wall_was_cut();
     reduce_contacts(found_, model_.is_round, limits, result);
     return report;
   }
 
  private:
-  /// Puts cores that are inside, and of which nothing is remembered, behind the nearest wall.
+  /// Puts cores that are inside, and of which nothing is remembered, behind the nearest wall:
+  /// held_.
   /// @param every  the corners of a sharp probe that are looked at
   /// @returns whether there are any
   bool hold_inside(const OrganStep& step, std::size_t every) {
-    bool any = false;
-    for (const Core& core : model_.cores) any |= cores_.hold_if_inside(step, core);
-    if (!model_.sharp) return any;
-    const std::size_t corners = model_.sharp->vertices().size();
-    for (std::size_t i = 0; i < corners; i += every) {
-      any |= cores_.hold_if_inside(step, core_of(static_cast<std::uint32_t>(i)));
-    }
-    return any;
+    held_.clear();
+    const auto hold = [&](const Core& core) {
+      if (cores_.hold_if_inside(step, core)) held_.push_back(core.index);
+    };
+    for (const Core& core : model_.cores) hold(core);
+    const std::size_t corners = model_.sharp ? model_.sharp->vertices().size() : 0;
+    for (std::size_t i = 0; i < corners; i += every) hold(core_of(static_cast<std::uint32_t>(i)));
+    return !held_.empty();
   }
 
   /// Is any contact from found_[first] on one of a probe that is deeper than the surface?
@@ -84,8 +86,6 @@ class ProbeSearch {
     constexpr std::size_t kMostCorners = 16;
     const std::size_t corners = model_.sharp ? model_.sharp->vertices().size() : 0;
     if (!hold_inside(step, corners / kMostCorners + 1)) return false;
-    held_.clear();
-    cores_.append_held(step.organ_index, held_);
     for (const std::uint32_t core : held_) {
       triangle_list_.clear();
       cores_.append_near_wall(step, core_of(core), triangle_list_);
@@ -118,17 +118,27 @@ class ProbeSearch {
 
   /// Every triangle the probe may touch in the step.
   void gather_triangles(OrganStep& step) {
-    double reach = model_.hull_radius + step.margin;
+    double reach = 0;
     triangle_list_.clear();
+    bool all_behind = !model_.cores.empty();
     for (const Core& core : model_.cores) {
-      reach = std::max(reach, cores_.wall_reach(step, core));
+      const double of_wall = cores_.wall_reach(step, core);
+      all_behind = all_behind && of_wall > 0;
+      reach = std::max(reach, of_wall);
       cores_.append_remembered(step, core, triangle_list_);
     }
+    // Behind a wall nothing else is touched; what a core goes through is met whatever the reach.
+    if (!all_behind) reach = std::max(reach, model_.hull_radius + step.margin);
     near_.gather(step, model_.hull, reach);
     held_.clear();
     if (model_.sharp) cores_.append_held(step.organ_index, held_);
+    wall_pairs_.clear();
     for (const std::uint32_t vertex : held_) {
+      const std::size_t first = triangle_list_.size();
       cores_.append_near_wall(step, core_of(vertex), triangle_list_);
+      for (std::size_t i = first; i < triangle_list_.size(); ++i) {
+        wall_pairs_.push_back({vertex, triangle_list_[i]});
+      }
     }
     near_.add(step, triangle_list_);
     step.depth_limit += near_.travel();
@@ -161,16 +171,12 @@ class ProbeSearch {
         }
       }
     }
-    for (const std::uint32_t vertex : held_) {
-      triangle_list_.clear();
-      cores_.append_near_wall(step, core_of(vertex), triangle_list_);
-      for (const std::uint32_t t : triangle_list_) {
-        const auto at =
-            std::lower_bound(triangles.begin(), triangles.end(), t,
-                             [](const SweptTriangle& s, std::uint32_t k) { return s.index < k; });
-        if (at != triangles.end() && at->index == t) {
-          vertex_pairs_.push_back({vertex, static_cast<std::size_t>(at - triangles.begin())});
-        }
+    for (const auto& [vertex, t] : wall_pairs_) {
+      const auto at =
+          std::lower_bound(triangles.begin(), triangles.end(), t,
+                           [](const SweptTriangle& s, std::uint32_t k) { return s.index < k; });
+      if (at != triangles.end() && at->index == t) {
+        vertex_pairs_.push_back({vertex, static_cast<std::size_t>(at - triangles.begin())});
       }
     }
     edges_.append_remembered(step.organ_index, edge_pairs_);
@@ -201,6 +207,7 @@ class ProbeSearch {
   std::vector<SweptTriangle> near_triangles_;
   std::vector<std::uint32_t> triangle_list_, node_list_, near_vertices_, near_edges_, held_;
   std::vector<VertexPair> vertex_pairs_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> wall_pairs_;  ///< held vertex, triangle
   std::vector<EdgePair> edge_pairs_;
 };
 

@@ -26,6 +26,7 @@ struct ContactLimits {
 struct SearchReport {
   bool begun_inside = false;  ///< first heard of inside an organ: the nearest wall pushes it out
   bool was_lost = false;      ///< inside an organ and touching nothing: likewise
+  bool wall_was_cut = false;  ///< of a wall it is behind only the nearest part was looked at
 };
 
 /// Finds, for each probe, the places where it touches or may touch an organ before the next

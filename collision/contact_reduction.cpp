@@ -1,6 +1,7 @@
 #include "collision/contact_reduction.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <tuple>
 
@@ -50,48 +51,92 @@ bool deeper(const FoundContact& a, const FoundContact& b) {
   return deepest_first(a) < deepest_first(b);
 }
 
-/// Of contacts with one organ keeps kMostOfRound.
+Vec3 tissue_of(const FoundContact& c) { return c.point_P - c.gap * c.normal_P; }
+
+using Iterator = std::vector<FoundContact>::iterator;
+
+/// Of very many contacts with one organ keeps kThinnedDeepest, and of the others the deepest in
+/// each cell of a grid over them.
 /// @returns the end of those kept
-std::vector<FoundContact>::iterator spread(std::vector<FoundContact>::iterator first,
-                                           std::vector<FoundContact>::iterator last) {
-  if (last - first <= std::ptrdiff_t{kMostOfRound}) return last;
+Iterator thin(Iterator first, Iterator last) {
+  constexpr std::size_t kCells = kThinnedCells * kThinnedCells * kThinnedCells;
+  if (last - first <= static_cast<std::ptrdiff_t>(kThinnedDeepest + kCells)) return last;
+  const Iterator others = first + kThinnedDeepest;
+  std::nth_element(first, others, last, deeper);
+  Bounds box;
+  for (auto c = others; c != last; ++c) box.add(tissue_of(*c));
+  const Vec3 size = (box.upper - box.lower).cwiseMax(kDirectionless);
+  std::array<const FoundContact*, kCells> deepest{};
+  for (auto c = others; c != last; ++c) {
+    const Vec3 place = (tissue_of(*c) - box.lower).cwiseQuotient(size) * double{kThinnedCells};
+    std::size_t cell = 0;
+    for (const double along : place) {
+      cell = kThinnedCells * cell + std::min(static_cast<std::size_t>(along), kThinnedCells - 1);
+    }
+    if (deepest[cell] == nullptr || deeper(*c, *deepest[cell])) deepest[cell] = &*c;
+  }
+  std::array<FoundContact, kCells> kept;
+  auto end = kept.begin();
+  for (const FoundContact* c : deepest) {
+    if (c != nullptr) *end++ = *c;
+  }
+  return std::copy(kept.begin(), end, others);
+}
+
+/// Of contacts with one organ, as thin() leaves them, keeps kMostOfRound.
+/// @returns the end of those kept
+Iterator spread(Iterator first, Iterator last) {
+  if (last - first <= static_cast<std::ptrdiff_t>(kMostOfRound)) return last;
   std::sort(first, last, deeper);
   struct Place {
     Vec3 tissue;
     double apart = std::numeric_limits<double>::infinity();  ///< from what is kept, squared [m²]
   };
-  std::vector<Place> places;
-  for (auto c = first; c != last; ++c) places.push_back({c->point_P - c->gap * c->normal_P});
+  std::array<Place, kThinnedDeepest + kThinnedCells * kThinnedCells * kThinnedCells> places;
+  const auto count = static_cast<std::size_t>(last - first);
+  for (std::size_t i = 0; i < count; ++i) places[i] = {tissue_of(first[std::ptrdiff_t(i)])};
   std::size_t kept = kMostOfRound / 2;
   const auto note = [&](std::size_t other) {
     const Vec3 x = places[other].tissue;
-    for (std::size_t i = kept; i < places.size(); ++i) {
+    for (std::size_t i = kept; i < count; ++i) {
       places[i].apart = std::min(places[i].apart, (places[i].tissue - x).squaredNorm());
     }
   };
   for (std::size_t i = 0; i < kept; ++i) note(i);
   for (; kept < kMostOfRound; note(kept - 1)) {
-    const auto from = places.begin() + static_cast<std::ptrdiff_t>(kept);
+    const auto from = places.begin() + kept;
     const auto farthest = std::max_element(
-        from, places.end(),
+        from, places.begin() + count,
         [](const Place& one, const Place& other) { return one.apart < other.apart; });
-    std::swap(first[static_cast<std::ptrdiff_t>(kept)], first[farthest - places.begin()]);
+    std::swap(first[std::ptrdiff_t(kept)], first[farthest - places.begin()]);
     std::swap(*from, *farthest);
     ++kept;
   }
-  return first + static_cast<std::ptrdiff_t>(kept);
+  return first + std::ptrdiff_t(kept);
 }
 
-/// The same of each organ. @param found  sorted by organ
-void keep_of_round(std::vector<FoundContact>& found) {
+/// Keeps of each organ's contacts what `keep` does. @param found  sorted by organ
+void keep_of_each(std::vector<FoundContact>& found, Iterator keep(Iterator, Iterator)) {
   auto kept = found.begin();
   for (auto first = found.begin(); first != found.end();) {
     const auto last = std::find_if(first, found.end(),
                                    [&](const FoundContact& c) { return c.organ != first->organ; });
-    kept = std::move(first, spread(first, last), kept);
+    kept = std::move(first, keep(first, last), kept);
     first = last;
   }
   found.erase(kept, found.end());
+}
+
+void reduce_of_round(std::vector<FoundContact>& found) {
+  const auto by_organ = [](const FoundContact& a, const FoundContact& b) {
+    return a.organ < b.organ;
+  };
+  if (!std::is_sorted(found.begin(), found.end(), by_organ)) {
+    std::stable_sort(found.begin(), found.end(), by_organ);
+  }
+  keep_of_each(found, thin);
+  merge_duplicates(found);
+  keep_of_each(found, spread);
 }
 
 bool is_on_node(const FoundContact& c) { return c.feature[1] == kNoNode; }
@@ -168,10 +213,10 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
                      ContactSet& result) {
   result.clear();
-  merge_duplicates(found);
   if (is_round) {
-    keep_of_round(found);
+    reduce_of_round(found);
   } else {
+    merge_duplicates(found);
     take_faces(found, limits, result);
   }
   result.truncated = found.size() > limits.contacts;

@@ -32,9 +32,12 @@ inline constexpr std::size_t kFewestOnFace = 16;
 /// Contacts of a round probe with an organ: half of them the deepest, half spread over the others.
 /// They say where tissue is; deformation finds its own rows around them (deformation/contact).
 inline constexpr std::size_t kMostOfRound = 64;
+/// More than these are thinned first: to so many deepest, and one in each of so many cells along
+/// each axis.
+inline constexpr std::size_t kThinnedDeepest = 128, kThinnedCells = 4;
 
 /// The same place and normal found twice (over triangles that share it) becomes one contact, of the
-/// lowest triangle. Then they are reduced: of a round probe to kMostOfRound of an organ; of others
+/// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others
 /// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more
 /// than `limits.contacts` the deepest are kept and result.truncated says so. Writes them into
 /// result.

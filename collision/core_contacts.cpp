@@ -1,6 +1,7 @@
 #include "collision/core_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -17,6 +18,17 @@ double distance_to(const OrganStep& step, const Core& core, std::uint32_t triang
       .distance;
 }
 
+/// How far around the foot of a segment so many triangles of this size lie on a flat wall: the disc
+/// about a point, a strip with round ends under a segment.
+double spread_of(double triangles, double area, double length) {
+  return (std::sqrt(length * length + M_PI * triangles * area) - length) / M_PI;
+}
+
+double area_of(const OrganStep& step, std::uint32_t triangle) {
+  const auto [a, b, c] = step.organ.corners(triangle);
+  return (b - a).cross(c - a).norm() / 2;
+}
+
 }  // namespace
 
 void CoreContacts::reset() {
@@ -27,6 +39,7 @@ void CoreContacts::reset() {
 void CoreContacts::begin_step() {
   before_.swap(now_);
   now_.clear();
+  wall_was_cut_ = false;
   std::sort(before_.begin(), before_.end(), [](const Behind& a, const Behind& b) {
     return std::tie(a.organ, a.core, a.triangle) < std::tie(b.organ, b.core, b.triangle);
   });
@@ -40,6 +53,12 @@ std::span<const CoreContacts::Behind> CoreContacts::remembered(std::uint32_t org
                          return std::tie(a.organ, a.core) < std::tie(b.organ, b.core);
                        });
   return {first, last};
+}
+
+const CoreContacts::Behind& CoreContacts::nearest_of(std::span<const Behind> before) {
+  return *std::min_element(before.begin(), before.end(), [](const Behind& a, const Behind& b) {
+    return a.distance < b.distance;
+  });
 }
 
 void CoreContacts::append_held(std::uint32_t organ, std::vector<std::uint32_t>& cores) const {
@@ -69,19 +88,25 @@ bool CoreContacts::hold_if_inside(const OrganStep& step, const Core& core) {
   return true;
 }
 
-double CoreContacts::wall_reach(const OrganStep& step, const Core& core) const {
+double CoreContacts::wall_reach(const OrganStep& step, const Core& core) {
   const auto before = remembered(step.organ_index, core.index);
   if (before.empty()) return 0;
   // The wall's nearest place is no further than what was nearest last.
-  const auto nearest =
-      std::min_element(before.begin(), before.end(),
-                       [](const Behind& a, const Behind& b) { return a.distance < b.distance; });
-  return distance_to(step, core, nearest->triangle) + core.radius + step.margin;
+  const double distance = distance_to(step, core, nearest_of(before).triangle);
+  double area = 0;
+  for (const Behind& b : before) area += area_of(step, b.triangle) / double(before.size());
+  const double near =
+      std::hypot(distance, spread_of(kWallTriangles, area, (core.b - core.a).norm()));
+  const double all = distance + core.radius + step.margin;
+  wall_was_cut_ |= near < all;
+  return std::min(near, all);
 }
 
 void CoreContacts::append_remembered(const OrganStep& step, const Core& core,
                                      std::vector<std::uint32_t>& triangles) const {
-  for (const Behind& b : remembered(step.organ_index, core.index)) triangles.push_back(b.triangle);
+  const auto before = remembered(step.organ_index, core.index);
+  if (wall_was_cut_ && !before.empty()) return triangles.push_back(nearest_of(before).triangle);
+  for (const Behind& b : before) triangles.push_back(b.triangle);
 }
 
 void CoreContacts::append_near_wall(const OrganStep& step, const Core& core,
@@ -91,10 +116,8 @@ void CoreContacts::append_near_wall(const OrganStep& step, const Core& core,
   const double reach = wall_reach(step, core);
   marks_.begin(step.organ.triangles().size());
   waiting_.clear();
-  for (const Behind& b : before) {
-    waiting_.push_back(b.triangle);
-    marks_.set(b.triangle, 0);
-  }
+  append_remembered(step, core, waiting_);
+  for (const std::uint32_t triangle : waiting_) marks_.set(triangle, 0);
   while (!waiting_.empty()) {
     const std::uint32_t triangle = waiting_.back();
     waiting_.pop_back();
@@ -210,7 +233,7 @@ void CoreContacts::find_behind(const OrganStep& step, const Core& core, bool ins
   const std::size_t others = found.size();
   constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   wall_.clear();
-  append_wall(step, core, inside ? kUnlimited : depth_limit, near_, marks_, wall_, found);
+  append_wall(step, core, inside ? kUnlimited : depth_limit, near_, wall_buffers_, wall_, found);
   if (inside && wall_.empty()) append_nearest_wall(step, core, found);
   if (inside) {  // from here it may be dragged back through a far side
     for (std::size_t i = others; i < found.size(); ++i) {

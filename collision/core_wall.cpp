@@ -71,9 +71,10 @@ void append_crossed(const OrganStep& step, const Core& core, const CoreCandidate
 /// triangles that face like the wall.
 /// @param candidates  ascending
 void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates,
-               IndexMarks& marks) {
+               WallBuffers& buffers) {
   Vec3 outward = Vec3::Zero();
-  std::vector<CoreCandidate*> waiting;
+  auto& [marks, waiting] = buffers;
+  waiting.clear();
   marks.begin(organ.triangles().size());
   for (CoreCandidate& c : candidates) {
     marks.set(c.triangle.index, static_cast<std::uint32_t>(&c - candidates.data()));
@@ -168,9 +169,9 @@ void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate
 }
 
 void append_wall(const OrganStep& step, const Core& core, double depth_limit,
-                 std::vector<CoreCandidate>& candidates, IndexMarks& marks,
+                 std::vector<CoreCandidate>& candidates, WallBuffers& buffers,
                  std::vector<const CoreCandidate*>& behind, std::vector<FoundContact>& found) {
-  mark_wall(step.organ, candidates, marks);
+  mark_wall(step.organ, candidates, buffers);
   const CoreCandidate* nearest = nullptr;
   for (const CoreCandidate& c : candidates) {
     if (!c.on_wall || c.side > 0) continue;

@@ -45,14 +45,19 @@ void append_graze(const OrganStep& step, const Core& core, const CoreCandidate& 
 void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
                     std::vector<FoundContact>& found);
 
+/// Kept between calls for their memory only.
+struct WallBuffers {
+  IndexMarks marks;
+  std::vector<CoreCandidate*> waiting;
+};
+
 /// Contacts of a core that is behind the wall of the crossed and remembered candidates and of what
 /// is connected with them and faces the same way.
 /// @param depth_limit  a wall deeper than this is given up [m]
 /// @param candidates   ascending
-/// @param marks        a buffer
 /// @param behind       what it is behind now is appended
 void append_wall(const OrganStep& step, const Core& core, double depth_limit,
-                 std::vector<CoreCandidate>& candidates, IndexMarks& marks,
+                 std::vector<CoreCandidate>& candidates, WallBuffers& buffers,
                  std::vector<const CoreCandidate*>& behind, std::vector<FoundContact>& found);
 
 }  // namespace palpate::collision

@@ -215,6 +215,9 @@ const char* acting_guard(const Acted& acted) {
   if (acted.found.begun_inside) {
     return "a probe was first heard of inside an organ: the nearest wall pushes it out, gently";
   }
+  if (acted.found.wall_was_cut) {
+    return "a probe is behind finely meshed skin: only what is nearest to it was searched";
+  }
   if (acted.boxes_misfit) {
     return "node_positions tells boxes of other blocks than surface: they are made here";
   }
@@ -252,6 +255,7 @@ struct CollisionStage::Impl {
         organs.finder()->find(probe, probes.motion(probe), margin, kLimits, contacts);
     acted.found.begun_inside |= found.begun_inside;
     acted.found.was_lost |= found.was_lost;
+    acted.found.wall_was_cut |= found.wall_was_cut;
     acted.truncated |= contacts.truncated;
     troubles.truncated += contacts.truncated;
     troubles.lost += found.was_lost;

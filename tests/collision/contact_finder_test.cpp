@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "collision/contact_reduction.h"
 #include "tests/collision/finder_scene.h"
 
 namespace palpate::collision {
@@ -321,6 +322,27 @@ TEST_CASE("contact finder: a list that is too long keeps the deepest and says so
   REQUIRE(gaps.size() > 40);
   std::sort(gaps.begin(), gaps.end());
   for (const Contact& c : limited.contacts) CHECK(c.gap <= gaps[19]);
+}
+
+TEST_CASE(
+    "contact finder: of a finely meshed wall the nearest part pushes a deep core straight out") {
+  // Oracle: analytic; the centre is 10 mm behind a flat wall, where it slides to and fro.
+  for (const bool is_fine : {false, true}) {
+    FinderScene scene(slab(0.05, is_fine ? 150 : 10), scene::SphereShape{0.006});
+    Pose last = at({0, 0, 0.007});
+    for (int k = 0; k < 60; ++k) {
+      const Vec3 aside(0.004 * (k % 10 < 5 ? k % 5 : 5 - k % 5), 0.001 * (k % 7), 0);
+      const Pose now = at(aside - Vec3(0, 0, std::min(0.01, 0.001 * k - 0.006)));
+      const ContactSet found = scene.find({last, now}, 0.002);
+      last = now;
+      if (k < 17) continue;
+      CHECK(scene.report.wall_was_cut == is_fine);
+      CHECK_FALSE(scene.report.was_lost);
+      CHECK(found.contacts.size() >= (is_fine ? kMostOfRound : 1));
+      CHECK(deepest_gap(found) == Approx(-0.016).margin(1e-5));
+      for (const Contact& c : found.contacts) CHECK(normal_W(found, c).z() == Approx(1));
+    }
+  }
 }
 
 TEST_CASE("contact finder: poses and positions that are not finite give no contacts") {

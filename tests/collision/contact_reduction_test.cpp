@@ -159,47 +159,54 @@ TEST_CASE("contact reduction: faces that do not fit are contacts, and what is le
 }
 
 TEST_CASE("contact reduction: of a round probe the deepest and a spread remain, of each organ") {
-  // Oracle: brute force: sorted gaps, and how far from a kept one any contact is.
+  // Oracle: brute force: sorted gaps, and how far from a kept one any contact is. Very many are
+  // thinned first, to one in each cell of a grid.
   RandomShapes random(84);
-  std::vector<FoundContact> found;
-  for (std::uint32_t t = 0; t < 4000; ++t) {
-    FoundContact c = contact(t % 10 == 0, t, {0.2, 0.3, 0.5}, 0);
-    c.point_P = random.point(1);
-    c.normal_P = random.direction();
-    c.gap = c.organ == 1 ? random.number(2, 3) : random.number(-1, 1);
-    append_contact(c, {3 * t, 3 * t + 1, 3 * t + 2}, found);
-  }
-  const auto all = found;
-  ContactSet result;
-  reduce_contacts(found, true, kMost, result);
-  CHECK_FALSE(result.truncated);  // deformation finds the rest around them
-  CHECK(result.contacts.size() == 2 * kMostOfRound);
-  const auto tissue = [](const Contact& c) -> Vec3 { return c.point_P - c.gap * c.normal_P; };
-  for (const std::uint32_t organ : {0u, 1u}) {
-    std::vector<double> gaps, kept;
-    double farthest = 0;
-    for (const FoundContact& c : all) {
-      if (c.organ != organ) continue;
-      gaps.push_back(c.gap);
-      double nearest = 1e300;
-      for (const Contact& k : result.contacts) {
-        if (k.organ == organ) nearest = std::min(nearest, (tissue(k) - tissue(c)).norm());
+  for (const std::uint32_t of_each : {190u, 2000u}) {
+    std::vector<FoundContact> found;
+    for (std::uint32_t t = 0; t < 2 * of_each; ++t) {
+      FoundContact c = contact(t % 2, t, {0.2, 0.3, 0.5}, 0);
+      c.point_P = random.point(1);
+      c.normal_P = random.direction();
+      c.gap = c.organ == 1 ? random.number(2, 3) : random.number(-1, 1);
+      append_contact(c, {3 * t, 3 * t + 1, 3 * t + 2}, found);
+    }
+    const auto all = found;
+    ContactSet result;
+    reduce_contacts(found, true, kMost, result);
+    CHECK_FALSE(result.truncated);  // deformation finds the rest around them
+    CHECK(result.contacts.size() == 2 * kMostOfRound);
+    const auto tissue = [](const Contact& c) -> Vec3 { return c.point_P - c.gap * c.normal_P; };
+    for (const std::uint32_t organ : {0u, 1u}) {
+      std::vector<double> gaps, kept;
+      double farthest = 0;
+      Bounds box;
+      for (const FoundContact& c : all) {
+        if (c.organ != organ) continue;
+        gaps.push_back(c.gap);
+        box.add(tissue(c));
+        double nearest = 1e300;
+        for (const Contact& k : result.contacts) {
+          if (k.organ == organ) nearest = std::min(nearest, (tissue(k) - tissue(c)).norm());
+        }
+        farthest = std::max(farthest, nearest);
       }
-      farthest = std::max(farthest, nearest);
-    }
-    for (const Contact& k : result.contacts) {
-      if (k.organ == organ) kept.push_back(k.gap);
-    }
-    std::sort(gaps.begin(), gaps.end());
-    std::sort(kept.begin(), kept.end());
-    REQUIRE(kept.size() == kMostOfRound);
-    CHECK(std::equal(kept.begin(), kept.begin() + kMostOfRound / 2, gaps.begin()));
-    // Gonzalez 1985: each of the others was farther from all kept than any that is left out is now.
-    for (const Contact& k : result.contacts) {
-      if (k.organ != organ || k.gap <= kept[kMostOfRound / 2 - 1]) continue;
-      for (const Contact& other : result.contacts) {
-        if (other.organ != organ || other.triangle == k.triangle) continue;
-        CHECK((tissue(k) - tissue(other)).norm() >= farthest);
+      for (const Contact& k : result.contacts) {
+        if (k.organ == organ) kept.push_back(k.gap);
+      }
+      std::sort(gaps.begin(), gaps.end());
+      std::sort(kept.begin(), kept.end());
+      REQUIRE(kept.size() == kMostOfRound);
+      CHECK(std::equal(kept.begin(), kept.begin() + kMostOfRound / 2, gaps.begin()));
+      // Gonzalez 1985: each of the others was farther from all kept than any that is left out is
+      // now; one that was thinned out is no farther than a cell from one that was not.
+      const double cell = of_each > kThinnedDeepest + 64 ? (box.upper - box.lower).norm() / 4 : 0;
+      for (const Contact& k : result.contacts) {
+        if (k.organ != organ || k.gap <= kept[kMostOfRound / 2 - 1]) continue;
+        for (const Contact& other : result.contacts) {
+          if (other.organ != organ || other.triangle == k.triangle) continue;
+          CHECK((tissue(k) - tissue(other)).norm() + cell >= farthest);
+        }
       }
     }
   }

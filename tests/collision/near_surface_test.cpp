@@ -128,11 +128,15 @@ TEST_CASE("near surface: triangles are added once and in order") {
   };
   std::vector<std::uint32_t> all = indices();
   REQUIRE(!all.empty());
-  for (const std::uint32_t t : {700u, 3u}) {
-    REQUIRE(!std::binary_search(all.begin(), all.end(), t));
-    all.insert(std::lower_bound(all.begin(), all.end(), t), t);
-  }
-  std::vector<std::uint32_t> more{near.triangles()[0].index, 700, 3, 700};
+  const auto next_missing = [&all](std::uint32_t t) {
+    while (std::binary_search(all.begin(), all.end(), t)) ++t;
+    return t;
+  };
+  const std::uint32_t low = next_missing(0), high = next_missing(all.front());
+  std::vector<std::uint32_t> more{all.back(), high, low, high};
+  all.insert(all.end(), {low, high});
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   near.add(step, more);
   CHECK(indices() == all);
   CHECK(near.travel() == Approx(1e-3));
