@@ -58,6 +58,7 @@ class RootSearch {
     reach_ = separation + kRounding * largest_;
     tolerance_ = std::max(kImpactTolerance * extent, separation);
     set_slopes();
+    set_directions();
   }
 
   std::optional<Impact> run() {
@@ -100,22 +101,47 @@ class RootSearch {
     }
   }
 
+  /// Across each two of F's slopes: along them its hull over a box of slender or oblique features
+  /// is far smaller than along the axes.
+  void set_directions() {
+    FourPoints middle;
+    for (int k = 0; k < 4; ++k) middle[k] = lerp(start_[k], end_[k], 0.5);
+    const Vec3 at = Pair::value(middle, 0.5, 0.5);
+    const Vec3 t = Pair::value(end_, 0.5, 0.5) - Pair::value(start_, 0.5, 0.5);
+    const Vec3 u = Pair::value(middle, 1.0, 0.5) - at, v = Pair::value(middle, 0.5, 1.0) - at;
+    directions_ = {u.cross(v).normalized(), v.cross(t).normalized(), t.cross(u).normalized()};
+    for (Vec3& direction : directions_) {
+      if (!direction.allFinite()) direction.setZero();  // tells nothing apart
+    }
+  }
+
   bool may_hold_root(const ParameterBox& box, bool& is_small) {
     if (Pair::kTriangular && box.lower[1] + box.lower[2] > 1) return false;
-    Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::infinity()), highest = -lowest;
+    std::array<Vec3, 8> values;
     for (int side = 0; side < 2; ++side) {
       const double t = box.lower[0] + side * box.width[0];
       FourPoints x;
       for (int k = 0; k < 4; ++k) x[k] = lerp(start_[k], end_[k], t);
       for (int corner = 0; corner < 4; ++corner) {
-        const Vec3 value = Pair::value(x, box.lower[1] + (corner & 1) * box.width[1],
-                                       box.lower[2] + (corner >> 1) * box.width[2]);
-        lowest = lowest.cwiseMin(value);
-        highest = highest.cwiseMax(value);
+        values[4 * side + corner] = Pair::value(x, box.lower[1] + (corner & 1) * box.width[1],
+                                                box.lower[2] + (corner >> 1) * box.width[2]);
       }
+    }
+    Vec3 lowest = values[0], highest = values[0];
+    for (const Vec3& value : values) {
+      lowest = lowest.cwiseMin(value);
+      highest = highest.cwiseMax(value);
     }
     is_small = (highest - lowest).maxCoeff() <= tolerance_;
     if ((lowest.array() > reach_).any() || (highest.array() < -reach_).any()) return false;
+    for (const Vec3& direction : directions_) {
+      double least = direction.dot(values[0]), greatest = least;
+      for (const Vec3& value : values) {
+        least = std::min(least, direction.dot(value));
+        greatest = std::max(greatest, direction.dot(value));
+      }
+      if (least > kAcross * reach_ || greatest < -kAcross * reach_) return false;
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_rounding = lowest[axis] >= -reach_ || highest[axis] <= reach_;
       if (is_rounding && quads_left_-- > 0 && misses_zero(box, axis)) return false;
@@ -150,6 +176,10 @@ class RootSearch {
     return best;
   }
 
+  /// Along a unit vector a value is off by less than √3 times what it is along each axis, and the
+  /// roundings of the product.
+  static constexpr double kAcross = 3;
+
   const FourPoints& start_;
   const FourPoints& end_;
   int quads_left_ = 0;    ///< of kMaxQuadTests
@@ -157,6 +187,7 @@ class RootSearch {
   double reach_ = 0;      ///< [m]
   double tolerance_ = 0;  ///< [m]
   std::array<double, 3> slopes_{0, 0, 0};
+  std::array<Vec3, 3> directions_;
 };
 
 }  // namespace

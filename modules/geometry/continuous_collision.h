@@ -6,7 +6,8 @@
 // in the hull of its eight corner values: if that hull, widened by the rounding error, misses zero,
 // the box holds no root and is discarded; else it is halved (inclusion-based root finding: Snyder
 // 1992; Wang et al., "A large-scale benchmark and an inclusion-based algorithm for continuous
-// collision detection", 2021). So a root is never lost. Where a box stays only because of that
+// collision detection", 2021). So a root is never lost. The hull is taken along the axes and across
+// each two of F's slopes. Where a box stays only because of that
 // rounding error, it is looked at again in quadruple precision (kMaxQuadTests times): features made
 // of the same numbers often pass each other by less than a double tells. A near miss closer than
 // kImpactTolerance of the coordinates' extent, or one not decided within kMaxImpactBoxes, is

@@ -149,6 +149,28 @@ TEST_CASE("continuous collision: agrees with exact segment and triangle for a mo
   }
 }
 
+TEST_CASE("continuous collision: of a slender triangle, time and place are right too") {
+  // Oracle: analytic; where a straight way crosses the plane. The triangles are as on a needle.
+  RandomShapes random(8);
+  int hits = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const Quat turn = random.rotation();
+    const geometry::TriangleCorners t{Vec3::Zero(), turn * Vec3(0.02, 0, 1),
+                                      turn * Vec3(0.02 * std::cos(0.2), 0.02 * std::sin(0.2), 1)};
+    const Vec3 on = t[0] + random.number(0.1, 0.9) * ((t[1] + t[2]) / 2 - t[0]);
+    const Vec3 from = on + random.point(0.5), to = on + random.number(0.1, 1) * (on - from);
+    const Vec3 normal = unit_normal(t);
+    const double before = normal.dot(from - t[0]), after = normal.dot(to - t[0]);
+    if (std::abs(before - after) < 1e-3) continue;
+    const auto impact = point_triangle_impact({from, t[0], t[1], t[2]}, {to, t[0], t[1], t[2]});
+    REQUIRE(impact);
+    // Within kImpactTolerance of the extent, 1.5, over a height of 1e-3 at least.
+    CHECK(impact->time == Approx(before / (before - after)).margin(1.5e-5));
+    ++hits;
+  }
+  CHECK(hits > 2000);
+}
+
 TEST_CASE("continuous collision: edges meet where they cross") {
   // Oracle: constructed; two edges are made to cross at a chosen time and place.
   RandomShapes random(7);
