@@ -55,7 +55,7 @@ class ProbeSearch {
       organ.mark_found();
     }
     report.wall_was_cut = cores_.wall_was_cut();
-    reduce_contacts(found_, model_.is_round, limits, result);
+    reduce_contacts(found_, !model_.cores.empty(), limits, result);
     return report;
   }
 

@@ -129,24 +129,20 @@ void NearFeatures::search(std::span<const std::span<const Vec3>> positions, doub
 
 /// Blocks whose boxes come within reach, found by a sweep along x.
 void NearFeatures::search_pair(std::uint32_t first, std::uint32_t second, double reach) {
-  struct Edge {
-    double lower;
-    Block block;
-  };
-  std::vector<Edge> edges;
+  along_x_.clear();
   for (const std::uint32_t surface : {first, second}) {
     const auto& boxes = surfaces_[surface].boxes();
     for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-      edges.push_back({boxes[i].lower[0] - reach, {surface, i}});
+      along_x_.push_back({boxes[i].lower[0] - reach, {surface, i}});
     }
     if (first == second) break;
   }
-  std::sort(edges.begin(), edges.end(),
-            [](const Edge& a, const Edge& b) { return a.lower < b.lower; });
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Bounds box = box_of(edges[i].block, reach);
-    for (std::size_t k = i; k < edges.size() && edges[k].lower <= box.upper[0]; ++k) {
-      Block one = edges[i].block, other = edges[k].block;
+  std::sort(along_x_.begin(), along_x_.end(),
+            [](const BlockAlongX& a, const BlockAlongX& b) { return a.lower < b.lower; });
+  for (std::size_t i = 0; i < along_x_.size(); ++i) {
+    const Bounds box = box_of(along_x_[i].block, reach);
+    for (std::size_t k = i; k < along_x_.size() && along_x_[k].lower <= box.upper[0]; ++k) {
+      Block one = along_x_[i].block, other = along_x_[k].block;
       if (first != second && one.surface == other.surface) continue;
       if (!box.overlaps(box_of(other, 0))) continue;
       if (other.surface < one.surface) std::swap(one, other);

@@ -89,6 +89,10 @@ class NearFeatures {
   struct Block {
     std::uint32_t surface = 0, index = 0;
   };
+  struct BlockAlongX {
+    double lower = 0;  ///< of its box, less the reach [m]
+    Block block;
+  };
 
   void make_blocks(std::span<const std::span<const Vec3>> positions);
   void search_pair(std::uint32_t first, std::uint32_t second, double reach);
@@ -105,7 +109,9 @@ class NearFeatures {
   std::vector<OrganSurface> surfaces_;
   std::vector<NearPair> pairs_;
   std::vector<BlockFeatures> features_;  ///< by surface
-  std::vector<Boxed> ones_, others_;     ///< buffers
+  // Kept between calls for their memory only.
+  std::vector<BlockAlongX> along_x_;
+  std::vector<Boxed> ones_, others_;
 };
 
 }  // namespace palpate::collision

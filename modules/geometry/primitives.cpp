@@ -138,6 +138,53 @@ TriangleSurface make_capsule(double radius, double length, int segments) {
   return surface;
 }
 
+TriangleSurface make_cone(double radius, double length, int sides) {
+  PALPATE_DEMAND(radius > 0 && length > 0 && sides >= 3);
+  TriangleSurface surface;
+  surface.nodes = {{0, 0, 0}, {0, 0, length}};
+  const auto rim = static_cast<std::uint32_t>(sides);
+  for (std::uint32_t i = 0; i < rim; ++i) {
+    const double angle = 2 * kPi * i / sides;
+    surface.nodes.push_back({radius * std::cos(angle), radius * std::sin(angle), length});
+    const std::uint32_t next = (i + 1) % rim;
+    surface.triangles.push_back({0, 2 + next, 2 + i});
+    surface.triangles.push_back({1, 2 + i, 2 + next});
+  }
+  return surface;
+}
+
+TriangleSurface make_jaws(double length, double width, double thickness, double opening) {
+  PALPATE_DEMAND(length > 0 && width > 0 && thickness > 0 && opening > 0 && opening < kPi / 2);
+  // Seen along x, each jaw is a quadrangle: inner hinge, inner tip, outer tip, outer hinge, which
+  // goes on beyond the inner one by the thickness. A triangle between the two joins them.
+  const double c = std::cos(opening / 2), s = std::sin(opening / 2);
+  const Vec3 hinge(0, 0, length * c);
+  TriangleSurface surface;
+  for (const double x : {width / 2, -width / 2}) {
+    surface.nodes.push_back(hinge + Vec3(x, 0, 0));
+    for (const double side : {1.0, -1.0}) {
+      const Vec3 down(0, side * s, -c), out(0, side * c, s), to_face(x, 0, 0);
+      surface.nodes.push_back(hinge + to_face + length * down);
+      surface.nodes.push_back(hinge + to_face + length * down + thickness * out);
+      surface.nodes.push_back(hinge + to_face - thickness * down + thickness * out);
+    }
+  }
+  // Seen from +x, y to the right, z up: faces counterclockwise, the outline clockwise.
+  constexpr std::array<std::uint32_t, 7> kOutline{0, 4, 5, 6, 3, 2, 1};
+  constexpr std::array<Triangle, 5> kFace{{{0, 1, 2}, {0, 2, 3}, {0, 3, 6}, {0, 6, 5}, {0, 5, 4}}};
+  const auto count = static_cast<std::uint32_t>(kOutline.size());
+  for (const auto& [a, b, d] : kFace) {
+    surface.triangles.push_back({a, b, d});
+    surface.triangles.push_back({count + a, count + d, count + b});
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t from = kOutline[i], to = kOutline[(i + 1) % count];
+    surface.triangles.push_back({from, to, count + to});
+    surface.triangles.push_back({from, count + to, count + from});
+  }
+  return surface;
+}
+
 TriangleSurface make_tetrahedron(double edge) {
   PALPATE_DEMAND(edge > 0);
   const double s = edge / (2 * std::numbers::sqrt2);  // the cube's corners have edge 2√2

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "modules/geometry/primitives.h"
+
 namespace palpate::scene {
 namespace {
 
@@ -18,6 +20,12 @@ struct Form {
     return geometry::RoundedSegment{-end, end, capsule.radius};
   }
   ProbeForm operator()(const BoxShape& box) const { return geometry::Box{box.size}; }
+  ProbeForm operator()(const ConeShape& cone) const {
+    return geometry::make_cone(cone.radius, cone.length);
+  }
+  ProbeForm operator()(const GrasperShape& jaws) const {
+    return geometry::make_jaws(jaws.length, jaws.width, jaws.thickness, jaws.opening);
+  }
   ProbeForm operator()(const PlaneShape&) const { return geometry::HalfSpace{}; }
   ProbeForm operator()(const MeshShape&) const { return std::move(mesh); }
 };

@@ -20,12 +20,24 @@ struct CapsuleShape {
 struct BoxShape {
   Vec3 size = Vec3::Constant(0.02);  ///< `size_m`, about the origin [1e-4 … 2 each]
 };
+struct ConeShape {
+  double radius = 0.002;  ///< `radius_m`, of the base [1e-4 … 0.5]
+  double length = 0.02;   ///< `length_m`, from the point at the origin along +z [1e-4 … 2]
+};
+/// Two jaws that stand open.
+struct GrasperShape {
+  double length = 0.02;      ///< `length_m`, of a jaw [1e-4 … 2]
+  double width = 0.005;      ///< `width_m`, along x [1e-4 … 2]
+  double thickness = 0.002;  ///< `thickness_m`, of a jaw [1e-4 … 0.5]
+  double opening = 0.5;      ///< `opening_rad`, between the jaws' inner faces [0.02 … 1.5]
+};
 struct PlaneShape {};  ///< solid half-space z ≤ 0
 struct MeshShape {
   Mesh mesh;  ///< closed surface in the probe's frame; the keys of Mesh
 };
-using ProbeShape = std::variant<SphereShape, CapsuleShape, BoxShape, PlaneShape, MeshShape>;
-///< keys `sphere`, `capsule`, `box`, `plane`, `mesh`
+using ProbeShape = std::variant<SphereShape, CapsuleShape, BoxShape, ConeShape, GrasperShape,
+                                PlaneShape, MeshShape>;
+///< keys `sphere`, `capsule`, `box`, `cone`, `grasper`, `plane`, `mesh`
 
 /// What the shape is, in the probe's frame P [m].
 /// @param mesh  the surface of a MeshShape, see load_probe_mesh(); else not used
@@ -39,7 +51,7 @@ const Mesh* mesh_of(const ProbeShape& shape);
 /// @tparam Random  offers below(count), uniform(low, high), log_uniform(low, high)
 template <class Random>
 ProbeShape random_shape(Random& random, double size) {
-  switch (random.below(8)) {
+  switch (random.below(10)) {
     case 0:
     case 1:
       return SphereShape{size * random.log_uniform(0.01, 0.8)};
@@ -53,6 +65,14 @@ ProbeShape random_shape(Random& random, double size) {
       return BoxShape{Vec3::Constant(size * random.log_uniform(0.02, 1))};
     case 6:
       return PlaneShape{};
+    case 7: {
+      const double length = size * random.uniform(0.1, 2);
+      return ConeShape{1e-4 + length * random.uniform(0.02, 0.5), length};
+    }
+    case 8: {
+      const double length = size * random.uniform(0.1, 1);
+      return GrasperShape{length, 0.2 * length, 0.1 * length, random.uniform(0.05, 1.2)};
+    }
     default:
       return MeshShape{};
   }

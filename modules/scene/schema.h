@@ -171,6 +171,21 @@ void describe(V& v, BoxShape& box) {
 }
 
 template <class V>
+void describe(V& v, ConeShape& cone) {
+  v.field("radius_m", cone.radius, ranged("m", 1e-4, 0.5, "of its base"));
+  v.field("length_m", cone.length,
+          ranged("m", 1e-4, 2, "from its point, the probe's origin, along the probe's z"));
+}
+
+template <class V>
+void describe(V& v, GrasperShape& jaws) {
+  v.field("length_m", jaws.length, ranged("m", 1e-4, 2, "of a jaw"));
+  v.field("width_m", jaws.width, ranged("m", 1e-4, 2, "along the probe's x"));
+  v.field("thickness_m", jaws.thickness, ranged("m", 1e-4, 0.5, "of a jaw"));
+  v.field("opening_rad", jaws.opening, ranged("rad", 0.02, 1.5, "between the jaws' inner faces"));
+}
+
+template <class V>
 void describe(V&, PlaneShape&) {}
 
 template <class V>
@@ -183,6 +198,9 @@ void describe(V& v, ProbeShape& shape) {
   v.template option<SphereShape>("sphere", shape, plain("a ball about the probe's origin"));
   v.template option<CapsuleShape>("capsule", shape, plain("a rod with round ends"));
   v.template option<BoxShape>("box", shape, plain("a box"));
+  v.template option<ConeShape>("cone", shape, plain("a point, as of a needle; 32 flats"));
+  v.template option<GrasperShape>(
+      "grasper", shape, plain("two jaws that stand open, their tips about the probe's origin"));
   v.template option<PlaneShape>("plane", shape, plain("solid where the probe's z ≤ 0; write {}"));
   v.template option<MeshShape>("mesh", shape, plain("any closed surface, in the probe's frame"));
 }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <random>
 
+#include "modules/bus/tap.h"
 #include "modules/core/error.h"
 #include "modules/core/rotation_vector.h"
 #include "modules/geometry/closest_points.h"
@@ -161,6 +163,25 @@ class Judge {
   double lost_since_ = -1;
 };
 
+/// The same samples each time.
+session::InProcessOptions options_of(double loss) {
+  session::InProcessOptions options;
+  if (loss <= 0) return options;
+  options.tap = [loss](bus::Bus& carrier) {
+    auto tapped = std::make_unique<bus::TappedBus>(carrier);
+    std::mt19937_64::result_type seed = 0;
+    for (const auto topic : {bus::kContacts.name, bus::kNodePositions.name}) {
+      tapped->set_tap(
+          topic,
+          bus::lose_tap([loss, random = std::mt19937_64(++seed)](const bus::Passing&) mutable {
+            return std::uniform_real_distribution<double>()(random) < loss;
+          }));
+    }
+    return tapped;
+  };
+  return options;
+}
+
 Tool ball_of(double radius) {
   return {"ball", scene::SphereShape{radius}, {}, Quat::Identity(), radius, {Vec3::Zero()}};
 }
@@ -190,6 +211,13 @@ Tool pebble() {
   return tool;
 }
 
+/// Along −z of the probe, which is turned into +y of the world.
+Tool tips_first(const std::string& name, const scene::ProbeShape& shape) {
+  Tool tool{name, shape, {}, rotation_between(-Vec3::UnitZ(), Vec3::UnitY()), 0, {}};
+  tool.inside = std::get<geometry::TriangleSurface>(scene::form_of(shape)).nodes;
+  return tool;
+}
+
 }  // namespace
 
 Tool make_tool(const std::string& name, double radius) {
@@ -198,12 +226,15 @@ Tool make_tool(const std::string& name, double radius) {
   if (name == "box") return box_of(name, Vec3::Constant(0.01));
   if (name == "blade") return box_of(name, Vec3(1e-3, 0.02, 0.015));
   if (name == "mesh") return pebble();
-  throw InputError("tool '" + name + "': one of ball, needle, box, blade, mesh");
+  if (name == "cone") return tips_first(name, scene::ConeShape{0.002, 0.02});
+  if (name == "grasper") return tips_first(name, scene::GrasperShape{0.015, 0.005, 0.003, 0.4});
+  throw InputError("tool '" + name + "': one of ball, needle, box, blade, mesh, cone, grasper");
 }
 
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
                     const LoopCase& loop) {
-  session::InProcess session(scene_of(scene, loop), {{assets.organs[0]}, {loop.tool.mesh}});
+  session::InProcess session(scene_of(scene, loop), {{assets.organs[0]}, {loop.tool.mesh}},
+                             options_of(loop.loss));
   const Vec3 skin(place.x(), rigs::front_of(assets.organs[0].surface, place.x(), place.z()),
                   place.z());
   auto device = std::make_unique<Sliding>(skin, loop);

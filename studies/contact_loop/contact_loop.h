@@ -26,7 +26,8 @@ struct Tool {
   }
 };
 /// "ball", "needle" (1 mm thick, 40 mm long), "box" (10 mm), "blade" (1 mm thick, edge first),
-/// "mesh" (a rough pebble of 42 corners, 10 mm).
+/// "mesh" (a rough pebble of 42 corners, 10 mm), "cone" (4 mm thick, 20 mm long, point first),
+/// "grasper" (jaws of 15 mm, open by 0.4 rad, tips first).
 /// @param radius  of the ball [m]
 /// @throws InputError for another name
 Tool make_tool(const std::string& name, double radius);
@@ -36,6 +37,7 @@ struct LoopCase {
   double speed = 0.1;  ///< largest [m/s]
   double deformation_hz = 100;
   double collision_hz = 250;
+  double loss = 0;  ///< share of contacts and node positions that never arrive, at random
 };
 
 /// What a run did and its searches found. A search sees the tool where it is and the surface as it

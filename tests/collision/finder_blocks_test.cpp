@@ -52,12 +52,15 @@ struct SwingingScene {
 TEST_CASE("contact finder: the same bits whatever the blocks, told or not, of every shape") {
   // Oracle: brute force; one block of all triangles, whose nodes are all looked at in each step.
   scene::MeshShape mesh;
-  const std::vector<geometry::ProbeForm> forms{probe_of(scene::SphereShape{0.006}),
-                                               probe_of(scene::CapsuleShape{0.003, 0.04}),
-                                               probe_of(scene::CapsuleShape{3e-4, 0.1}),
-                                               probe_of(scene::BoxShape{Vec3(0.02, 0.01, 0.03)}),
-                                               probe_of(scene::PlaneShape{}),
-                                               scene::form_of(mesh, geometry::make_ball(0.01, 1))};
+  const std::vector<geometry::ProbeForm> forms{
+      probe_of(scene::SphereShape{0.006}),
+      probe_of(scene::CapsuleShape{0.003, 0.04}),
+      probe_of(scene::CapsuleShape{3e-4, 0.1}),
+      probe_of(scene::BoxShape{Vec3(0.02, 0.01, 0.03)}),
+      probe_of(scene::ConeShape{0.004, 0.03}),
+      probe_of(scene::GrasperShape{0.02, 0.005, 0.003, 0.6}),
+      probe_of(scene::PlaneShape{}),
+      scene::form_of(mesh, geometry::make_ball(0.01, 1))};
   std::size_t contacts = 0, face_nodes = 0, pushed = 0;
   for (std::size_t f = 0; f < forms.size(); ++f) {
     SwingingScene motion(static_cast<unsigned>(100 + f));

@@ -32,6 +32,43 @@ TEST_CASE("mesh solid: a meshed box answers like the box") {
   CHECK_FALSE(meshed->nearest({2, 0, 0}, 0.5));
 }
 
+TEST_CASE("mesh solid: a cone's signed distance, and where a point enters it") {
+  // Oracle: analytic, of the smooth cone; the flats are inside it by radius × (1 − cos(π/32)).
+  const double radius = 0.3, length = 1, inside_by = radius * (1 - std::cos(M_PI / 32));
+  const SharpMesh mesh(geometry::make_cone(radius, length, 32));
+  const auto solid = make_mesh_solid(mesh);
+  const auto smooth = [&](const Vec3& x) {
+    const Vec3 p(std::hypot(x[0], x[1]), x[2], 0), rim(radius, length, 0), top(0, length, 0);
+    const auto to = [&](const Vec3& a, const Vec3& b) {
+      return (p - geometry::closest_of_segments(p, p, a, b).on_second).norm();
+    };
+    const double distance = std::min(to(Vec3::Zero(), rim), to(rim, top));
+    return p[1] < length && p[0] < radius * p[1] / length ? -distance : distance;
+  };
+  RandomShapes random(63);
+  int entries = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vec3 start = Vec3(0, 0, 0.5) + random.point(0.8),
+               end = Vec3(0, 0, 0.5) + random.point(0.5);
+    const auto near = solid->nearest(start, 2);
+    REQUIRE(near);
+    CHECK(near->distance >= smooth(start) - 1e-12);
+    CHECK(near->distance <= smooth(start) + inside_by + 1e-12);
+    if (near->distance < 0) continue;
+    const auto entered = solid->entry(start, end, 0);
+    // Nothing is in it on a way without an entry; at an entry the way is on its surface.
+    if (entered) {
+      ++entries;
+      CHECK(std::abs(solid->nearest(entered->point, 1)->distance) < 1e-6);
+      continue;
+    }
+    for (int i = 1; i <= 20; ++i) {
+      CHECK(solid->nearest(start + i / 20.0 * (end - start), 2)->distance > -1e-7);
+    }
+  }
+  CHECK(entries > 100);
+}
+
 TEST_CASE("mesh solid: the sign is right next to sharp edges and corners") {
   // Oracle: analytic; the signed distance of a tetrahedron as the largest of its planes' distances,
   // exact inside and of the right sign everywhere.

@@ -6,6 +6,7 @@ namespace palpate::collision {
 namespace {
 
 constexpr double kFastest = 0.5;  // [m/s]
+constexpr int kKinds = 6;         // of shapes
 
 scene::ProbeShape shape_of(int kind) {
   switch (kind) {
@@ -15,6 +16,10 @@ scene::ProbeShape shape_of(int kind) {
       return scene::CapsuleShape{0.003, 0.02};
     case 2:
       return scene::BoxShape{Vec3(0.01, 0.014, 0.006)};
+    case 3:
+      return scene::ConeShape{0.003, 0.02};
+    case 4:
+      return scene::GrasperShape{0.015, 0.005, 0.003, 0.4};
     default:
       return scene::MeshShape{};
   }
@@ -57,7 +62,7 @@ TEST_CASE("tunnelling: no probe at 500 mm/s passes an organ without contact, at 
                                                       geometry::make_box({0.08, 0.08, 0.0005}, 1),
                                                       geometry::make_box({0.08, 0.08, 0.002}, 4)};
   RandomShapes random(21);
-  for (int kind = 0; kind < 4; ++kind) {
+  for (int kind = 0; kind < kKinds; ++kind) {
     for (const auto& organ : organs) {
       FinderScene scene({organ}, {probe(kind)});
       for (const double rate : {10.0, 25.0, 60.0, 250.0}) {
@@ -75,7 +80,7 @@ TEST_CASE("tunnelling: no probe at 500 mm/s passes an organ without contact, at 
 TEST_CASE("tunnelling: axis-aligned ways through nodes and edges are no exception") {
   // Oracle: analytic. The degenerate ways: straight through nodes, along edges.
   const auto ball = geometry::make_ball(0.03, 2);
-  for (int kind = 0; kind < 4; ++kind) {
+  for (int kind = 0; kind < kKinds; ++kind) {
     FinderScene scene({ball}, {probe(kind)});
     for (int axis = 0; axis < 3; ++axis) {
       for (const double sign : {1.0, -1.0}) {

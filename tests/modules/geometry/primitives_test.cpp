@@ -55,6 +55,51 @@ TEST_CASE("capsule: nodes on its surface, volume near the smooth one, lengths 0 
   CHECK(check_surface(make_capsule(0.01, 0.02, 4)).holds_volume());
 }
 
+TEST_CASE("cone: its point at the origin, its flats inside the smooth one, its volume") {
+  // Oracle: analytic; a third of base times height, of a regular polygon.
+  for (const int sides : {3, 8, 32}) {
+    const double radius = 0.003, length = 0.02, angle = 2 * std::numbers::pi / sides;
+    const TriangleSurface cone = make_cone(radius, length, sides);
+    const MeshReport report = check_surface(cone);
+    CHECK(report.holds_volume());
+    CHECK(report.genus == 0);
+    CHECK(report.volume ==
+          Approx(sides * radius * radius * std::sin(angle) / 2 * length / 3).epsilon(1e-12));
+    CHECK(cone.nodes[0] == Vec3::Zero());
+    CHECK(report.min_corner.z() == 0);
+    CHECK(report.max_corner.z() == length);
+    const double within = std::hypot(length, radius * std::cos(angle / 2)) / length;
+    for (const auto& [a, b, c] : cone.triangles) {
+      if (a != 0) continue;  // a flat of the side: its plane is so far from the axis
+      const Vec3 n = (cone.nodes[b] - cone.nodes[a]).cross(cone.nodes[c] - cone.nodes[a]);
+      CHECK(-n.z() / n.norm() * within == Approx(radius * std::cos(angle / 2) / length));
+    }
+  }
+}
+
+TEST_CASE("jaws: open by the angle asked for, their tips about the origin, their volume") {
+  // Oracle: analytic; the outline's area by hand times the width.
+  const double length = 0.02, width = 0.005, thickness = 0.003;
+  for (const double opening : {0.02, 0.5, 1.5}) {
+    const TriangleSurface jaws = make_jaws(length, width, thickness, opening);
+    const MeshReport report = check_surface(jaws);
+    CHECK(report.holds_volume());
+    CHECK(report.genus == 0);
+    CHECK(report.self_intersections.empty());
+    const double c = std::cos(opening / 2), s = std::sin(opening / 2);
+    // Two jaws, each a rectangle and half a square, and the triangle between their hinges.
+    const double between = thickness * (c - s) * thickness * (c + s);
+    CHECK(report.volume ==
+          Approx(width * (2 * length * thickness + thickness * thickness + between)));
+    CHECK(report.max_corner.x() == width / 2);
+    Vec3 tips = Vec3::Zero();
+    for (const std::uint32_t tip : {1u, 4u, 8u, 11u}) tips += jaws.nodes[tip];
+    CHECK(tips.norm() < 1e-15);
+    CHECK((jaws.nodes[1] - jaws.nodes[4]).norm() == Approx(2 * length * s));
+    CHECK((jaws.nodes[1] - jaws.nodes[0]).norm() == Approx(length));
+  }
+}
+
 TEST_CASE("tetrahedron: regular, about the origin") {
   // Oracle: analytic, six equal edges and a zero mean.
   const TriangleSurface tetrahedron = make_tetrahedron(0.2);

@@ -130,8 +130,9 @@ TEST_CASE("assets: a probe's mesh stays in the probe's frame, other shapes have 
   Probe probe;
   probe.shape = MeshShape{box_organ(folder).mesh};
   CHECK((extent(load_probe_mesh(probe))[1] - Vec3(0.02, 0.03, 0.04)).norm() < kFileRounding);
-  for (const ProbeShape& shape : {ProbeShape(SphereShape{}), ProbeShape(CapsuleShape{}),
-                                  ProbeShape(BoxShape{}), ProbeShape(PlaneShape{})}) {
+  for (const ProbeShape& shape :
+       {ProbeShape(SphereShape{}), ProbeShape(CapsuleShape{}), ProbeShape(BoxShape{}),
+        ProbeShape(ConeShape{}), ProbeShape(GrasperShape{}), ProbeShape(PlaneShape{})}) {
     probe.shape = shape;
     CHECK(load_probe_mesh(probe).nodes.empty());
   }

@@ -25,7 +25,7 @@ TEST_CASE("object reader: an unknown key is refused with the nearest and all all
         "deformation_threads, haptics, needs, camera");
   CHECK(refusal("capsule: {", "cylinder: {") ==
         "scene.yaml:47: key 'probes[1].shape.cylinder' is not known. "
-        "Allowed: sphere, capsule, box, plane, mesh");
+        "Allowed: sphere, capsule, box, cone, grasper, plane, mesh");
   CHECK(refusal("plane: {}", "plane: {z_m: 0}") ==
         "scene.yaml:58: key 'probes[3].shape.plane.z_m' is not known. None is allowed here");
   CHECK(refusal("name: full", "<<: {name: full}").substr(0, 45) ==
@@ -79,7 +79,7 @@ TEST_CASE("object reader: where keys must be, nothing else is taken") {
   // Oracle: the messages promised.
   CHECK(refusal("{plane: {}}", "plane") ==
         "scene.yaml:58: key 'probes[3].shape' = 'plane': must hold keys, out of: sphere, capsule, "
-        "box, plane, mesh");
+        "box, cone, grasper, plane, mesh");
   CHECK(refusal("plane: {}", "plane: 1") ==
         "scene.yaml:58: key 'probes[3].shape.plane' = '1': must be {}");
   CHECK(refusal("{file: tool.stl, unit: cm, nodes: 100}", "tool.stl") ==
@@ -93,10 +93,10 @@ TEST_CASE("object reader: a choice is exactly one key") {
   // Oracle: none, and two, of each kind of choice.
   CHECK(refusal("{plane: {}}", "{}") ==
         "scene.yaml:58: key 'probes[3].shape' = '{}': must hold exactly one of: sphere, capsule, "
-        "box, plane, mesh");
+        "box, cone, grasper, plane, mesh");
   CHECK(refusal("{plane: {}}", "{plane: {}, sphere: {}}") ==
         "scene.yaml:58: key 'probes[3].shape' = '{…}': must hold exactly one of: sphere, capsule, "
-        "box, plane, mesh");
+        "box, cone, grasper, plane, mesh");
   CHECK(refusal("{topic: {start_m: [0, 0, 0.4]}}", "{}") ==
         "scene.yaml:62: key 'probes[4].device' = '{}': must hold exactly one of: scripted, "
         "trajectory, topic, mouse, emulated");

@@ -17,6 +17,11 @@ TEST_CASE("probe shape: each comes down to the form that its keys describe") {
   CHECK(capsule.b == Vec3(0, 0, 0.025));
   CHECK(std::get<geometry::Box>(form_of(BoxShape{Vec3(1, 2, 3)})).size == Vec3(1, 2, 3));
   CHECK(std::holds_alternative<geometry::HalfSpace>(form_of(PlaneShape{})));
+  const auto cone = std::get<geometry::TriangleSurface>(form_of(ConeShape{0.003, 0.02}));
+  CHECK(cone.nodes == geometry::make_cone(0.003, 0.02).nodes);
+  const auto jaws =
+      std::get<geometry::TriangleSurface>(form_of(GrasperShape{0.02, 0.005, 0.003, 0.4}));
+  CHECK(jaws.nodes == geometry::make_jaws(0.02, 0.005, 0.003, 0.4).nodes);
   const auto mesh = geometry::make_tetrahedron(0.02);
   CHECK(std::get<geometry::TriangleSurface>(form_of(MeshShape{}, mesh)).nodes == mesh.nodes);
 }

@@ -69,6 +69,15 @@ void check_same(const ProbeShape& a, const ProbeShape& b) {
     CHECK(capsule->length == std::get<CapsuleShape>(b).length);
   } else if (const auto* box = std::get_if<BoxShape>(&a)) {
     CHECK(box->size == std::get<BoxShape>(b).size);
+  } else if (const auto* cone = std::get_if<ConeShape>(&a)) {
+    CHECK(cone->radius == std::get<ConeShape>(b).radius);
+    CHECK(cone->length == std::get<ConeShape>(b).length);
+  } else if (const auto* jaws = std::get_if<GrasperShape>(&a)) {
+    const GrasperShape& other = std::get<GrasperShape>(b);
+    CHECK(jaws->length == other.length);
+    CHECK(jaws->width == other.width);
+    CHECK(jaws->thickness == other.thickness);
+    CHECK(jaws->opening == other.opening);
   } else if (const auto* mesh = std::get_if<MeshShape>(&a)) {
     check_same(mesh->mesh, std::get<MeshShape>(b).mesh);
   }
