@@ -34,9 +34,4 @@ void translate(std::exception_ptr pointer) {
 
 void bind_errors(py::module_&) { py::register_exception_translator(&translate); }
 
-void look_for_signals() {
-  const py::gil_scoped_acquire acquire;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
-
 }  // namespace palpate::python

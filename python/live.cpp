@@ -12,10 +12,10 @@
 #include "modules/runtime/clock.h"
 #include "python/bindings.h"
 #include "python/busy.h"
-#include "python/errors.h"
 #include "python/message_arrays.h"
 #include "python/numbers.h"
 #include "python/topic_columns.h"
+#include "python/unlocked.h"
 
 namespace py = pybind11;
 
@@ -84,7 +84,7 @@ template <class Done>
 bool Live::wait_until(double timeout, const Done& done) {
   if (!(timeout >= 0 && timeout <= kLongestWait))
     throw py::value_error("timeout must be between 0 and 1e6 s");
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   using Clock = std::chrono::steady_clock;
   const auto began = Clock::now();
   auto look_at = began + kLookForSignals;
@@ -92,7 +92,7 @@ bool Live::wait_until(double timeout, const Done& done) {
     const auto now = Clock::now();
     if (std::chrono::duration<double>(now - began).count() >= timeout) return false;
     if (now >= look_at) {
-      look_for_signals();
+      Unlocked::look_for_signals();
       look_at = now + kLookForSignals;
     }
     std::this_thread::sleep_for(kLookAgain);
@@ -121,7 +121,7 @@ py::tuple Live::take(const std::string& name) {
   Topic& topic = topic_of(name);
   TopicColumns columns;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     receive(topic);
     for (const auto& message : topic.untaken) columns.add(*message);
     topic.untaken.clear();
@@ -173,7 +173,8 @@ bool Live::wait_for_haptics(double timeout) {
 void Live::close() {
   const InUse use(in_use_, kWhat);
   if (closed_.exchange(true)) return;
-  const py::gil_scoped_release release;
+  // cppcheck-suppress unreadVariable
+  const Unlocked unlocked(Unlocked::AtEnd::kAllowed);
   topics_.clear();
   conductor_.reset();
   controls_.reset();

@@ -10,6 +10,7 @@
 #include "modules/geometry/mesh_prepare.h"
 #include "python/bindings.h"
 #include "python/numbers.h"
+#include "python/unlocked.h"
 
 namespace py = pybind11;
 
@@ -86,7 +87,7 @@ py::dict check_mesh(py::handle nodes, py::handle triangles) {
   geometry::MeshReport report;
   std::vector<std::string> problems;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     report = geometry::check_surface(surface);
     problems = geometry::describe_problems(report, surface);
   }
@@ -109,7 +110,7 @@ py::tuple repair_mesh(py::handle nodes, py::handle triangles) {
   TriangleSurface surface = surface_from(nodes, triangles);
   geometry::RepairLog log;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     log = geometry::repair_surface(surface);
   }
   const py::tuple repaired = arrays_from(surface);
@@ -122,7 +123,7 @@ py::tuple resample_mesh(py::handle nodes, py::handle triangles, std::size_t node
   if (node_count < 4 || node_count > kMaxNodes)
     throw py::value_error("node_count must be between 4 and " + std::to_string(kMaxNodes));
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     const geometry::MeshReport report = geometry::check_surface(surface);
     if (!report.holds_volume()) {
       const auto problems = geometry::describe_problems(report, surface);

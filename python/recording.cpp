@@ -9,6 +9,7 @@
 
 #include "python/bindings.h"
 #include "python/topic_columns.h"
+#include "python/unlocked.h"
 
 namespace py = pybind11;
 
@@ -44,7 +45,7 @@ ReadTopics topics_in(const std::string& file, const std::set<std::string>& wante
 py::tuple read_recording(const std::string& file, const std::set<std::string>& wanted) {
   ReadTopics topics;
   {
-    const py::gil_scoped_release release;
+    const Unlocked unlocked;
     topics = topics_in(file, wanted);
   }
   py::list result;

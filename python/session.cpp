@@ -10,8 +10,8 @@
 #include "modules/runtime/wiring.h"
 #include "modules/scene/scene_error.h"
 #include "python/busy.h"
-#include "python/errors.h"
 #include "python/message_arrays.h"
+#include "python/unlocked.h"
 
 namespace py = pybind11;
 
@@ -80,7 +80,7 @@ Session::Session(const scene::Scene& scene, const std::string& record)
       period_(1 / scene.rates.deformation),
       team_(std::make_unique<runtime::WorkerTeam>(scene.deformation_threads)),
       guided_(scene.probes.size(), nullptr) {
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   session::InProcessOptions options;
   options.runner = team_.get();
   session_ = std::make_unique<session::InProcess>(scene_, session::load_assets(scene_), options);
@@ -118,7 +118,7 @@ void Session::check_time(double time) const {
 
 /// Ctrl-C leaves the session between two instants: it can go on.
 void Session::run_while(const std::function<bool()>& wanted, const Listener& listen) {
-  const py::gil_scoped_release release;
+  const Unlocked unlocked;
   auto look_at = std::chrono::steady_clock::now() + kLookForSignals;
   while (wanted()) {
     session_->tick();
@@ -126,7 +126,7 @@ void Session::run_while(const std::function<bool()>& wanted, const Listener& lis
     if (listen) listen();
     const auto now = std::chrono::steady_clock::now();
     if (now < look_at) continue;
-    look_for_signals();
+    Unlocked::look_for_signals();
     look_at = now + kLookForSignals;
   }
 }
@@ -201,7 +201,8 @@ py::list Session::run_keeping(double time, const std::vector<std::string>& topic
 void Session::close() {
   const InUse use(in_use_, "the session");
   if (!session_) return;
-  const py::gil_scoped_release release;
+  // cppcheck-suppress unreadVariable
+  const Unlocked unlocked(Unlocked::AtEnd::kAllowed);
   closed_ = true;
   session_->finish(std::min(asked_for_, session_->time()));
   scenes_.reset();

@@ -127,7 +127,9 @@ _open: weakref.WeakSet[Live] = weakref.WeakSet()
 
 
 @atexit.register
-def _close_all() -> None:
-    """DDS has threads of its own, which must end before the interpreter does."""
+def _end() -> None:
+    """Calls in daemon threads come back first, with a ClosedError; DDS has threads of its own, which must end before
+    the interpreter does."""
+    _core.end_work()
     for live in list(_open):
         live.close()

@@ -4,6 +4,7 @@ import os
 import pickle
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -230,6 +231,19 @@ class SessionTest(unittest.TestCase):
         self.assertLess(reached, 1e4)
         session.step()
         self.assertGreater(session.time, reached)
+
+    def test_an_interpreter_that_ends_while_threads_step_and_wait_ends_well(self):
+        script = """
+import threading, time, palpate
+session, live = palpate.Session(palpate.scene_path("stomach_probe")), palpate.connect("python-nobody", 77)
+for call in (lambda: session.run_until(1e5), lambda: live.latest("scene", timeout_s=1e5)):
+    threading.Thread(target=call, daemon=True).start()
+time.sleep(0.2)
+threading.excepthook = lambda told: print(told.exc_type.__name__)
+"""
+        ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        self.assertLessEqual(set(ended.stdout.split()), {"ClosedError"})
 
     def test_repr_and_pickle(self):
         session = palpate.Session(STOMACH)
