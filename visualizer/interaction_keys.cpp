@@ -10,7 +10,8 @@ namespace palpate::visualizer {
 namespace {
 
 constexpr double kMarginAroundOrgans = 1.25;
-constexpr double kCutStep = 0.1;  // of the organs' radius
+constexpr double kUsualShape = 920.0 / 720;  // of the 3-D part in a window of 1280 x 720
+constexpr double kCutStep = 0.1;             // of the organs' radius
 constexpr std::array<const char*, 3> kFamilies{"structural", "bending", "inner"};
 
 constexpr std::array kKeys{
@@ -60,7 +61,11 @@ Camera home_camera(const SceneView& view, int width, int height) {
   Camera camera = frontal_camera(view.center(), kMarginAroundOrgans * view.radius(), width, height);
   const auto& wanted = view.scene().camera;
   if (wanted.target) camera.target = *wanted.target;
-  if (wanted.position) camera.position = *wanted.position;
+  if (wanted.position) {
+    // What the scene's camera shows in a window of usual shape is seen in a narrower one, too.
+    const double further = std::max(1.0, kUsualShape * camera.height / camera.width);
+    camera.position = camera.target + further * (*wanted.position - camera.target);
+  }
   return camera;
 }
 

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <set>
 
 #include "organs.h"
 
@@ -257,6 +258,32 @@ TEST_CASE("deformation world: sub-steps are whole, stable and cover the period")
     CHECK(period / substeps <= world.stable_step(0));
     if (substeps > 1) CHECK(period / (substeps - 1) > world.stable_step(0));
   }
+}
+
+TEST_CASE("deformation world: a solid's topology names each edge of its tetrahedra once") {
+  // Oracle: pairs of corners, by brute force. A tetrahedron cut into four about its middle: 6 + 4.
+  geometry::OrganShape shape(geometry::make_tetrahedron(0.1));
+  shape.inner_nodes = {Vec3::Zero()};
+  for (const auto& [a, b, c] : shape.surface.triangles) shape.tetrahedra.push_back({a, c, b, 4});
+  scene::Organ organ = ball_organ();
+  organ.model = "nodal_pressure";
+  const DeformationWorld world(ball_scene(1, organ), {shape});
+  const auto topology = deformation::surface_message(world, 0);
+  std::set<std::array<std::uint32_t, 2>> expected, named;
+  for (const auto& corners : world.model(0).mesh().tetrahedra) {
+    for (const auto i : corners) {
+      for (const auto j : corners) {
+        if (i < j) expected.insert({i, j});
+      }
+    }
+  }
+  for (const auto& edge : topology.springs) {
+    CHECK(edge.family == SpringFamily::kInner);
+    named.insert({edge.node_a, edge.node_b});
+  }
+  CHECK(expected.size() == 10);
+  CHECK(named == expected);
+  CHECK(topology.springs.size() == expected.size());
 }
 
 TEST_CASE("deformation world: the topology names nodes, triangles, springs and fixed nodes") {

@@ -59,9 +59,14 @@ struct Windowed {
     return joined(std::move(more), options);
   }
   double force() {
-    HapticForce newest;
-    while (forces.take(newest)) felt = newest.force.norm();
-    return felt;
+    while (forces.take(newest)) {
+    }
+    return newest.force.norm();
+  }
+  /// Of the session [s].
+  double time() {
+    force();
+    return 1e-9 * static_cast<double>(newest.header.sim_time_ns);
   }
   bool heard(SessionCommand awaited) {
     return wait_until([&] {
@@ -80,7 +85,7 @@ struct Windowed {
   bus::Reader<SessionControl> commands;
   Running run;
   Hand hand;
-  double felt = 0;
+  HapticForce newest;
 };
 
 }  // namespace
@@ -124,6 +129,15 @@ TEST_CASE("window: one drag from the start to a force, keys conduct, q ends the 
   session.hand.key("n");
   CHECK(session.heard(SessionCommand::kStep));
   session.hand.key("space");
+  CHECK(session.heard(SessionCommand::kStart));
+  session.hand.key("m");
+  CHECK(session.heard(SessionCommand::kStep));
+  // A quarter of real time where pictures come in time, less where they do not.
+  const auto slow = Clock::now();
+  const double from = session.time();
+  CHECK(wait_until([&] { return session.time() > from + 0.3; }));
+  CHECK(session.time() - from < 0.5 * seconds(Clock::now() - slow));
+  session.hand.key("m");
   CHECK(session.heard(SessionCommand::kStart));
   session.hand.key("q");
   CHECK(session.run.wait_for_end() == 0);

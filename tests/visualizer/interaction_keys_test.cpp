@@ -7,6 +7,7 @@ using namespace palpate;
 using namespace palpate::visualizer;
 using visualizer::testing::Fixture;
 using visualizer::testing::Kind;
+using visualizer::testing::two_probe_scene;
 
 TEST_CASE("interaction: keys toggle and ask", "[visualizer]") {
   // Oracle: the key list shown by h.
@@ -81,6 +82,20 @@ TEST_CASE("interaction: where hands are off, neither keys conduct nor drags pres
   CHECK(f.send(Kind::kPress, 450, 350).probe_inputs.empty());
   f.send(Kind::kMove, 480, 360);
   CHECK_FALSE(f.interaction.camera.position.isApprox(before.position));
+}
+
+TEST_CASE("interaction: in a narrow window home shows as much as in a usual one", "[visualizer]") {
+  // Oracle: projection: what is at the edge of the usual picture is at the edge of the narrow one.
+  auto scene = two_probe_scene();
+  scene.camera.position = Vec3(-0.2, -0.5, 0.1);
+  scene.camera.target = Vec3(0.01, 0, 0);
+  const SceneView view(scene);
+  const Camera usual = home_camera(view, 920, 720), narrow = home_camera(view, 384, 480);
+  CHECK(usual.position.isApprox(*scene.camera.position));
+  CHECK(home_camera(view, 1840, 1440).position.isApprox(*scene.camera.position));
+  const double half = 460 * usual.pixel_size((usual.target - usual.position).norm());
+  const double seen = 192 * narrow.pixel_size((narrow.target - narrow.position).norm());
+  CHECK(seen == Approx(half));
 }
 
 TEST_CASE("interaction: home is the camera of the start", "[visualizer]") {
