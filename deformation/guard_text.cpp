@@ -46,7 +46,7 @@ constexpr std::array<Text, kGuardCodes> kTexts{{
     {GuardCode::kStepReduced,
      "an organ held more energy than it was given: its steps are shortened"},
     {GuardCode::kLawBounded,
-     "a sliding touch would have been stiffer than a sticking one: its law tells the latter"},
+     "a sliding touch would have been stiffer than a sticking one, or no stiffness was found"},
 }};
 
 }  // namespace

@@ -80,9 +80,10 @@ void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out
   }
 }
 
-ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe) {
+ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe,
+                                   bool* bounded) {
   ContactModel message;
-  static_cast<LocalLaw&>(message) = world.local_law(probe);
+  static_cast<LocalLaw&>(message) = world.local_law(probe, bounded);
   message.probe = static_cast<std::uint32_t>(probe);
   return message;
 }

@@ -20,6 +20,7 @@ void write_node_positions(const DeformationWorld& world, std::size_t organ, Node
 void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out);
 
 /// The tissue's local law for a probe.
-ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe);
+ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe,
+                                   bool* bounded = nullptr);
 
 }  // namespace palpate::deformation

@@ -73,6 +73,7 @@ bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
     return true;
   }
   start_ = state_;
+  started_.keep(rows);
   const TargetVolume target_start = target_volume_;
   const double target_before = begin_step(time, h, rows);
   const double target = state_.target_volume;
@@ -80,6 +81,7 @@ bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
   for (int revision = 0; revise(start_, state_); ++revision) {
     if (revision == kMostRevisions && last_resort) break;
     state_ = start_;
+    started_.give(rows);
     if (revision == kMostRevisions) {
       target_volume_ = target_start;
       return false;

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "deformation/contact/starting_impulses.h"
 #include "deformation/guard/advance_report.h"
 #include "deformation/guard/divergence_detector.h"
 #include "deformation/model/organ_model.h"
@@ -63,7 +64,8 @@ class SimulatedOrgan {
 
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
-  /// The same; it is taken again from its start, with the rows there are then, while `revise`,
+  /// The same; it is taken again from its start, with the rows there are then and the impulses
+  /// they started from, while `revise`,
   /// given the states at its start and end, wants it, at most kMostRevisions times. None: once.
   /// @param last_resort  whether it is taken even if revise() is not content then
   /// @returns false if it was not: the organ is as before
@@ -101,6 +103,7 @@ class SimulatedOrgan {
   DivergenceDetector detector_;
   OrganState state_, last_good_;
   OrganState start_;  ///< of a step that may be taken again
+  StartingImpulses started_;
   Guarding guarding_;
   bool holds_volume_ = false;   ///< by a constraint that answers an error with an impulse
   double pressure_limit_ = 0;   ///< [Pa]; infinite where no constraint makes it

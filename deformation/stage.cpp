@@ -110,17 +110,22 @@ class Outputs {
     }
   }
 
-  void publish_laws(double sim_time, const DeformationWorld& world, const ProbeInputs& inputs,
+  /// @returns whether the stiffness of one was bounded
+  bool publish_laws(double sim_time, const DeformationWorld& world, const ProbeInputs& inputs,
                     std::int64_t now_ns) {
     const Header header{0, ns_from_seconds(sim_time), 0};
+    bool any_bounded = false;
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
-      model_ = contact_model_message(world, probe);
+      bool bounded = false;
+      model_ = contact_model_message(world, probe, &bounded);
+      any_bounded |= bounded;
       model_.header = header;
       // The law's age counts from the cycle's beginning, where its probes were.
       model_.header.source_time_ns = now_ns;
       model_.anchor_age = inputs.age(probe, now_ns);
       models_.write(model_);
     }
+    return any_bounded;
   }
 
  private:
@@ -162,6 +167,7 @@ struct DeformationStage::Impl {
   runtime::Health advance(const runtime::Cycle& now) {
     time.begin(now.time());
     report = world.advance(now.advance);
+    report.law_bounded = law_bounded;
     troubles.unsolved += static_cast<std::uint64_t>(report.contacts_unsolved) +
                          (report.organ_contacts_unsolved ? 1 : 0);
     runtime::Health health;
@@ -179,6 +185,7 @@ struct DeformationStage::Impl {
   GuardLog guards;
   GuardText words;
   AdvanceReport report;
+  bool law_bounded = false;  ///< of the laws last sent
   ContactTroubles troubles;
 };
 
@@ -202,7 +209,10 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   if (now.running) health = impl_->advance(now);
   const double sim_time = impl_->time.on_session_clock(impl_->world.time());
   impl_->outputs.publish_positions(sim_time, impl_->world);
-  if (now.running) impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
+  if (now.running) {
+    impl_->law_bounded =
+        impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
+  }
   health.least_advance = least_advance(impl_->world, impl_->period);
   health.contacts = impl_->troubles;
   return health;

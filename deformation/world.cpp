@@ -39,9 +39,8 @@ struct DeformationWorld::Impl {
   /// Mean forces on a probe over the last advances, the newest first [N].
   using Forces = std::array<Vec3, kGrowthPeriods + 1>;
   std::vector<Forces> forces;
-  double time = 0, period = 0;  ///< simulated; of the last advance [s]
-  // Since the last advance:
-  bool contact_refused = false, law_bounded = false;
+  double time = 0, period = 0;   ///< simulated; of the last advance [s]
+  bool contact_refused = false;  ///< since the last advance
 
   bool names_our_triangle(const Contact& contact) const {
     return contact.organ < organs.size() &&
@@ -96,7 +95,7 @@ struct DeformationWorld::Impl {
       if (is_plausible(contact, contacts.probe_pose)) accepted.push_back(contact);
     }
     const auto place = [](const Contact& c) { return std::pair(c.organ, c.triangle); };
-    if (!std::ranges::is_sorted(accepted, {}, place)) std::ranges::sort(accepted, {}, place);
+    std::ranges::stable_sort(accepted, {}, place);
   }
 
   /// One organ from one fraction of the advance to another, all probes moving along. A probe that
@@ -128,17 +127,19 @@ struct DeformationWorld::Impl {
     return organ.simulated.step(time + to * period, h, organ.rows, crossed, last_resort, report);
   }
 
-  void take_rows(std::uint32_t index) {
+  void take_rows(std::uint32_t index, double h) {
     WorldOrgan& organ = organs[index];
     for (auto& probe : probes) {
       if (organ.simulated.contacts_suspended()) break;
-      probe.take_rows(index, organ.rows);
+      probe.take_rows(index, h, organ.rows);
     }
   }
 
   /// The same; where rows do not hold a probe, in halves.
   void step_apart(std::uint32_t index, double from, double to, int splits, AdvanceReport& report) {
-    if (step_organ(index, from, to, splits == 0, report)) return take_rows(index);
+    if (step_organ(index, from, to, splits == 0, report)) {
+      return take_rows(index, (to - from) * period);
+    }
     const double middle = (from + to) / 2;
     step_apart(index, from, middle, splits - 1, report);
     step_apart(index, middle, to, splits - 1, report);
@@ -157,7 +158,7 @@ struct DeformationWorld::Impl {
   /// Organs that may touch each other or themselves, all in the same steps.
   void advance_together(AdvanceReport& report) {
     int substeps = 1;
-    for (const WorldOrgan& organ : organs)
+    for (const auto& organ : organs)
       substeps = std::max(substeps, organ.simulated.substeps(period));
     std::vector<std::span<ContactRow>> rows(organs.size());
     for (int step = 1; step <= substeps; ++step) {
@@ -167,7 +168,7 @@ struct DeformationWorld::Impl {
         rows[i] = organs[i].rows;
       }
       organ_contacts->end_step(period / substeps, rows, report);
-      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i);
+      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i, period / substeps);
     }
   }
 
@@ -304,7 +305,6 @@ void DeformationWorld::forget_contacts(std::size_t probe) {
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
   report.contact_refused = std::exchange(impl_->contact_refused, false);
-  report.law_bounded = std::exchange(impl_->law_bounded, false);
   impl_->period = period;
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
   if (impl_->organ_contacts) {
@@ -371,7 +371,7 @@ const Vec3& DeformationWorld::force(std::size_t probe) const {
   return impl_->forces.at(probe).front();
 }
 
-LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {
+LocalLaw DeformationWorld::local_law(std::size_t probe_index, bool* bounded) const {
   const ProbeContacts& probe = impl_->probes.at(probe_index);
   LocalLaw law;
   law.anchor = probe.pose();
@@ -396,7 +396,7 @@ LocalLaw DeformationWorld::local_law(std::size_t probe_index) const {
   law.growth = impl_->growth(probe_index);
   const RowStiffness stiffness = stiffness_of(law);
   law.stiffness = stiffness.matrix;
-  impl_->law_bounded |= stiffness.bounded;
+  if (bounded != nullptr) *bounded = stiffness.bounded;
   return law;
 }
 

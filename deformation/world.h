@@ -77,7 +77,8 @@ class DeformationWorld {
   /// Mean force on a probe over the last advance() [N].
   const Vec3& force(std::size_t probe) const;
   /// That force row by row and how it varies with the probe's pose. Costs a small factorisation.
-  LocalLaw local_law(std::size_t probe) const;
+  /// @param bounded  out: its stiffness was bounded, or could not be found (contact_law.h)
+  LocalLaw local_law(std::size_t probe, bool* bounded = nullptr) const;
 
  private:
   struct Impl;

@@ -227,7 +227,8 @@ RowStiffness stiffness_of(const LocalLaw& law) {
   const LawMatrices m = matrices_of(law);
   if (m.pressing.empty()) return {};
   const Mat3 sticking = sticking_stiffness(m);
-  if (!sticking.allFinite() || sticking.isZero(0)) return {};  // of a bad state's W
+  // Of a bad state's W.
+  if (!sticking.allFinite() || sticking.isZero(0)) return {Mat3::Zero(), true};
   if (m.unlimited.size() == m.pressing.size()) return {sticking, false};
   Mat3 stiffness = sliding_stiffness(m);
   const double most = kRounding * std::hypot(1, law.friction_coefficient) * sticking.operatorNorm();

@@ -1,6 +1,7 @@
 #include "deformation/contact/probe_contacts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "modules/core/tolerances.h"
 
@@ -10,8 +11,15 @@ namespace {
 /// A probe whose way in a period is shorter rests [m].
 constexpr double kResting = 1e-6;
 
-bool same_place(const CarriedContact& a, const CarriedContact& b) {
-  return a.organ == b.organ && a.triangle == b.triangle;
+/// Contacts on one triangle further from each other, in barycentric coordinates, are two.
+constexpr double kSamePlace = 0.5;
+
+std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
+  return {contact.organ, contact.triangle};
+}
+
+double apart(const CarriedContact& a, const CarriedContact& b) {
+  return (a.barycentric - b.barycentric).lpNorm<Eigen::Infinity>();
 }
 
 }  // namespace
@@ -23,10 +31,7 @@ ProbeContacts::ProbeContacts(const scene::Probe& probe) : friction_(probe.fricti
 
 void ProbeContacts::reset() {
   placed_ = false;
-  contacts_.clear();
-  near_.clear();
-  gentle_.clear();
-  begun_.clear();
+  forget_contacts();
 }
 
 void ProbeContacts::forget_contacts() {
@@ -45,23 +50,26 @@ void ProbeContacts::set_pose(const Pose& pose) {
 void ProbeContacts::set_contacts(std::span<const Contact> newest) {
   std::swap(previous_contacts_, contacts_);
   contacts_.clear();
-  auto previous = previous_contacts_.begin();
   for (const Contact& contact : newest) {
-    CarriedContact carried{contact};
+    CarriedContact& carried = contacts_.emplace_back(contact);
     carried.behind = core_ && is_behind(contact);
-    // Both lists are sorted by (organ, triangle).
-    while (previous != previous_contacts_.end() && std::pair(previous->organ, previous->triangle) <
-                                                       std::pair(carried.organ, carried.triangle)) {
-      ++previous;
-    }
-    if (previous != previous_contacts_.end() && same_place(*previous, carried)) {
-      carried.normal_impulse = previous->normal_impulse;
-      carried.tangential_impulse = previous->tangential_impulse;
-      ++previous;
-    }
-    contacts_.push_back(carried);
+    take_forces_of_previous(carried);
   }
   note_begun();
+}
+
+/// Of the nearest on its triangle, where a round probe has but one; each is taken once.
+void ProbeContacts::take_forces_of_previous(CarriedContact& carried) {
+  const auto on_triangle =
+      std::ranges::equal_range(previous_contacts_, triangle_of(carried), {}, triangle_of);
+  CarriedContact* nearest = nullptr;
+  for (CarriedContact& previous : on_triangle) {
+    if (!core_ && apart(previous, carried) > kSamePlace) continue;
+    if (!nearest || apart(previous, carried) < apart(*nearest, carried)) nearest = &previous;
+  }
+  if (!nearest) return;
+  carried.normal_force = std::exchange(nearest->normal_force, 0);
+  carried.tangential_force = std::exchange(nearest->tangential_force, Vec3::Zero());
 }
 
 /// Whether the search found the core on the inner side of the contact's tissue.
@@ -144,9 +152,8 @@ ProbeContacts::Near& ProbeContacts::near_of(std::uint32_t organ) {
 
 /// The one there is, or a new one: contacts are sorted by (organ, triangle).
 CarriedContact& ProbeContacts::contact_on(std::uint32_t organ, std::uint32_t triangle) {
-  const auto key = [](const CarriedContact& c) { return std::pair(c.organ, c.triangle); };
-  const auto at = std::ranges::lower_bound(contacts_, std::pair(organ, triangle), {}, key);
-  if (at != contacts_.end() && key(*at) == std::pair(organ, triangle)) return *at;
+  const auto at = std::ranges::lower_bound(contacts_, std::pair(organ, triangle), {}, triangle_of);
+  if (at != contacts_.end() && triangle_of(*at) == std::pair(organ, triangle)) return *at;
   CarriedContact contact;
   contact.organ = organ;
   contact.triangle = triangle;
@@ -211,8 +218,8 @@ ContactRow ProbeContacts::row_of(const CarriedContact& contact, const Body& body
   row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
   row.friction = friction_;
   row.radius = radius();
-  row.normal_impulse = contact.normal_impulse;
-  row.tangential_impulse = contact.tangential_impulse;
+  row.normal_impulse = h * contact.normal_force;
+  row.tangential_impulse = h * contact.tangential_force;
   return row;
 }
 
@@ -269,18 +276,19 @@ bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
   return crossed && !gentle;
 }
 
-std::size_t ProbeContacts::take_rows(std::uint32_t organ, std::span<const ContactRow> rows) {
+std::size_t ProbeContacts::take_rows(std::uint32_t organ, double h,
+                                     std::span<const ContactRow> rows) {
   std::size_t taken = 0;
   if (may_cross(organ)) near_of(organ).inside |= near_of(organ).crossed;
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
-    contact.normal_impulse = 0;
-    contact.tangential_impulse.setZero();
+    contact.normal_force = 0;
+    contact.tangential_force.setZero();
     if (contact.row == CarriedContact::kNoRow) continue;
     const ContactRow& row = rows[contact.row];
     ++taken;
-    contact.normal_impulse = row.normal_impulse;
-    contact.tangential_impulse = row.tangential_impulse;
+    contact.normal_force = row.normal_impulse / h;
+    contact.tangential_force = row.tangential_impulse / h;
     if (row.normal_impulse <= 0) continue;
     contact.pushed += row.normal_impulse * row.normal;
     contact.dragged -= row.tangential_impulse;
@@ -305,7 +313,7 @@ bool ProbeContacts::is_watched(std::uint32_t organ) const {
 
 bool ProbeContacts::touches(std::uint32_t organ) const {
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const CarriedContact& contact) {
-    return contact.organ == organ && contact.normal_impulse > 0;
+    return contact.organ == organ && contact.normal_force > 0;
   });
 }
 

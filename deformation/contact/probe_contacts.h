@@ -20,10 +20,11 @@ namespace palpate::deformation {
 struct CarriedContact : Contact {
   static constexpr std::size_t kNoRow = ~std::size_t{0};
 
-  std::size_t row = kNoRow;   ///< of the sub-step; none where a round probe sees it from behind
-  bool behind = false;        ///< a round probe's core was found inside, through this wall
-  double normal_impulse = 0;  ///< of the last sub-step, for its next start [N·s]
-  Vec3 tangential_impulse = Vec3::Zero();  ///< likewise
+  std::size_t row = kNoRow;  ///< of the sub-step; none where a round probe sees it from behind
+  bool behind = false;       ///< a round probe's core was found inside, through this wall
+  // In the last sub-step, on the tissue, for the next one, however long, to start from [N]:
+  double normal_force = 0;
+  Vec3 tangential_force = Vec3::Zero();
   // On the probe over the advance, in W [N·s]:
   Vec3 pushed = Vec3::Zero();   ///< along the normals
   Vec3 dragged = Vec3::Zero();  ///< by friction
@@ -47,7 +48,8 @@ class ProbeContacts {
   /// Nobody knows where it touches: contacts are dropped, and nothing is watched.
   void forget_contacts();
   void set_pose(const Pose& pose);
-  /// Replaces the contacts; a contact on a triangle that had one starts from its impulses. Where
+  /// Replaces the contacts; one near to where its triangle had one starts from the forces
+  /// of that. Sorted by (organ, triangle). Where
   /// the probe had no contact with an organ and now has one deeper than kSeenDepth and its own way,
   /// it was not seen coming: until it is out, it is pushed at no more than kGentleSpeed.
   void set_contacts(std::span<const Contact> contacts);
@@ -68,8 +70,9 @@ class ProbeContacts {
   bool hold_crossed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
                     std::span<const Vec3> end, double h, double fraction,
                     std::vector<ContactRow>& rows);
-  /// Takes the solved rows back. @param rows  all of the sub-step  @returns the number of its own
-  std::size_t take_rows(std::uint32_t organ, std::span<const ContactRow> rows);
+  /// Takes the solved rows back. @param rows  all of the sub-step of h [s]
+  /// @returns the number of its own
+  std::size_t take_rows(std::uint32_t organ, double h, std::span<const ContactRow> rows);
 
   bool touches(std::uint32_t organ) const;
   /// Whether a round probe has contacts there, or had and is still near, so that it may cross the
@@ -100,6 +103,7 @@ class ProbeContacts {
   /// Looks around the core; what it touches and has no contact gets one.
   void look_around(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                    const Pose& pose);
+  void take_forces_of_previous(CarriedContact& carried);
   CarriedContact& contact_on(std::uint32_t organ, std::uint32_t triangle);
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
   /// @returns false if it is seen from behind by a core outside: the wall is not touched there

@@ -36,6 +36,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
 
 StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
   StepReport report;
+  started_.keep(rows);
   // 1. springs, volume and forces after free flight
   linearise_springs(h, rows, state);
   report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
@@ -87,6 +88,7 @@ void BackwardEuler::linearise_friction(std::span<ContactRow> rows) {
 /// Solves with a given impulse of the contents, which is one more outside force.
 void BackwardEuler::push_with(double volume_impulse, double h, std::span<ContactRow> rows,
                               const OrganState& state) {
+  started_.give(rows);
   linearise_springs(h, rows, state);
   volume_row_.reset();
   const auto& gradient = free_.volume.gradient;

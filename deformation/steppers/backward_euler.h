@@ -31,6 +31,7 @@
 
 #include "deformation/contact/constraint_projection.h"
 #include "deformation/contact/lagged_friction.h"
+#include "deformation/contact/starting_impulses.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/springs/kernel/spring_kernel.h"
 #include "deformation/springs/spring_hessian_product.h"
@@ -98,6 +99,7 @@ class BackwardEuler : public OrganDynamics {
   ConstraintProjection projection_;
   ContactRelaxation contacts_;
   SpringKernel kernel_;
+  StartingImpulses started_;
   LaggedFriction friction_;
   std::vector<ContactCoupling> couplings_;  ///< of the contacts: tilts, then friction
   std::size_t tilt_count_ = 0;

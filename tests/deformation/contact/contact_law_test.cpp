@@ -43,7 +43,7 @@ struct Plate {
     std::vector<ContactRow> rows;
     probe.append_rows(0, surface, state, kPeriod, 1, rows);
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = impulse(i);
-    probe.take_rows(0, rows);
+    probe.take_rows(0, kPeriod, rows);
     probe.end();
   }
   std::vector<CondensedContact> condense() const {
@@ -125,6 +125,7 @@ TEST_CASE("contact law: a row that slides resists along its normal, and friction
   CHECK((stiffness_of(law).matrix - sliding).norm() < 1e-3);
   law.compliance.assign(6, 0);
   CHECK(stiffness_of(law).matrix.isZero(0));
+  CHECK(stiffness_of(law).bounded);
 }
 
 /// A row of z with friction along its first tangent, W coupling the two: pressed along z it needs

@@ -112,7 +112,7 @@ TEST_CASE("probe contacts: sub-steps share the probe's way evenly") {
   CHECK((way - Vec3(0.001, 0, 0)).norm() < 1e-15);
 }
 
-TEST_CASE("probe contacts: a triangle touched again starts from its last impulses") {
+TEST_CASE("probe contacts: a triangle touched again starts from its last forces") {
   // Oracle: definition; triangles 2 and 5 stay, 3 is new, 7 is gone.
   TouchedBall ball;
   ProbeContacts probe(plate(0.1));
@@ -122,15 +122,62 @@ TEST_CASE("probe contacts: a triangle touched again starts from its last impulse
   std::vector<ContactRow> rows;
   probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = 1.0 + double(i);
-  CHECK(probe.take_rows(0, rows) == 3);
+  CHECK(probe.take_rows(0, kPeriod, rows) == 3);
   probe.end();
   CHECK(probe.touches(0));
   CHECK_FALSE(probe.touches(1));
   probe.set_contacts(contacts_on({2, 3, 5}, Vec3::Zero(), Vec3::UnitZ()));
   REQUIRE(probe.contacts().size() == 3);
-  CHECK(probe.contacts()[0].normal_impulse == 1);
-  CHECK(probe.contacts()[1].normal_impulse == 0);
-  CHECK(probe.contacts()[2].normal_impulse == 2);
+  rows.clear();
+  probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+  CHECK(rows[0].normal_impulse == Approx(1));
+  CHECK(rows[1].normal_impulse == 0);
+  CHECK(rows[2].normal_impulse == Approx(2));
+}
+
+TEST_CASE("probe contacts: a shorter step starts from as large a force, not as large an impulse") {
+  // Oracle: impulse = force times time.
+  TouchedBall ball;
+  ProbeContacts probe(plate(0.1));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  probe.set_contacts(contacts_on({2}, Vec3::Zero(), Vec3::UnitZ()));
+  probe.begin(kPeriod);
+  std::vector<ContactRow> rows;
+  probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+  rows[0].normal_impulse = 8;
+  rows[0].tangential_impulse = Vec3(0.4, 0, 0);
+  probe.take_rows(0, kPeriod, rows);
+  rows.clear();
+  probe.append_rows(0, ball.surface, ball.state, kPeriod / 4, 0.25, rows);
+  CHECK(rows[0].normal_impulse == Approx(2));
+  CHECK(rows[0].tangential_impulse.x() == Approx(0.1));
+}
+
+TEST_CASE("probe contacts: of several on a triangle each starts from what was at its own node") {
+  // Oracle: definition; of three nodes of triangle 4 the first is gone, two come in other order.
+  TouchedBall ball;
+  ProbeContacts probe(plate(0.1));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  const auto at_nodes = [](std::vector<int> corners) {
+    auto contacts =
+        contacts_on(std::vector<std::uint32_t>(corners.size(), 4), Vec3::Zero(), Vec3::UnitZ());
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      contacts[i].barycentric = Vec3::Unit(corners[i]);
+    }
+    return contacts;
+  };
+  probe.set_contacts(at_nodes({0, 1, 2}));
+  probe.begin(kPeriod);
+  std::vector<ContactRow> rows;
+  probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].normal_impulse = 1.0 + double(i);
+  probe.take_rows(0, kPeriod, rows);
+  probe.set_contacts(at_nodes({2, 1}));
+  rows.clear();
+  probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0].normal_impulse == Approx(3));
+  CHECK(rows[1].normal_impulse == Approx(2));
 }
 
 TEST_CASE("probe contacts: impulses add up over an advance, and the next begins without them") {
@@ -145,7 +192,7 @@ TEST_CASE("probe contacts: impulses add up over an advance, and the next begins 
     probe.append_rows(0, ball.surface, ball.state, kPeriod / 2, fraction, rows);
     rows[0].normal_impulse = 2e-3;
     rows[0].tangential_impulse = Vec3(0, 1e-3, 0);
-    probe.take_rows(0, rows);
+    probe.take_rows(0, kPeriod / 2, rows);
   }
   probe.end();
   CHECK((probe.impulse() - Vec3(0, -2e-3, 4e-3)).norm() < 1e-15);

@@ -1,0 +1,34 @@
+// What rows bring to a step, for a step that is taken again: friction starts from where the step
+// before left it, not from what a dropped attempt made of it.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "deformation/contact/contact_solve.h"
+
+namespace palpate::deformation {
+
+class StartingImpulses {
+ public:
+  void keep(std::span<const ContactRow> rows) {
+    impulses_.clear();
+    for (const ContactRow& row : rows) {
+      impulses_.emplace_back(row.normal_impulse, row.tangential_impulse);
+    }
+  }
+  /// To the rows they are of; those that came later keep what they bring.
+  void give(std::span<ContactRow> rows) const {
+    for (std::size_t r = 0; r < std::min(rows.size(), impulses_.size()); ++r) {
+      rows[r].normal_impulse = impulses_[r].first;
+      rows[r].tangential_impulse = impulses_[r].second;
+    }
+  }
+
+ private:
+  std::vector<std::pair<double, Vec3>> impulses_;
+};
+
+}  // namespace palpate::deformation
