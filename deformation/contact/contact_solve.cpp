@@ -25,6 +25,7 @@ struct PreparedRow {
   double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
   double allowed_approach = 0;          ///< n·v_c + gap/h, or less the separation speed [m/s]
   int first_node = 0, last_node = 2;    ///< of the row's three, those it acts on
+  bool friction_is_kept = false;        ///< but for what leaves the cone
 };
 
 template <class InverseMass>
@@ -36,12 +37,15 @@ class Solver {
         volume_(volume),
         rows_(rows),
         velocities_(velocities),
-        volume_velocity_(volume_velocity),
-        friction_is_kept_(start == WarmStart::kFrictionKept) {
+        volume_velocity_(volume_velocity) {
     sigma_is_held_ = std::all_of(rows.begin(), rows.end(),
                                  [](const ContactRow& row) { return only_node(row) >= 0; });
     prepared_.resize(rows.size());
-    for (std::size_t r = 0; r < rows.size(); ++r) prepare(rows[r], h, prepared_[r]);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      prepare(rows[r], h, prepared_[r]);
+      prepared_[r].friction_is_kept =
+          start == WarmStart::kFrictionKept && rows[r].normal_impulse > 0;
+    }
     for (std::size_t r = 0; start == WarmStart::kToApply && r < rows.size(); ++r) {
       take_guess(rows[r]);
       const Vec3 impulse = rows[r].tangential_impulse - rows[r].normal_impulse * rows[r].normal;
@@ -140,10 +144,20 @@ class Solver {
 
   double relax_friction(std::size_t r) {
     ContactRow& row = rows_[r];
-    if (friction_is_kept_ || !may_rub(row)) return 0;
+    if (!may_rub(row)) return 0;
+    if (prepared_[r].friction_is_kept) return cut_friction(r);
     const Vec3 velocity =
         tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
     const Vec3 change = rub(row, velocity, prepared_[r].tangential_inverse_mass);
+    add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
+    return change.norm() * prepared_[r].tangential_inverse_mass;
+  }
+
+  double cut_friction(std::size_t r) {
+    const Vec3 before = rows_[r].tangential_impulse;
+    clamp_to_cone(rows_[r]);
+    const Vec3 change = rows_[r].tangential_impulse - before;
+    if (change.isZero(0)) return 0;
     add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
     return change.norm() * prepared_[r].tangential_inverse_mass;
   }
@@ -154,7 +168,6 @@ class Solver {
   std::vector<Vec3>& velocities_;
   std::vector<PreparedRow> prepared_;
   double volume_velocity_;  ///< g·w [m³/s]; every impulse updates it
-  bool friction_is_kept_;
   /// Whether σ stays as it is during a sweep. Rows that act on one node each are independent but
   /// for σ: then Newton on σ needs a few sweeps where elimination, which couples all, needs many.
   bool sigma_is_held_ = false;

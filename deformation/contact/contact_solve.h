@@ -73,7 +73,8 @@ inline double allowed_approach(const ContactRow& row, double h) {
 double excess_depth(const Body& body, const ContactRow& row, double h,
                     std::span<const Vec3> velocities);
 
-/// Whether the impulses the rows bring are already in the velocities; and friction stays as it is.
+/// Whether the impulses the rows bring are already in the velocities; and friction of rows that
+/// press stays as it is, but within its cone.
 enum class WarmStart { kToApply, kApplied, kFrictionKept };
 
 /// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.

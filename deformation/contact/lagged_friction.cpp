@@ -63,17 +63,26 @@ void LaggedFriction::append_couplings(std::span<const ContactRow> rows,
   }
 }
 
-void LaggedFriction::apply(const std::vector<Vec3>& velocities, std::span<ContactRow> rows) const {
+void LaggedFriction::apply(std::span<const Mat3> inverse_mass_blocks, std::vector<Vec3>& velocities,
+                           std::span<ContactRow> rows) const {
+  std::vector<Vec3> more(rows.size(), Vec3::Zero());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     ContactRow& row = rows[r];
-    row.tangential_impulse.setZero();
-    if (!(row.normal_impulse > 0)) continue;
-    row.tangential_impulse = laws_[r].at(sliding_velocity(row, velocities));
-    const double found = row.tangential_impulse.norm();
+    if (laws_[r].coefficient == 0) continue;
+    const Vec3 linear = laws_[r].at(sliding_velocity(row, velocities));
+    row.tangential_impulse = linear;
+    const double found = linear.norm();
     if (laws_[r].slides && found > 0) {
       row.tangential_impulse *= row.friction * row.normal_impulse / found;
     }
     clamp_to_cone(row);
+    more[r] = row.tangential_impulse - linear;
+  }
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t node = rows[r].nodes[static_cast<std::size_t>(k)];
+      velocities[node] += inverse_mass_blocks[node] * (rows[r].weights[k] * more[r]);
+    }
   }
 }
 

@@ -33,8 +33,10 @@ class LaggedFriction {
   /// −∂t/∂v
   void append_couplings(std::span<const ContactRow> rows,
                         std::vector<ContactCoupling>& couplings) const;
-  /// Gives the rows their t at these velocities: what slides μ j, the others no more.
-  void apply(const std::vector<Vec3>& velocities, std::span<ContactRow> rows) const;
+  /// Gives the rows their t at these velocities, what slides μ j, the others no more; and the
+  /// nodes what that is more than the linear law, which the velocities are of.
+  void apply(std::span<const Mat3> inverse_mass_blocks, std::vector<Vec3>& velocities,
+             std::span<ContactRow> rows) const;
 
  private:
   struct Law {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "deformation/contact/contact_tilt.h"
-#include "deformation/contact/gauss_seidel.h"
+#include "deformation/contact/coupled_inverse_mass.h"
 #include "deformation/linear_algebra/conjugate_gradients.h"
 
 namespace palpate::deformation {
@@ -39,7 +39,7 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   started_.keep(rows);
   // 1. springs, volume and forces after free flight
   linearise_springs(h, rows, state);
-  report.volume_skipped = !linearise_volume(h, state.target_volume, free_.volume, state.velocities);
+  report.volume_skipped = !linearise_volume(h, state.target_volume, state.velocities);
 
   // 2.-5. contacts, springs and volume
   solve(h, rows, state);
@@ -73,16 +73,26 @@ void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState
 
   // 5. springs and friction about the contacts
   relax_contacts(h, rows, state);
-  for (ContactRow& row : rows) clamp_to_cone(row);
   keep_momentum(h, rows, state);
 }
 
-/// At trial_. The residual has the friction there, the matrix how it changes.
+/// At trial_. The residual has the friction there, the matrix (from relax_…() on) how it changes,
+/// and so has W; what c is taken from has not.
 void BackwardEuler::linearise_friction(std::span<ContactRow> rows) {
+  for (const auto& [node, block] : without_friction_) inverse_mass_blocks_[node] = block;
+  without_friction_.clear();
   couplings_.resize(tilt_count_);
   springs_.couple(couplings_);
   friction_.linearise(inverse_mass_blocks_, trial_, rows);
   friction_.append_couplings(rows, couplings_);
+  const std::span added = std::span(couplings_).subspan(tilt_count_);
+  for (const ContactCoupling& coupling : added) {
+    for (const std::uint32_t node : coupling.nodes) {
+      without_friction_.emplace_back(node, inverse_mass_blocks_[node]);
+    }
+  }
+  for (const ContactCoupling& coupling : added) take_coupling(coupling, inverse_mass_blocks_);
+  take_volume_answers();
 }
 
 /// Solves with a given impulse of the contents, which is one more outside force.
@@ -113,15 +123,17 @@ void BackwardEuler::linearise_springs(double h, std::span<const ContactRow> rows
     residual_[i] = model_.masses[i] * (free_.velocities[i] - state.velocities[i]);
     inverse_mass_blocks_[i] = 0.5 * springs_.diagonal()[i].inverse();
   }
+  without_friction_.clear();
   couplings_.clear();
   append_tilt_couplings(rows, state.positions, h, couplings_);
   tilt_count_ = couplings_.size();
   take_tilts(state);
 }
 
-/// In A, in D, whose inverse changes by Sherman's and Morrison's formula, and at this velocity.
+/// In A, in W, and at this velocity.
 void BackwardEuler::take_tilts(const OrganState& state) {
   for (const ContactCoupling& coupling : couplings_) {
+    take_coupling(coupling, inverse_mass_blocks_);
     double speed = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       speed += coupling.arms[k].head<3>().cast<double>().dot(state.velocities[coupling.nodes[k]]);
@@ -129,29 +141,36 @@ void BackwardEuler::take_tilts(const OrganState& state) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t node = coupling.nodes[k];
       if (model_.inverse_masses[node] == 0) continue;
-      const Vec3 arm = coupling.arms[k].head<3>().cast<double>();
-      const Vec3 answer = inverse_mass_blocks_[node] * arm;
-      inverse_mass_blocks_[node] -= 2 / (1 + 2 * arm.dot(answer)) * answer * answer.transpose();
-      residual_[node] -= speed * arm;
+      residual_[node] -= speed * coupling.arms[k].head<3>().cast<double>();
     }
   }
 }
 
-bool BackwardEuler::linearise_volume(double h, double target_volume, VolumeGradient& volume,
+bool BackwardEuler::linearise_volume(double h, double target_volume,
                                      const std::vector<Vec3>& velocities) {
+  VolumeGradient& volume = free_.volume;
   volume_row_.reset();
   if (!volume_.is_kept) return true;
   if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
   double rate = (volume.volume - target_volume) / h;
-  volume.denominator = 0;  // of these inverse_mass_blocks from here on
-  volume_answers_.resize(volume.gradient.size());
   for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
     rate -= volume.gradient[i].dot(velocities[i]);
+  }
+  volume_row_.emplace(VolumeRow{volume, rate});
+  take_volume_answers();
+  return true;
+}
+
+/// W g, and gᵀWg, of inverse_mass_blocks_ as they are.
+void BackwardEuler::take_volume_answers() {
+  if (!volume_row_) return;
+  VolumeGradient& volume = free_.volume;
+  volume.denominator = 0;
+  volume_answers_.resize(volume.gradient.size());
+  for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
     volume_answers_[i] = inverse_mass_blocks_[i] * volume.gradient[i];
     volume.denominator += volume.gradient[i].dot(volume_answers_[i]);
   }
-  volume_row_.emplace(VolumeRow{volume, rate});
-  return true;
 }
 
 void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
@@ -229,7 +248,8 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows, const OrganState& 
     trial_[i] = state.velocities[i] + change_[i];
     residual_[i] = inner_residual_[i].head<3>().cast<double>();
   }
-  friction_.apply(trial_, rows);
+  friction_.apply(inverse_mass_blocks_, trial_, rows);
+  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
 }
 
 void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state) {
@@ -242,22 +262,23 @@ void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const O
     for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
       trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
     }
-    friction_.apply(trial_, rows);
+    friction_.apply(inverse_mass_blocks_, trial_, rows);
     hold_rows(h, rows, WarmStart::kFrictionKept);
     for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
   }
 }
 
-/// Truncated iterations leave a little of the total momentum undone. An organ that nothing holds
-/// can be given it: a common velocity strains no spring and changes no volume.
+/// Truncated iterations leave a little of the total momentum undone. An organ that is not fixed can
+/// be given it, so that it gets what its probes feel: a common velocity strains no spring and
+/// changes no volume, and goes a few micrometres into a probe at most.
 void BackwardEuler::keep_momentum(double h, std::span<const ContactRow> rows,
                                   const OrganState& state) {
   if (!model_.fixed_nodes.empty()) return;
-  for (const ContactRow& row : rows) {
-    if (row.normal_impulse > 0) return;
-  }
   const double mass_factor = 1 + h * model_.drag;
   Vec3 missing = Vec3::Zero();
+  for (const ContactRow& row : rows) {
+    missing += row.tangential_impulse - row.normal_impulse * row.normal;
+  }
   for (std::size_t i = 0; i < change_.size(); ++i) {
     missing += model_.masses[i] * (h * (model_.gravity - model_.drag * state.velocities[i]) -
                                    mass_factor * change_[i]);
@@ -268,10 +289,9 @@ void BackwardEuler::keep_momentum(double h, std::span<const ContactRow> rows,
 
 void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganState& state) {
   evaluate_volume(model_, state.positions, free_.volume);
-  if (!linearise_volume(h, state.target_volume, free_.volume, state.velocities)) return;
+  if (!linearise_volume(h, state.target_volume, state.velocities)) return;
   trial_ = state.velocities;
   hold_rows(h, rows, WarmStart::kFrictionKept);
-  for (ContactRow& row : rows) clamp_to_cone(row);
   for (std::size_t i = 0; i < trial_.size(); ++i) {
     state.positions[i] += h * (trial_[i] - state.velocities[i]);
   }

@@ -27,6 +27,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "deformation/contact/constraint_projection.h"
@@ -72,10 +73,10 @@ class BackwardEuler : public OrganDynamics {
   void linearise_springs(double h, std::span<const ContactRow> rows, const OrganState& state);
   void take_tilts(const OrganState& state);
   void linearise_friction(std::span<ContactRow> rows);
-  /// Φ + h g·(v⁺ − velocities) = 0 with `volume` as it would be by these velocities.
+  /// Φ + h g·(v⁺ − velocities) = 0 with the volume of free_ as it would be by these velocities.
   /// @returns false if g vanished
-  bool linearise_volume(double h, double target_volume, VolumeGradient& volume,
-                        const std::vector<Vec3>& velocities);
+  bool linearise_volume(double h, double target_volume, const std::vector<Vec3>& velocities);
+  void take_volume_answers();
   /// Δv ← Δv + W r and impulses on top of it.
   void solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
                       WarmStart start);
@@ -103,7 +104,8 @@ class BackwardEuler : public OrganDynamics {
   LaggedFriction friction_;
   std::vector<ContactCoupling> couplings_;  ///< of the contacts: tilts, then friction
   std::size_t tilt_count_ = 0;
-  OrganState predicted_;                   ///< x̃, v
+  std::vector<std::pair<std::uint32_t, Mat3>> without_friction_;  ///< W of nodes that have some
+  OrganState predicted_;                                          ///< x̃, v
   FreeStep free_;                          ///< what the springs do there in h, and the volume
   std::optional<VolumeRow> volume_row_;    ///< none: contents not kept, or g vanished
   double volume_impulse_ = 0;              ///< σ [Pa·s]

@@ -186,6 +186,30 @@ TEST_CASE("contact solve: contacts without friction on a node each are solved as
   CHECK(pressed > 0);
 }
 
+TEST_CASE("contact solve: kept friction stays in its cone, and rows that close find theirs") {
+  // Oracle: Coulomb's law, and impulse = mass times change of velocity, friction that was kept in
+  // the velocities before. Row 0 presses less than its friction needs, row 1 begins to press.
+  const double mass = 2e-3, h = 1e-3, friction = 0.5;
+  const std::vector<Mat3> inverse_mass_blocks(2, Mat3::Identity() / mass);
+  std::vector<ContactRow> rows(2);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    rows[i].nodes = {i, i, i};
+    rows[i].weights = Vec3(1, 0, 0);
+    rows[i].friction = friction;
+  }
+  rows[0].normal_impulse = 1e-4;
+  rows[0].tangential_impulse = Vec3(5e-5, 0, 0);
+  const std::vector<Vec3> before{Vec3(0, 0, -0.02), Vec3(0.3, 0, 0.1)};
+  auto velocities = before;
+  solve_blocks(inverse_mass_blocks, nullptr, h, rows, velocities, WarmStart::kFrictionKept);
+  CHECK(rows[0].normal_impulse == Approx(1e-4 - 0.02 * mass));
+  CHECK(rows[0].tangential_impulse.x() == Approx(friction * rows[0].normal_impulse));
+  CHECK(rows[1].normal_impulse == Approx(0.1 * mass));
+  CHECK(rows[1].tangential_impulse.x() == Approx(-friction * rows[1].normal_impulse));
+  CHECK(velocities[0].x() == Approx((rows[0].tangential_impulse.x() - 5e-5) / mass));
+  CHECK(velocities[1].x() == Approx(0.3 + rows[1].tangential_impulse.x() / mass));
+}
+
 TEST_CASE("contact solve: nodes that answer by 3×3 blocks do as those that answer by their mass") {
   // Oracle: the scalar form, with blocks I/m; both solve to 1e-9 m/s.
   for (const bool on_nodes : {false, true}) {

@@ -53,7 +53,7 @@ TEST_CASE("lagged friction: what sticks keeps its friction while it rests") {
   f.velocities.assign(3, f.rows[0].probe_velocity);
   f.linearise();
   CHECK((f.rows[0].tangential_impulse - held).norm() < 1e-12 * f.cone());
-  f.friction.apply(f.velocities, f.rows);
+  f.friction.apply(f.inverse_mass_blocks, f.velocities, f.rows);
   CHECK((f.rows[0].tangential_impulse - held).norm() < 1e-12 * f.cone());
 }
 
@@ -72,7 +72,7 @@ TEST_CASE("lagged friction: its couplings are how it changes with the velocities
     for (double& x : v) x = 0.01 * uniform(random);
   }
   for (std::size_t k = 0; k < 3; ++k) f.velocities[k] += change[k];
-  f.friction.apply(f.velocities, f.rows);
+  f.friction.apply(f.inverse_mass_blocks, f.velocities, f.rows);
   const Vec3 changed = f.rows[0].tangential_impulse - before;
   for (std::size_t node = 0; node < 3; ++node) {
     Vec3 found = Vec3::Zero();
@@ -104,9 +104,27 @@ TEST_CASE("lagged friction: stays in its cone and never drives what slides") {
     disturb();
     f.linearise();
     disturb();
-    f.friction.apply(f.velocities, f.rows);
+    const Vec3 sliding = f.sliding();
+    f.friction.apply(f.inverse_mass_blocks, f.velocities, f.rows);
     CHECK(f.rows[0].tangential_impulse.norm() <= f.cone() * (1 + 1e-12));
-    CHECK(f.rows[0].tangential_impulse.dot(f.sliding()) <= 0);
+    CHECK(f.rows[0].tangential_impulse.dot(sliding) <= 0);
+  }
+}
+
+TEST_CASE("lagged friction: nodes take what the cone cuts of the linear law") {
+  // Oracle: impulse over mass. With a tenth of the force that it was linearised at.
+  Fixture f;
+  f.velocities.assign(3, Vec3(0.02, 0, 0));
+  f.linearise();
+  const Vec3 linear = f.rows[0].tangential_impulse;
+  f.rows[0].normal_impulse *= 0.1;
+  const auto before = f.velocities;
+  f.friction.apply(f.inverse_mass_blocks, f.velocities, f.rows);
+  const Vec3 cut = f.rows[0].tangential_impulse - linear;
+  CHECK(cut.norm() > 0.8 * linear.norm());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 expected = f.rows[0].weights[static_cast<Eigen::Index>(k)] / kMass * cut;
+    CHECK((f.velocities[k] - before[k] - expected).norm() < 1e-12);
   }
 }
 

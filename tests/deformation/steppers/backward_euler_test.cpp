@@ -1,6 +1,7 @@
 #include "deformation/steppers/backward_euler.h"
 #include "deformation/organ_messages.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -230,6 +231,43 @@ TEST_CASE("backward Euler: where the pressure is capped, friction starts from th
   }
   CHECK(friction > 0);
   CHECK(difference < 0.01 * friction);
+}
+
+TEST_CASE("backward Euler: a free organ gets what its rough probe feels, however few iterations") {
+  // Oracle: momentum, to rounding; a plate pressed in and drawn along, on walls coarse and fine.
+  // No node is deeper in it than a contact that is not solved.
+  auto organ = ball_organ();
+  organ.tissue.drag = 0;
+  const auto model = testing::ball_model(GENERATE(2, 4, 5), organ);
+  const double friction = GENERATE(0.0, 0.3, 5.0);
+  auto state = rest_state(model);
+  BackwardEuler dynamics(model);
+  const Vec3 velocity(0.04, 0, -0.04);
+  double height = kBallRadius;
+  for (int s = 0; s < 40; ++s) {
+    std::vector<ContactRow> rows;
+    for (std::uint32_t i = 0; i < model.surface_node_count; ++i) {
+      const double gap = height - state.positions[i].z();
+      if (gap > 2e-3) continue;
+      ContactRow& row = rows.emplace_back();
+      row.nodes = {i, i, i};
+      row.weights = Vec3(1, 0, 0);
+      row.gap = gap;
+      row.friction = friction;
+      row.probe_velocity = velocity;
+    }
+    Vec3 expected = testing::momentum(model, state);
+    dynamics.step(kImplicitStep, rows, state);
+    double pressed = 0, deepest = 0;
+    for (const ContactRow& row : rows) {
+      pressed += row.normal_impulse;
+      expected += row.tangential_impulse - row.normal_impulse * row.normal;
+      deepest = std::max(deepest, excess_depth(model, row, kImplicitStep, state.velocities));
+    }
+    CHECK((testing::momentum(model, state) - expected).norm() < 1e-9 * pressed + 1e-15);
+    CHECK(deepest < kUnsolvedDepth);
+    height += kImplicitStep * velocity.z();
+  }
 }
 
 TEST_CASE("backward Euler: the same steps give the same bits") {
