@@ -79,7 +79,8 @@ void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce
   wanted = present * wanted;
   Wrench passive_wrench = passive(wanted, device, limits);
   // Who has nothing to go by lets go: a debt must not hold the hand.
-  if (present == 0 || freshness(age(current_, time), limits_) == 0) passive_wrench = {};
+  const bool stale = freshness(age(current_, time), limits_) == 0;
+  if (present == 0 || stale || is_near_nothing(time)) passive_wrench = {};
   const Vec3 damping = contact_damping(passive_wrench.force, device);
   passive_wrench.force += damping;
   out.force = force_limiter_.limit(passive_wrench.force, limits);
@@ -136,6 +137,11 @@ double HapticRenderer::presence(double silence) {
   return presence_;
 }
 
+/// Laws without rows go on coming of a probe in the open, and where contacts are heard of no more.
+bool HapticRenderer::is_near_nothing(double time) const {
+  return current_.valid && current_.law.rows.empty() && time - without_rows_ > kLetGo;
+}
+
 /// b/(T/2 + t_d), T the tick, b and t_d the device's damping and delay: the largest stiffness that
 /// it can hold [N/m]; 0: nobody holds it.
 double HapticRenderer::stable_stiffness(const DeviceSample& device) const {
@@ -162,8 +168,10 @@ double HapticRenderer::softening_of(const LocalLaw& law, const DeviceSample& dev
 void HapticRenderer::begin_cross_fade(const DeviceSample& device, double time) {
   std::uint32_t ignored = 0;
   const Wrench before = wrench_at(device.pose, time, ignored);
+  const bool had_rows = !current_.valid || !current_.law.rows.empty();
   std::swap(current_, next_);
   next_.valid = false;
+  if (had_rows) without_rows_ = time;
   const double spread = std::min(current_.law.period, kLongestCrossFade);
   cross_fade_ticks_ = std::max(1, static_cast<int>(std::lround(spread / period_)));
   softening_ = softening_of(current_.law, device);

@@ -21,6 +21,8 @@ class HapticRenderer {
  public:
   /// A new law's difference to the one before is spread over its period, at most over this [s].
   static constexpr double kLongestCrossFade = 0.025;
+  /// A probe that is near nothing, by its law, is let go within this, debt or not [s].
+  static constexpr double kLetGo = 0.025;
   /// Of a held device in contact [N·s/m]. With it 0.1 kg on 0.2 N·s/m loses a swing by exp(−2.5
   /// t/s); a hand that holds it has 3 N·s/m and more.
   static constexpr double kContactDamping = 0.3;
@@ -51,6 +53,7 @@ class HapticRenderer {
   };
   double age(const Received& received, double time) const;
   double presence(double silence);
+  bool is_near_nothing(double time) const;
   double stable_stiffness(const DeviceSample& device) const;
   double softening_of(const LocalLaw& law, const DeviceSample& device) const;
   Wrench propose(const DeviceSample& device, double time, std::uint32_t& limits);
@@ -66,6 +69,7 @@ class HapticRenderer {
   PassivityControl passivity_;
 
   Received current_, next_;  ///< `next_` takes over at the coming tick
+  double without_rows_ = 0;  ///< since when laws have none, if the current one has none [s]
   LawSolver solver_;         ///< of the current law
   double softening_ = 0;     ///< of a law too stiff for the device [m/N]; 0: not capped
   double presence_ = 1;      ///< of who holds the device: 0 when its driver is silent

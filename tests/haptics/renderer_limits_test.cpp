@@ -59,6 +59,34 @@ TEST_CASE("haptic renderer: a hand that gives way as a stale model fades is let 
   CHECK(last - fresh <= limits.stale_after + limits.fade_time + 10 * kT);
 }
 
+TEST_CASE("haptic renderer: a hand in debt that is near nothing any more is let go all the same") {
+  // Oracle: the stated time and the slew limit, 2 N in 10 ticks. As when collision dies: laws go on
+  // coming, without rows. The hand was pushed out, faster than it went in, and swings on.
+  RendererBench bench;
+  DeviceSample device = resting_at(kPressed);
+  bench.hold(wall_model(kPressed), device, 40);
+  for (int i = 0; i < 40; ++i) {  // a law that pushes harder and harder gives energy
+    device.twist.linear.z() = 0.05;
+    device.pose.position.z() += kT * 0.05;
+    bench.hold(wall_model(device.pose.position), device, 1);
+  }
+  LocalLaw nothing = wall_model(device.pose.position);
+  nothing.rows.clear();
+  nothing.compliance.clear();
+  nothing.stiffness.setZero();
+  const double since = bench.time();
+  double last = since;
+  for (int i = 0; i < 400; ++i) {
+    device.twist.linear.z() = 0.05 * std::cos(0.02 * i);
+    device.pose.position.z() += kT * device.twist.linear.z();
+    const double now = bench.time();
+    const RenderedForce out = bench.hold(nothing, device, 1);
+    if (out.force.norm() > 0) last = now;
+  }
+  INFO("let go " << last - since << " s after the last law with rows");
+  CHECK(last - since <= HapticRenderer::kLetGo + 10 * kT);
+}
+
 TEST_CASE("haptic renderer: where the slew limit is slower than the fade, it decides") {
   // Oracle: analytic. 10 N/s: 2 N take 200 ms however short the fade.
   scene::Haptics limits;
