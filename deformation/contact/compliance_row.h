@@ -25,6 +25,7 @@ struct PeriodSteps {
 struct ComplianceRow {
   std::vector<std::pair<std::uint32_t, double>> weights;  ///< of nodes
   Vec3 axis = Vec3::UnitZ();
+  double force = 0;  ///< that presses along it now [N]
 };
 
 }  // namespace palpate::deformation

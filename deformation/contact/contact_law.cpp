@@ -21,13 +21,21 @@ bool slides(const LawRow& row, double friction) {
   return dragging.norm() >= kSlidingFraction * friction * pressing;
 }
 
+/// Nearer to its edge than this part of a triangle a contact is on the edge.
+constexpr double kOnEdge = 1e-6;
+
+/// The normal of a round probe turns as it slides over an edge or a node, not over a face.
+double turning_radius(const CarriedContact& contact, double radius) {
+  return contact.barycentric.minCoeff() > kOnEdge ? 0 : radius;
+}
+
 bool presses(const CondensedContact& contact) { return !contact.row.force.isZero(0); }
 
 CondensedContact one_of(const CarriedContact& contact, const Pose& probe, const Body& body,
                         const OrganState& state, double radius, double period) {
   CondensedContact one;
   one.organ = contact.organ;
-  one.row.radius = radius;
+  one.row.radius = turning_radius(contact, radius);
   Vec3 tissue = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     const double weight = contact.barycentric[k];
@@ -71,9 +79,8 @@ std::vector<std::size_t> spread(const std::vector<CondensedContact>& contacts, s
 CondensedContact merged(const std::vector<const CondensedContact*>& members) {
   CondensedContact sum;
   sum.organ = members.front()->organ;
-  sum.row.radius = members.front()->row.radius;
   Vec3 normal = Vec3::Zero();
-  double total = 0;
+  double total = 0, turning = 0, radius = 0;
   for (const CondensedContact* member : members) {
     const double share = member->row.normal.dot(member->row.force);
     total += share;
@@ -81,11 +88,14 @@ CondensedContact merged(const std::vector<const CondensedContact*>& members) {
     sum.row.force += member->row.force;
     sum.row.point_P += share * member->row.point_P;
     sum.row.velocity += share * member->row.velocity;
+    turning += member->row.radius > 0 ? share : 0;
+    radius = std::max(radius, member->row.radius);
     for (const auto& [node, weight] : member->weights) {
       sum.weights.push_back({node, share * weight});
     }
   }
   sum.row.normal = normal.norm() > 0 ? normal.normalized() : members.front()->row.normal;
+  sum.row.radius = turning > total / 2 ? radius : 0;
   sum.row.point_P /= total;
   sum.row.velocity /= total;
   for (auto& [node, weight] : sum.weights) weight /= total;
@@ -146,7 +156,8 @@ void append_compliance_rows(const CondensedContact& contact, std::size_t directi
                             std::vector<ComplianceRow>& rows) {
   const Mat3 basis = contact_basis(contact.row.normal);
   for (std::size_t k = 0; k < directions; ++k) {
-    rows.push_back({contact.weights, basis.col(static_cast<int>(k))});
+    const Vec3 axis = basis.col(static_cast<int>(k));
+    rows.push_back({contact.weights, axis, axis.dot(contact.row.force)});
   }
 }
 

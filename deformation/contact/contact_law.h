@@ -15,6 +15,8 @@ struct CondensedContact {
   std::vector<std::pair<std::uint32_t, double>> weights;  ///< of the organ's nodes
 };
 
+/// The radius of a row is 0 for a flat probe, and for a round one on a triangle's face: sliding
+/// there, it finds the same normal. Of several taken together it is that of most of the force.
 /// All contacts of a probe at the end of an advance, at most kMaxLawRows: those that press, then
 /// the nearest others. Where more than that press, neighbours are taken together about places far
 /// from each other, with the sum of their forces at its middle.

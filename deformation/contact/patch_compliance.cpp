@@ -45,7 +45,16 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   const SpringShares shares = shares_of(steps, model_.drag);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
   Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
-  if (shares.stiffness > 0) add_stiffness(patch_, shares.stiffness, shares.damping, A);
+  const bool is_explicit = !model_.is_solid() && !steps.implicit && steps.count > 1;
+  if (is_explicit) {
+    pressed_.stiffness = pressed_.damping = A;
+    add_stiffness(patch_, 1, 0, pressed_.stiffness);
+    add_stiffness(patch_, 0, 1, pressed_.damping);
+    A = static_cast<float>(shares.stiffness) * pressed_.stiffness +
+        static_cast<float>(shares.damping) * pressed_.damping;
+  } else if (shares.stiffness > 0) {
+    add_stiffness(patch_, shares.stiffness, shares.damping, A);
+  }
   double mass = 0;
   const double springs = A.trace();
   for (const std::uint32_t node : patch_.nodes) {
@@ -64,7 +73,48 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
     A.bottomLeftCorner(far, size) = far_->near_block().transpose();
     A.bottomRightCorner(far, far) = far_->own_block();
   }
-  return answers(A, far, shares.mass, rows, gradient);
+  const Eigen::MatrixXd evenly = answers(A, far, shares.mass, rows, gradient);
+  if (!is_explicit || far > 0) return evenly;
+  return shortfall(evenly, rows, steps, gradient) * evenly;
+}
+
+double PatchCompliance::shortfall(const Eigen::MatrixXd& evenly,
+                                  std::span<const ComplianceRow> rows, const PeriodSteps& steps,
+                                  std::span<const Vec3> gradient) {
+  Eigen::VectorXd press(static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    press[static_cast<Eigen::Index>(r)] = rows[r].force;
+  }
+  if (press.isZero(0)) press[0] = 1;
+  press.normalize();
+  const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
+  pressed_.push.setZero(size);
+  pressed_.volume.setZero(size);
+  pressed_.masses.resize(size);
+  pressed_.drag = model_.drag;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (const auto& [node, weight] : rows[r].weights) {
+      const int place = patch_.place(node);
+      if (place < 0) return 1;  // a touch of more nodes, or a fixed one, which answers alone
+      pressed_.push.segment<3>(3 * place) +=
+          press[static_cast<Eigen::Index>(r)] * weight * rows[r].axis;
+    }
+  }
+  for (const std::uint32_t node : patch_.nodes) {
+    pressed_.masses.segment<3>(3 * patch_.place(node)).setConstant(model_.masses[node]);
+  }
+  pressed_.volume_beyond = 0;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    const int place = patch_.place(static_cast<std::uint32_t>(i));
+    if (place >= 0) {
+      pressed_.volume.segment<3>(3 * place) = gradient[i];
+    } else {
+      pressed_.volume_beyond += gradient[i].squaredNorm() * model_.inverse_masses[i];
+    }
+  }
+  const double found = even_press_compliance(pressed_, steps.period, steps.count);
+  const double expected = press.dot(evenly * press);
+  return found > 0 && expected > 0 ? found / expected : 1;
 }
 
 Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index far,

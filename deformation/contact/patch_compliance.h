@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "deformation/contact/compliance_row.h"
+#include "deformation/contact/even_press.h"
 #include "deformation/contact/far_answers.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/patch.h"
@@ -35,7 +36,9 @@ class PatchCompliance {
   /// @param nodes  of a patch, at most
   PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes);
 
-  /// C A⁻¹ Cᵀ [m/N], symmetric. Nodes that are touched but do not fit the patch answer alone.
+  /// C A⁻¹ Cᵀ [m/N], symmetric. In explicit steps of springs near by it is scaled so that the
+  /// press of the rows' forces, or without any that of the first row, gives way as in those steps
+  /// (even_press.h). Nodes that are touched but do not fit the patch answer alone.
   /// @param gradient  of a kept volume (volume_gradient.h), empty: none is kept
   Eigen::MatrixXd solve(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows,
                         const PeriodSteps& steps, std::span<const Vec3> gradient,
@@ -49,11 +52,17 @@ class PatchCompliance {
                           std::span<const ComplianceRow> rows,
                           std::span<const Vec3> gradient) const;
 
+  /// @param evenly  C A⁻¹ Cᵀ
+  /// @returns what the press gives way by in explicit steps, over what it does by that
+  double shortfall(const Eigen::MatrixXd& evenly, std::span<const ComplianceRow> rows,
+                   const PeriodSteps& steps, std::span<const Vec3> gradient);
+
   const OrganModel& model_;
   Neighbours neighbours_;
   std::size_t most_nodes_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
+  PressedPatch pressed_;           ///< K and D in explicit steps
   std::optional<FarAnswers> far_;  ///< of springs, once they reach beyond the patch
 };
 

@@ -90,6 +90,40 @@ TEST_CASE(
   CHECK((torque - turn).norm() < 0.02 * expected.norm() * testing::kBallRadius);
 }
 
+TEST_CASE("contact law: a round probe's normal turns over nodes and edges, not over a face") {
+  // Oracle: geometry. A ball over the middle of a triangle, of an edge, and over a node, 0.1 mm
+  // deep: the row there, which is the deepest, has the ball's radius or none.
+  const OrganModel model = testing::ball_model(2);
+  const OrganState state = rest_state(model);
+  const geometry::Triangle& triangle = model.triangles[7];
+  const double radius = 2e-3;
+  for (const Vec3& at : {Vec3(0.3, 0.3, 0.4), Vec3(0.5, 0.5, 0), Vec3(1, 0, 0)}) {
+    SurfaceWalk surface(model);
+    ProbeContacts probe{{"ball", scene::SphereShape{radius}, 0, scene::ScriptedDevice{}}};
+    Vec3 place = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) place += at[k] * state.positions[triangle[std::size_t(k)]];
+    const Vec3 normal = (state.positions[triangle[1]] - state.positions[triangle[0]])
+                            .cross(state.positions[triangle[2]] - state.positions[triangle[0]])
+                            .normalized();
+    const bool on_face = at.minCoeff() > 0;
+    const Vec3 out = on_face ? normal : place.normalized();
+    probe.set_pose({place + (radius - 1e-4) * out, Quat::Identity()});
+    Contact seed;
+    seed.triangle = 7;
+    seed.normal_P = out;
+    probe.set_contacts(std::vector{seed});
+    probe.begin(Plate::kPeriod);
+    std::vector<ContactRow> rows;
+    probe.append_rows(0, surface, state, Plate::kPeriod, 1, rows);
+    for (ContactRow& row : rows) row.normal_impulse = row.gap < 0 ? 1e-4 : 0;
+    probe.take_rows(0, Plate::kPeriod, rows);
+    probe.end();
+    const auto contacts = condense_contacts(probe, {&model}, {&state}, Plate::kPeriod);
+    REQUIRE_FALSE(contacts.empty());
+    CHECK(contacts.front().row.radius == (on_face ? 0 : radius));
+  }
+}
+
 TEST_CASE("contact law: the stiffness of rows is that of springs beside each other") {
   // Oracle: analytic. Two parallel rows of 100 and 200 N/m; coupled ones by the inverse of W.
   LocalLaw law;
