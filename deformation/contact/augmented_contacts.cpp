@@ -85,6 +85,14 @@ bool AugmentedContacts::update(std::span<ContactRow> rows, const std::vector<Vec
   return changed;
 }
 
+void AugmentedContacts::go_on(std::span<ContactRow> rows, const std::vector<Vec3>& velocities) {
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    springs_[c].last_pressing = rows[c].normal_impulse;
+    springs_[c].last_friction = rows[c].tangential_impulse;
+  }
+  update(rows, velocities);
+}
+
 void AugmentedContacts::add_impulses(std::span<const ContactRow> rows,
                                      std::vector<Vec4f>& r) const {
   for (const ContactRow& row : rows) {

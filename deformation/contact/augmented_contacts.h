@@ -5,7 +5,8 @@
 // that Newton's method needs a few rounds; each adds to A, of the contacts that press,
 // b (ρ nnᵀ + σ (I − nnᵀ)) b with σ = ρ |t|/|t₀ − ρ s| of the round before (lagged, so that friction
 // always brakes). Contacts may depend on each other: they share their force. A contact whose force
-// changes by Δj in a step is penetrated by h Δj/ρ until the next.
+// changes by Δj in a round is penetrated by h Δj/ρ: where that is too much, go_on() begins another
+// round, else the next step does.
 #pragma once
 
 #include <span>
@@ -27,6 +28,10 @@ class AugmentedContacts {
   /// Sets the rows' impulses to those at these velocities [m/s].
   /// @returns whether other contacts press than before, or friction is much different
   bool update(std::span<ContactRow> rows, const std::vector<Vec3>& velocities);
+
+  /// Begins another round from these impulses: what is still penetrated at these velocities, or
+  /// slides within its cone, is held by as much more.
+  void go_on(std::span<ContactRow> rows, const std::vector<Vec3>& velocities);
 
   /// r += Σ b (impulse) [N·s]
   void add_impulses(std::span<const ContactRow> rows, std::vector<Vec4f>& r) const;

@@ -8,6 +8,8 @@ namespace {
 
 /// Rounds of conjugate gradients, at most; the contacts are revised between them.
 constexpr int kMaxRounds = 6;
+/// How often contacts that are still penetrated are held by more, all rounds again, at most.
+constexpr int kMostGoingOn = 4;
 
 }  // namespace
 
@@ -70,6 +72,17 @@ void LinearlyImplicitEuler::linearise(double h, const OrganState& state) {
 void LinearlyImplicitEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   velocities_ = state.velocities;
   contacts_.begin(inverse_diagonal_, rows, h, velocities_);
+  find_contacts(rows, state);
+  const auto is_deep = [&](const ContactRow& row) {
+    return excess_depth(body_, row, h, velocities_) > kUnsolvedDepth;
+  };
+  for (int more = 0; more < kMostGoingOn && std::ranges::any_of(rows, is_deep); ++more) {
+    contacts_.go_on(rows, velocities_);
+    find_contacts(rows, state);
+  }
+}
+
+void LinearlyImplicitEuler::find_contacts(std::span<ContactRow> rows, const OrganState& state) {
   iterations_used_ = 0;
   const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
   // Short rounds until the contacts are found, then the rest of the iterations.

@@ -1,7 +1,8 @@
 // Linearly implicit Euler: of backward Euler, one Newton iteration from the inertial prediction
 // x̃ = x + h v,
 //   A Δv = h f(x̃) + h M (gravity − drag v) − Bᵀ (impulses),   A = (1 + h·drag) M + h² K(x̃)
-// by rounds of preconditioned conjugate gradients, the contacts inside (augmented_contacts.h). What
+// by rounds of preconditioned conjugate gradients, the contacts inside (augmented_contacts.h), and
+// again where tissue would end deeper in a probe than it may by kUnsolvedDepth. What
 // the iterations leave of the residual acts on in the next step: equilibria are those of f, however
 // few iterations are made.
 //   D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH 1998.
@@ -55,6 +56,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   void linearise(double h, const OrganState& state);
   /// Δv and the contacts' impulses together.
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
+  void find_contacts(std::span<ContactRow> rows, const OrganState& state);
   void take_preconditioner(std::span<const ContactRow> rows);
   void take_residual(std::span<const ContactRow> rows);
   double precondition();
