@@ -11,8 +11,9 @@ namespace {
 /// A probe whose way in a period is shorter rests [m].
 constexpr double kResting = 1e-6;
 
-/// Contacts on one triangle further from each other, in barycentric coordinates, are two.
-constexpr double kSamePlace = 0.5;
+/// Contacts on one triangle, in barycentric coordinates as far from each other as two nodes, are
+/// two.
+constexpr double kSamePlace = 0.99;
 
 std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
   return {contact.organ, contact.triangle};
