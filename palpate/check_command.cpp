@@ -1,201 +1,156 @@
 #include "palpate/check_command.h"
 
+#include <json/json.h>
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <ostream>
-#include <set>
 
-#include "deformation/organ_messages.h"
-#include "haptics/devices/placed_device.h"
 #include "modules/core/error.h"
-#include "modules/core/units.h"
-#include "modules/geometry/organ_shape.h"
-#include "modules/runtime/clock.h"
-#include "modules/runtime/worker_team.h"
-#include "modules/scene/assets.h"
-#include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
+#include "modules/scene/settings.h"
+#include "palpate/scene_check.h"
+#include "palpate/scene_file.h"
 #include "palpate/session/contact_line.h"
-#include "palpate/session/in_process.h"
-#include "palpate/session/timed_stage.h"
 
 namespace palpate::launcher {
 namespace {
 
-/// Which integrator, who chose it, and by what.
-std::string integrator_text(const scene::Organ& organ,
-                            const deformation::IntegratorChoice& choice) {
-  const bool automatic = organ.integrator == scene::Integrator::kAutomatic;
-  return fmt::format(
-      "  integrator {} ({}): passes over the springs per simulated second: symplectic_euler "
-      "{:.0f}, backward_euler {:.0f}\n",
-      scene::word_of(choice.integrator), automatic ? "automatic" : "by the scene",
-      choice.symplectic_passes, choice.backward_passes);
-}
-
-/// A warning where a shell's inner springs are neither of the two fitted to finite elements
-/// (docs/calibration.md): its forces are then a choice, not a prediction.
-std::string calibration_text(const scene::Organ& organ) {
-  constexpr double kFittedSolid = 10;
-  const double fitted = scene::Springs{}.inner_ratio, ratio = organ.springs.inner_ratio;
-  if (ratio == fitted || ratio == kFittedSolid) return "";
-  return fmt::format(
-      "  warning: inner_ratio {:g} is not calibrated (fitted: {:g} for a filled shell, {:g} for a "
-      "solid, docs/calibration.md)\n",
-      ratio, fitted, kFittedSolid);
-}
-
-/// Of a solid: what the scene asks for, and what its model makes of that.
-std::string poisson_text(const scene::Organ& organ) {
-  const double asked = organ.solid.poisson_ratio;
-  const double computed = deformation::computed_poisson_ratio(organ);
-  return computed == asked ? fmt::format("{:g}", asked)
-                           : fmt::format("{:g}, computed with {:.3f}", asked, computed);
-}
-
-std::string organ_text(const scene::Organ& organ, const geometry::OrganShape& shape,
-                       const deformation::DeformationWorld& world, std::size_t index,
-                       double period) {
-  const SurfaceTopology& topology = deformation::surface_message(world, index);
-  const double volume = geometry::enclosed_volume(shape.surface.nodes, shape.surface.triangles);
-  std::array<std::size_t, 3> springs{};
-  for (const auto& spring : topology.springs) ++springs[static_cast<std::size_t>(spring.family)];
-  const int substeps = world.substeps(index, period);
-  const std::size_t inner = topology.rest_positions.size() / 3 - topology.surface_node_count;
-  std::string text =
-      fmt::format("organ {}: {} surface nodes + {} {} nodes, {} fixed; {} triangles\n", organ.name,
-                  topology.surface_node_count, inner, shape.is_solid() ? "inner" : "virtual",
-                  topology.fixed_nodes.size(), topology.triangles.size());
-  text += shape.is_solid()
-              ? fmt::format("  {} {} tetrahedra, Poisson's ratio {}\n", shape.tetrahedra.size(),
-                            shape.edge_nodes.empty() ? "linear" : "quadratic", poisson_text(organ))
-              : fmt::format("  springs: {} structural, {} bending, {} inner\n", springs[0],
-                            springs[1], springs[2]);
-  text += fmt::format("  volume {:.1f} cm3, mass {:.3f} kg, model {}\n", 1e6 * volume,
-                      organ.tissue.density * volume, organ.model);
-  if (!shape.is_solid()) text += calibration_text(organ);
-  if (scene::format_of(organ.model).has_integrator)
-    text += integrator_text(organ, world.integrator(index));
-  text += fmt::format("  largest step {:.1f} us: {} sub-steps of {:.1f} us in a period\n",
-                      1e6 * world.stable_step(index), substeps, 1e6 * period / substeps);
+std::string verdict(const SceneCheck& check) {
+  const double share = 100 * check.cost / check.period;
+  std::string text = fmt::format("{}: can be run", check.scene.file.string());
+  if (!check.doubts.empty()) {
+    text +=
+        fmt::format(", with {} doubt{}", check.doubts.size(), check.doubts.size() == 1 ? "" : "s");
+  }
+  text += check.cost <= check.period ? "; in real time here" : "; slower than real time here";
+  text += fmt::format(
+      ": deformation takes {:.3f} ms of each {:.3f} ms, lightly touched ({:.0f} % of one core), "
+      "real-time factor {:.2f}\n",
+      1e3 * check.cost, 1e3 * check.period, share, check.real_time_factor());
+  if (check.cost > check.period) {
+    text += "  as fast as the machine allows, and right: palpate run --lockstep\n";
+  }
   return text;
 }
 
-/// Opens the files a probe names, as its processes would. What is wrong with a recording, but can
-/// be borne, is printed.
-void check_probe(const scene::Probe& probe, const scene::Haptics& limits, std::ostream& out) {
-  scene::load_probe_mesh(probe);
-  std::vector<std::string> warnings;
-  haptics::make_device(probe.device, limits, warnings);
-  for (const auto& warning : warnings) out << "warning: " << warning << '\n';
+std::string poisson_text(const OrganCheck& organ) {
+  if (organ.computed_poisson_ratio == organ.asked_poisson_ratio) {
+    return fmt::format("{:g}", organ.asked_poisson_ratio);
+  }
+  return fmt::format("{:g}, computed with {:.3f}", organ.asked_poisson_ratio,
+                     organ.computed_poisson_ratio);
 }
 
-constexpr double kTip = 5e-3;  // [m]
-
-/// The scene with a sphere for its probes, which is moved from outside.
-scene::Scene touched_by_sphere(scene::Scene scene) {
-  scene.probes = {{"tip", scene::SphereShape{kTip}, 0.1, scene::ScriptedDevice{}}};
-  return scene;
+std::string joined_by(const OrganCheck& organ) {
+  if (organ.tetrahedra == 0) {
+    return fmt::format("springs: {} structural, {} bending, {} inner", organ.structural,
+                       organ.bending, organ.inner);
+  }
+  return fmt::format("{} {} tetrahedra, Poisson's ratio {}", organ.tetrahedra,
+                     organ.quadratic ? "quadratic" : "linear", poisson_text(organ));
 }
 
-double wall_time() { return seconds_from_ns(runtime::monotonic_now_ns()); }
+std::string steps_text(const OrganCheck& organ, double period) {
+  std::string text =
+      fmt::format("{}: {} sub-steps of {:.1f} us (largest {:.1f} us)", organ.model, organ.substeps,
+                  1e6 * period / organ.substeps, 1e6 * organ.largest_step);
+  if (!organ.integrator) return text;
+  return text + fmt::format(
+                    "; {} ({}), passes over the springs per simulated second: symplectic_euler "
+                    "{:.0f}, backward_euler {:.0f}",
+                    scene::word_of(organ.integrator->integrator),
+                    organ.integrator_automatic ? "automatic" : "by the scene",
+                    organ.integrator->symplectic_passes, organ.integrator->backward_passes);
+}
 
-/// A session of the scene with its deformation timed.
-class TimedSession {
- public:
-  TimedSession(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
-               ChunkRunner& runner)
-      : session_(touched_by_sphere(scene), {std::move(shapes), {geometry::TriangleSurface{}}},
-                 options(runner)) {
-    auto device = std::make_unique<haptics::PlacedDevice>(Pose{});
-    tip_ = device.get();
-    session_.haptics().set_device(0, std::move(device));
+std::string organ_text(const OrganCheck& organ, double period) {
+  return fmt::format(
+             "organ {}: {:.0f} x {:.0f} x {:.0f} mm, {:.1f} cm3, {:.3f} kg; {} surface + {} {} "
+             "nodes, {} fixed, {} triangles\n",
+             organ.name, 1e3 * organ.size.x(), 1e3 * organ.size.y(), 1e3 * organ.size.z(),
+             1e6 * organ.volume, organ.mass, organ.surface_nodes, organ.inner_nodes,
+             organ.tetrahedra > 0 ? "inner" : "virtual", organ.fixed_nodes, organ.triangles) +
+         fmt::format("  {}\n  {}\n", joined_by(organ), steps_text(organ, period));
+}
+
+std::string probe_text(const ProbeCheck& probe) {
+  const collision::Approach& approach = probe.approach;
+  std::string text = fmt::format("probe {}: {}, {}", probe.name, probe.shape, probe.device);
+  if (approach.begins_inside) return text + "; begins inside an organ\n";
+  if (approach.touches_at) text += fmt::format("; touches first at {:.2f} s", *approach.touches_at);
+  if (approach.fastest > 0) text += fmt::format("; up to {:.3g} m/s", approach.fastest);
+  return text + '\n';
+}
+
+void print_text(const SceneCheck& check, std::ostream& out) {
+  out << verdict(check);
+  for (const auto& doubt : check.doubts) out << "warning: " << doubt << '\n';
+  for (const auto& organ : check.organs) out << organ_text(organ, check.period);
+  for (const auto& probe : check.probes) out << probe_text(probe);
+  const scene::Rates& rates = check.scene.rates;
+  out << fmt::format(
+      "rates: haptics {:g} Hz, collision {:g} Hz, deformation {:g} Hz, visualizer {:g} Hz\n",
+      rates.haptics, rates.collision, rates.deformation, rates.visualizer);
+  const ContactTroubles& troubles = check.troubles;
+  if (troubles.truncated + troubles.lost + troubles.unsolved > 0) {
+    out << session::contact_line(troubles) << '\n';
   }
+}
 
-  const deformation::DeformationWorld& world() const { return session_.world(); }
-  ContactTroubles contact_troubles() const { return session_.contact_troubles(); }
+Json::Value json_of(const OrganCheck& organ) {
+  Json::Value value;
+  value["name"] = organ.name;
+  value["model"] = organ.model;
+  for (const double side : organ.size) value["size_m"].append(side);
+  value["volume_m3"] = organ.volume;
+  value["mass_kg"] = organ.mass;
+  value["surface_nodes"] = Json::UInt64(organ.surface_nodes);
+  value["inner_nodes"] = Json::UInt64(organ.inner_nodes);
+  value["fixed_nodes"] = Json::UInt64(organ.fixed_nodes);
+  value["triangles"] = Json::UInt64(organ.triangles);
+  value["tetrahedra"] = Json::UInt64(organ.tetrahedra);
+  value["springs"] = Json::UInt64(organ.structural + organ.bending + organ.inner);
+  value["largest_step_s"] = organ.largest_step;
+  value["substeps"] = organ.substeps;
+  return value;
+}
 
-  /// Wall time of deformation in a period, mean over about `measure_for` seconds [s]. The sphere
-  /// presses a triangle that is free to move once a second, 1 mm deep: an implicit step that has
-  /// nothing to do is no measure of one that has.
-  double cost_of_period(double period, double measure_for) {
-    place_tip();
-    session_.run_until(period);  // memory is taken, caches are warm
-    spent_ = 0;
-    const double end = wall_time() + measure_for;
-    int periods = 0;
-    for (; wall_time() < end; ++periods) {
-      place_tip();
-      session_.run_until(session_.time() + period);
-    }
-    return periods > 0 ? spent_ / periods : 0;
-  }
+Json::Value json_of(const ProbeCheck& probe) {
+  Json::Value value;
+  value["name"] = probe.name;
+  value["shape"] = probe.shape;
+  value["device"] = probe.device;
+  value["begins_inside"] = probe.approach.begins_inside;
+  if (probe.approach.touches_at) value["touches_at_s"] = *probe.approach.touches_at;
+  value["fastest_m_per_s"] = probe.approach.fastest;
+  return value;
+}
 
- private:
-  session::InProcessOptions options(ChunkRunner& runner) {
-    session::InProcessOptions options;
-    options.runner = &runner;
-    options.make = [this](std::string_view module, bus::Bus& bus,
-                          const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
-      if (module != "deformation") return usual(bus);
-      return std::make_unique<session::TimedStage>(usual(bus), wall_time, spent_);
-    };
-    return options;
-  }
-
-  void place_tip() {
-    const deformation::OrganModel& organ = world().model(0);
-    const std::set<std::uint32_t> fixed(organ.fixed_nodes.begin(), organ.fixed_nodes.end());
-    const auto free = std::find_if(
-        organ.triangles.begin(), organ.triangles.end(), [&](const geometry::Triangle& t) {
-          return std::none_of(t.begin(), t.end(), [&](auto node) { return fixed.contains(node); });
-        });
-    if (free == organ.triangles.end()) return;
-    const auto corner = [&](std::size_t k) { return organ.rest_positions[(*free)[k]]; };
-    const Vec3 n = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
-    const double depth = 0.5e-3 * (1 - std::cos(2 * M_PI * session_.time()));
-    Pose pose;
-    pose.position = (corner(0) + corner(1) + corner(2)) / 3 + (kTip - depth) * n;
-    tip_->place(pose);
-  }
-
-  double spent_ = 0;  ///< in deformation so far [s]
-  session::InProcess session_;
-  haptics::PlacedDevice* tip_ = nullptr;
-};
+void print_json(const SceneCheck& check, std::ostream& out) {
+  Json::Value value;
+  value["scene"] = check.scene.file.string();
+  value["real_time"] = check.cost <= check.period;
+  value["real_time_factor"] = check.real_time_factor();
+  value["deformation_period_s"] = check.period;
+  value["deformation_cost_s"] = check.cost;
+  value["warnings"] = Json::arrayValue;
+  for (const auto& doubt : check.doubts) value["warnings"].append(doubt);
+  for (const auto& organ : check.organs) value["organs"].append(json_of(organ));
+  for (const auto& probe : check.probes) value["probes"].append(json_of(probe));
+  out << Json::writeString(Json::StreamWriterBuilder(), value) << '\n';
+}
 
 }  // namespace
 
-int check_command(const std::filesystem::path& file, double measure_for, std::ostream& out) {
-  const scene::Scene scene = scene::load_scene(file);
-  out << scene::resolved_text(scene) << '\n';
-  std::vector<geometry::OrganShape> shapes;
-  for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
-  for (const auto& probe : scene.probes) check_probe(probe, scene.haptics, out);
-  runtime::WorkerTeam team(scene.deformation_threads);
-  TimedSession session(scene, shapes, team);
-  const double period = 1 / scene.rates.deformation;
-  for (std::size_t i = 0; i < shapes.size(); ++i) {
-    out << organ_text(scene.organs[i], shapes[i], session.world(), i, period);
+int check_command(const CheckOptions& options, std::ostream& out) {
+  const scene::Scene scene = scene::load_scene_with(scene_file(options.scene), options.settings);
+  if (options.resolved) {
+    out << scene::resolved_text(scene);
+    return kExitDone;
   }
-  out << fmt::format(
-      "rates: haptics {:g} Hz, collision {:g} Hz, deformation {:g} Hz, visualizer {:g} Hz\n",
-      scene.rates.haptics, scene.rates.collision, scene.rates.deformation, scene.rates.visualizer);
-  const double cost = session.cost_of_period(period, measure_for);
-  out << fmt::format(
-      "cost here: {:.3f} ms per period of {:.3f} ms, lightly touched: {:.0f} % of one core\n",
-      1e3 * cost, 1e3 * period, 100 * cost / period);
-  out << session::contact_line(session.contact_troubles()) << '\n';
-  out << (cost <= period
-              ? fmt::format(
-                    "expected real-time factor: 1.00 (up to {:.1f} with nothing else to do)\n",
-                    period / cost)
-              : fmt::format("expected real-time factor: {:.2f}, slower than real time\n",
-                            period / cost));
+  const SceneCheck check = check_scene(scene, options.measure_for);
+  options.json ? print_json(check, out) : print_text(check, out);
   return kExitDone;
 }
 

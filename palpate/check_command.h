@@ -3,12 +3,22 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 namespace palpate::launcher {
 
-/// Prints the resolved scene, then of each organ its size, mass, volume and stable step, then what
-/// a step costs here, measured for about `measure_for` seconds, and the real-time factor that
-/// allows. @throws InputError for a scene or mesh that cannot be used
-int check_command(const std::filesystem::path& scene, double measure_for, std::ostream& out);
+struct CheckOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> settings = {};  ///< as of RunOptions
+  double measure_for = 1;             ///< about how long a step's cost is measured [s]
+  bool resolved = false;              ///< the scene with every default, and nothing else
+  bool json = false;
+};
+
+/// Prints the verdict first: can it run, does it keep up here, and what is doubtful.
+/// @return an exit code of core/error.h
+/// @throws InputError for a scene, mesh or recording that cannot be used
+int check_command(const CheckOptions& options, std::ostream& out);
 
 }  // namespace palpate::launcher

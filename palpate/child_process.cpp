@@ -25,7 +25,12 @@ int become(const char* program, char* const* arguments, int output, pid_t parent
 }
 
 [[noreturn]] void fail(const std::filesystem::path& program, int system_error) {
-  throw std::runtime_error("cannot start " + program.string() + ": " + std::strerror(system_error));
+  std::string said = "cannot start " + program.string() + ": " + std::strerror(system_error);
+  if (system_error == ENOENT) {
+    said += "; it may not be built: cmake --build --preset release --target " +
+            program.filename().string();
+  }
+  throw std::runtime_error(said);
 }
 
 }  // namespace

@@ -9,9 +9,12 @@
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/program.h"
 #include "palpate/check_command.h"
+#include "palpate/list_command.h"
 #include "palpate/mesh_command.h"
+#include "palpate/new_command.h"
 #include "palpate/replay_command.h"
 #include "palpate/run_command.h"
+#include "palpate/scene_file.h"
 #include "palpate/study_command.h"
 
 namespace palpate::launcher {
@@ -26,6 +29,15 @@ bool no_display() {
   return display == nullptr || *display == '\0';
 }
 
+constexpr const char* kFirstScene = "press_me";
+constexpr const char* kSceneHelp = "Scene file (YAML), or the name of a shipped scene";
+
+void add_settings(Options& command, std::vector<std::string>& settings) {
+  command.add_each("--set", settings,
+                   "Another value for a key of the scene: "
+                   "--set organs[0].tissue.youngs_modulus_pa=8e3; may be given again");
+}
+
 void add_view_options(Options& command, RunOptions& options) {
   command.flag("--headless", options.headless,
                "No window; pictures only with --frames (assumed where there is no display)");
@@ -37,6 +49,7 @@ void add_view_options(Options& command, RunOptions& options) {
 }
 
 void add_run_options(Options& command, RunOptions& options) {
+  add_settings(command, options.settings);
   runtime::add_bus_options(command, options.bus);
   const Option frames = command.add("--frames", options.frames, "Folder for a PNG sequence");
   add_view_options(command, options);
@@ -63,9 +76,11 @@ void add_run(Program& program, RunOptions& options) {
   Options command =
       program.command("run", "Run a scene: start, watch and stop its processes", [&options] {
         options.headless |= no_display();
+        options.scene = scene_file(options.scene);
         return run_command(options, std::cout, std::cerr);
       });
-  command.add_input("SCENE", options.scene, "Scene file (YAML)").required();
+  options.scene = kFirstScene;
+  command.add_input("SCENE", options.scene, kSceneHelp).shows_default();
   add_run_options(command, options);
 }
 
@@ -74,10 +89,11 @@ void add_replay(Program& program, std::filesystem::path& recording, RunOptions& 
       "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion",
       [&recording, &options] {
         options.headless |= no_display();
+        options.scene = scene_file(options.scene);
         return replay_command(recording, options, std::cout, std::cerr);
       });
   command.add_input("RECORDING", recording, "Recording (MCAP)").required();
-  command.add_input("SCENE", options.scene, "Scene file (YAML)");
+  command.add_input("SCENE", options.scene, kSceneHelp);
   add_run_options(command, options);
 }
 
@@ -87,6 +103,7 @@ void add_inspect(Program& program, recording::InspectOptions& options) {
   });
   command.add("RECORDING", options.recording, "Recording (MCAP)").required();
   command.add("--csv", options.csv_folder, "Folder for one CSV file per topic");
+  command.flag("--json", options.json, "Print JSON");
 }
 
 void add_diff(Program& program, recording::DiffOptions& options) {
@@ -100,13 +117,32 @@ void add_diff(Program& program, recording::DiffOptions& options) {
   command.footer("Exit code: 0 if they are equal, 1 if they differ, 2 if they cannot be compared.");
 }
 
-void add_check(Program& program, std::filesystem::path& scene, double& measure_for) {
+void add_check(Program& program, CheckOptions& options) {
   Options command = program.command("check", "Print what a scene holds and what it costs here",
-                                    [&] { return check_command(scene, measure_for, std::cout); });
-  command.add("SCENE", scene, "Scene file (YAML)").required();
-  command.add("--measure-s", measure_for, "Seconds to measure the cost of a step for")
+                                    [&] { return check_command(options, std::cout); });
+  command.add("SCENE", options.scene, kSceneHelp).required();
+  add_settings(command, options.settings);
+  command.add("--measure-s", options.measure_for, "Seconds to measure the cost of a step for")
       .range(0.01, 600.0)
       .shows_default();
+  const Option resolved =
+      command.flag("--resolved", options.resolved, "Print the scene with every default instead");
+  command.flag("--json", options.json, "Print JSON").excludes(resolved);
+}
+
+void add_list(Program& program, std::string& kind) {
+  Options command =
+      program.command("list", "Print the scenes, models, shapes and devices there are",
+                      [&kind] { return list_command(kind, std::cout); });
+  command.add("KIND", kind, "One of them").one_of(list_kinds());
+}
+
+void add_new(Program& program, NewOptions& options) {
+  Options command = program.command("new", "Make a scene from a mesh",
+                                    [&options] { return new_command(options, std::cout); });
+  command.add_input("MESH", options.mesh, "Any surface format assimp reads").required();
+  command.add_output("-o,--output", options.output, "Scene to write; else the mesh's name, here");
+  command.add("--unit", options.unit, "Unit of the mesh: m, dm, cm, mm, um, in; else guessed");
 }
 
 void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
@@ -118,6 +154,31 @@ void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   command.add("--nodes", options.node_count, "Decimate or refine to this many nodes")
       .range(4, 200000);
   command.add("--unit", options.unit, "Unit of the input: m, dm, cm, mm, um, in").shows_default();
+  command.flag("--largest", options.largest, "Keep only the shell that encloses most");
+  command.flag("--fill-holes", options.fill_holes, "Close what is open");
+  command.flag("--json", options.json, "Print JSON");
+}
+
+/// For bash, and for zsh behind bashcompinit: asks this program itself.
+constexpr const char* kCompletion = R"(_palpate() {
+  local words
+  words=$(palpate completion "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)
+  COMPREPLY=($(compgen -W "$words" -- "${COMP_WORDS[COMP_CWORD]}"))
+}
+complete -o default -F _palpate palpate
+)";
+
+/// Without words the script, with them what may stand in the place of the last.
+int completion(const Program& program, const std::vector<std::string>& words) {
+  if (words.empty() || words == std::vector<std::string>{"bash"}) {
+    std::cout << kCompletion;
+    return kExitDone;
+  }
+  for (const auto& word : program.completions(words)) std::cout << word << '\n';
+  if (words.size() > 1 && !words.back().starts_with('-')) {
+    for (const auto& scene : shipped_scenes()) std::cout << scene.name << '\n';
+  }
+  return kExitDone;
 }
 
 /// What follows the word belongs to the program, --help too.
@@ -132,20 +193,25 @@ void add_study(Program& program, const Study& study) {
 int palpate_command(int argc, char** argv) {
   Program program("Press a soft organ and feel it.", "palpate");
   RunOptions run;
-  run.bus.session = random_session_name();
   RunOptions replay = run;
-  std::filesystem::path recording, scene;
+  std::filesystem::path recording;
+  CheckOptions check;
+  std::string kind;
+  NewOptions fresh;
   recording::InspectOptions inspect;
   recording::DiffOptions diff;
   geometry::MeshCommandOptions mesh;
-  double measure_for = 1;
   add_run(program, run);
   add_replay(program, recording, replay);
   add_inspect(program, inspect);
   add_diff(program, diff);
-  add_check(program, scene, measure_for);
+  add_check(program, check);
   add_mesh(program, mesh);
+  add_new(program, fresh);
+  add_list(program, kind);
   for (const Study& study : studies()) add_study(program, study);
+  program.command_with_words("completion", "Words for the shell: source <(palpate completion)",
+                             [&program](const auto& words) { return completion(program, words); });
   return program.run(argc, argv);
 }
 

@@ -1,5 +1,7 @@
 #include "palpate/mesh_command.h"
 
+#include <json/json.h>
+
 #include <cmath>
 #include <iomanip>
 #include <ostream>
@@ -8,6 +10,7 @@
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/shells.h"
 
 namespace palpate::geometry {
 namespace {
@@ -60,12 +63,39 @@ void print_checks(const MeshReport& report, std::ostream& out) {
   print_check(out, "unused nodes", report.unused_nodes.size());
 }
 
+/// "--largest keeps 4000 nodes, 1432 cm³ and drops 1 shell with 3.2 cm³ in all", where there are
+/// several.
+std::string shells_hint(const TriangleSurface& surface) {
+  const auto shells = shells_of(surface);
+  if (shells.size() < 2) return "";
+  double dropped = 0;
+  for (std::size_t i = 1; i < shells.size(); ++i) {
+    dropped += std::abs(enclosed_volume(shells[i].nodes, shells[i].triangles));
+  }
+  const double kept = std::abs(enclosed_volume(shells[0].nodes, shells[0].triangles));
+  return "--largest keeps the shell with " + std::to_string(shells[0].nodes.size()) +
+         " nodes and " + number(1e6 * kept) + " cm³, and drops " +
+         std::to_string(shells.size() - 1) + " with " + number(1e6 * dropped) + " cm³ in all";
+}
+
+/// "--fill-holes closes 2 holes and encloses 1432 cm³", where there are any.
+std::string holes_hint(TriangleSurface surface) {
+  const std::size_t filled = fill_holes(surface);
+  if (filled == 0) return "";
+  return "--fill-holes closes " + std::to_string(filled) + (filled == 1 ? " hole" : " holes") +
+         " and encloses " +
+         number(1e6 * std::abs(enclosed_volume(surface.nodes, surface.triangles))) + " cm³";
+}
+
 void refuse_if_leaky(const MeshReport& report, const TriangleSurface& surface,
                      const std::filesystem::path& file) {
   if (report.holds_volume()) return;
   std::string message = file.string() + ": cannot hold a volume; nothing written";
   for (const std::string& problem : describe_problems(report, surface)) {
     message += "\n  " + problem;
+  }
+  for (const std::string& hint : {shells_hint(surface), holes_hint(surface)}) {
+    if (!hint.empty()) message += "\n  " + hint;
   }
   throw InputError(message);
 }
@@ -78,29 +108,105 @@ TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOption
   }
 }
 
-void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
-  if (!options.output.empty()) check_can_write(options.output);
+/// What it holds are tetrahedra, which no surface tool reads.
+void refuse_tetrahedra(const std::filesystem::path& file) {
+  if (file.extension() != ".msh" && file.extension() != ".vtk") return;
+  throw InputError(file.string() +
+                   ": holds tetrahedra; this command prepares surfaces. A scene takes them as they "
+                   "are: organs: [{mesh: {file: " +
+                   file.filename().string() + "}, model: nodal_pressure}]");
+}
+
+/// What was asked for beside the usual repairs.
+std::vector<std::string> mend(TriangleSurface& surface, const MeshCommandOptions& options) {
+  std::vector<std::string> actions;
+  if (options.fill_holes) {
+    const std::size_t filled = fill_holes(surface);
+    actions.push_back("closed " + std::to_string(filled) + (filled == 1 ? " hole" : " holes"));
+  }
+  if (options.largest) {
+    auto shells = shells_of(surface);
+    actions.push_back("dropped " + std::to_string(shells.size() - 1) + " of " +
+                      std::to_string(shells.size()) + " shells");
+    surface = std::move(shells.front());
+  }
+  const RepairLog log = repair_surface(surface);  // shells and patches may face inward
+  actions.insert(actions.end(), log.actions.begin(), log.actions.end());
+  return actions;
+}
+
+Json::Value json_of(const MeshReport& report) {
+  Json::Value value;
+  value["nodes"] = Json::UInt64(report.node_count);
+  value["triangles"] = Json::UInt64(report.triangle_count);
+  for (const double side : Vec3(report.max_corner - report.min_corner)) {
+    value["size_m"].append(side);
+  }
+  value["volume_m3"] = report.volume;
+  value["area_m2"] = report.area;
+  value["shortest_edge_m"] = report.shortest_edge;
+  value["longest_edge_m"] = report.longest_edge;
+  value["shells"] = Json::UInt64(report.component_count);
+  value["open_edges"] = Json::UInt64(report.border_edges.size());
+  value["self_intersections"] = Json::UInt64(report.self_intersections.size());
+  value["holds_volume"] = report.holds_volume();
+  return value;
+}
+
+/// The surface that was asked for, step by step told to `out`.
+TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
   TriangleSurface surface = read_surface(options.input, options.unit);
+  const MeshReport found = check_surface(surface);
   out << options.input.string() << " (" << options.unit << ")\n";
-  print_measures(check_surface(surface), out);
-  const RepairLog log = repair_surface(surface);
+  print_measures(found, out);
+  RepairLog log = repair_surface(surface);
+  if (options.fill_holes || options.largest) {
+    for (auto& action : mend(surface, options)) log.actions.push_back(std::move(action));
+  }
   out << "repairs\n";
   for (const std::string& action : log.actions) out << "  " << action << '\n';
   if (log.actions.empty()) out << "  none needed\n";
-  const MeshReport repaired = check_surface(surface);
+  MeshReport report = check_surface(surface);
   out << "checks\n";
-  print_checks(repaired, out);
-  refuse_if_leaky(repaired, surface, options.input);
+  print_checks(report, out);
+  json["found"] = json_of(found);
+  json["repairs"] = Json::arrayValue;
+  for (const std::string& action : log.actions) json["repairs"].append(action);
+  json["result"] = json_of(report);
+  refuse_if_leaky(report, surface, options.input);
   if (options.node_count > 0) {
     surface = resample(surface, options);
     out << "resampled\n";
-    const MeshReport resampled = check_surface(surface);
-    print_measures(resampled, out);
-    refuse_if_leaky(resampled, surface, options.input);
+    report = check_surface(surface);
+    print_measures(report, out);
+    json["result"] = json_of(report);
+    refuse_if_leaky(report, surface, options.input);
   }
-  if (options.output.empty()) return;
-  write_surface(surface, options.output);
-  out << "written: " << options.output.string() << " (m)\n";
+  return surface;
+}
+
+void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
+  refuse_tetrahedra(options.input);
+  if (!options.output.empty()) check_can_write(options.output);
+  Json::Value json;
+  json["file"] = options.input.string();
+  std::ostringstream unheard;
+  std::ostream& text = options.json ? unheard : out;
+  const auto print_json = [&] {
+    if (options.json) out << Json::writeString(Json::StreamWriterBuilder(), json) << '\n';
+  };
+  try {
+    const TriangleSurface surface = prepare(options, json, text);
+    if (!options.output.empty()) {
+      write_surface(surface, options.output);
+      text << "written: " << options.output.string() << " (m)\n";
+      json["written"] = options.output.string();
+    }
+  } catch (const InputError&) {
+    print_json();
+    throw;
+  }
+  print_json();
 }
 
 }  // namespace

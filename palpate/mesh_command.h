@@ -1,4 +1,4 @@
-// What `palpate mesh IN -o OUT [--nodes N] [--unit mm]` does.
+// What `palpate mesh IN -o OUT [--nodes N] [--unit mm] [--largest] [--fill-holes]` does.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,9 @@ struct MeshCommandOptions {
   std::filesystem::path output;  ///< empty: check only; else .ply, .stl, .obj or .off, in metres
   std::size_t node_count = 0;    ///< to decimate or refine to; 0: keep
   std::string unit = "m";        ///< of the input's numbers, see metres_per_unit()
+  bool largest = false;          ///< keep the shell that encloses most
+  bool fill_holes = false;       ///< close what is open
+  bool json = false;             ///< the report as JSON
 };
 
 /// Reads, repairs, resamples where asked, and prints a one-screen report to `out`; writes the

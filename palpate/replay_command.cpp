@@ -1,53 +1,23 @@
 #include "palpate/replay_command.h"
 
-#include <stdlib.h>
-
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <ostream>
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/temporary_folder.h"
 #include "modules/recording/commands.h"
 #include "modules/recording/player.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
+#include "modules/scene/settings.h"
 #include "palpate/module_group.h"
 #include "palpate/run_command.h"
 
 namespace palpate::launcher {
 namespace {
-
-/// A folder that lasts as long as this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) {
-      throw std::runtime_error("cannot make a folder in " + pattern);
-    }
-    path_ = pattern;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    const auto file = path_ / name;
-    std::ofstream stream(file);
-    if (!(stream << text << std::flush)) throw std::runtime_error("cannot write " + file.string());
-    return file;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The resolved text of the scene that was recorded.
 std::string recorded_scene(const std::filesystem::path& recording) {
@@ -105,9 +75,10 @@ int replay_command(const std::filesystem::path& recording, const RunOptions& run
                    std::ostream& log) {
   if (run.scene.empty()) return show(recording, run, out, log);
   const TemporaryFolder folder;
-  const scene::Scene scene =
-      with_recorded_motion(scene::load_scene(run.scene), recording, folder.path(), log);
+  const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),
+                                                  recording, folder.path(), log);
   RunOptions again = run;
+  again.settings.clear();
   again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
   return run_command(again, out, log);
 }

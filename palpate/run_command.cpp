@@ -3,19 +3,24 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <fstream>
+#include <optional>
 #include <ostream>
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/temporary_folder.h"
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
+#include "modules/scene/settings.h"
 #include "palpate/lockstep_run.h"
 #include "palpate/module_group.h"
+#include "palpate/scene_doubts.h"
+#include "palpate/session_claim.h"
 #include "palpate/session_monitor.h"
 #include "palpate/session_text.h"
 
@@ -187,8 +192,24 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
 }
 
 int run_command(const RunOptions& options, std::ostream& out, std::ostream& log) {
+  if (!options.settings.empty()) {
+    const TemporaryFolder folder;  // each process reads the scene
+    const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
+    RunOptions changed = options;
+    changed.settings.clear();
+    changed.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+    return run_command(changed, out, log);
+  }
+  if (options.only.empty()) {
+    const scene::Scene scene = scene::load_scene(options.scene);
+    for (const auto& doubt : doubts_about(scene, load_skins(scene))) {
+      log << "palpate: warning: " << doubt << std::endl;
+    }
+  }
   if (options.in_process) return run_in_process(options, out, log);
   if (options.lockstep) return run_lockstep(options, out, log);
+  std::optional<SessionClaim> claim;
+  if (options.only.empty()) claim.emplace(options.bus.session, options.bus.domain);
   return Run(options, out, log).perform();
 }
 

@@ -12,7 +12,8 @@ namespace palpate::launcher {
 
 struct RunOptions {
   std::filesystem::path scene;
-  bus::BusOptions bus;    ///< session: a random name unless given
+  std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
+  bus::BusOptions bus;                     ///< session: a random name unless given
   double duration = 0;    ///< of the session [s]; 0: the scene's, and if 0, until stopped
   bool headless = false;  ///< no window
   bool visualizer = true;

@@ -44,23 +44,25 @@ std::string timing(const ModuleTally& module) {
       100 * status.busy_fraction);
 }
 
+/// Samples that newer ones overtook are none of these: whoever wants the newest leaves the others.
+std::string refusals(const ModuleTally& module) {
+  std::uint64_t rejected = 0;
+  for (const auto& input : module.newest.inputs) rejected += input.rejected;
+  std::string text;
+  if (rejected > 0) text += fmt::format("             {} samples refused\n", rejected);
+  if (module.newest.packets_refused > 0) {
+    text += fmt::format("             {} packets from a stranger refused\n",
+                        module.newest.packets_refused);
+  }
+  return text;
+}
+
 std::string module_lines(const SessionTally& tally, bool lockstep) {
   std::string text;
   for (const auto& [name, module] : tally.modules()) {
-    std::uint64_t received = 0, dropped = 0, rejected = 0;
-    for (const auto& input : module.newest.inputs) {
-      received += input.received;
-      dropped += input.dropped;
-      rejected += input.rejected;
-    }
-    text += fmt::format(
-        "{:<12} {} cycles{}\n"
-        "             samples: {} taken, {} lost or overtaken by newer ones, {} refused\n",
-        name, module.cycles(), lockstep ? "" : timing(module), received, dropped, rejected);
-    if (module.newest.packets_refused > 0) {
-      text += fmt::format("             {} packets from a stranger refused\n",
-                          module.newest.packets_refused);
-    }
+    text +=
+        fmt::format("{:<12} {} cycles{}\n", name, module.cycles(), lockstep ? "" : timing(module)) +
+        refusals(module);
   }
   return text;
 }
@@ -104,21 +106,24 @@ std::string status_line(const SessionTally& tally) {
 }
 
 std::string summary(const SessionTally& tally, const SessionEnd& end) {
-  const double factor = end.lockstep ? end.session_time / end.wall_time : tally.real_time_factor();
+  // A session that was paused takes longer on the wall: what counts is the session's own clock.
+  const double simulated = end.lockstep ? end.session_time : tally.sim_time();
+  const double taken = end.lockstep ? end.wall_time : end.session_time;
   std::string text =
-      fmt::format("scene {}: {:.1f} s in {:.1f} s, {:.1f} s simulated, real-time factor {:.3f}\n",
-                  end.scene, end.session_time, end.wall_time, tally.sim_time(), factor);
+      fmt::format("scene {}: {:.1f} s simulated in {:.1f} s, real-time factor {:.3f}\n", end.scene,
+                  simulated, taken, taken > 0 ? simulated / taken : 0);
   text += organ_lines(tally) + probe_lines(tally) +
           session::contact_line(tally.contact_troubles()) + '\n' +
           module_lines(tally, end.lockstep);
   for (const auto& trouble : tally.troubles()) {
     text += fmt::format("degraded for a while: {}\n", trouble);
   }
-  for (const auto& [module, words] : end.last_words) {
-    if (!words.empty()) text += fmt::format("{} said at last: {}\n", module, words);
-  }
   for (const auto& [module, failure] : end.failures) {
     text += fmt::format("FAILED: {}: {}\n", module, failure);
+    const auto words = end.last_words.find(module);
+    if (words != end.last_words.end() && !words->second.empty()) {
+      text += fmt::format("  it said at last: {}\n", words->second);
+    }
   }
   return text;
 }

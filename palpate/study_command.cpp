@@ -29,7 +29,9 @@ const std::vector<Study>& studies() {
 void become(const std::filesystem::path& program, const std::vector<std::string>& words) {
   const std::string name = program.string();
   if (!std::filesystem::exists(program)) {
-    throw InputError(fmt::format("{} is missing; build it", name));
+    const std::string word = program.filename().string();
+    throw InputError(fmt::format(
+        "{} is missing; build it: cmake --build --preset release --target {}", name, word));
   }
   std::vector<char*> arguments{const_cast<char*>(name.c_str())};
   for (const auto& word : words) arguments.push_back(const_cast<char*>(word.c_str()));

@@ -37,9 +37,9 @@ std::string triangle_place(std::uint32_t index, const TriangleSurface& surface) 
 void describe_topology(const MeshReport& report, const TriangleSurface& surface,
                        std::vector<std::string>& lines) {
   if (const auto& edges = report.border_edges; !edges.empty()) {
-    lines.push_back(counted(edges.size(), "open edge", "open edges") +
-                    edge_place(edges[0], surface) +
-                    "; the surface leaks: fill its holes in a mesh editor");
+    lines.push_back(
+        counted(edges.size(), "open edge", "open edges") + edge_place(edges[0], surface) +
+        "; the surface leaks: fill its holes (palpate mesh --fill-holes, or a mesh editor)");
   }
   if (const auto& edges = report.non_manifold_edges; !edges.empty()) {
     lines.push_back(counted(edges.size(), "edge with more than two triangles",
@@ -53,8 +53,8 @@ void describe_topology(const MeshReport& report, const TriangleSurface& surface,
   }
   if (report.component_count > 1) {
     lines.push_back(std::to_string(report.component_count) +
-                    " separate shells; one organ is one shell: delete inner cavities and loose "
-                    "pieces, or save each shell as an organ of its own");
+                    " separate shells; one organ is one shell: drop inner cavities and loose "
+                    "pieces (palpate mesh --largest), or save each shell as an organ of its own");
   }
 }
 

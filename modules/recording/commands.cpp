@@ -64,7 +64,7 @@ void replay(const ReplayOptions& options, const std::function<bool()>& stop_requ
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err) {
   return report_failure(err, [&] {
     const RecordingSummary summary = summarize(options.recording, options.csv_folder);
-    print_summary(summary, out);
+    options.json ? print_json(summary, out) : print_summary(summary, out);
     if (summary.torn) err << "warning: " << summary.torn_warning << '\n';
   });
 }

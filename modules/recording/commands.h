@@ -13,6 +13,7 @@ namespace palpate::recording {
 struct InspectOptions {
   std::filesystem::path recording;   ///< RECORDING
   std::filesystem::path csv_folder;  ///< --csv DIR; empty: none
+  bool json = false;                 ///< --json
 };
 
 /// Prints the recording's table to `out`; a torn file's warning and errors go to `err`.

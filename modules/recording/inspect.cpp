@@ -1,5 +1,7 @@
 #include "modules/recording/inspect.h"
 
+#include <json/json.h>
+
 #include <algorithm>
 #include <ctime>
 #include <iomanip>
@@ -156,6 +158,32 @@ void print_summary(const RecordingSummary& summary, std::ostream& out) {
       << "topic            type               samples  rate Hz       bytes  first s   last s"
          "  missing  longest ms invalid writers\n";
   for (const TopicSummary& topic : summary.topics) print_row(topic, summary.first_ns, out);
+}
+
+void print_json(const RecordingSummary& summary, std::ostream& out) {
+  Json::Value value;
+  value["recording"] = summary.file.string();
+  value["bytes"] = Json::UInt64(summary.file_bytes);
+  value["torn"] = summary.torn;
+  for (const auto& [key, text] : summary.session) value["session"][key] = text;
+  for (const auto& [key, text] : summary.scene) value["scene"][key] = text;
+  value["duration_s"] = seconds_from_ns(summary.last_ns - summary.first_ns);
+  value["topics"] = Json::arrayValue;
+  for (const TopicSummary& topic : summary.topics) {
+    Json::Value row;
+    row["topic"] = std::string(topic.topic->name);
+    row["samples"] = Json::UInt64(topic.samples);
+    row["rate_hz"] = topic.rate_hz();
+    row["bytes"] = Json::UInt64(topic.bytes);
+    row["first_s"] = seconds_from_ns(topic.first_ns - summary.first_ns);
+    row["last_s"] = seconds_from_ns(topic.last_ns - summary.first_ns);
+    row["missing"] = Json::UInt64(topic.missing);
+    row["invalid"] = Json::UInt64(topic.invalid);
+    row["longest_spacing_s"] = seconds_from_ns(topic.longest_spacing_ns);
+    row["writers"] = Json::UInt64(topic.writers);
+    value["topics"].append(row);
+  }
+  out << Json::writeString(Json::StreamWriterBuilder(), value) << '\n';
 }
 
 }  // namespace palpate::recording

@@ -47,5 +47,7 @@ RecordingSummary summarize(const std::filesystem::path& recording,
 
 /// The one-screen table.
 void print_summary(const RecordingSummary& summary, std::ostream& out);
+/// The same for programs.
+void print_json(const RecordingSummary& summary, std::ostream& out);
 
 }  // namespace palpate::recording

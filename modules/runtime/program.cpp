@@ -107,6 +107,13 @@ Option Options::add_output(const char* names, std::filesystem::path& value,
   return option;
 }
 
+Option Options::add_each(const char* names, std::vector<std::string>& value,
+                         const std::string& help) {
+  CLI::Option* option = app_->add_option(names, value, help);
+  option->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  return Option(*option);
+}
+
 Option Options::flag(const char* names, bool& value, const std::string& help) {
   return Option(*app_->add_flag(names, value, help));
 }
@@ -157,10 +164,10 @@ void Program::command_with_words(const std::string& word, const std::string& pur
 }
 
 /// Says so where the first word is meant as a command and is none.
-bool Program::refuse_unknown(int argc, char** argv) const {
+bool Program::refuse_unknown(const std::vector<std::string>& words) const {
   const auto commands = app_->get_subcommands([](const CLI::App*) { return true; });
-  if (commands.empty() || argc < 2 || *argv[1] == '-') return false;
-  const std::string word = argv[1];
+  if (commands.empty() || words.empty() || words[0].starts_with('-')) return false;
+  const std::string& word = words[0];
   std::string names;
   for (const CLI::App* command : commands) {
     if (command->get_name() == word) return false;
@@ -170,10 +177,35 @@ bool Program::refuse_unknown(int argc, char** argv) const {
   return true;
 }
 
+std::vector<std::string> Program::completions(const std::vector<std::string>& typed) const {
+  std::vector<std::string> words;
+  for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+    if (typed.size() <= 1) {
+      words.push_back(command->get_name());
+    } else if (command->get_name() == typed[0]) {
+      for (const CLI::Option* option : command->get_options()) {
+        for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+      }
+    }
+  }
+  if (typed.size() <= 1) words.emplace_back("help");
+  return words;
+}
+
+std::vector<std::string> Program::typed(int argc, char** argv) const {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const bool has_commands = !app_->get_subcommands([](const CLI::App*) { return true; }).empty();
+  if (!has_commands || words.empty() || words[0] != "help") return words;
+  words.erase(words.begin());
+  words.push_back("--help");
+  return words;
+}
+
 int Program::run(int argc, char** argv, const std::function<int()>& body) {
-  if (refuse_unknown(argc, argv)) return kExitBadInput;
+  const std::vector<std::string> words = typed(argc, argv);
+  if (refuse_unknown(words)) return kExitBadInput;
   try {
-    app_->parse(argc, argv);
+    app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // it takes the last first
     refuse_nan(*app_);
     refuse_overwriting(*files_);
     return job_ ? job_() : body();

@@ -53,6 +53,8 @@ class Options {
   /// The same for a file, or a folder of files. What a command reads it does not write.
   Option add_input(const char* names, std::filesystem::path& value, const std::string& help);
   Option add_output(const char* names, std::filesystem::path& value, const std::string& help);
+  /// A list of texts that may hold commas, one behind each mention of the option.
+  Option add_each(const char* names, std::vector<std::string>& value, const std::string& help);
   Option flag(const char* names, bool& value, const std::string& help);
   Option flag_off(const char* names, bool& value, const std::string& help);  ///< makes it false
   void footer(const std::string& text);  ///< what --help says last
@@ -78,17 +80,22 @@ class Program : public Options {
   /// The same where all words that follow, --help too, are the job's.
   void command_with_words(const std::string& word, const std::string& purpose,
                           std::function<int(const std::vector<std::string>&)> job);
+  /// Which words may stand last in what was typed behind the program's name: commands, or options
+  /// of the command that was given.
+  std::vector<std::string> completions(const std::vector<std::string>& typed) const;
   /// Where what is thrown goes, in one line. Else to stderr, led by the program's name.
   void report_to(std::function<void(const std::string&)> report) { report_ = std::move(report); }
 
-  /// Parses the command line and runs `body`, or the command that was given.
+  /// Parses the command line and runs `body`, or the command that was given. "help WORD" is
+  /// "WORD --help".
   /// @return what that returns; kExitDone after --help or --version; kExitBadInput for an
   /// InputError or a wrong command line, kExitFailed for any other exception
   int run(int argc, char** argv, const std::function<int()>& body = {});
 
  private:
   explicit Program(std::unique_ptr<CLI::App> app);
-  bool refuse_unknown(int argc, char** argv) const;
+  bool refuse_unknown(const std::vector<std::string>& words) const;
+  std::vector<std::string> typed(int argc, char** argv) const;
 
   std::unique_ptr<CLI::App> app_;
   std::function<int()> job_;

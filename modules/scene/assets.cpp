@@ -75,6 +75,20 @@ geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
   }
 }
 
+geometry::TriangleSurface load_skin(const Organ& organ) {
+  const std::string owner = "organ '" + organ.name + "'";
+  geometry::TriangleSurface skin;
+  if (holds_tetrahedra(organ.mesh.file)) {
+    Organ coarse = organ;
+    coarse.solid.refine = {};
+    skin = load_tetrahedra(coarse, owner).surface;
+  } else {
+    skin = load(organ.mesh, owner);
+  }
+  for (Vec3& node : skin.nodes) node = organ.pose.to_world(node);
+  return skin;
+}
+
 geometry::OrganShape load_organ(const Organ& organ) {
   const std::string owner = "organ '" + organ.name + "'";
   const ModelFormat& format = format_of(organ.model);

@@ -13,6 +13,10 @@ namespace palpate::scene {
 /// @throws InputError naming organ, file and problem
 geometry::OrganShape load_organ(const Organ& organ);
 
+/// The organ's surface alone, in W [m]: nothing is filled or refined.
+/// @throws InputError naming organ, file and problem
+geometry::TriangleSurface load_skin(const Organ& organ);
+
 /// `mesh`, in the organ's own frame, with smaller tetrahedra near the regions of its
 /// `solid.refine`.
 /// @throws InputError naming the key if it would have too many nodes

@@ -16,5 +16,8 @@ int main(int argc, char** argv) {
   program.add("--seconds", options.seconds, "Of the scene, from its start")
       .range(0.1, 600.0)
       .shows_default();
+  program.add_each("--set", options.settings,
+                   "Another value for a key of the scene: --set needs.force_error=0.1");
+  program.flag("--json", options.json, "Print JSON");
   return program.run(argc, argv, [&] { return plan::run_plan(options, std::cout, std::cerr); });
 }

@@ -1,5 +1,6 @@
 #include "studies/plan/plan_command.h"
 
+#include <json/json.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
+#include "modules/scene/settings.h"
 #include "studies/plan/plan.h"
 #include "studies/plan/solid_reference.h"
 #include "studies/report/measures.h"
@@ -87,6 +89,29 @@ void print_margins(const scene::Needs& needs, const Verdict& v, std::ostream& ou
                      kLargestLoad * static_cast<double>(needs.cores));
 }
 
+/// @param written  the scene file; empty: none
+void print_json(const std::vector<Verdict>& verdicts, const Verdict* chosen,
+                const std::filesystem::path& written, std::ostream& out) {
+  Json::Value value;
+  value["machine"] = report::machine_name();
+  value["candidates"] = Json::arrayValue;
+  for (const Verdict& v : verdicts) {
+    Json::Value row;
+    row["name"] = v.candidate.name();
+    row["nodes"] = Json::UInt64(v.node_count);
+    row["load_cores"] = v.total_load;
+    row["force_error"] = v.errors.force;
+    row["surface_error_m"] = v.errors.surface;
+    row["volume_error"] = v.errors.volume;
+    row["chosen"] = &v == chosen;
+    row["misses"] = Json::arrayValue;
+    for (const auto& failure : v.failures) row["misses"].append(failure);
+    value["candidates"].append(row);
+  }
+  if (!written.empty()) value["written"] = written.string();
+  out << Json::writeString(Json::StreamWriterBuilder(), value) << '\n';
+}
+
 void write_scene(const scene::Scene& scene, const std::filesystem::path& file) {
   const auto part = file.string() + ".part";
   std::ofstream stream(part);
@@ -108,6 +133,21 @@ Course run_reference(const scene::Scene& scene, bool coarser, const std::vector<
       solid ? solid_reference_shape(reference_scene, duration, (coarser ? 2 : 1) * kReferenceEdge)
             : scene::load_organ(reference_scene.organs[0]);
   return run_course(reference_scene, shape, marks, duration, keep_going);
+}
+
+/// @param written  the scene file; empty: none
+void print_text(const scene::Needs& needs, const std::vector<Verdict>& verdicts,
+                const Verdict* chosen, const std::filesystem::path& written, std::ostream& out) {
+  print(verdicts, chosen, out);
+  out << "load: of one core; force: RMS difference from the reference over its RMS; on "
+      << report::machine_name() << '\n';
+  if (chosen == nullptr) {
+    out << "\nnothing meets the needs. What would:\n";
+    for (const auto& way : ways_out(needs, verdicts)) out << "  " << way << '\n';
+    return;
+  }
+  print_margins(needs, *chosen, out);
+  out << "written: " << written.string() << '\n';
 }
 
 /// How far the reference may be off: candidates that differ less from it are not told apart.
@@ -150,7 +190,7 @@ std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& o
 }  // namespace
 
 int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
-  const scene::Scene scene = scene::load_scene(options.scene);
+  const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
   check_plannable(scene);
   const runtime::StopSignal stop;
   try {
@@ -158,21 +198,17 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       if (stop.requested()) throw report::Stopped{};
     });
     const Verdict* chosen = best(verdicts);
-    print(verdicts, chosen, out);
-    out << "load: of one core; force: RMS difference from the reference over its RMS; on "
-        << report::machine_name() << '\n';
-    if (chosen == nullptr) {
-      out << "\nnothing meets the needs. What would:\n";
-      for (const auto& way : ways_out(scene.needs, verdicts)) out << "  " << way << '\n';
-      return kExitFailed;
+    std::filesystem::path file;
+    if (chosen != nullptr) {
+      file = options.out;
+      if (file.empty()) {
+        file = scene.file.parent_path() / (scene.file.stem().string() + ".planned.yaml");
+      }
+      write_scene(scene_with(scene, chosen->candidate), file);
     }
-    print_margins(scene.needs, *chosen, out);
-    auto file = options.out;
-    if (file.empty())
-      file = scene.file.parent_path() / (scene.file.stem().string() + ".planned.yaml");
-    write_scene(scene_with(scene, chosen->candidate), file);
-    out << "written: " << file.string() << '\n';
-    return kExitDone;
+    options.json ? print_json(verdicts, chosen, file, out)
+                 : print_text(scene.needs, verdicts, chosen, file, out);
+    return chosen == nullptr ? kExitFailed : kExitDone;
   } catch (const report::Stopped&) {
     log << "stopped; nothing was written" << std::endl;
     return report::kExitStopped;

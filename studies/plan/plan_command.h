@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 namespace palpate::plan {
 
@@ -9,6 +11,8 @@ struct PlanOptions {
   std::filesystem::path scene;
   std::filesystem::path out;  ///< scene file to write; empty: NAME.planned.yaml beside the scene
   double seconds = 6;         ///< of the scene, from its start
+  std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
+  bool json = false;                       ///< the verdicts as JSON
 };
 
 /// The whole command: measures, prints choice and runners-up with what they lost by, writes the

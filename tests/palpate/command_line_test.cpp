@@ -14,7 +14,8 @@ TEST_CASE("command line: --help lists every command and is no error") {
   // Oracle: the commands of the design.
   const auto help = type("palpate", {"--help"});
   CHECK(help.code == kExitDone);
-  for (const char* command : {"run", "replay", "inspect", "diff", "check", "mesh", "chart"}) {
+  for (const char* command :
+       {"run", "replay", "inspect", "diff", "check", "mesh", "new", "list", "chart"}) {
     CHECK_THAT(help.said, Contains(command));
     CHECK(type("palpate", {command, "--help"}).code == kExitDone);
   }
@@ -23,12 +24,26 @@ TEST_CASE("command line: --help lists every command and is no error") {
   }
 }
 
+TEST_CASE("command line: help WORD is WORD --help, and the shell is told what may follow") {
+  // Oracle: the help itself; the options it lists.
+  CHECK(type("palpate", {"help"}).said == type("palpate", {"--help"}).said);
+  const auto help = type("palpate", {"help", "check"});
+  CHECK(help.code == kExitDone);
+  CHECK(help.said == type("palpate", {"check", "--help"}).said);
+  const auto commands = type("palpate", {"completion", "ch"});
+  CHECK_THAT(commands.said, Contains("check\n") && Contains("chart\n") && Contains("run\n"));
+  const auto options = type("palpate", {"completion", "check", "--re"});
+  CHECK_THAT(options.said, Contains("--resolved\n") && Contains("--set\n") && !Contains("stomach"));
+  CHECK_THAT(type("palpate", {"completion", "run", "sto"}).said, Contains("stomach_probe\n"));
+  const auto script = type("palpate", {"completion"});
+  CHECK_THAT(script.said, Contains("complete -o default -F _palpate palpate"));
+}
+
 TEST_CASE("command line: what is not a command or option is bad input") {
   // Oracle: the exit codes of core/error.h.
   const std::vector<std::vector<std::string>> wrong{
       {},
       {"rum"},
-      {"run"},
       {"run", "a.yaml", "--domain", "300"},
       {"run", "a.yaml", "--duration", "-1"},
       {"run", "a.yaml", "--duration", "nan"},

@@ -14,7 +14,8 @@ using palpate::testing::type;
 TEST_CASE("study command: a program that is missing is named") {
   // Oracle: the message text.
   CHECK_THROWS_WITH(launcher::become("/nowhere/palpate-paper", {}),
-                    "/nowhere/palpate-paper is missing; build it");
+                    "/nowhere/palpate-paper is missing; build it: cmake --build --preset release "
+                    "--target palpate-paper");
 }
 
 TEST_CASE("study command: a program that cannot be started is named") {

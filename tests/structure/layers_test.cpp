@@ -136,7 +136,7 @@ TEST_CASE("structure: each foreign library is known to its one folder only") {
       {"^Bullet|^btBullet", "^bench/bullet/"},
       {"^yaml-cpp/", "^modules/scene/"},
       {"^(pybind11/|Python\\.h)", "^python/"},
-      {"^json/", "^studies/certify/"},
+      {"^json/", "^(studies|palpate|modules/recording)/"},
       {"^CLI/", R"(^modules/runtime/program\.cpp$)"},
       {"^(thread|mutex|condition_variable|chrono|future)$|^(time|signal|pthread)\\.h$", no_physics},
       {"^spdlog/", no_physics + "|main\\.cpp$"},

@@ -56,6 +56,19 @@ TEST_CASE("launcher: Ctrl-C leaves no process and nothing in shared memory") {
   CHECK(shared_memory_files() == before);
 }
 
+TEST_CASE("launcher: a second one of the same session is refused by name and disturbs nothing") {
+  // Oracle: its exit code and words; the first goes on to its end.
+  const BallScene scene;
+  const bus::BusOptions options = own_bus_options();
+  Launched first(scene, {"--duration", "2"}, options);
+  REQUIRE(first.wait_for_text("1.0 s  real time"));
+  Launched second(scene, {"--duration", "2"}, options);
+  CHECK(second.wait_for_end() == 2);
+  CHECK_THAT(second.said(), Contains("session '" + options.session + "' already runs here"));
+  CHECK(first.wait_for_end() == 0);
+  CHECK_THAT(first.said(), Contains("scene press: 2.0 s simulated in 2.0 s"));
+}
+
 TEST_CASE("launcher: a launcher that is killed leaves no process") {
   // Oracle: the process table.
   const BallScene scene;
@@ -107,11 +120,12 @@ TEST_CASE("launcher: a second one with --only joins the session and leaves it ru
 }
 
 TEST_CASE("launcher: a module that refuses its input ends the start with exit code 2") {
-  // Oracle: the exit codes. Only haptics reads the recording that the scene names.
+  // Oracle: the exit codes. Who joins a session looks at nothing before; of the modules only
+  // haptics reads the recording that the scene names.
   BallScene scene("topic: {}");
   std::ofstream(scene.folder() / "motion.csv") << "t, x, y, z\n0, 0, 0, 1\n";
   scene.set_device("trajectory: {file: motion.csv}");
-  Launched run(scene, {});
+  Launched run(scene, {"--only", "haptics"});
   CHECK(run.wait_for_end() == 2);
   CHECK_THAT(run.said(), Contains("palpate: haptics ended: exit code 2") && Contains("motion.csv"));
   CHECK(run.processes().empty());

@@ -14,31 +14,11 @@
 
 #include "modules/core/error.h"
 #include "modules/core/organ_limits.h"
+#include "modules/core/temporary_folder.h"
 #include "modules/geometry/gmsh_file.h"
 
 namespace palpate::geometry {
 namespace {
-
-/// A folder that vanishes with its owner.
-class WorkFolder {
- public:
-  WorkFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "palpate_gmsh_XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// In the child, after fork: only what is safe there. The kernel ends it with the thread that
 /// started it.
@@ -105,7 +85,7 @@ std::string size_field(const std::string& size) {
   return text;
 }
 
-TetMesh run_gmsh_with(const WorkFolder& folder, std::vector<std::string> options) {
+TetMesh run_gmsh_with(const TemporaryFolder& folder, std::vector<std::string> options) {
   const auto output = folder / "solid.msh", log = folder / "log";
   std::vector<std::string> words{"gmsh", "-format", "msh22", "-nt", "1", "-o", output.string()};
   words.insert(words.end(), options.begin(), options.end());
@@ -125,7 +105,7 @@ TetMesh run_gmsh_with(const WorkFolder& folder, std::vector<std::string> options
   }
 }
 
-TetMesh run_gmsh_in(const WorkFolder& folder, const std::string& script) {
+TetMesh run_gmsh_in(const TemporaryFolder& folder, const std::string& script) {
   const auto input = folder / "solid.geo";
   std::ofstream(input) << script;
   return run_gmsh_with(folder, {"-3", input.string()});
@@ -154,7 +134,7 @@ void refuse_too_many_nodes(const TriangleSurface& surface, double size) {
 
 }  // namespace
 
-TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(WorkFolder(), script); }
+TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(TemporaryFolder(), script); }
 
 TetMesh read_tetrahedra(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
@@ -162,7 +142,7 @@ TetMesh read_tetrahedra(const std::filesystem::path& file) {
   }
   if (is_msh_2(file)) return read_gmsh(file);
   try {
-    return run_gmsh_with(WorkFolder(), {"-save_all", "-save", file.string()});
+    return run_gmsh_with(TemporaryFolder(), {"-save_all", "-save", file.string()});
   } catch (const InputError& error) {
     throw InputError(file.string() + ": " + error.what());
   }
@@ -170,7 +150,7 @@ TetMesh read_tetrahedra(const std::filesystem::path& file) {
 
 TetMesh fill_surface(const TriangleSurface& surface, double size) {
   refuse_too_many_nodes(surface, size);
-  const WorkFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder / "surface.msh";
   write_gmsh(surface, file);
   std::string script = "Merge \"";

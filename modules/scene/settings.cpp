@@ -1,0 +1,58 @@
+#include "modules/scene/settings.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include "modules/core/error.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::scene {
+namespace {
+
+SceneValue plain_value(const YAML::Node& node) {
+  if (std::int64_t whole = 0; YAML::convert<std::int64_t>::decode(node, whole)) return {whole};
+  if (double number = 0; YAML::convert<double>::decode(node, number)) return {number};
+  if (node.Scalar() == "true" || node.Scalar() == "false") return {node.Scalar() == "true"};
+  return {node.Scalar()};
+}
+
+SceneValue value_of(const YAML::Node& node) {
+  if (node.IsSequence()) {
+    SceneValue::List list;
+    for (const auto& entry : node) list.push_back(value_of(entry));
+    return {list};
+  }
+  if (node.IsMap()) {
+    SceneValue::Map map;
+    for (const auto& entry : node) map.emplace_back(entry.first.Scalar(), value_of(entry.second));
+    return {map};
+  }
+  if (!node.IsScalar()) return {};
+  const bool quoted = node.Tag() == "!";
+  return quoted ? SceneValue{node.Scalar()} : plain_value(node);
+}
+
+}  // namespace
+
+SceneDocument::Change change_from(const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw InputError("setting '" + setting +
+                     "': must be KEY=VALUE, such as rates.deformation_hz=200");
+  }
+  try {
+    return {setting.substr(0, equals), value_of(YAML::Load(setting.substr(equals + 1)))};
+  } catch (const YAML::Exception& error) {
+    throw InputError("setting '" + setting + "': its value is not valid YAML: " + error.msg);
+  }
+}
+
+Scene load_scene_with(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  if (settings.empty()) return load_scene(file);
+  SceneDocument document(file);
+  std::vector<SceneDocument::Change> changes;
+  for (const auto& setting : settings) changes.push_back(change_from(setting));
+  document.change(changes);
+  return document.scene();
+}
+
+}  // namespace palpate::scene

@@ -1,0 +1,176 @@
+#include "palpate/scene_check.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "deformation/organ_messages.h"
+#include "haptics/devices/placed_device.h"
+#include "modules/core/units.h"
+#include "modules/geometry/organ_shape.h"
+#include "modules/runtime/clock.h"
+#include "modules/runtime/worker_team.h"
+#include "modules/scene/assets.h"
+#include "modules/scene/key_list.h"
+#include "modules/scene/models.h"
+#include "palpate/session/in_process.h"
+#include "palpate/session/timed_stage.h"
+
+namespace palpate::launcher {
+namespace {
+
+/// A warning where a shell's inner springs are neither of the two fitted to finite elements
+/// (docs/calibration.md): its forces are then a choice, not a prediction.
+void doubt_springs(const scene::Organ& organ, std::vector<std::string>& doubts) {
+  constexpr double kFittedSolid = 10;
+  const double fitted = scene::Springs{}.inner_ratio, ratio = organ.springs.inner_ratio;
+  if (scene::is_solid(organ.model) || ratio == fitted || ratio == kFittedSolid) return;
+  doubts.push_back(fmt::format(
+      "organ '{}': inner_ratio {:g} is not calibrated (fitted: {:g} for a filled shell, {:g} for a "
+      "solid, docs/calibration.md)",
+      organ.name, ratio, fitted, kFittedSolid));
+}
+
+OrganCheck check_of(const scene::Organ& organ, const geometry::OrganShape& shape,
+                    const deformation::DeformationWorld& world, std::size_t index, double period) {
+  const SurfaceTopology& topology = deformation::surface_message(world, index);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& node : shape.surface.nodes) box.extend(node);
+  std::array<std::size_t, 3> springs{};
+  for (const auto& spring : topology.springs) ++springs[static_cast<std::size_t>(spring.family)];
+  OrganCheck check;
+  check.name = organ.name;
+  check.model = organ.model;
+  check.size = box.sizes();
+  check.volume = geometry::enclosed_volume(shape.surface.nodes, shape.surface.triangles);
+  check.mass = organ.tissue.density * check.volume;
+  check.surface_nodes = topology.surface_node_count;
+  check.inner_nodes = topology.rest_positions.size() / 3 - topology.surface_node_count;
+  check.fixed_nodes = topology.fixed_nodes.size();
+  check.triangles = topology.triangles.size();
+  check.tetrahedra = shape.tetrahedra.size();
+  check.quadratic = !shape.edge_nodes.empty();
+  if (shape.is_solid()) {
+    check.asked_poisson_ratio = organ.solid.poisson_ratio;
+    check.computed_poisson_ratio = deformation::computed_poisson_ratio(organ);
+  }
+  check.structural = springs[0];
+  check.bending = springs[1];
+  check.inner = springs[2];
+  if (scene::format_of(organ.model).has_integrator) check.integrator = world.integrator(index);
+  check.integrator_automatic = organ.integrator == scene::Integrator::kAutomatic;
+  check.largest_step = world.stable_step(index);
+  check.substeps = world.substeps(index, period);
+  return check;
+}
+
+constexpr double kTip = 5e-3;  // [m]
+
+/// The scene with a sphere for its probes, which is moved from outside.
+scene::Scene touched_by_sphere(scene::Scene scene) {
+  scene.probes = {{"tip", scene::SphereShape{kTip}, 0.1, scene::ScriptedDevice{}}};
+  return scene;
+}
+
+double wall_time() { return seconds_from_ns(runtime::monotonic_now_ns()); }
+
+/// A session of the scene with its deformation timed.
+class TimedSession {
+ public:
+  TimedSession(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
+               ChunkRunner& runner)
+      : session_(touched_by_sphere(scene), {std::move(shapes), {geometry::TriangleSurface{}}},
+                 options(runner)) {
+    auto device = std::make_unique<haptics::PlacedDevice>(Pose{});
+    tip_ = device.get();
+    session_.haptics().set_device(0, std::move(device));
+  }
+
+  const deformation::DeformationWorld& world() const { return session_.world(); }
+  ContactTroubles contact_troubles() const { return session_.contact_troubles(); }
+
+  /// Wall time of deformation in a period, mean over about `measure_for` seconds [s]. The sphere
+  /// presses a triangle that is free to move once a second, 1 mm deep: an implicit step that has
+  /// nothing to do is no measure of one that has.
+  double cost_of_period(double period, double measure_for) {
+    place_tip();
+    session_.run_until(period);  // memory is taken, caches are warm
+    spent_ = 0;
+    const double end = wall_time() + measure_for;
+    int periods = 0;
+    for (; wall_time() < end; ++periods) {
+      place_tip();
+      session_.run_until(session_.time() + period);
+    }
+    return periods > 0 ? spent_ / periods : 0;
+  }
+
+ private:
+  session::InProcessOptions options(ChunkRunner& runner) {
+    session::InProcessOptions options;
+    options.runner = &runner;
+    options.make = [this](std::string_view module, bus::Bus& bus,
+                          const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
+      if (module != "deformation") return usual(bus);
+      return std::make_unique<session::TimedStage>(usual(bus), wall_time, spent_);
+    };
+    return options;
+  }
+
+  void place_tip() {
+    const deformation::OrganModel& organ = world().model(0);
+    const std::set<std::uint32_t> fixed(organ.fixed_nodes.begin(), organ.fixed_nodes.end());
+    const auto free = std::find_if(
+        organ.triangles.begin(), organ.triangles.end(), [&](const geometry::Triangle& t) {
+          return std::none_of(t.begin(), t.end(), [&](auto node) { return fixed.contains(node); });
+        });
+    if (free == organ.triangles.end()) return;
+    const auto corner = [&](std::size_t k) { return organ.rest_positions[(*free)[k]]; };
+    const Vec3 n = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+    const double depth = 0.5e-3 * (1 - std::cos(2 * M_PI * session_.time()));
+    Pose pose;
+    pose.position = (corner(0) + corner(1) + corner(2)) / 3 + (kTip - depth) * n;
+    tip_->place(pose);
+  }
+
+  double spent_ = 0;  ///< in deformation so far [s]
+  session::InProcess session_;
+  haptics::PlacedDevice* tip_ = nullptr;
+};
+
+}  // namespace
+
+SceneCheck check_scene(const scene::Scene& scene, double measure_for) {
+  SceneCheck check;
+  check.scene = scene;
+  check.period = 1 / scene.rates.deformation;
+  std::vector<geometry::OrganShape> shapes;
+  std::vector<geometry::TriangleSurface> skins;
+  for (const auto& organ : scene.organs) {
+    shapes.push_back(scene::load_organ(organ));
+    skins.push_back(shapes.back().surface);
+  }
+  check.doubts = doubts_about(scene, skins);
+  for (std::size_t i = 0; i < scene.probes.size(); ++i) {
+    const scene::Probe& probe = scene.probes[i];
+    std::vector<std::string> told;  // among the doubts
+    check.probes.push_back({probe.name, scene::word_of_option(probe.shape),
+                            scene::word_of_option(probe.device),
+                            approach_of(scene, i, skins, told)});
+  }
+  runtime::WorkerTeam team(scene.deformation_threads);
+  TimedSession session(scene, shapes, team);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    doubt_springs(scene.organs[i], check.doubts);
+    check.organs.push_back(check_of(scene.organs[i], shapes[i], session.world(), i, check.period));
+  }
+  check.cost = session.cost_of_period(check.period, measure_for);
+  check.troubles = session.contact_troubles();
+  return check;
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,198 @@
+#include "palpate/scene_doubts.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "haptics/devices/device.h"
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/scene/assets.h"
+#include "modules/scene/probe_shape.h"
+#include "modules/scene/region.h"
+
+namespace palpate::launcher {
+namespace {
+
+// From a lymph node to a body; instruments may be as thin as a needle.
+constexpr double kSmallestOrgan = 2e-3, kLargestOrgan = 2.0;  // longest side [m]
+constexpr double kSmallestTool = 1e-4, kLargestTool = 1.0;
+constexpr double kUsualSmallest = 0.02, kUsualLargest = 0.6;
+constexpr double kHandReach = 3.0;     // extent of a hand's motion [m]
+constexpr double kHandSpeed = 3.0;     // [m/s]
+constexpr double kSlowestHand = 1e-4;  // mean speed of a recording that does move [m/s]
+constexpr double kLongestLook = 120;   // of a probe's way [s]
+
+Eigen::AlignedBox3d box_of(const geometry::TriangleSurface& surface) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& node : surface.nodes) box.extend(node);
+  return box;
+}
+
+std::string length_text(double metres) {
+  if (metres >= 1) return fmt::format("{:.3g} m", metres);
+  if (metres >= 1e-3) return fmt::format("{:.3g} mm", 1e3 * metres);
+  return fmt::format("{:.3g} um", 1e6 * metres);
+}
+
+/// The unit in which what is `size` metres long as read in `unit` would have a usual size.
+std::string likely_unit(double size, const std::string& unit) {
+  const double number = size / metres_per_unit(unit);
+  for (const char* other : {"mm", "cm", "m", "um", "in"}) {
+    const double length = number * metres_per_unit(other);
+    if (other != unit && length >= kUsualSmallest && length <= kUsualLargest) return other;
+  }
+  return "";
+}
+
+/// @throws InputError for a longest side that nothing of its kind has
+void check_size(const std::string& owner, const scene::Mesh& mesh, double size, double smallest,
+                double largest) {
+  if (size >= smallest && size <= largest) return;
+  const std::string unit = likely_unit(size, mesh.unit);
+  std::string said =
+      fmt::format("{} is {} long, read in {}; between {} and {} are allowed", owner,
+                  length_text(size), mesh.unit, length_text(smallest), length_text(largest));
+  if (!unit.empty()) {
+    said += fmt::format(". With mesh: {{unit: {}}} it would be {}", unit,
+                        length_text(size / metres_per_unit(mesh.unit) * metres_per_unit(unit)));
+  }
+  throw InputError(said);
+}
+
+double radius_of(const scene::ProbeShape& shape) {
+  if (const auto* sphere = std::get_if<scene::SphereShape>(&shape)) return sphere->radius;
+  if (const auto* capsule = std::get_if<scene::CapsuleShape>(&shape)) return capsule->radius;
+  return 0;
+}
+
+class Doubts {
+ public:
+  Doubts(const scene::Scene& scene, const std::vector<geometry::TriangleSurface>& skins)
+      : scene_(scene), skins_(skins) {}
+
+  std::vector<std::string> all() && {
+    for (std::size_t i = 0; i < skins_.size(); ++i) organ(scene_.organs[i], skins_[i]);
+    for (std::size_t i = 0; i < scene_.probes.size(); ++i) probe(i);
+    return std::move(lines_);
+  }
+
+ private:
+  void organ(const scene::Organ& organ, const geometry::TriangleSurface& skin) {
+    const std::string owner = "organ '" + organ.name + "'";
+    const double size = box_of(skin).sizes().maxCoeff();
+    check_size(owner, organ.mesh, size, kSmallestOrgan, kLargestOrgan);
+    if (size < kUsualSmallest / 2 || size > 2 * kUsualLargest) {
+      say("{} is {} long, read in {}: is its mesh in another unit?", owner, length_text(size),
+          organ.mesh.unit);
+    }
+    std::size_t fixed = 0;
+    for (std::size_t k = 0; k < organ.fixed.size(); ++k) {
+      const auto caught = static_cast<std::size_t>(
+          std::count_if(skin.nodes.begin(), skin.nodes.end(),
+                        [&](const Vec3& node) { return scene::contains(organ.fixed[k], node); }));
+      if (caught == 0) {
+        const auto box = box_of(skin);
+        say("{}: fixed[{}] holds no node of its surface, which lies in [{:.3f}, {:.3f}, {:.3f}] to "
+            "[{:.3f}, {:.3f}, {:.3f}] m",
+            owner, k, box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(),
+            box.max().z());
+      }
+      fixed += caught;
+    }
+    if (fixed >= skin.nodes.size()) {
+      say("{}: all of its surface is fixed; nothing of it can move", owner);
+    }
+    const bool held = !organ.fixed.empty() || scene_.probes.size() > 1 || scene_.organs.size() > 1;
+    if (!held) {
+      say("{}: nothing holds it, so the probe pushes it away; fix its back: fixed: [{{box: …}}]",
+          owner);
+    }
+  }
+
+  void probe(std::size_t index) {
+    const scene::Probe& probe = scene_.probes[index];
+    const std::string owner = "probe '" + probe.name + "'";
+    if (const scene::Mesh* mesh = scene::mesh_of(probe.shape)) {
+      const double size = box_of(scene::load_probe_mesh(probe)).sizes().maxCoeff();
+      check_size(owner, *mesh, size, kSmallestTool, kLargestTool);
+    }
+    constexpr double kThickestInstrument = 0.1;
+    if (radius_of(probe.shape) > kThickestInstrument) {
+      say("{} has a radius of {}; is radius_m in metres?", owner,
+          length_text(radius_of(probe.shape)));
+    }
+    const collision::Approach approach = approach_of(scene_, index, skins_, lines_);
+    if (approach.begins_inside) {
+      say("{} begins inside an organ: the nearest wall will push it out; begin outside", owner);
+    }
+    motion(owner, probe, approach);
+  }
+
+  void motion(const std::string& owner, const scene::Probe& probe,
+              const collision::Approach& approach) {
+    const bool recorded = std::holds_alternative<scene::TrajectoryDevice>(probe.device);
+    const bool scripted = std::holds_alternative<scene::ScriptedDevice>(probe.device);
+    if (!recorded && !scripted) return;
+    if (approach.extent > kHandReach) {
+      say("{} moves over {}: are its positions in millimetres? They must be metres", owner,
+          length_text(approach.extent));
+    }
+    if (approach.fastest > kHandSpeed) {
+      say("{} moves at up to {:.3g} m/s, faster than a hand: are positions in millimetres, or "
+          "times too short?",
+          owner, approach.fastest);
+    } else if (recorded && approach.extent > 0 && approach.duration >= kLongestLook &&
+               approach.extent / approach.duration < kSlowestHand) {
+      say("{} moves over {} in the first {:g} s: are its times in milliseconds? They must be "
+          "seconds",
+          owner, length_text(approach.extent), approach.duration);
+    }
+    if (!approach.touches_at && !approach.begins_inside) {
+      say("{} touches nothing in the first {:g} s: its origin comes no nearer than {} to a "
+          "surface, at {:.2f} s",
+          owner, approach.duration, length_text(approach.nearest), approach.nearest_at);
+    }
+  }
+
+  template <class... Values>
+  void say(fmt::format_string<Values...> text, Values&&... values) {
+    lines_.push_back(fmt::format(text, std::forward<Values>(values)...));
+  }
+
+  const scene::Scene& scene_;
+  const std::vector<geometry::TriangleSurface>& skins_;
+  std::vector<std::string> lines_;
+};
+
+double duration_of(const scene::Scene& scene) {
+  return scene.duration > 0 ? std::min(scene.duration, kLongestLook) : kLongestLook;
+}
+
+}  // namespace
+
+collision::Approach approach_of(const scene::Scene& scene, std::size_t index,
+                                const std::vector<geometry::TriangleSurface>& skins,
+                                std::vector<std::string>& warnings) {
+  const scene::Probe& probe = scene.probes[index];
+  const auto device = haptics::make_device(probe.device, scene.haptics, warnings);
+  return collision::approach_of(
+      scene::form_of(probe.shape, scene::load_probe_mesh(probe)), skins,
+      [&](double time) { return device->read(time).pose; }, duration_of(scene));
+}
+
+std::vector<std::string> doubts_about(const scene::Scene& scene,
+                                      const std::vector<geometry::TriangleSurface>& skins) {
+  return Doubts(scene, skins).all();
+}
+
+std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene) {
+  std::vector<geometry::TriangleSurface> skins;
+  for (const auto& organ : scene.organs) skins.push_back(scene::load_skin(organ));
+  return skins;
+}
+
+}  // namespace palpate::launcher

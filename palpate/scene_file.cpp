@@ -1,0 +1,46 @@
+#include "palpate/scene_file.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "modules/core/data_folder.h"
+
+namespace palpate::launcher {
+namespace {
+
+/// The comment lines a file begins with, as one line, to the end of the first sentence.
+std::string first_sentence(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string text;
+  for (std::string line; std::getline(stream, line) && line.starts_with("# ");) {
+    text += (text.empty() ? "" : " ") + line.substr(2);
+    if (const auto end = text.find(". "); end != std::string::npos) return text.substr(0, end + 1);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<ShippedScene> shipped_scenes() {
+  std::vector<ShippedScene> scenes;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(data_folder() / "scenes", none)) {
+    const auto& file = entry.path();
+    if (file.extension() != ".yaml") continue;
+    scenes.push_back({file.stem().string(), file, first_sentence(file)});
+  }
+  std::sort(scenes.begin(), scenes.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  return scenes;
+}
+
+std::filesystem::path scene_file(const std::filesystem::path& named) {
+  std::error_code none;
+  if (named.empty() || std::filesystem::exists(named, none)) return named;
+  for (const auto& scene : shipped_scenes()) {
+    if (named == scene.name || named == scene.file.filename()) return scene.file;
+  }
+  return named;
+}
+
+}  // namespace palpate::launcher

@@ -1,0 +1,23 @@
+// Scenes by name, and the scenes that are shipped.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpate::launcher {
+
+struct ShippedScene {
+  std::string name;  ///< what `palpate run` takes: "stomach_probe"
+  std::filesystem::path file;
+  std::string meaning;  ///< the comment the file begins with, to its first full stop
+};
+
+/// Of the data folder, by name.
+std::vector<ShippedScene> shipped_scenes();
+
+/// The file that a command's SCENE means: itself if it exists, else the shipped scene of that name;
+/// of neither, itself, for the reader to refuse.
+std::filesystem::path scene_file(const std::filesystem::path& named);
+
+}  // namespace palpate::launcher
