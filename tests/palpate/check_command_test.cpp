@@ -17,7 +17,7 @@
 
 using namespace palpate;
 using Catch::Contains;
-using testing::BallScene;
+using palpate::testing::BallScene;
 
 namespace {
 

@@ -10,8 +10,8 @@
 #include "tests/palpate/typed_command.h"
 
 using namespace palpate;
-using testing::BallScene;
-using testing::type;
+using palpate::testing::BallScene;
+using palpate::testing::type;
 
 namespace {
 
@@ -186,7 +186,7 @@ TEST_CASE("mistakes: a program that was not built is named with the target that 
   std::filesystem::copy(std::filesystem::path(PALPATE_BIN_DIR) / "palpate",
                         scene.folder() / "palpate");
   launcher::ChildProcess alone(scene.folder() / "palpate", {"plan", scene.file().string()});
-  REQUIRE(testing::wait_until([&] { return alone.ended().has_value(); }));
+  REQUIRE(palpate::testing::wait_until([&] { return alone.ended().has_value(); }));
   std::string said;
   for (const auto& line : alone.take_lines()) said += line;
   CHECK_THAT(said, Catch::Contains("--target palpate-plan"));

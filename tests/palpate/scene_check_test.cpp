@@ -7,7 +7,7 @@
 #include "tests/palpate/ball_scene.h"
 
 using namespace palpate;
-using testing::BallScene;
+using palpate::testing::BallScene;
 
 TEST_CASE("scene check: counts are Euler's, volume and mass the mesh's, the touch is foreseen") {
   // Oracle: Euler's formula (E = 3N − 6, F = 2N − 4), the enclosed volume of the file; the sphere

@@ -12,7 +12,7 @@
 using namespace palpate;
 using namespace palpate::launcher;
 using Catch::Contains;
-using testing::BallScene;
+using palpate::testing::BallScene;
 
 namespace {
 
@@ -20,7 +20,7 @@ std::string scripted(const std::string& start, const std::string& moves) {
   return "scripted: {start_m: " + start + ", moves: [" + moves + "]}";
 }
 
-const std::string kPress = scripted("[0, 0, 0.09]", "{to_m: [0, 0, 0.05], duration_s: 2}");
+const std::string kDownOnBall = scripted("[0, 0, 0.09]", "{to_m: [0, 0, 0.05], duration_s: 2}");
 
 std::vector<std::string> doubts(const BallScene& scene,
                                 const std::vector<std::string>& settings = {}) {
@@ -41,7 +41,7 @@ std::string doubt(const BallScene& scene, const std::vector<std::string>& settin
 TEST_CASE("doubts: a press of a ball on its foot leaves none, and touches when it must") {
   // Oracle: the minimum-jerk curve: half of 40 mm at half of 2 s; the sphere of 10 mm touches the
   // ball of 50 mm at a height of 60 mm, after 30 of 40 mm.
-  const BallScene scene(kPress, "duration_s: 4\n");
+  const BallScene scene(kDownOnBall, "duration_s: 4\n");
   CHECK(doubts(scene).empty());
   const auto loaded = scene::load_scene(scene.file());
   std::vector<std::string> warnings;
@@ -57,7 +57,7 @@ TEST_CASE("doubts: a press of a ball on its foot leaves none, and touches when i
 
 TEST_CASE("doubts: an organ in another unit is refused, and the likely unit named") {
   // Oracle: the ball of 100 mm, read as if its file were in other units.
-  const BallScene scene(kPress, "duration_s: 4\n");
+  const BallScene scene(kDownOnBall, "duration_s: 4\n");
   CHECK_THROWS_WITH(doubts(scene, {"organs[0].mesh.unit=um"}),
                     Contains("organ 'ball' is 0.1 um long, read in um") && Contains("unit: m"));
   auto ball = geometry::read_surface(scene.folder() / "ball.ply", "m");
@@ -70,7 +70,7 @@ TEST_CASE("doubts: an organ in another unit is refused, and the likely unit name
 
 TEST_CASE("doubts: what lets an organ fly or keeps it from moving is named") {
   // Oracle: the regions, written so that they hold none, or all, of its nodes.
-  const BallScene scene(kPress, "duration_s: 4\n");
+  const BallScene scene(kDownOnBall, "duration_s: 4\n");
   CHECK_THAT(doubt(scene, {"organs[0].fixed=[]"}), Contains("nothing holds it"));
   CHECK_THAT(doubt(scene, {"organs[0].fixed=[{sphere: {center_m: [1, 0, 0], radius_m: 0.1}}]"}),
              Contains("fixed[0] holds no node"));

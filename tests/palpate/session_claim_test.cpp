@@ -11,7 +11,7 @@ using launcher::SessionClaim;
 
 TEST_CASE("session claim: a session has one launcher, and is free when that is gone") {
   // Oracle: the kernel's names.
-  const bus::BusOptions own = testing::own_bus_options();
+  const bus::BusOptions own = palpate::testing::own_bus_options();
   std::optional<SessionClaim> first(std::in_place, own.session, own.domain);
   CHECK_THROWS_WITH(SessionClaim(own.session, own.domain),
                     Catch::Contains("session '" + own.session + "' already runs here"));

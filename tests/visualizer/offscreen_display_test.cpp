@@ -15,7 +15,7 @@ using namespace palpate::visualizer;
 TEST_CASE("off-screen display: accepts clients while it lives and leaves no process",
           "[visualizer]") {
   // Oracle: the X library connects, then does not; the kernel knows no such process.
-  if (!testing::xvfb_or_skip()) return;
+  if (!palpate::visualizer::testing::xvfb_or_skip()) return;
   pid_t server = 0;
   {
     const OffscreenDisplay display;
@@ -30,7 +30,7 @@ TEST_CASE("off-screen display: accepts clients while it lives and leaves no proc
 
 TEST_CASE("off-screen display: two at once have different numbers", "[visualizer]") {
   // Oracle: inequality.
-  if (!testing::xvfb_or_skip()) return;
+  if (!palpate::visualizer::testing::xvfb_or_skip()) return;
   const OffscreenDisplay first, second;
   CHECK(first.name() != second.name());
 }
@@ -38,7 +38,7 @@ TEST_CASE("off-screen display: two at once have different numbers", "[visualizer
 TEST_CASE("off-screen display: ends with its parent even if that is killed",
           "[visualizer][fault]") {
   // Oracle: the pipe that the server's parent shares with it is closed only when both are gone.
-  if (!testing::xvfb_or_skip()) return;
+  if (!palpate::visualizer::testing::xvfb_or_skip()) return;
   int report[2], alive[2];
   REQUIRE(pipe(report) == 0);
   REQUIRE(pipe(alive) == 0);

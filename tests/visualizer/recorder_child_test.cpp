@@ -21,15 +21,15 @@ TEST_CASE("recorder child: what is said while it lives is in the file when it ha
           "[visualizer][system]") {
   // Oracle: the recording, read back.
   const ScratchFolder folder;
-  const auto options = testing::own_bus_options();
+  const auto options = palpate::testing::own_bus_options();
   const auto file = folder.path() / "take.mcap";
   bus::DdsBus bus(options);
   auto forces = bus.writer(bus::kHapticForce);
   {
     RecorderChild recorder(kRecorder, file, options);
-    REQUIRE(testing::wait_until([&] { return forces.matched_readers() > 0; }));
+    REQUIRE(palpate::testing::wait_until([&] { return forces.matched_readers() > 0; }));
     HapticForce force;
-    REQUIRE(testing::wait_until([&] {
+    REQUIRE(palpate::testing::wait_until([&] {
       forces.write(force);
       return std::filesystem::exists(file) && std::filesystem::file_size(file) > 20'000;
     }));
@@ -47,6 +47,6 @@ TEST_CASE("recorder child: one that cannot record is told from one that does",
   // Oracle: the program's exit.
   const ScratchFolder folder;
   RecorderChild recorder(kRecorder, folder.path() / "no" / "such" / "folder.mcap",
-                         testing::own_bus_options());
-  CHECK(testing::wait_until([&] { return !recorder.running(); }));
+                         palpate::testing::own_bus_options());
+  CHECK(palpate::testing::wait_until([&] { return !recorder.running(); }));
 }

@@ -48,7 +48,7 @@ std::vector<std::uint8_t> ramp(int width, int height) {
 TEST_CASE("shared picture: the window shows every pixel where it belongs, at each size",
           "[visualizer]") {
   // Oracle: the server's own copy of the window.
-  if (!testing::xvfb_or_skip()) return;
+  if (!palpate::visualizer::testing::xvfb_or_skip()) return;
   const OffscreenDisplay server;
   Shown shown;
   const auto picture = SharedPicture::make(shown.display, shown.window);
@@ -64,7 +64,7 @@ TEST_CASE("shared picture: the window shows every pixel where it belongs, at eac
 
 TEST_CASE("shared picture: too few pixels are not shown", "[visualizer][fault]") {
   // Oracle: the stated rule.
-  if (!testing::xvfb_or_skip()) return;
+  if (!palpate::visualizer::testing::xvfb_or_skip()) return;
   const OffscreenDisplay server;
   Shown shown;
   const auto picture = SharedPicture::make(shown.display, shown.window);

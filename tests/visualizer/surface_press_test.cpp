@@ -12,13 +12,13 @@ using visualizer::testing::two_probe_scene;
 
 namespace {
 
-constexpr double kRadius = 0.05, kTip = 0.008;
+constexpr double kBallRadius = 0.05, kTip = 0.008;
 
 struct Fixture {
   SceneView view{two_probe_scene()};
   Camera camera = frontal_camera(Vec3::Zero(), 0.1, 900, 700);
 
-  Fixture() { view.receive(topology_of(geometry::make_ball(kRadius, 3))); }
+  Fixture() { view.receive(topology_of(geometry::make_ball(kBallRadius, 3))); }
   SurfacePress press(const Vec3& from, const ProbeBody& body = ProbeBody(kTip)) const {
     return {0, body, {from, Quat::Identity()}, *pick_surface(view, camera, 450, 350), view, camera};
   }

@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "haptics/devices/scripted_device.h"
+#include "tests/times.h"
 
 using namespace palpate;
 using namespace palpate::haptics;
 
 namespace {
-
-constexpr double kTick = 1e-3;
 
 scene::ScriptedDevice forth_and_back() {
   scene::ScriptedDevice script;
