@@ -6,10 +6,12 @@
 #include <ctime>
 #include <string>
 
+#include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
 #include "modules/runtime/clock.h"
+#include "modules/runtime/program.h"
 #include "visualizer/offscreen_display.h"
 #include "visualizer/renderer.h"
 
@@ -69,15 +71,10 @@ void move_on(SceneView& view, const geometry::TriangleSurface& surface, int pict
   view.receive(std::move(moved), runtime::monotonic_now_ns());
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  const std::string file = argc > 1 ? argv[1] : "scenes/meshes/stomach.ply";
-  const int pictures = argc > 2 ? std::stoi(argv[2]) : 150;
+/// @throws InputError without a display, or for a mesh that cannot be read
+void measure(const std::string& file, int pictures) {
   if (!display_works()) {
-    std::fprintf(stderr,
-                 "palpate-bench-frame: no display (try: xvfb-run -s '-screen 0 1920x1200x24' …)\n");
-    return 2;
+    throw InputError("no display (try: xvfb-run -s '-screen 0 1920x1200x24' …)");
   }
   const auto surface = geometry::read_surface(file, "m");
   SceneView view(one_finger());
@@ -117,5 +114,18 @@ int main(int argc, char** argv) {
   const double worked = double(std::clock() - began) / CLOCKS_PER_SEC;
   std::printf("  %-16s %7.2f ms: %.1f pictures/s; of all threads' processor time %.2f ms\n",
               "together", 1e3 * all / pictures, pictures / all, 1e3 * worked / pictures);
-  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  runtime::Program program("What the parts of a picture cost in a window", "palpate-bench-frame");
+  std::string file = "scenes/meshes/stomach.ply";
+  int pictures = 150;
+  program.add("MESH", file, "Surface of the organ, in metres").shows_default();
+  program.add("PICTURES", pictures, "How many are drawn").range(1, 100000).shows_default();
+  return program.run(argc, argv, [&] {
+    measure(file, pictures);
+    return kExitDone;
+  });
 }

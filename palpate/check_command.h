@@ -11,8 +11,8 @@ namespace palpate::launcher {
 struct CheckOptions {
   std::filesystem::path scene;
   std::vector<std::string> settings = {};  ///< as of RunOptions
-  double measure_for = 1;             ///< about how long a step's cost is measured [s]
-  bool resolved = false;              ///< the scene with every default, and nothing else
+  double measure_for = 1;                  ///< about how long a step's cost is measured [s]
+  bool resolved = false;                   ///< the scene with every default, and nothing else
   bool json = false;
 };
 

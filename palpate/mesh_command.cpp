@@ -11,6 +11,7 @@
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/shells.h"
+#include "palpate/scene_doubts.h"
 
 namespace palpate::geometry {
 namespace {
@@ -159,6 +160,13 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
   const MeshReport found = check_surface(surface);
   out << options.input.string() << " (" << options.unit << ")\n";
   print_measures(found, out);
+  try {
+    launcher::check_organ_size("the surface", {options.input, options.unit},
+                               (found.max_corner - found.min_corner).maxCoeff());
+  } catch (const InputError& doubt) {  // a mesh may be of something else; a scene refuses it
+    out << "warning: " << doubt.what() << '\n';
+    json["warnings"].append(doubt.what());
+  }
   RepairLog log = repair_surface(surface);
   if (options.fill_holes || options.largest) {
     for (auto& action : mend(surface, options)) log.actions.push_back(std::move(action));

@@ -5,7 +5,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <ostream>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "modules/core/units.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/scene/scene_reader.h"
+#include "palpate/scene_doubts.h"
 
 namespace palpate::launcher {
 namespace {
@@ -64,29 +67,49 @@ struct Layout {
   Eigen::AlignedBox3d box;
   double fixed_from = 0;         ///< nodes with greater y are held [m]
   Vec3 front = Vec3::Zero();     ///< of the surface, before its middle [m]
+  double wall = 0;               ///< fitted to a solid (docs/calibration.md) [m]
   double radius = 0, depth = 0;  ///< of the sphere, of its press [m]
 };
+
+/// Where a press along y meets much of the organ: the node of the near half that faces the front
+/// most, and lies before the middle.
+Vec3 front_of(const geometry::TriangleSurface& surface, const Eigen::AlignedBox3d& box) {
+  std::vector<Vec3> normals(surface.nodes.size(), Vec3::Zero());
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3 normal =
+        (surface.nodes[b] - surface.nodes[a]).cross(surface.nodes[c] - surface.nodes[a]);
+    for (const auto node : {a, b, c}) normals[node] += normal;
+  }
+  const Vec3 middle = box.center(), size = box.sizes();
+  Vec3 front = surface.nodes.front();
+  double best = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
+    const Vec3& node = surface.nodes[i];
+    if (node.y() > middle.y()) continue;
+    const double aside =
+        std::hypot((node.x() - middle.x()) / size.x(), (node.z() - middle.z()) / size.z());
+    const double score = -normals[i].normalized().y() - 2 * aside;
+    if (score <= best) continue;
+    best = score;
+    front = node;
+  }
+  return front;
+}
 
 Layout layout_of(const geometry::TriangleSurface& surface) {
   Layout layout;
   layout.box = box_of(surface);
-  const Vec3 size = layout.box.sizes(), middle = layout.box.center();
+  const Vec3 size = layout.box.sizes();
   std::vector<double> along;
   for (const Vec3& node : surface.nodes) along.push_back(node.y());
   // The farthest tenth of its nodes.
   const auto tenth = along.end() - std::max<std::ptrdiff_t>(3, std::ssize(along) / 10);
   std::nth_element(along.begin(), tenth, along.end());
   layout.fixed_from = *tenth - 1e-4;
-  // The node nearest to the line through the middle along y, among those of the near half.
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Vec3& node : surface.nodes) {
-    if (node.y() > middle.y()) continue;
-    const double aside = std::hypot(node.x() - middle.x(), node.z() - middle.z());
-    const double score = aside + 0.25 * (node.y() - layout.box.min().y());
-    if (score >= nearest) continue;
-    nearest = score;
-    layout.front = node;
-  }
+  layout.front = front_of(surface, layout.box);
+  const double volume = geometry::enclosed_volume(surface.nodes, surface.triangles);
+  constexpr double kWallOverRadius = 0.16;  // docs/calibration.md, solid
+  layout.wall = kWallOverRadius * std::cbrt(3 * volume / (4 * M_PI));
   layout.radius = std::clamp(0.06 * size.maxCoeff(), 2e-3, 8e-3);
   layout.depth = std::min(0.12 * size.y(), 0.015);
   return layout;
@@ -117,8 +140,11 @@ std::string scene_text(const std::filesystem::path& mesh, const std::string& uni
     text += fmt::format("      nodes: {}   # resampled: 500 to 2000 run in real time\n", nodes);
   }
   text += fmt::format(
-      "    tissue: {{youngs_modulus_pa: 10e3, wall_thickness_m: 3e-3, density_kg_per_m3: 1050}}\n"
-      "    springs: {{inner_ratio: 10}}   # fitted: 10 for a solid organ, 0.05 for a hollow one\n"
+      "    # A solid organ of springs as fitted (docs/calibration.md): inner_ratio 10 and a wall "
+      "of 0.16\n"
+      "    # of its radius. A hollow one: its wall's own thickness, and inner_ratio 0.05\n"
+      "    tissue: {{youngs_modulus_pa: 10e3, wall_thickness_m: {:.2g}, density_kg_per_m3: 1050}}\n"
+      "    springs: {{inner_ratio: 10}}\n"
       "    fixed:   # what lies on the spine: the farthest tenth of its nodes\n"
       "      - box: {{min_m: {}, max_m: {}}}\n"
       "probes:\n"
@@ -131,9 +157,9 @@ std::string scene_text(const std::filesystem::path& mesh, const std::string& uni
       "          - {{to_m: {}, duration_s: 3}}   # {:.0f} mm deep\n"
       "          - {{wait_s: 1}}\n"
       "          - {{to_m: {}, duration_s: 2}}\n"
-      "duration_s: 8\n"
+      "# It runs until q or Ctrl-C; duration_s: 8 would end it after 8 s.\n"
       "camera: {{position_m: {}, target_m: {}}}\n",
-      vector_text(back), vector_text(highest), layout.radius, vector_text(start),
+      layout.wall, vector_text(back), vector_text(highest), layout.radius, vector_text(start),
       vector_text(pressed), 1e3 * layout.depth, vector_text(start),
       vector_text(middle + Vec3(-0.3 * far, -far, 0.3 * far)), vector_text(middle));
   return text;
@@ -142,6 +168,9 @@ std::string scene_text(const std::filesystem::path& mesh, const std::string& uni
 }  // namespace
 
 int new_command(const NewOptions& options, std::ostream& out) {
+  if (options.mesh.extension() == ".yaml") {
+    throw InputError(options.mesh.string() + ": a scene, not a mesh: palpate run takes it");
+  }
   std::filesystem::path output = options.output;
   if (output.empty()) output = options.mesh.stem().string() + ".yaml";
   if (std::filesystem::exists(output)) {
@@ -149,6 +178,8 @@ int new_command(const NewOptions& options, std::ostream& out) {
   }
   const Guess guess = unit_of(options);
   auto surface = geometry::load_organ_surface(options.mesh, guess.unit, 0);
+  check_organ_size(options.mesh.string(), {options.mesh, guess.unit},
+                   box_of(surface).sizes().maxCoeff());
   const std::size_t nodes = surface.nodes.size() > kMostUsualNodes ? kUsualNodes : 0;
   const std::size_t found = surface.nodes.size();
   if (nodes > 0) surface = geometry::load_organ_surface(options.mesh, guess.unit, nodes);

@@ -84,7 +84,7 @@ class Doubts {
   void organ(const scene::Organ& organ, const geometry::TriangleSurface& skin) {
     const std::string owner = "organ '" + organ.name + "'";
     const double size = box_of(skin).sizes().maxCoeff();
-    check_size(owner, organ.mesh, size, kSmallestOrgan, kLargestOrgan);
+    check_organ_size(owner, organ.mesh, size);
     if (size < kUsualSmallest / 2 || size > 2 * kUsualLargest) {
       say("{} is {} long, read in {}: is its mesh in another unit?", owner, length_text(size),
           organ.mesh.unit);
@@ -182,6 +182,10 @@ collision::Approach approach_of(const scene::Scene& scene, std::size_t index,
   return collision::approach_of(
       scene::form_of(probe.shape, scene::load_probe_mesh(probe)), skins,
       [&](double time) { return device->read(time).pose; }, duration_of(scene));
+}
+
+void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size) {
+  check_size(owner, mesh, size, kSmallestOrgan, kLargestOrgan);
 }
 
 std::vector<std::string> doubts_about(const scene::Scene& scene,

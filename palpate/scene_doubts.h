@@ -25,6 +25,10 @@ collision::Approach approach_of(const scene::Scene& scene, std::size_t probe,
 std::vector<std::string> doubts_about(const scene::Scene& scene,
                                       const std::vector<geometry::TriangleSurface>& skins);
 
+/// @param owner  what messages call it  @param size  its longest side, read in mesh.unit [m]
+/// @throws InputError for a size that no organ has, naming the likely unit
+void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size);
+
 /// The skins of all organs.
 /// @throws InputError as scene::load_skin() does
 std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene);

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "modules/core/data_folder.h"
+#include "modules/core/error.h"
 
 namespace palpate::launcher {
 namespace {
@@ -17,6 +18,11 @@ std::string first_sentence(const std::filesystem::path& file) {
     if (const auto end = text.find(". "); end != std::string::npos) return text.substr(0, end + 1);
   }
   return text;
+}
+
+bool is_mesh(const std::filesystem::path& file) {
+  const auto kind = file.extension();
+  return kind == ".stl" || kind == ".STL" || kind == ".ply" || kind == ".obj" || kind == ".off";
 }
 
 }  // namespace
@@ -36,11 +42,15 @@ std::vector<ShippedScene> shipped_scenes() {
 
 std::filesystem::path scene_file(const std::filesystem::path& named) {
   std::error_code none;
+  if (std::filesystem::is_regular_file(named, none) && is_mesh(named)) {
+    throw InputError(named.string() + ": a mesh, not a scene: palpate new makes a scene of it");
+  }
   if (named.empty() || std::filesystem::exists(named, none)) return named;
   for (const auto& scene : shipped_scenes()) {
     if (named == scene.name || named == scene.file.filename()) return scene.file;
   }
-  return named;
+  throw InputError(named.string() +
+                   ": no such file, and no shipped scene has that name (palpate list scenes)");
 }
 
 }  // namespace palpate::launcher

@@ -16,8 +16,8 @@ struct ShippedScene {
 /// Of the data folder, by name.
 std::vector<ShippedScene> shipped_scenes();
 
-/// The file that a command's SCENE means: itself if it exists, else the shipped scene of that name;
-/// of neither, itself, for the reader to refuse.
+/// The file that a command's SCENE means: itself if it exists, else the shipped scene of that name.
+/// @throws InputError where there is neither, or for a mesh
 std::filesystem::path scene_file(const std::filesystem::path& named);
 
 }  // namespace palpate::launcher

@@ -45,6 +45,7 @@ TEST_CASE("new: a scene from a mesh can be run, and leaves no doubt") {
     std::vector<std::string> warnings;
     const collision::Approach approach = approach_of(scene, 0, skins, warnings);
     CHECK(approach.touches_at);
+    CHECK(scene.organs[0].tissue.wall_thickness == Approx(0.16 * 0.06).epsilon(0.05));
   }
 }
 
