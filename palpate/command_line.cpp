@@ -1,5 +1,9 @@
 #include "palpate/command_line.h"
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <iostream>
 
@@ -24,9 +28,26 @@ using runtime::Option;
 using runtime::Options;
 using runtime::Program;
 
+/// Whether a local display answers: a window that never comes would be waited for.
+bool answers(int display) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = "/tmp/.X11-unix/X" + std::to_string(display);
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool connected =
+      ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(socket);
+  return connected;
+}
+
 bool no_display() {
-  const char* display = std::getenv("DISPLAY");
-  return display == nullptr || *display == '\0';
+  const char* named = std::getenv("DISPLAY");
+  const std::string display = named == nullptr ? "" : named;
+  const auto colon = display.find(':');
+  if (colon == std::string::npos) return true;
+  if (colon > 0 && !display.starts_with("unix:")) return false;  // another host's
+  return !answers(std::atoi(display.c_str() + colon + 1));
 }
 
 constexpr const char* kFirstScene = "press_me";

@@ -119,6 +119,16 @@ std::string vector_text(const Vec3& v) {
   return fmt::format("[{:.4f}, {:.4f}, {:.4f}]", v.x(), v.y(), v.z());
 }
 
+/// In double quotes of YAML.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 std::string scene_text(const std::filesystem::path& mesh, const std::string& unit,
                        std::size_t nodes, const Layout& layout) {
   const double margin = 0.02 * layout.box.sizes().maxCoeff();
@@ -134,8 +144,8 @@ std::string scene_text(const std::filesystem::path& mesh, const std::string& uni
       "# docs/scene.md lists every key; `palpate check` says what this holds and costs.\n"
       "palpate_scene: 1\n"
       "organs:\n";
-  text += fmt::format("  - name: {}\n    mesh:\n      file: \"{}\"\n      unit: {}\n", "organ",
-                      mesh.string(), unit);
+  text += fmt::format("  - name: {}\n    mesh:\n      file: {}\n      unit: {}\n", "organ",
+                      quoted(mesh.string()), unit);
   if (nodes > 0) {
     text += fmt::format("      nodes: {}   # resampled: 500 to 2000 run in real time\n", nodes);
   }
@@ -175,6 +185,9 @@ int new_command(const NewOptions& options, std::ostream& out) {
   if (output.empty()) output = options.mesh.stem().string() + ".yaml";
   if (std::filesystem::exists(output)) {
     throw InputError(output.string() + ": is there already; --output names another");
+  }
+  if (!std::filesystem::is_directory(std::filesystem::absolute(output).parent_path())) {
+    throw InputError(output.string() + ": its folder does not exist");
   }
   const Guess guess = unit_of(options);
   auto surface = geometry::load_organ_surface(options.mesh, guess.unit, 0);

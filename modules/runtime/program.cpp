@@ -28,8 +28,21 @@ std::string refuse_empty(const std::string& path) {
   return path.empty() ? "an empty path names no file" : "";
 }
 
-/// @throws InputError for a file that is both read and written
+/// @throws InputError for a file that is both read and written, or written twice
 void refuse_overwriting(const Files& files) {
+  for (std::size_t i = 0; i < files.written.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (files.written[i]->empty() || files.written[k]->empty()) continue;
+      const std::filesystem::path a = files.written[i]->results()[0];
+      const std::filesystem::path b = files.written[k]->results()[0];
+      if (std::filesystem::absolute(a).lexically_normal() !=
+          std::filesystem::absolute(b).lexically_normal()) {
+        continue;
+      }
+      throw InputError(files.written[i]->get_name() + " " + a.string() + ": is what " +
+                       files.written[k]->get_name() + " names and would be overwritten");
+    }
+  }
   for (const CLI::Option* output : files.written) {
     for (const CLI::Option* input : files.read) {
       if (output->empty() || input->empty()) continue;

@@ -2,17 +2,26 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <charconv>
+
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::scene {
 namespace {
 
-SceneValue plain_value(const YAML::Node& node) {
-  if (std::int64_t whole = 0; YAML::convert<std::int64_t>::decode(node, whole)) return {whole};
-  if (double number = 0; YAML::convert<double>::decode(node, number)) return {number};
-  if (node.Scalar() == "true" || node.Scalar() == "false") return {node.Scalar() == "true"};
-  return {node.Scalar()};
+/// Numbers are decimal, as in a scene file: neither 0x10 nor an octal 010.
+template <class Number>
+bool is_number(const std::string& text, Number& number) {
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
+  return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size();
+}
+
+SceneValue plain_value(const std::string& text) {
+  if (std::int64_t whole = 0; is_number(text, whole)) return {whole};
+  if (double number = 0; is_number(text, number)) return {number};
+  if (text == "true" || text == "false") return {text == "true"};
+  return {text};
 }
 
 SceneValue value_of(const YAML::Node& node) {
@@ -28,7 +37,7 @@ SceneValue value_of(const YAML::Node& node) {
   }
   if (!node.IsScalar()) return {};
   const bool quoted = node.Tag() == "!";
-  return quoted ? SceneValue{node.Scalar()} : plain_value(node);
+  return quoted ? SceneValue{node.Scalar()} : plain_value(node.Scalar());
 }
 
 }  // namespace

@@ -36,6 +36,11 @@ TEST_CASE("settings: a key is changed whether the file has it or leaves it out")
   CHECK(scene.rates.deformation == 200);
   CHECK(std::get<SphereShape>(scene.probes[0].shape).radius == 0.004);
   CHECK(scene.gravity == Vec3(0, 0, -9));
+  CHECK(parse(folder, {"organs[0].tissue.youngs_modulus_pa=010000"})
+            .organs[0]
+            .tissue.youngs_modulus == 1e4);  // decimal, as in a file
+  CHECK_THAT(refusal(folder, {"organs[0].tissue.youngs_modulus_pa=0x4000"}),
+             Catch::Contains("0x4000"));
   CHECK(scene.file == folder.path() / "scene.yaml");
 }
 
