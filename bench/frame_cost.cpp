@@ -92,7 +92,8 @@ void measure(const std::string& file, int pictures) {
     move_on(view, surface, i + 10);
     renderer.take_events();
     if (i == 0) began = std::clock();
-    std::array<std::int64_t, kPartCount + 1> at{};
+    std::array<std::int64_t, 4> at{};  // a time before and behind each part
+    static_assert(at.size() == kPartCount + 1);
     at[0] = runtime::monotonic_now_ns();
     view.refresh();
     at[1] = runtime::monotonic_now_ns();

@@ -31,6 +31,8 @@ constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 /// A session that already runs has been heard by then: twice the longest discovery measured.
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
 constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
+/// After a pause forces are back by then, and statuses, one a second, say so.
+constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
 
 std::string joined(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
@@ -72,6 +74,8 @@ class Run {
   bool next_cycle() {
     loop_.wait_for_period();
     session_.poll();
+    if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
+    monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
     monitor_.poll();
     for (const auto& end : modules_.poll()) note(end);
     return !stop_.requested() && modules_.any_running();
@@ -175,7 +179,8 @@ class Run {
   runtime::PeriodicLoop loop_;
   double duration_ = 0;  ///< 0: until stopped [s]
   std::int64_t began_ns_ = 0, line_ns_ = 0;
-  bool joined_ = false;  ///< another launcher conducts the session
+  std::int64_t stood_ns_ = 0;  ///< when it was last paused; 0: never
+  bool joined_ = false;        ///< another launcher conducts the session
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
 };

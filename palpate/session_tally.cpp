@@ -41,7 +41,8 @@ void SessionTally::receive(const ModuleStatus& status) {
     module = {};
   }
   module.newest = status;
-  if (!started_ || status.state != ModuleState::kDegraded || status.last_error.empty()) return;
+  if (!started_ || standing_) return;
+  if (status.state != ModuleState::kDegraded || status.last_error.empty()) return;
   const std::string text = status.module + ": " + status.last_error;
   const auto same = std::find_if(troubles_.begin(), troubles_.end(), [&](const auto& known) {
     return without_count(known) == without_count(text);
@@ -71,7 +72,8 @@ void SessionTally::receive(const HapticForce& force) {
   probe.force = force.force.norm();
   if (!started_) return;
   probe.greatest_force = std::max(probe.greatest_force, probe.force);
-  probe.limits |= force.limits;
+  constexpr std::uint32_t kFadesWhileStanding = kForceStaleFade | kForceSlewLimited;
+  probe.limits |= force.limits & ~(standing_ ? kFadesWhileStanding : 0u);
 }
 
 ContactTroubles SessionTally::contact_troubles() const {

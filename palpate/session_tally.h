@@ -42,6 +42,10 @@ class SessionTally {
   /// What comes from now on counts for the extremes and sums.
   void start();
 
+  /// While a session stands, whoever waits for news calls it old and forces fade: that is no
+  /// trouble, nor a limit that tells of the touch. All other limits count.
+  void stands(bool standing) { standing_ = standing; }
+
   void receive(const ModuleStatus& status);
   void receive(const NodePositions& positions);
   void receive(const HapticForce& force);
@@ -61,7 +65,7 @@ class SessionTally {
   double real_time_factor() const;               ///< deformation's; 0 before the first
 
  private:
-  bool started_ = false;
+  bool started_ = false, standing_ = false;
   double sim_time_ = 0;
   std::vector<OrganTally> organs_;
   std::vector<ProbeTally> probes_;

@@ -147,3 +147,22 @@ TEST_CASE("session tally: troubles of contacts add up over modules, started agai
   tally.receive(ContactTroubles{200, 0, 0});
   CHECK(tally.contact_troubles().truncated == 224);
 }
+
+TEST_CASE("session tally: a pause is no trouble, and hides no other limit") {
+  // Oracle: by hand.
+  auto tally = some_tally();
+  tally.start();
+  ModuleStatus degraded = status("haptics", 10, 0);
+  degraded.state = ModuleState::kDegraded;
+  degraded.last_error = "contact model older than stale_after_s";
+  tally.stands(true);
+  tally.receive(degraded);
+  tally.receive(force(0, 1, kForceStaleFade | kForceSlewLimited | kForceSaturated));
+  CHECK(tally.troubles().empty());
+  CHECK(tally.probes()[0].limits == kForceSaturated);
+  tally.stands(false);
+  tally.receive(degraded);
+  tally.receive(force(0, 1, kForceStaleFade));
+  CHECK(tally.troubles().size() == 1);
+  CHECK(tally.probes()[0].limits == (kForceSaturated | kForceStaleFade));
+}
