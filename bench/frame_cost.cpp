@@ -73,7 +73,8 @@ void move_on(SceneView& view, const geometry::TriangleSurface& surface, int pict
 
 /// @throws InputError without a display, or for a mesh that cannot be read
 void measure(const std::string& file, int pictures) {
-  if (!display_works()) {
+  const XConnection connection = connect_to_display();
+  if (!connection) {
     throw InputError("no display (try: xvfb-run -s '-screen 0 1920x1200x24' …)");
   }
   const auto surface = geometry::read_surface(file, "m");

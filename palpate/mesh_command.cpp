@@ -26,6 +26,13 @@ void print_line(std::ostream& out, const std::string& name, const std::string& v
   out << "  " << std::left << std::setw(24) << name << value << '\n';
 }
 
+/// Nothing of a mesh whose triangles are points.
+std::string proportions(const MeshReport& report) {
+  const double ratio = report.longest_edge / report.shortest_edge;
+  if (!std::isfinite(ratio) || !std::isfinite(report.worst_aspect)) return "";
+  return ", ratio " + number(ratio, 3) + ", worst aspect " + number(report.worst_aspect, 3);
+}
+
 void print_measures(const MeshReport& report, std::ostream& out) {
   const Vec3 size = 1e3 * (report.max_corner - report.min_corner);
   print_line(out, "nodes, triangles",
@@ -36,8 +43,7 @@ void print_measures(const MeshReport& report, std::ostream& out) {
              number(1e6 * report.volume) + " cm³, " + number(1e4 * report.area) + " cm²");
   print_line(out, "edges",
              number(1e3 * report.shortest_edge) + " to " + number(1e3 * report.longest_edge) +
-                 " mm, ratio " + number(report.longest_edge / report.shortest_edge, 3) +
-                 ", worst aspect " + number(report.worst_aspect, 3));
+                 " mm" + proportions(report));
 }
 
 void print_check(std::ostream& out, const std::string& name, std::size_t offenders) {

@@ -15,6 +15,8 @@
 #include "modules/core/units.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/scene/scene_reader.h"
+#include "modules/scene/value_text.h"
+#include "palpate/run_options.h"
 #include "palpate/scene_doubts.h"
 
 namespace palpate::launcher {
@@ -119,16 +121,6 @@ std::string vector_text(const Vec3& v) {
   return fmt::format("[{:.4f}, {:.4f}, {:.4f}]", v.x(), v.y(), v.z());
 }
 
-/// In double quotes of YAML.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
 std::string scene_text(const std::filesystem::path& mesh, const std::string& unit,
                        std::size_t nodes, const Layout& layout) {
   const double margin = 0.02 * layout.box.sizes().maxCoeff();
@@ -145,7 +137,7 @@ std::string scene_text(const std::filesystem::path& mesh, const std::string& uni
       "palpate_scene: 1\n"
       "organs:\n";
   text += fmt::format("  - name: {}\n    mesh:\n      file: {}\n      unit: {}\n", "organ",
-                      quoted(mesh.string()), unit);
+                      scene::quoted_text(mesh.string()), unit);
   if (nodes > 0) {
     text += fmt::format("      nodes: {}   # resampled: 500 to 2000 run in real time\n", nodes);
   }
@@ -207,8 +199,9 @@ int new_command(const NewOptions& options, std::ostream& out) {
                      options.mesh.string(), size.x(), size.y(), size.z(), guess.unit, guess.said,
                      found,
                      nodes > 0 ? fmt::format(", resampled to {}", surface.nodes.size()) : "");
-  out << fmt::format("written: {}\n  palpate check {}\n  palpate run {}\n", output.string(),
-                     output.string(), output.string());
+  const std::string typed = shell_word(output.string());
+  out << fmt::format("written: {}\n  palpate check {}\n  palpate run {}\n", output.string(), typed,
+                     typed);
   return kExitDone;
 }
 

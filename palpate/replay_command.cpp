@@ -74,6 +74,7 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
 int replay_command(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
                    std::ostream& log) {
   if (run.scene.empty()) return show(recording, run, out, log);
+  const runtime::StopSignal stop;  // or a signal would leave the folder
   const TemporaryFolder folder;
   const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),
                                                   recording, folder.path(), log);

@@ -131,10 +131,14 @@ class Run {
     }
     log_ << fmt::format("palpate: {} ended: {}", end.module, end.how);
     if (!end.last_error.empty()) log_ << fmt::format("; it said: {}", end.last_error);
-    log_ << "\npalpate: the rest goes on; to start it again: " << end.start_again << std::endl;
+    log_ << std::endl;
+    if (goes_on() && modules_.any_running()) {
+      log_ << "palpate: the rest goes on; to start it again: " << end.start_again << std::endl;
+    }
   }
 
   void finish() {
+    ended_ = true;
     const std::int64_t now = runtime::monotonic_now_ns();
     SessionEnd end{scene_.name, session_.time(now), 0, {}, failures_, false};
     if (begun()) end.wall_time = seconds_from_ns(now - began_ns_);
@@ -154,6 +158,7 @@ class Run {
   }
 
   bool begun() const { return began_ns_ != 0; }
+  bool goes_on() const { return begun() && !ended_; }
 
   /// What was felt stays to be looked at, until the person closes it.
   void wait_for_window() {
@@ -181,6 +186,7 @@ class Run {
   std::int64_t began_ns_ = 0, line_ns_ = 0;
   std::int64_t stood_ns_ = 0;  ///< when it was last paused; 0: never
   bool joined_ = false;        ///< another launcher conducts the session
+  bool ended_ = false;         ///< the run; its window may stay
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
 };
@@ -198,7 +204,8 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
 
 int run_command(const RunOptions& options, std::ostream& out, std::ostream& log) {
   if (!options.settings.empty()) {
-    const TemporaryFolder folder;  // each process reads the scene
+    const runtime::StopSignal stop;  // or a signal would leave the folder
+    const TemporaryFolder folder;    // each process reads the scene
     const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
     RunOptions changed = options;
     changed.settings.clear();

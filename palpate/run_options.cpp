@@ -101,12 +101,20 @@ bool window_stays(const RunOptions& options) {
 }
 
 std::string command_text(const ModuleCommand& command) {
-  std::string text = command.program.string();
-  for (const auto& argument : command.arguments) {
-    const bool plain = argument.find_first_of(" '\"\\$`") == std::string::npos;
-    text += plain ? " " + argument : " '" + argument + "'";
-  }
+  std::string text = shell_word(command.program.string());
+  for (const auto& argument : command.arguments) text += " " + shell_word(argument);
   return text;
+}
+
+std::string shell_word(const std::string& text) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_./=:@%+,-[]").find(char(c)) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string random_session_name() {

@@ -49,6 +49,8 @@ bool window_stays(const RunOptions& options);
 
 /// As one types it.
 std::string command_text(const ModuleCommand& command);
+/// A word as it is typed in a shell: quoted where it has to be.
+std::string shell_word(const std::string& text);
 
 /// Prints the summary, and writes it where options.summary says.
 /// @throws std::runtime_error if it cannot be written

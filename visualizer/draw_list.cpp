@@ -67,6 +67,23 @@ void tint(DrawList& list, std::uint32_t organ, std::uint32_t node, double weight
   }
 }
 
+/// visit(organ's number, node, contact) for each node that the probe's contact lists name.
+template <class Visit>
+void for_each_on_faces(const ProbeView& probe, const SceneView& view, const Visit& visit) {
+  std::span<const std::uint32_t> nodes = probe.contacts.face_nodes;
+  for (const FaceContacts& face : probe.contacts.faces) {
+    const auto own = nodes.first(face.node_count);
+    nodes = nodes.subspan(face.node_count);
+    if (face.organ >= view.organs().size()) continue;
+    const OrganView& organ = view.organs()[face.organ];
+    for (const std::uint32_t node : own) {
+      if (node >= organ.node_count()) continue;
+      const Vec3 tissue_P = probe.contacts.probe_pose.to_body(organ.node(node));
+      visit(face.organ, node, contact_on_face(face, tissue_P));
+    }
+  }
+}
+
 void tint_patch(const ProbeView& probe, const SceneView& view, DrawList& list) {
   for (const Contact& contact : probe.contacts.contacts) {
     if (contact.gap > 0) continue;
@@ -79,18 +96,10 @@ void tint_patch(const ProbeView& probe, const SceneView& view, DrawList& list) {
       }
     }
   }
-  std::span<const std::uint32_t> nodes = probe.contacts.face_nodes;
-  for (const FaceContacts& face : probe.contacts.faces) {
-    const auto own = nodes.first(face.node_count);
-    nodes = nodes.subspan(face.node_count);
-    if (face.organ >= view.organs().size()) continue;
-    const OrganView& organ = view.organs()[face.organ];
-    for (const std::uint32_t node : own) {
-      if (node >= organ.node_count()) continue;
-      const Vec3 tissue_P = probe.contacts.probe_pose.to_body(organ.node(node));
-      if (contact_on_face(face, tissue_P).gap <= 0) tint(list, face.organ, node, kPatchTint);
-    }
-  }
+  for_each_on_faces(probe, view,
+                    [&](std::size_t organ, std::uint32_t node, const Contact& contact) {
+                      if (contact.gap <= 0) tint(list, organ, node, kPatchTint);
+                    });
 }
 
 double shadow_radius(const scene::ProbeShape& shape, const SceneView& view) {
@@ -123,18 +132,9 @@ void add_contact(const ProbeView& probe, const Contact& contact, double normal_l
 
 void add_contacts(const ProbeView& probe, const SceneView& view, DrawList& list) {
   const double normal_length = 0.08 * view.radius();
-  std::span<const std::uint32_t> nodes = probe.contacts.face_nodes;
-  for (const FaceContacts& face : probe.contacts.faces) {
-    const auto own = nodes.first(face.node_count);
-    nodes = nodes.subspan(face.node_count);
-    if (face.organ >= view.organs().size()) continue;
-    const OrganView& organ = view.organs()[face.organ];
-    for (const std::uint32_t node : own) {
-      if (node >= organ.node_count()) continue;
-      const Vec3 tissue_P = probe.contacts.probe_pose.to_body(organ.node(node));
-      add_contact(probe, contact_on_face(face, tissue_P), normal_length, list);
-    }
-  }
+  for_each_on_faces(probe, view, [&](std::size_t, std::uint32_t, const Contact& contact) {
+    add_contact(probe, contact, normal_length, list);
+  });
   for (const Contact& contact : probe.contacts.contacts) {
     add_contact(probe, contact, normal_length, list);
   }

@@ -49,7 +49,7 @@ Requests Interaction::handle(const std::vector<InputEvent>& events, const SceneV
         key(event.key, requests, view);
         break;
       case InputEvent::Kind::kClose:
-        requests.close = true;
+        requests.close = requests.end_run = true;
         break;
       case InputEvent::Kind::kRelease:
         let_go();

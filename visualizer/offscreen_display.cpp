@@ -55,11 +55,10 @@ void end_process(pid_t process) {
 
 }  // namespace
 
-bool display_works() {
-  Display* display = XOpenDisplay(nullptr);
-  if (display == nullptr) return false;
-  XCloseDisplay(display);
-  return true;
+XConnection connect_to_display() {
+  return {XOpenDisplay(nullptr), [](void* display) {
+            if (display != nullptr) XCloseDisplay(static_cast<Display*>(display));
+          }};
 }
 
 void draw_with_one_thread() { setenv("LP_NUM_THREADS", "1", /*overwrite=*/0); }

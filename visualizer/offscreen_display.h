@@ -3,12 +3,17 @@
 
 #include <sys/types.h>
 
+#include <memory>
 #include <string>
 
 namespace palpate::visualizer {
 
-/// True if DISPLAY names an X server that lets us in.
-bool display_works();
+using XConnection = std::unique_ptr<void, void (*)(void*)>;
+
+/// To the X server that DISPLAY names; none if there is none or it does not let us in. To be kept
+/// until the window is there: some servers reset when their last client leaves, and what comes at
+/// that moment dies.
+XConnection connect_to_display();
 
 /// Software OpenGL draws with one thread instead of one per core (unless LP_NUM_THREADS says
 /// otherwise), so that the other processes keep theirs. Call before the first window.

@@ -160,7 +160,9 @@ class VisualizerStage : public runtime::Stage {
     last_ns_ = now.now_ns;
     listen(now.now_ns);
     const Requests requests = studio_.interaction.handle(studio_.renderer.take_events(), view());
-    const bool keep = !options_.frames.empty() && now.running && studio_.anything_to_see() &&
+    // A recording made in lockstep is replayed without anyone saying that it runs.
+    const bool goes_on = now.running || view().sim_time() > 0;
+    const bool keep = !options_.frames.empty() && goes_on && studio_.anything_to_see() &&
                       schedule_.take_due(view().sim_time());
     if (window_ || keep) studio_.draw(now.now_ns);
     if (keep) studio_.renderer.write_png(options_.frames / frame_name(view().sim_time()));
@@ -189,12 +191,21 @@ class VisualizerStage : public runtime::Stage {
     if (requests.record) toggle_recording();
     if (requests.screenshot) {
       const std::filesystem::path file = "palpate_" + frame_name(view().sim_time()).string();
-      studio_.renderer.write_png(file);
-      studio_.interaction.say("Written: " + file.string());
-      spdlog::info("screenshot {}", std::filesystem::absolute(file).string());
+      take_picture(file);
     }
     if (requests.end_run && commands_ && options_.ends_run) {
       conductor_.command(session_, SessionCommand::kStop);
+    }
+  }
+
+  void take_picture(const std::filesystem::path& file) {
+    try {
+      studio_.renderer.write_png(file);
+      studio_.interaction.say("Written: " + file.string());
+      spdlog::info("screenshot {}", std::filesystem::absolute(file).string());
+    } catch (const std::runtime_error& error) {
+      studio_.interaction.say("Not written: " + file.string());
+      spdlog::warn("{}", error.what());
     }
   }
 
@@ -271,7 +282,9 @@ void run_visualizer(const runtime::ModuleOptions& common, const VisualizerOption
                        "written (" + error.message() + ")");
     }
   }
-  const bool window = !options.headless && display_works();
+  const XConnection connection =
+      options.headless ? XConnection(nullptr, [](void*) {}) : connect_to_display();
+  const bool window = connection != nullptr;  // held: see connect_to_display()
   if (!window && !options.headless) spdlog::info("no display: drawing without a window");
   std::optional<OffscreenDisplay> display;
   if (!window) {

@@ -14,8 +14,13 @@ class TemporaryFolder {
  public:
   /// @throws std::runtime_error if it cannot be made
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "palpate-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    std::error_code missing;
+    std::string name = (std::filesystem::temp_directory_path(missing) / "palpate-XXXXXX").string();
+    if (missing || ::mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error(
+          "cannot make a temporary folder: TMPDIR (or else /tmp) must be a "
+          "folder that can be written");
+    }
     path_ = name;
   }
   ~TemporaryFolder() {

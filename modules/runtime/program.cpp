@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
@@ -216,6 +217,7 @@ std::vector<std::string> Program::typed(int argc, char** argv) const {
 
 int Program::run(int argc, char** argv, const std::function<int()>& body) {
   const std::vector<std::string> words = typed(argc, argv);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   if (refuse_unknown(words)) return kExitBadInput;
   try {
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // it takes the last first

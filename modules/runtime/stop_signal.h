@@ -6,11 +6,12 @@
 
 namespace palpate::runtime {
 
-/// While one exists, these signals set the flag instead of ending the process. One at a time.
+/// While one exists, these signals set the flag instead of ending the process. Within another one
+/// it is the same flag. Of one thread.
 class StopSignal {
  public:
-  StopSignal();   ///< clears the flag
-  ~StopSignal();  ///< gives the signals back
+  StopSignal();   ///< the outermost clears the flag
+  ~StopSignal();  ///< the outermost gives the signals back
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 

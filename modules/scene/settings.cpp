@@ -48,8 +48,11 @@ SceneDocument::Change change_from(const std::string& setting) {
     throw InputError("setting '" + setting +
                      "': must be KEY=VALUE, such as rates.deformation_hz=200");
   }
+  const std::string key = setting.substr(0, equals);
   try {
-    return {setting.substr(0, equals), value_of(YAML::Load(setting.substr(equals + 1)))};
+    const auto values = YAML::LoadAll(setting.substr(equals + 1));
+    if (values.size() > 1) throw InputError("setting '" + key + "': must be one value");
+    return {key, values.empty() ? SceneValue{} : value_of(values.front())};
   } catch (const YAML::Exception& error) {
     throw InputError("setting '" + setting + "': its value is not valid YAML: " + error.msg);
   }

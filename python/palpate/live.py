@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import atexit
 import weakref
-from types import TracebackType
 from typing import Any
 
 import numpy.typing as npt
 
 from palpate import _core
+from palpate.closing import Closing
 from palpate.messages import Message, Topic, topic_from
 
 
-class Live:
+class Live(Closing[_core.Live]):
     """A connection to a running session (`palpate run`); connect() makes it.
 
     Every topic can be read. A topic is heard from the first time it is asked for. One thread at a time.
@@ -92,20 +92,7 @@ class Live:
 
     def close(self) -> None:
         """Leaves the session, which goes on. Views stay good."""
-        self._core.close()
-
-    @property
-    def closed(self) -> bool:
-        """Whether close() was called."""
-        return self._core.closed
-
-    def __enter__(self) -> Live:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
+        super().close()
 
     def __repr__(self) -> str:
         return f"<palpate.Live session {self._session!r}{', closed' if self.closed else ''}>"

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from types import TracebackType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from palpate import _core
+from palpate.closing import Closing
 from palpate.messages import Message, Topics, topic_from
 from palpate.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
 
 
-class Session:
+class Session(Closing[_core.Session]):
     """A session of a scene, the same bits as `palpate run --in-process`.
 
     >>> with Session(Scene.load("stomach_probe.yaml")) as session:
@@ -186,20 +186,7 @@ class Session:
 
     def close(self) -> None:
         """Ends the session and its recording. Views stay good."""
-        self._core.close()
-
-    @property
-    def closed(self) -> bool:
-        """Whether close() was called."""
-        return self._core.closed
-
-    def __enter__(self) -> Session:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
+        super().close()
 
     def __repr__(self) -> str:
         state = "closed at" if self.closed else "at"

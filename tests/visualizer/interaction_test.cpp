@@ -174,8 +174,10 @@ TEST_CASE("interaction: presses on the panel beside the 3-D part do nothing", "[
   CHECK(f.interaction.camera.position.isApprox(before.position));
 }
 
-TEST_CASE("interaction: closing the window asks to close", "[visualizer]") {
+TEST_CASE("interaction: closing the window ends the run, as q does", "[visualizer]") {
   // Oracle: the stated rule.
   Fixture f;
-  CHECK(f.send(Kind::kClose, 0, 0).close);
+  const Requests requests = f.send(Kind::kClose, 0, 0);
+  CHECK(requests.close);
+  CHECK(requests.end_run);
 }

@@ -21,6 +21,19 @@ TEST_CASE("stop signal: SIGINT, SIGTERM and SIGHUP are requests, and only while 
   }
 }
 
+TEST_CASE("stop signal: one within another keeps a request that came before, and the signals") {
+  // Oracle: definition; without it a signal just before the inner one was lost, and one just after
+  // it would end this process.
+  const StopSignal outer;
+  raise(SIGINT);
+  {
+    const StopSignal inner;
+    CHECK(inner.requested());
+  }
+  raise(SIGTERM);
+  CHECK(outer.requested());
+}
+
 TEST_CASE("stop signal: a new one begins without a request") {
   // Oracle: definition.
   {
