@@ -91,6 +91,8 @@ void add_run_options(Options& command, RunOptions& options) {
   command.flag("--close", options.close, "Close the window when the run ends; else it stays");
   command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer");
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
+  command.flag_off("--no-restart", options.restart,
+                   "Leave processes that die or hang as they are; else they are started again");
 }
 
 void add_run(Program& program, RunOptions& options) {

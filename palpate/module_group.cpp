@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <ctime>
 #include <ostream>
 
 #include "modules/core/error.h"
@@ -20,11 +21,59 @@ bool is_information(const std::string& line) { return line.find("] info: ") != s
 
 }  // namespace
 
-ModuleGroup::ModuleGroup(std::vector<ModuleCommand> commands, std::ostream& log) : log_(log) {
+ModuleGroup::ModuleGroup(std::vector<ModuleCommand> commands, std::ostream& log,
+                         Restarting restarting)
+    : restarting_(restarting), log_(log) {
   for (auto& command : commands) {
-    auto process = std::make_unique<ChildProcess>(command.program, command.arguments);
-    members_.push_back({std::move(command), std::move(process), false, {}, {}});
+    Member member{std::move(command), nullptr};
+    start(member);
+    members_.push_back(std::move(member));
   }
+}
+
+void ModuleGroup::start(Member& member) {
+  const ModuleCommand command = again(member.command, member.restarts);
+  member.process = std::make_unique<ChildProcess>(command.program, command.arguments);
+  reaper_.watch(member.process->process_id());
+  member.began_ns = runtime::monotonic_now_ns();
+  member.end_reported = false;
+  member.due_ns.reset();
+  member.hung.clear();
+}
+
+void ModuleGroup::start_due() {
+  for (auto& member : members_) {
+    if (!member.due_ns || runtime::monotonic_now_ns() < *member.due_ns) continue;
+    ++member.restarts;
+    start(member);
+    log_ << "palpate: " << member.command.module << " is started again" << std::endl;
+  }
+}
+
+void ModuleGroup::kill_hung(const std::string& module, const std::string& why) {
+  for (auto& member : members_) {
+    if (member.command.module != module || member.process->ended()) continue;
+    member.hung = why;
+    member.process->signal(SIGKILL);
+  }
+}
+
+ModuleEnd ModuleGroup::end_of(Member& member, int wait_status) {
+  const int code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : -1;
+  ModuleEnd end{member.command.module,
+                code != kExitDone,
+                code == kExitBadInput,
+                member.hung.empty() ? describe_exit(wait_status) : member.hung + ", was killed",
+                member.last_error,
+                command_text(member.command)};
+  if (restarting_ == Restarting::kNever || !end.failed || end.bad_input) return end;
+  const std::int64_t now = runtime::monotonic_now_ns();
+  const auto pause =
+      member.policy.pause_after(seconds_from_ns(member.began_ns), seconds_from_ns(now));
+  if (!pause) return end;
+  member.due_ns = now + ns_from_seconds(*pause);
+  end.returns = true;
+  return end;
 }
 
 void ModuleGroup::listen(Member& member) {
@@ -43,10 +92,9 @@ std::vector<ModuleEnd> ModuleGroup::poll() {
     listen(member);
     if (!ended || member.end_reported) continue;
     member.end_reported = true;
-    const int code = WIFEXITED(*ended) ? WEXITSTATUS(*ended) : -1;
-    ends.push_back({member.command.module, code != kExitDone, code == kExitBadInput,
-                    describe_exit(*ended), member.last_error, command_text(member.command)});
+    ends.push_back(end_of(member, *ended));
   }
+  start_due();
   return ends;
 }
 
@@ -63,7 +111,10 @@ void ModuleGroup::stop(bool reporting, const std::string& but) {
     const bool meant = member.command.reports_status == reporting;
     if (meant && member.command.module != but) stopping.push_back(&member);
   }
-  for (auto* member : stopping) member->process->signal(SIGTERM);
+  for (auto* member : stopping) {
+    member->due_ns.reset();
+    member->process->signal(SIGTERM);
+  }
   const auto deadline = runtime::monotonic_now_ns() + ns_from_seconds(kPatience);
   const auto still_running = [](Member* member) { return !member->process->ended(); };
   while (std::any_of(stopping.begin(), stopping.end(), still_running)) {
@@ -80,8 +131,9 @@ void ModuleGroup::stop(bool reporting, const std::string& but) {
 }
 
 bool ModuleGroup::any_running() {
-  return std::any_of(members_.begin(), members_.end(),
-                     [](Member& member) { return !member.process->ended(); });
+  return std::any_of(members_.begin(), members_.end(), [](Member& member) {
+    return member.due_ns.has_value() || !member.process->ended();
+  });
 }
 
 bool ModuleGroup::running(const std::string& module) {
@@ -90,12 +142,36 @@ bool ModuleGroup::running(const std::string& module) {
   });
 }
 
+pid_t ModuleGroup::process_id(const std::string& module) const {
+  const auto member = std::ranges::find(
+      members_, module,
+      [](const Member& each) -> const std::string& { return each.command.module; });
+  return member == members_.end() ? -1 : member->process->process_id();
+}
+
+double ModuleGroup::computed(const std::string& module) const {
+  clockid_t clock{};
+  timespec time{};
+  const pid_t process = process_id(module);
+  if (process < 0 || clock_getcpuclockid(process, &clock) != 0) return 0;
+  if (clock_gettime(clock, &time) != 0) return 0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 std::vector<std::string> ModuleGroup::reporting_modules() const {
   std::vector<std::string> names;
   for (const auto& member : members_) {
     if (member.command.reports_status) names.push_back(member.command.module);
   }
   return names;
+}
+
+std::map<std::string, int> ModuleGroup::restarts() const {
+  std::map<std::string, int> counts;
+  for (const auto& member : members_) {
+    if (member.restarts > 0) counts[member.command.module] = member.restarts;
+  }
+  return counts;
 }
 
 std::map<std::string, std::string> ModuleGroup::last_words() const {

@@ -17,6 +17,7 @@
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
+#include "palpate/hang_watch.h"
 #include "palpate/lockstep_run.h"
 #include "palpate/module_group.h"
 #include "palpate/scene_doubts.h"
@@ -47,7 +48,8 @@ class Run {
         log_(log),
         scene_(scene::load_scene(options.scene)),
         digest_(scene::scene_digest(scene_)),
-        modules_(module_commands(options, program_folder()), log),
+        modules_(module_commands(options, program_folder()), log,
+                 options.restart ? Restarting::kWithPauses : Restarting::kNever),
         bus_(options.bus),
         session_(bus_, digest_),
         conductor_(bus_),
@@ -77,6 +79,7 @@ class Run {
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
     monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
     monitor_.poll();
+    if (options_.restart && begun() && !ended_) end_hung();
     for (const auto& end : modules_.poll()) note(end);
     return !stop_.requested() && modules_.any_running();
   }
@@ -124,15 +127,28 @@ class Run {
     out_ << status_line(monitor_.tally()) << std::endl;
   }
 
+  /// Before its first status nothing is expected of a process: it loads.
+  void end_hung() {
+    for (const auto& name : modules_.reporting_modules()) {
+      const ModuleTally* module = monitor_.tally().module(name);
+      if (module == nullptr || !modules_.running(name)) continue;
+      const ModuleStatus& said = module->newest;
+      if (said.process_id != modules_.process_id(name)) continue;
+      const double silent =
+          hangs_.hangs_for(name, said.header.sequence, modules_.computed(name), loop_.woke_ns());
+      if (silent > 0) modules_.kill_hung(name, fmt::format("said nothing for {:.0f} s", silent));
+    }
+  }
+
   void note(const ModuleEnd& end) {
-    if (end.failed) {
+    if (end.failed && !end.returns) {
       exit_code_ = end.bad_input ? kExitBadInput : kExitFailed;
       failures_[end.module] = end.how;
     }
     log_ << fmt::format("palpate: {} ended: {}", end.module, end.how);
     if (!end.last_error.empty()) log_ << fmt::format("; it said: {}", end.last_error);
     log_ << std::endl;
-    if (goes_on() && modules_.any_running()) {
+    if (goes_on() && !end.returns && modules_.any_running()) {
       log_ << "palpate: the rest goes on; to start it again: " << end.start_again << std::endl;
     }
   }
@@ -152,6 +168,7 @@ class Run {
     monitor_.poll();
     if (!begun()) return;
     end.last_words = modules_.last_words();
+    end.restarts = modules_.restarts();
     const std::string text = summary(monitor_.tally(), end);
     write_run_summary(options_, text, out_);
     if (window) wait_for_window();
@@ -189,6 +206,7 @@ class Run {
   bool ended_ = false;         ///< the run; its window may stay
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
+  HangWatch hangs_;
 };
 
 }  // namespace

@@ -95,6 +95,16 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
   return commands;
 }
 
+ModuleCommand again(ModuleCommand command, int earlier) {
+  if (command.module != "recorder" || earlier == 0) return command;
+  const std::filesystem::path file = command.arguments.front();
+  auto part = file;
+  part.replace_filename(
+      fmt::format("{}.part{}{}", file.stem().string(), earlier + 1, file.extension().string()));
+  command.arguments.front() = part.string();
+  return command;
+}
+
 bool window_stays(const RunOptions& options) {
   return !options.headless && !options.close && options.only.empty() &&
          wanted(options, "visualizer");

@@ -19,6 +19,7 @@ struct RunOptions {
   bool visualizer = true;
   bool close = false;  ///< the window, too, when the run ends; else it stays
   bool realtime = true;
+  bool restart = true;            ///< modules that die or hang
   bool lockstep = false;          ///< without a wall clock, as fast as the machine allows
   bool in_process = false;        ///< the same in one process
   double ready_deadline = 60;     ///< lockstep: longest wait for a process [s]
@@ -43,6 +44,10 @@ struct ModuleCommand {
 /// @throws InputError for a module name that does not exist
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder);
+
+/// The command of a module that was started before, `earlier` times; a recorder's names another
+/// file, FILE.partN.mcap, and replaces nothing.
+ModuleCommand again(ModuleCommand command, int earlier);
 
 /// A window of this run that stays when the run has ended.
 bool window_stays(const RunOptions& options);

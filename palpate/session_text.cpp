@@ -118,6 +118,10 @@ std::string summary(const SessionTally& tally, const SessionEnd& end) {
   for (const auto& trouble : tally.troubles()) {
     text += fmt::format("degraded for a while: {}\n", trouble);
   }
+  for (const auto& [module, times] : end.restarts) {
+    text += fmt::format("started again: {}, {}\n", module,
+                        times == 1 ? "once" : fmt::format("{} times", times));
+  }
   for (const auto& [module, failure] : end.failures) {
     text += fmt::format("FAILED: {}: {}\n", module, failure);
     const auto words = end.last_words.find(module);

@@ -18,6 +18,7 @@ struct SessionEnd {
   std::map<std::string, std::string> last_words;  ///< of each module: its last line
   std::map<std::string, std::string> failures;    ///< module → how it ended
   bool lockstep = false;                          ///< no cycle was early or late
+  std::map<std::string, int> restarts = {};       ///< module → how often it was started again
 };
 
 /// One screen.

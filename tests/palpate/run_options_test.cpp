@@ -112,3 +112,13 @@ TEST_CASE("run options: random session names are acceptable and differ") {
   }
   CHECK(seen.size() == 100);
 }
+
+TEST_CASE("run options: a recorder that comes back writes another part") {
+  // Oracle: the names.
+  const ModuleCommand recorder{"recorder", "palpate-recorder", {"out/run.mcap", "--session", "s"}};
+  CHECK(again(recorder, 0).arguments[0] == "out/run.mcap");
+  CHECK(again(recorder, 1).arguments[0] == "out/run.part2.mcap");
+  CHECK(again(recorder, 2).arguments[0] == "out/run.part3.mcap");
+  const ModuleCommand other{"haptics", "palpate-haptics", {"scene.yaml"}};
+  CHECK(again(other, 3).arguments == other.arguments);
+}

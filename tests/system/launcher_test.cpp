@@ -78,10 +78,49 @@ TEST_CASE("launcher: a launcher that is killed leaves no process") {
   CHECK(wait_until([&] { return run.processes().empty(); }));
 }
 
+TEST_CASE("launcher: a hanging module does not outlive a launcher that is killed") {
+  // Oracle: the process table. A stopped process hears no SIGTERM.
+  const BallScene scene;
+  Launched run(scene, {});
+  REQUIRE(run.wait_for_text("1.0 s  real time"));
+  kill(run.processes().at("palpate-collision"), SIGSTOP);
+  run.child().signal(SIGKILL);
+  CHECK(wait_until([&] { return run.processes().empty(); }));
+}
+
+TEST_CASE("launcher: modules that die or hang are started again, and counted") {
+  // Oracle: the process table, the summary; the exit code of a session that went on to its end.
+  const BallScene scene(
+      "scripted: {start_m: [0, 0, 0.07], moves: [{to_m: [0, 0, 0.055], duration_s: 1}]}");
+  Launched run(scene, {"--duration", "14", "--record", (scene.folder() / "r.mcap").string()});
+  REQUIRE(run.wait_for_text("2.0 s  real time"));
+  for (const char* module : {"palpate-haptics", "palpate-collision", "palpate-recorder"}) {
+    const pid_t before = run.processes().at(module);
+    kill(before, SIGKILL);
+    INFO(module);
+    CHECK(wait_until([&] {
+      const auto now = run.processes();
+      return now.count(module) == 1 && now.at(module) != before;
+    }));
+  }
+  const pid_t stopped = run.processes().at("palpate-deformation");
+  kill(stopped, SIGSTOP);
+  REQUIRE(run.wait_for_text("palpate: deformation ended: said nothing for 3 s, was killed"));
+  REQUIRE(run.wait_for_text("palpate: deformation is started again"));
+  CHECK(run.wait_for_end() == 0);
+  INFO(run.said());
+  for (const char* module : {"haptics", "collision", "recorder", "deformation"}) {
+    CHECK_THAT(run.said(), Contains(std::string("started again: ") + module + ", once"));
+  }
+  CHECK_THAT(run.said(), !Contains("FAILED"));
+  CHECK(std::filesystem::file_size(scene.folder() / "r.mcap") > 0);
+  CHECK(std::filesystem::file_size(scene.folder() / "r.part2.mcap") > 0);
+}
+
 TEST_CASE("launcher: a module that dies is named, the rest goes on, it can be started again") {
   // Oracle: what it says; the exit code tells of the failure.
   const BallScene scene;
-  Launched run(scene, {});
+  Launched run(scene, {"--no-restart"});
   REQUIRE(run.wait_for_text("1.0 s  real time"));
   kill(run.processes().at("palpate-collision"), SIGKILL);
   REQUIRE(run.wait_for_text("palpate: collision ended: killed by signal 9 (Killed)"));

@@ -1,0 +1,86 @@
+#include "palpate/reaper.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <stdexcept>
+#include <vector>
+
+namespace palpate::launcher {
+namespace {
+
+int open_process(pid_t process) { return static_cast<int>(syscall(SYS_pidfd_open, process, 0)); }
+void send_signal(int process, int number) {
+  syscall(SYS_pidfd_send_signal, process, number, nullptr, 0);
+}
+
+/// All that have not ended within about `ms`.
+std::vector<pollfd> left_after(std::vector<pollfd> processes, int ms) {
+  constexpr int kRoundMs = 10;
+  for (int waited = 0; waited < ms && !processes.empty(); waited += kRoundMs) {
+    poll(processes.data(), processes.size(), kRoundMs);
+    std::erase_if(processes, [](const pollfd& process) { return process.revents != 0; });
+  }
+  return processes;
+}
+
+[[noreturn]] void wait_and_reap(int children) {
+  setsid();  // signals of the terminal are for the launcher
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(number, SIG_IGN);
+  prctl(PR_SET_NAME, "palpate-reaper");
+  // What the launcher had open is not ours to hold.
+  const int null = open("/dev/null", O_RDWR);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(null, stream);
+  constexpr int kKept = STDERR_FILENO + 1;
+  if (children != kKept) dup2(children, kKept);
+  close_range(kKept + 1, ~0U, 0);
+  std::vector<pollfd> processes;
+  pid_t child = -1;
+  while (true) {
+    const ssize_t got = read(kKept, &child, sizeof child);
+    if (got < 0 && errno == EINTR) continue;
+    if (got != sizeof child) break;  // nobody is left to write: the launcher is gone
+    if (const int process = open_process(child); process >= 0) {
+      processes.push_back({process, POLLIN, 0});
+    }
+  }
+  for (const pollfd& process : processes) send_signal(process.fd, SIGTERM);
+  for (const pollfd& left : left_after(processes, static_cast<int>(1e3 * Reaper::kPatience))) {
+    send_signal(left.fd, SIGKILL);
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+Reaper::Reaper() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("cannot make a pipe");
+  process_id_ = fork();
+  if (process_id_ < 0) throw std::runtime_error("cannot start a process");
+  if (process_id_ == 0) {
+    close(ends[1]);
+    wait_and_reap(ends[0]);
+  }
+  close(ends[0]);
+  children_ = ends[1];
+}
+
+Reaper::~Reaper() {
+  close(children_);
+  waitpid(process_id_, nullptr, 0);
+}
+
+void Reaper::watch(pid_t child) {
+  // Less than PIPE_BUF: whole or not at all. A reaper that is gone cannot be told.
+  [[maybe_unused]] const ssize_t written = write(children_, &child, sizeof child);
+}
+
+}  // namespace palpate::launcher

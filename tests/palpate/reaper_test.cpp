@@ -1,0 +1,59 @@
+#include "palpate/reaper.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "tests/modules/runtime/own_bus.h"
+
+using palpate::launcher::Reaper;
+using palpate::testing::wait_until;
+
+namespace {
+
+/// Of a process that is killed, holding a reaper that watches a child of its own that is stopped.
+/// @returns that child
+pid_t orphan_of_killed_parent() {
+  int told[2];
+  REQUIRE(::pipe(told) == 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    Reaper reaper;
+    const pid_t child = fork();
+    if (child == 0) {
+      raise(SIGSTOP);
+      _exit(0);
+    }
+    reaper.watch(child);
+    if (::write(told[1], &child, sizeof child) != sizeof child) _exit(1);
+    raise(SIGKILL);
+  }
+  pid_t child = -1;
+  REQUIRE(::read(told[0], &child, sizeof child) == sizeof child);
+  waitpid(parent, nullptr, 0);
+  close(told[0]);
+  close(told[1]);
+  return child;
+}
+
+}  // namespace
+
+TEST_CASE("reaper: a stopped child does not outlive a parent that was killed") {
+  // Oracle: the process table. Without the reaper it would stay for ever: it hears no SIGTERM.
+  const pid_t child = orphan_of_killed_parent();
+  CHECK(wait_until([&] { return ::kill(child, 0) != 0; }));
+}
+
+TEST_CASE("reaper: goes when it is let go, and harms nobody who ended before") {
+  // Oracle: its destructor returns.
+  const pid_t child = fork();
+  if (child == 0) _exit(0);
+  {
+    Reaper reaper;
+    reaper.watch(child);
+    waitpid(child, nullptr, 0);
+  }
+  SUCCEED();
+}
