@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "deformation/elements/average_nodal_pressure.h"
-#include "deformation/elements/corotational.h"
+#include "deformation/elements/kernel/corotational_kernel.h"
+#include "deformation/elements/kernel/nodal_pressure_kernel.h"
 #include "deformation/steppers/backward_euler.h"
 #include "deformation/steppers/chainmail.h"
 #include "deformation/steppers/linearly_implicit_euler.h"
@@ -70,7 +70,7 @@ template <class Elements>
 Dynamics linearly_implicit(const ModelParts& parts) {
   const TetMesh& mesh = parts.model.mesh();
   auto elements = std::make_unique<Elements>(
-      LinearTetrahedra(parts.model.rest_positions, mesh.tetrahedra), mesh.elastic());
+      LinearTetrahedra(parts.model.rest_positions, mesh.tetrahedra), mesh.elastic(), parts.runner);
   return std::make_unique<LinearlyImplicitEuler>(parts.model, std::move(elements),
                                                  parts.iterations);
 }
@@ -157,13 +157,13 @@ constexpr std::array<ModelRow, 16> kRows{{
      .conserves_angular_momentum = false,
      .step_cost = 100,
      .stands_for_solid = true,
-     .make = linearly_implicit<Corotational>},
+     .make = linearly_implicit<CorotationalKernel>},
     {.word = "nodal_pressure",
      .conserves_angular_momentum = false,
      .step_cost = 100,
      .largest_bulk_over_shear = AverageNodalPressureSettings{}.largest_bulk_modulus,
      .stands_for_solid = true,
-     .make = linearly_implicit<AverageNodalPressure>},
+     .make = linearly_implicit<NodalPressureKernel>},
     {.word = "modal",
      .conserves_angular_momentum = false,
      .step_cost = 100,

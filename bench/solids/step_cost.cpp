@@ -4,12 +4,17 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 #include "deformation/elements/average_nodal_pressure.h"
 #include "deformation/elements/corotational.h"
+#include "deformation/elements/kernel/corotational_kernel.h"
+#include "deformation/elements/kernel/nodal_pressure_kernel.h"
 #include "deformation/models.h"
 #include "deformation/steppers/linearly_implicit_euler.h"
 #include "modules/geometry/organ_shape.h"
+#include "modules/runtime/worker_team.h"
 #include "modules/scene/schema.h"
 
 namespace palpate::solids_bench {
@@ -20,28 +25,18 @@ using namespace deformation;  // NOLINT: a bench of it
 constexpr double kStep = 0.01;  // [s]
 constexpr int kRounds = 100;
 
-/// Keeps the least.
-template <typename Work>
-void time_least(double& least, const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  least = std::min(least, elapsed.count());
-}
+/// The least time of some work [s]: other programs on the machine only ever add.
+struct Least {
+  double seconds = std::numeric_limits<double>::infinity();
 
-/// K p of linear elasticity at rest, tetrahedron by tetrahedron.
-void plain_product(const LinearTetrahedra& tetrahedra, double mu, double lambda,
-                   const std::vector<Vec3>& p, std::vector<Vec3>& out) {
-  std::fill(out.begin(), out.end(), Vec3::Zero());
-  for (std::size_t e = 0; e < tetrahedra.size(); ++e) {
-    const Mat3 H = tetrahedra.deformation_gradient(e, p);
-    const Mat3 P = mu * (H + H.transpose()) + lambda * H.trace() * Mat3::Identity();
-    const Mat34 pushes = tetrahedra.volumes[e] * P * tetrahedra.gradients[e];
-    for (std::size_t a = 0; a < 4; ++a) {
-      out[tetrahedra.corners[e][a]] += pushes.col(static_cast<int>(a));
-    }
+  template <typename Work>
+  void time(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    seconds = std::min(seconds, elapsed.count());
   }
-}
+};
 
 scene::Organ hung_organ(const std::string& model, const geometry::TetMesh& mesh) {
   scene::Organ organ;
@@ -58,42 +53,100 @@ scene::Organ hung_organ(const std::string& model, const geometry::TetMesh& mesh)
   return organ;
 }
 
+/// A way to make the elements of a model.
+template <class Elements>
+std::unique_ptr<ElasticForceElements> made(const OrganModel& model, ChunkRunner* runner) {
+  LinearTetrahedra tetrahedra(model.rest_positions, model.mesh().tetrahedra);
+  if constexpr (std::is_base_of_v<KernelElements, Elements>) {
+    return std::make_unique<Elements>(std::move(tetrahedra), model.mesh().elastic(), runner);
+  } else {
+    return std::make_unique<Elements>(std::move(tetrahedra), model.mesh().elastic());
+  }
+}
+
+/// The elements alone and a step with them, of one organ that sways.
+class Swaying {
+ public:
+  using Make = std::unique_ptr<ElasticForceElements> (*)(const OrganModel&, ChunkRunner*);
+
+  Swaying(const char* name, const OrganModel& model, Make make, int iterations, ChunkRunner* runner)
+      : name_(name),
+        model_(model),
+        elements_(make(model, runner)),
+        stepper_(model, make(model, runner), iterations),
+        state_(rest_state(model)),
+        p_(model.node_count(), Vec4f(1e-3f, 2e-3f, 3e-3f, 0)),
+        out_(p_) {}
+
+  void turn() {
+    step_.time([&] { stepper_.step(kStep, {}, state_); });
+    iterations_ += stepper_.iterations_used();
+    linearisation_.time(
+        [&] { elements_->linearise(state_.positions, kStep * kStep, model_.masses); });
+    product_.time([&] { elements_->apply(p_, out_); });
+  }
+
+  void print(const Swaying& plain) const {
+    std::printf("  %-26s %8.3f %5.1f %8.3f %7.1f %8.4f %7.2f %7.2f %7.2f\n", name_,
+                1e3 * step_.seconds, static_cast<double>(iterations_) / kRounds,
+                1e3 * linearisation_.seconds,
+                1e9 * linearisation_.seconds / static_cast<double>(model_.mesh().tetrahedra.size()),
+                1e3 * product_.seconds, plain.step_.seconds / step_.seconds,
+                plain.linearisation_.seconds / linearisation_.seconds,
+                plain.product_.seconds / product_.seconds);
+  }
+
+ private:
+  const char* name_;
+  const OrganModel& model_;
+  std::unique_ptr<ElasticForceElements> elements_;
+  LinearlyImplicitEuler stepper_;
+  OrganState state_;
+  std::vector<Vec4f> p_, out_;
+  Least step_, linearisation_, product_;
+  int iterations_ = 0;
+};
+
+/// The least of some makings of the organ and its stepper [s].
+double seconds_to_build(const scene::Organ& organ, const geometry::OrganShape& shape) {
+  Least least;
+  for (int k = 0; k < 5; ++k) {
+    least.time([&] {
+      const auto built = build_organ_model(organ, Vec3(0, 0, -9.81), shape);
+      make_dynamics(organ, built, kStep);
+    });
+  }
+  return least.seconds;
+}
+
 }  // namespace
 
 void print_step_cost(const std::string& model, const geometry::TetMesh& mesh) {
   const auto organ = hung_organ(model, mesh);
-  const auto built = build_organ_model(organ, Vec3(0, 0, -9.81), geometry::shape_of(mesh));
-  const LinearTetrahedra tetrahedra(built.rest_positions, built.mesh().tetrahedra);
-  std::unique_ptr<ElasticForceElements> elements;
-  if (model == "corotational") {
-    elements = std::make_unique<Corotational>(tetrahedra, built.mesh().elastic());
-  } else {
-    elements = std::make_unique<AverageNodalPressure>(tetrahedra, built.mesh().elastic());
-  }
-  const auto dynamics = make_dynamics(organ, built, kStep);
-  const auto& solid = dynamic_cast<const LinearlyImplicitEuler&>(*dynamics);
-  auto state = rest_state(built);
-  std::vector<Vec4f> p(built.node_count(), Vec4f(1e-3f, 2e-3f, 3e-3f, 0)), out = p;
-  std::vector<Vec3> plain_p(built.node_count(), Vec3(1e-3, 2e-3, 3e-3)), plain_out = plain_p;
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  double step = kNever, linearisation = kNever, product = kNever, yardstick = kNever;
-  double iterations = 0;
+  const auto shape = geometry::shape_of(mesh);
+  const auto built = build_organ_model(organ, Vec3(0, 0, -9.81), shape);
+  const bool corotational = model == "corotational";
+  const auto plain = corotational ? made<Corotational> : made<AverageNodalPressure>;
+  const auto fast = corotational ? made<CorotationalKernel> : made<NodalPressureKernel>;
+  const int most = corotational ? Corotational::kIterations : AverageNodalPressure::kIterations;
+  runtime::WorkerTeam team(2);
+  std::vector<Swaying> ways;
+  ways.reserve(4);
+  ways.emplace_back("plain", built, plain, most, nullptr);
+  ways.emplace_back("kernel", built, fast, most, nullptr);
+  ways.emplace_back("kernel, two threads", built, fast, most, &team);
+  ways.emplace_back("kernel, 25 iterations", built, fast, 25, nullptr);
   for (int k = 0; k < kRounds; ++k) {
-    time_least(step, [&] { dynamics->step(kStep, {}, state); });
-    iterations += static_cast<double>(solid.iterations_used()) / kRounds;
-    time_least(linearisation,
-               [&] { elements->linearise(state.positions, kStep * kStep, built.masses); });
-    time_least(product, [&] { elements->apply(p, out); });
-    time_least(yardstick, [&] { plain_product(tetrahedra, 2e3, 1e4, plain_p, plain_out); });
+    for (Swaying& way : ways) way.turn();
   }
-  const double per_tetrahedron = 1e9 / static_cast<double>(tetrahedra.size());
-  std::printf("%s: %zu nodes, %zu tetrahedra, %.1f iterations per step of 10 ms\n", model.c_str(),
-              built.node_count(), tetrahedra.size(), iterations);
-  std::printf("  step           %8.3f ms, of %d the least\n", 1e3 * step, kRounds);
-  std::printf("  linearisation  %8.3f ms, %6.1f ns per tetrahedron\n", 1e3 * linearisation,
-              linearisation * per_tetrahedron);
-  std::printf("  product        %8.3f ms, %6.1f ns per tetrahedron, %.2f of a plain element loop\n",
-              1e3 * product, product * per_tetrahedron, product / yardstick);
+  std::printf("%s: %zu nodes, %zu tetrahedra, built in %.2f ms; steps of 10 ms, the least of %d\n",
+              model.c_str(), built.node_count(), built.mesh().tetrahedra.size(),
+              1e3 * seconds_to_build(organ, shape), kRounds);
+  std::printf("  %-26s %8s %5s %8s %7s %8s %23s\n", "", "step", "it.", "lineari-", "ns per",
+              "product", "plain over it: step,");
+  std::printf("  %-26s %8s %5s %8s %7s %8s %23s\n", "", "[ms]", "", "sation", "tet.", "[ms]",
+              "linearisation, product");
+  for (const Swaying& way : ways) way.print(ways.front());
 }
 
 }  // namespace palpate::solids_bench

@@ -37,16 +37,21 @@ Block4f skew(const Vec4f& e) {
 
 }  // namespace
 
+double nodal_bulk_modulus(const ElasticConstants& tissue,
+                          const AverageNodalPressureSettings& settings) {
+  const double ratio = std::min(settings.largest_bulk_modulus, tissue.bulk_over_shear());
+  const double mu = tissue.shear_modulus(), alpha = settings.stabilisation * mu;
+  return std::max(0.0, ratio * mu - (alpha - mu / 3));
+}
+
 AverageNodalPressure::AverageNodalPressure(LinearTetrahedra tetrahedra,
                                            const ElasticConstants& tissue,
                                            const AverageNodalPressureSettings& settings)
     : tetrahedra_(std::move(tetrahedra)),
       law_(tissue.shear_modulus(), settings.stabilisation * tissue.shear_modulus()),
       pairs_(tetrahedra_.node_count, tetrahedra_.corners),
-      matrix_(pairs_) {
-  const double ratio = std::min(settings.largest_bulk_modulus, tissue.bulk_over_shear());
-  const double mu = law_.shear_modulus, alpha = law_.volume_modulus;
-  nodal_modulus_ = std::max(0.0, ratio * mu - (alpha - mu / 3));
+      matrix_(pairs_),
+      nodal_modulus_(nodal_bulk_modulus(tissue, settings)) {
   node_volumes_.assign(tetrahedra_.node_count, 0);
   shape_weights_.assign(pairs_.pair_count(), 0);
   for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {

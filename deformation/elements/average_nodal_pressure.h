@@ -33,6 +33,11 @@ struct AverageNodalPressureSettings {
   double largest_bulk_modulus = 100;  ///< κ/μ is not taken above this: 100 is ν = 0.495
 };
 
+/// κ' [Pa]
+double nodal_bulk_modulus(const ElasticConstants& tissue,
+                          const AverageNodalPressureSettings& settings);
+
+/// The plain code: nodal_pressure_kernel.h does the same fast.
 class AverageNodalPressure : public ElasticForceElements {
  public:
   static constexpr int kIterations = 40;

@@ -14,6 +14,7 @@
 
 namespace palpate::deformation {
 
+/// The plain code: corotational_kernel.h does the same fast.
 class Corotational : public ElasticForceElements {
  public:
   static constexpr int kIterations = 20;

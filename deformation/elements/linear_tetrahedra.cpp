@@ -8,6 +8,9 @@ LinearTetrahedra::LinearTetrahedra(const std::vector<Vec3>& rest_positions,
                                    std::vector<geometry::Tetrahedron> tetrahedra)
     : node_count(rest_positions.size()), corners(std::move(tetrahedra)) {
   const auto& x = rest_positions;
+  volumes.reserve(size());
+  gradients.reserve(size());
+  centres.reserve(size());
   for (const auto& t : corners) {
     Mat3 edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = x[t[static_cast<std::size_t>(k) + 1]] - x[t[0]];
@@ -16,6 +19,7 @@ LinearTetrahedra::LinearTetrahedra(const std::vector<Vec3>& rest_positions,
     g.rightCols<3>() = edges.inverse().transpose();
     g.col(0) = -g.rightCols<3>().rowwise().sum();
     gradients.push_back(g);
+    centres.push_back((x[t[0]] + x[t[1]] + x[t[2]] + x[t[3]]) / 4);
   }
 }
 

@@ -14,6 +14,7 @@ struct LinearTetrahedra {
   std::vector<geometry::Tetrahedron> corners;
   std::vector<double> volumes;   ///< V at rest [m³]
   std::vector<Mat34> gradients;  ///< g_a = ∇N_a at rest, by columns [1/m]
+  std::vector<Vec3> centres;     ///< at rest [m]
 
   /// @param rest_positions  [m]
   LinearTetrahedra(const std::vector<Vec3>& rest_positions,

@@ -59,7 +59,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   void find_contacts(std::span<ContactRow> rows, const OrganState& state);
   void take_preconditioner(std::span<const ContactRow> rows);
   void take_residual(std::span<const ContactRow> rows);
-  double precondition();
+  void set_preconditioner(std::size_t node, const Mat3& inverse);
   void keep_momentum(double h, std::span<const ContactRow> rows, const OrganState& state);
   double mean_pressure() const;
 
@@ -72,7 +72,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   std::vector<Vec3> predicted_;                       ///< x̃ [m]
   std::vector<Vec3> velocities_;                      ///< v + Δv [m/s]
   std::vector<Mat3> inverse_diagonal_;                ///< of A without contacts [1/kg]
-  std::vector<Mat3> diagonal_;                        ///< with contacts [kg]
+  std::vector<Mat3> diagonal_;                        ///< with contacts, of their nodes [kg]
   std::vector<std::array<Vec4f, 3>> preconditioner_;  ///< its inverse blocks, by columns
   std::vector<Vec4f> change_;                         ///< Δv [m/s]
   std::vector<Vec4f> load_;                           ///< right-hand side without contacts [N·s]

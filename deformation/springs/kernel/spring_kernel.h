@@ -15,17 +15,12 @@
 
 #include "deformation/model/free_step.h"
 #include "deformation/model/organ_state.h"
+#include "deformation/packs/instruction_set.h"
 #include "deformation/springs/kernel/spring_kernel_layout.h"
 #include "modules/core/aligned_vector.h"
 #include "modules/core/parallel.h"
 
 namespace palpate::deformation {
-
-enum class InstructionSet { kPortable, kAvx2, kAvx512 };
-
-const char* name_of(InstructionSet set);
-/// Those this CPU has, from the slowest on.
-std::vector<InstructionSet> available_instruction_sets();
 
 class SpringKernel {
  public:

@@ -1,32 +1,15 @@
 // The spring kernel for any instruction set: included once by each spring_kernel_<set>.cpp, which
-// is compiled for that set and gives two structs of kWidth lanes each, `Floats` for the springs and
-// `Doubles` for the volume:
-//
-//   Pack                        kWidth numbers with + − * elementwise
-//   load, store, broadcast      a Pack from and to memory
-//   fma(a, b, c), fnma(a, b, c) c + a b and c − a b, rounded once where the CPU can
-//
-// and of these Floats further
-//   load_nodes(base, offsets)   x, y, z of kWidth packed nodes
-//   load_pairs(base, offsets)   both vectors of kWidth packed nodes
-//   bits(pack), of_bits(bits)   as unsigned integers
-//   absolute(Pack)              elementwise
-//   larger(a, b, yes, no)       yes where a > b, else no
-//   store_nodes(base, nodes)    of kWidth consecutive nodes of four floats, the fourth 0
-//   pack_node(from, origin, to) one vector of a packed node
-// and Doubles
-//   load_nodes(base, offsets)   x, y, z of kWidth nodes of three doubles each
-//   store_nodes(base, nodes)    of kWidth consecutive nodes
-//   widen(from)                 kWidth floats
+// is compiled for that set and gives `Floats` for the springs and `Doubles` for the volume
+// (deformation/packs/vector3.h).
 //
 // A slice is worked through in kLanes / kWidth parts. Every lane does the same operations in the
 // same order whatever the width, and sums over lanes are taken in lane order, so all sets that fuse
 // multiply and add give the same bits.
 #pragma once
 
+#include "deformation/packs/vector3.h"
 #include "deformation/springs/kernel/spring_kernel_coordinates.h"
 #include "deformation/springs/kernel/spring_kernel_springs.h"
-#include "deformation/springs/kernel/spring_kernel_vector3.h"
 
 namespace palpate::deformation::kernel {
 namespace {

@@ -2,8 +2,8 @@
 // as `Floats` in spring_kernel_body.h.
 #pragma once
 
+#include "deformation/packs/vector3.h"
 #include "deformation/springs/kernel/spring_kernel_arrays.h"
-#include "deformation/springs/kernel/spring_kernel_vector3.h"
 
 namespace palpate::deformation::kernel {
 namespace {
