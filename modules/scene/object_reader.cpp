@@ -99,6 +99,11 @@ void ObjectReader::refuse_key(const YAML::Node& key, const KeyList& allowed) con
   throw SceneError(object_.source->name, line_of(key, object_.line), full, message);
 }
 
+void ObjectReader::refuse_many(const char* key, std::size_t count) const {
+  find(key)->refuse("must have at most " + std::to_string(kMostNamed) + " entries, has " +
+                    std::to_string(count));
+}
+
 void ObjectReader::refuse_name(const char* key, std::size_t index, std::size_t same_as,
                                const std::string& name) const {
   const auto list = find(key);

@@ -11,6 +11,9 @@
 
 namespace palpate::scene {
 
+/// Organs, and probes: as many as the keyed topics hold (bus/qos.h).
+inline constexpr std::size_t kMostNamed = 256;
+
 class ObjectReader {
  public:
   /// @throws InputError unless `object` is a mapping with allowed keys only, each once, none
@@ -72,6 +75,7 @@ class ObjectReader {
 
   template <class T>
   void unique_names(const char* key, const std::vector<T>& list) const {
+    if (list.size() > kMostNamed) refuse_many(key, list.size());
     for (std::size_t i = 0; i < list.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         if (list[i].name == list[k].name) refuse_name(key, i, k, list[i].name);
@@ -99,6 +103,7 @@ class ObjectReader {
   void check_keys(const KeyList& allowed) const;
   void check_options(const KeyList& allowed) const;
   [[noreturn]] void refuse_key(const YAML::Node& key, const KeyList& allowed) const;
+  [[noreturn]] void refuse_many(const char* key, std::size_t count) const;
   [[noreturn]] void refuse_name(const char* key, std::size_t index, std::size_t same_as,
                                 const std::string& name) const;
 

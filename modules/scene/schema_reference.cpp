@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "modules/core/error.h"
+#include "modules/scene/object_reader.h"
 #include "modules/scene/schema.h"
 #include "modules/scene/value_text.h"
 
@@ -74,7 +75,8 @@ class SchemaTable {
   void fits(const char* rule, const Misfit&) { require(true, rule); }
   template <class T>
   void unique_names(const char* key, const std::vector<T>&) {
-    rules_ += std::string("\nRule: no two `") + key + "` have the same name.\n";
+    rules_ += std::string("\nRule: no two `") + key + "` have the same name; at most " +
+              std::to_string(kMostNamed) + ".\n";
   }
 
   std::string text() const {

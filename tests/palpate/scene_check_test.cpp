@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/bus/qos.h"
 #include "modules/geometry/mesh_io.h"
+#include "modules/scene/object_reader.h"
 #include "modules/scene/scene_reader.h"
 #include "tests/palpate/ball_scene.h"
 
@@ -33,4 +35,9 @@ TEST_CASE("scene check: counts are Euler's, volume and mass the mesh's, the touc
   CHECK(check.cost > 0);
   CHECK(check.real_time_factor() <= 1);
   CHECK_FALSE(check.troubles.any());
+}
+
+TEST_CASE("scene check: as many organs and probes as a topic has keys") {
+  // Oracle: both limits; more would be refused by nobody and heard by nobody.
+  CHECK(palpate::scene::kMostNamed == palpate::bus::kMaxKeys);
 }

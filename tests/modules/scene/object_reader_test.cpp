@@ -124,6 +124,21 @@ TEST_CASE("object reader: lists are lists, and those that are needed are not emp
                                kMinimalScene)) == "accepted");
 }
 
+TEST_CASE("object reader: there are no more probes than the topics have keys for") {
+  // Oracle: the stated limit.
+  const SceneFolder folder;
+  const auto said_of = [&](std::size_t count) {
+    std::string text = "palpate_scene: 1\norgans:\n  - mesh: {file: organ.ply}\nprobes:\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      text += "  - {shape: {plane: {}}, device: {topic: {start_m: [0, 0, 0]}}}\n";
+    }
+    return folder.refusal(text);
+  };
+  CHECK(said_of(kMostNamed) == "accepted");
+  CHECK_THAT(said_of(kMostNamed + 1),
+             Catch::Contains("'probes'") && Catch::Contains("at most 256 entries, has 257"));
+}
+
 TEST_CASE("object reader: names are unique among organs and among probes") {
   // Oracle: the second of two equal names is the one refused, also if a default makes it equal.
   CHECK(refusal("name: liver", "name: stomach") ==

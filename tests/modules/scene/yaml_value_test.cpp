@@ -220,6 +220,23 @@ TEST_CASE("yaml value: a name is a short text in one line") {
          {"name: stomach", "name:", key + "'null': must be a text"}});
 }
 
+TEST_CASE("yaml value: a name is UTF-8") {
+  // Oracle: Unicode's table 3-7, its first and last good sequences and those beside them.
+  const std::string key = "4: key 'organs[0].name' = '";
+  for (const char* bad :
+       {"\x80", "\xc1\xbf", "\xe0\x9f\xbf", "\xed\xa0\x80", "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80",
+        "\xf5\x80\x80\x80", "\xc3", "\xe2\x82", "\xe2\x82z"}) {
+    const std::string name = std::string("a") + bad;
+    check({{"name: stomach", "name: \"" + name + "\"", key + name + "': must be UTF-8"}});
+  }
+  for (const char* good : {"Größe", "\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf",
+                           "\xef\xbf\xbf", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbf"}) {
+    const YAML::Node node(good);
+    const Source source{"scene.yaml", {}};
+    CHECK_NOTHROW(check_name({node, 1, "name", &source}, good));
+  }
+}
+
 TEST_CASE("yaml value: a file must be there, be a file and be readable") {
   // Oracle: the file system.
   check({{"tool.stl", "none.stl",
