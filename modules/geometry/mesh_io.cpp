@@ -3,14 +3,17 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <fstream>
 #include <iterator>
 #include <system_error>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
-#include "modules/geometry/ply_bytes.h"
+#include "modules/geometry/ply_file.h"
 #include "modules/geometry/weld.h"
 
 namespace palpate::geometry {
@@ -27,12 +30,20 @@ void check_file(const std::filesystem::path& file) {
   if (std::filesystem::file_size(file, error) == 0) refuse(file, "is empty");
 }
 
-const aiScene* import(Assimp::Importer& importer, const std::filesystem::path& file) {
-  if (file.extension() != ".ply") return importer.ReadFile(file.string(), 0);
+/// By its name or its first word: assimp would know it by either.
+bool is_ply(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return std::tolower(c); });
+  std::array<char, 3> first{};
+  std::ifstream(file, std::ios::binary).read(first.data(), first.size());
+  return extension == ".ply" || first == std::array{'p', 'l', 'y'};
+}
+
+TriangleSurface read_ply(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  protect_first_data_byte(bytes);
-  return importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "ply");
+  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  return parse_ply(bytes, file);
 }
 
 /// assimp leaves bad indices to its post-processing, which would read past the end.
@@ -48,6 +59,16 @@ void check_indices(const aiScene& scene, const std::filesystem::path& file) {
         }
       }
     }
+  }
+}
+
+/// Its OFF reader announces polygons where there are none, and its triangulation asserts on that.
+void correct_announcements(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    aiMesh& mesh = *scene.mMeshes[m];
+    bool any = false;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) any |= mesh.mFaces[f].mNumIndices > 3;
+    if (!any) mesh.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
   }
 }
 
@@ -85,13 +106,9 @@ void check_content(const TriangleSurface& surface, const std::filesystem::path& 
   }
 }
 
-}  // namespace
-
-TriangleSurface read_surface(const std::filesystem::path& file, std::string_view unit) {
-  const double scale = metres_per_unit(unit);
-  check_file(file);
+TriangleSurface read_with_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
-  const aiScene* scene = import(importer, file);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     refuse(file, std::string("is not a surface mesh this program reads (") +
                      importer.GetErrorString() +
@@ -99,10 +116,20 @@ TriangleSurface read_surface(const std::filesystem::path& file, std::string_view
                      "tetrahedra and VTK or Gmsh files to one of these first");
   }
   check_indices(*scene, file);
+  correct_announcements(*scene);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr) refuse(file, "its polygons cannot be triangulated");
   TriangleSurface surface;
   append_node(*scene, *scene->mRootNode, aiMatrix4x4(), surface);
+  return surface;
+}
+
+}  // namespace
+
+TriangleSurface read_surface(const std::filesystem::path& file, std::string_view unit) {
+  const double scale = metres_per_unit(unit);
+  check_file(file);
+  TriangleSurface surface = is_ply(file) ? read_ply(file) : read_with_assimp(file);
   check_content(surface, file);
   for (Vec3& node : surface.nodes) node *= scale;
   weld_nodes(surface);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "modules/core/error.h"
+#include "modules/core/organ_limits.h"
 #include "modules/core/units.h"
 #include "modules/geometry/bisection.h"
 #include "modules/geometry/mesh_prepare.h"
@@ -56,6 +57,17 @@ geometry::OrganShape filled(const geometry::TriangleSurface& surface, const Orga
   }
 }
 
+/// What is larger no message holds: it would never be heard of.
+void check_size(const geometry::OrganShape& shape, const std::string& owner) {
+  const std::size_t nodes = shape.surface.nodes.size() + shape.inner_nodes.size();
+  const std::size_t triangles = shape.surface.triangles.size();
+  if (nodes <= kMaxNodes && triangles <= kMaxTriangles) return;
+  throw InputError(owner + ": " + std::to_string(nodes) + " nodes and " +
+                   std::to_string(triangles) + " triangles; at most " + std::to_string(kMaxNodes) +
+                   " and " + std::to_string(kMaxTriangles) +
+                   " go over the wire; key 'mesh.nodes' resamples a surface");
+}
+
 }  // namespace
 
 geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
@@ -101,6 +113,7 @@ geometry::OrganShape load_organ(const Organ& organ) {
     if (format.is_solid()) shape = filled(shape.surface, organ, owner);
   }
   if (format.is_quadratic()) shape = geometry::with_edge_nodes(shape);
+  check_size(shape, owner);
   for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {
     for (Vec3& node : *nodes) node = organ.pose.to_world(node);
   }

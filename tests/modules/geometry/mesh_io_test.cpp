@@ -113,6 +113,15 @@ TEST_CASE("read: points and lines alone are no surface") {
   CHECK_THAT(refusal(file), Contains("line.obj: holds no triangles"));
 }
 
+TEST_CASE("read: an OFF file with an empty line before its faces is read") {
+  // Oracle: both triangles are there. assimp's triangulation asserted on it, which ended the
+  // process.
+  const ScratchFolder folder;
+  const auto file =
+      folder.write("gap.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n\n3 0 1 2\n3 0 2 3\n");
+  CHECK(read_surface(file, "m").triangles.size() == 2);
+}
+
 TEST_CASE("read: indices out of range are refused") {
   // Oracle: the rules of read_surface; a triangle naming vertex 7 of four.
   const ScratchFolder folder;
