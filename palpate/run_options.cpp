@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "modules/core/error.h"
+#include "modules/recording/sample_reader.h"
 
 namespace palpate::launcher {
 namespace {
@@ -97,11 +98,7 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
 
 ModuleCommand again(ModuleCommand command, int earlier) {
   if (command.module != "recorder" || earlier == 0) return command;
-  const std::filesystem::path file = command.arguments.front();
-  auto part = file;
-  part.replace_filename(
-      fmt::format("{}.part{}{}", file.stem().string(), earlier + 1, file.extension().string()));
-  command.arguments.front() = part.string();
+  command.arguments.front() = recording::part_of(command.arguments.front(), earlier + 1).string();
   return command;
 }
 

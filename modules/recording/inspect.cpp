@@ -133,6 +133,7 @@ RecordingSummary summarize(const std::filesystem::path& recording,
   RecordingSummary summary;
   summary.file = recording;
   summary.file_bytes = reader.file_bytes();
+  summary.parts = reader.parts();
   summary.torn = reader.torn();
   if (summary.torn) summary.torn_warning = reader.torn_warning();
   summary.session = reader.metadata(kSessionMetadata);
@@ -144,6 +145,7 @@ RecordingSummary summarize(const std::filesystem::path& recording,
 void print_summary(const RecordingSummary& summary, std::ostream& out) {
   out << "recording  " << summary.file.string() << ", "
       << fixed(1e-6 * double(summary.file_bytes), 1) << " MB, "
+      << (summary.parts > 1 ? "in " + std::to_string(summary.parts) + " parts, " : "")
       << (summary.torn ? "torn: ends at its last whole record" : "whole") << '\n'
       << "session    " << entry(summary.session, "session") << " in domain "
       << entry(summary.session, "domain") << ", recorded "

@@ -27,6 +27,7 @@ struct TopicSummary {
 struct RecordingSummary {
   std::filesystem::path file;
   std::uint64_t file_bytes = 0;
+  int parts = 1;  ///< files: a recorder that was started again began another
   bool torn = false;
   std::string torn_warning;  ///< one line; empty if the file is whole
   McapMap session;           ///< recorder.h: kSessionMetadata

@@ -1,18 +1,66 @@
 #include "modules/recording/sample_reader.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
+#include "modules/recording/recorder.h"
 
 namespace palpate::recording {
 
-SampleReader::SampleReader(const std::filesystem::path& file) : file_(file), reader_(file) {}
+std::filesystem::path part_of(const std::filesystem::path& recording, int number) {
+  if (number <= 1) return recording;
+  auto part = recording;
+  part.replace_filename(recording.stem().string() + ".part" + std::to_string(number) +
+                        recording.extension().string());
+  return part;
+}
+
+SampleReader::SampleReader(const std::filesystem::path& file) : SampleReader(file, 1) {}
+
+SampleReader::SampleReader(const std::filesystem::path& recording, int part)
+    : recording_(recording), part_(part), file_(part_of(recording, part)), reader_(file_) {}
 
 std::optional<RecordedSample> SampleReader::next() {
+  if (later_) return later_->next();
+  std::optional<RecordedSample> sample = std::exchange(first_, std::nullopt);
+  if (!sample) sample = next_of_part();
+  if (sample) return sample;
+  look_for_next_part();
+  return later_ ? later_->next() : std::nullopt;
+}
+
+void SampleReader::look_for_next_part() {
+  std::error_code error;
+  if (!std::filesystem::exists(part_of(recording_, part_ + 1), error)) return;
+  std::unique_ptr<SampleReader> part(new SampleReader(recording_, part_ + 1));
+  part->first_channel_ = static_cast<std::uint16_t>(first_channel_ + channel_count_);
+  part->first_ = part->next_of_part();
+  if (goes_on_in(*part)) later_ = std::move(part);
+}
+
+/// A part that an earlier recording of that name left behind began before this one.
+bool SampleReader::goes_on_in(SampleReader& part) const {
+  const auto entry = [](const SampleReader& reader, const char* key) {
+    const McapMap about = reader.metadata(kSessionMetadata);
+    const auto found = about.find(key);
+    return found == about.end() ? std::string() : found->second;
+  };
+  const std::string begun = entry(*this, "start_unix_ns"), later = entry(part, "start_unix_ns");
+  return entry(*this, "session") == entry(part, "session") && !begun.empty() &&
+         std::pair(begun.size(), begun) <= std::pair(later.size(), later);
+}
+
+std::uint64_t SampleReader::file_bytes() const {
+  return reader_.file_bytes() + (later_ ? later_->file_bytes() : 0);
+}
+
+std::optional<RecordedSample> SampleReader::next_of_part() {
   while (auto record = reader_.next()) {
     if (auto* message = std::get_if<McapMessage>(&*record)) {
-      return RecordedSample{topics_.at(message->channel_id), message->channel_id,
+      const int channel = first_channel_ + message->channel_id;
+      return RecordedSample{topics_.at(message->channel_id), static_cast<std::uint16_t>(channel),
                             static_cast<std::int64_t>(message->log_time_ns),
                             std::move(message->data)};
     }
@@ -56,6 +104,8 @@ void SampleReader::add(const McapChannel& channel) {
            "'; allowed: cdr");
   }
   topics_[channel.id] = topic;
+  channel_count_ =
+      std::max<std::uint16_t>(channel_count_, static_cast<std::uint16_t>(channel.id + 1));
 }
 
 McapMap SampleReader::metadata(const std::string& name) const {
@@ -64,6 +114,7 @@ McapMap SampleReader::metadata(const std::string& name) const {
 }
 
 std::string SampleReader::torn_warning() const {
+  if (!reader_.torn() && later_) return later_->torn_warning();
   return file_.string() + ": not closed by its writer; whole up to byte " +
          std::to_string(reader_.offset()) + " of " + std::to_string(reader_.file_bytes());
 }

@@ -1,8 +1,10 @@
-// The samples of a recording, front to back.
+// The samples of a recording, front to back; of one whose recorder was started again, of all its
+// parts.
 #pragma once
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -18,12 +20,17 @@ struct RecordedSample {
   std::vector<std::uint8_t> payload;  ///< CDR with its encapsulation header
 };
 
+/// Where a recorder that is started again goes on: FILE.part2.mcap, FILE.part3.mcap, …
+/// @param number  1: the recording's own name
+std::filesystem::path part_of(const std::filesystem::path& recording, int number);
+
 class SampleReader {
  public:
   /// @throws InputError as McapReader does
   explicit SampleReader(const std::filesystem::path& file);
 
-  /// The next sample; none at the end, be it regular or torn.
+  /// The next sample; none at the end, be it regular or torn. Behind the end comes the next part,
+  /// if it is of the same session and was begun later; `channel` goes on counting.
   /// @throws InputError "file: offset N: …" if the bytes are not records, a topic is not one of
   /// ours, or a schema differs from the present one
   std::optional<RecordedSample> next();
@@ -32,19 +39,30 @@ class SampleReader {
   McapMap metadata(const std::string& name) const;
 
   const std::filesystem::path& file() const { return file_; }
-  std::uint64_t file_bytes() const { return reader_.file_bytes(); }
-  /// After next() gave none: its writer was stopped hard.
-  bool torn() const { return reader_.torn(); }
+  std::uint64_t file_bytes() const;  ///< with those of parts begun
+  int parts() const { return later_ ? later_->parts() : part_; }  ///< begun
+  /// After next() gave none: the writer of one of its parts was stopped hard.
+  bool torn() const { return reader_.torn() || (later_ && later_->torn()); }
   /// One line about a torn file: where it ends, and what is lost.
   std::string torn_warning() const;
 
  private:
+  SampleReader(const std::filesystem::path& recording, int part);
+  std::optional<RecordedSample> next_of_part();
+  void look_for_next_part();
+  bool goes_on_in(SampleReader& part) const;
   void check(const McapSchema& schema) const;
   void add(const McapChannel& channel);
   [[noreturn]] void refuse(const std::string& what) const;
 
+  std::filesystem::path recording_;
+  int part_;
   std::filesystem::path file_;
   McapReader reader_;
+  std::uint16_t first_channel_ = 0;  ///< in the numbers that next() gives
+  std::uint16_t channel_count_ = 0;
+  std::unique_ptr<SampleReader> later_;
+  std::optional<RecordedSample> first_;  ///< read already
   std::map<std::uint16_t, std::string> schema_names_;
   std::map<std::uint16_t, const bus::TopicInfo*> topics_;  ///< by channel
   std::map<std::string, McapMap> metadata_;

@@ -1,6 +1,7 @@
 #include "modules/recording/sample_reader.h"
 
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
@@ -38,6 +39,39 @@ McapSchema probe_schema() {
 }
 
 }  // namespace
+
+TEST_CASE("sample reader: goes on in the parts of a recorder that was started again") {
+  // Oracle: what was written, in order. A part that an older recording of that name left is none.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  const auto sample_at = [](std::int64_t time, int writer) {
+    return raw_sample(bus::kProbeState, probe_state(1, 0, 1, {4, 5, 6}), time, writer);
+  };
+  const auto write = [&](int part, std::int64_t time) {
+    SampleFile writer(part_of(file, part), {});
+    writer.add(sample_at(time, 1));
+    writer.add(sample_at(time + 1, 2));
+    writer.close();
+  };
+  CHECK(part_of(file, 1) == file);
+  CHECK(part_of(file, 3) == folder / "a.part3.mcap");
+  write(3, 50);
+  write(1, 100);
+  write(2, 200);
+  SampleReader reader(file);
+  std::vector<std::int64_t> times;
+  std::vector<int> channels;
+  while (auto sample = reader.next()) {
+    times.push_back(sample->received_time_ns);
+    channels.push_back(sample->channel);
+  }
+  CHECK(times == std::vector<std::int64_t>{100, 101, 200, 201});
+  CHECK(std::set<int>(channels.begin(), channels.end()).size() == 4);  // each has its own writers
+  CHECK(reader.parts() == 2);
+  CHECK(reader.file_bytes() ==
+        std::filesystem::file_size(file) + std::filesystem::file_size(part_of(file, 2)));
+  CHECK_FALSE(reader.torn());
+}
 
 TEST_CASE("sample reader: gives each sample with its topic, its channel and its time") {
   // Oracle: round trip with SampleFile; one channel per writer.
