@@ -39,7 +39,7 @@ class SampleReader {
   McapMap metadata(const std::string& name) const;
 
   const std::filesystem::path& file() const { return file_; }
-  std::uint64_t file_bytes() const;  ///< with those of parts begun
+  std::uint64_t file_bytes() const;                               ///< with those of parts begun
   int parts() const { return later_ ? later_->parts() : part_; }  ///< begun
   /// After next() gave none: the writer of one of its parts was stopped hard.
   bool torn() const { return reader_.torn() || (later_ && later_->torn()); }
