@@ -13,6 +13,7 @@
 
 #include "bench/fine_surface.h"
 #include "deformation/springs/kernel/spring_kernel.h"
+#include "deformation/steppers/backward_euler.h"
 #include "deformation/steppers/symplectic_euler.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
@@ -27,9 +28,10 @@ namespace {
 using namespace palpate;
 using deformation::InstructionSet;
 
-constexpr double kTurn = 1e-3;    // [s], at least
-constexpr int kLeastSteps = 8;    // of a turn, so that its arrays are where they are in a session
-constexpr double kSeconds = 5.0;  // per size, about
+constexpr double kTurn = 1e-3;  // [s], at least
+constexpr int kLeastSteps = 8;  // of a turn, so that its arrays are where they are in a session
+constexpr double kBackwardStep = 4e-3;  // [s]
+constexpr double kSeconds = 5.0;        // per size, about
 
 deformation::OrganState swinging(const deformation::OrganModel& model) {
   auto state = deformation::rest_state(model);
@@ -72,6 +74,40 @@ Variant plain_variant(const deformation::OrganModel& model, double h) {
             deformation::symplectic_euler_step(model, h, {}, *state, *buffers);
           },
           {}};
+}
+
+/// One thread; knows how long it was in loops that more could share.
+class TimedRunner : public ChunkRunner {
+ public:
+  void run(std::size_t count, ChunkBody body) override {
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t chunk = 0; chunk < count; ++chunk) body(chunk);
+    shared += std::chrono::steady_clock::now() - start;
+  }
+  std::chrono::duration<double> shared{0};
+};
+
+/// The part of a step of backward Euler that threads can share: what they gain where cores are
+/// free, whether or not they are now.
+double shared_part_of_backward_euler(const deformation::OrganModel& model) {
+  constexpr int kSteps = 50;
+  TimedRunner runner;
+  auto state = swinging(model);
+  deformation::BackwardEuler stepper(model, deformation::KeptVolume{},
+                                     deformation::BackwardEuler::kIterations, &runner);
+  stepper.step(kBackwardStep, {}, state);
+  runner.shared = std::chrono::duration<double>(0);
+  const auto start = std::chrono::steady_clock::now();
+  for (int k = 0; k < kSteps; ++k) stepper.step(kBackwardStep, {}, state);
+  return runner.shared / (std::chrono::steady_clock::now() - start);
+}
+
+Variant backward_variant(const std::string& name, const deformation::OrganModel& model,
+                         ChunkRunner* runner) {
+  auto state = std::make_shared<deformation::OrganState>(swinging(model));
+  auto stepper = std::make_shared<deformation::BackwardEuler>(
+      model, deformation::KeptVolume{}, deformation::BackwardEuler::kIterations, runner);
+  return {name, [state, stepper] { stepper->step(kBackwardStep, {}, *state); }, {}};
 }
 
 Variant kernel_variant(const std::string& name, const deformation::OrganModel& model, double h,
@@ -143,6 +179,9 @@ void measure(const scene::Organ& organ, const Vec3& gravity,
   variants.push_back(kernel_variant("the last, no volume", model, h, false, sets.back(), nullptr));
   variants.push_back(kernel_variant("the last, two threads", model, h, true, sets.back(), &team));
 
+  variants.push_back(backward_variant("backward Euler", model, nullptr));
+  variants.push_back(backward_variant("backward, two threads", model, &team));
+
   const double plain_step = seconds_per_step(variants[0], 1);
   const int steps = std::max(kLeastSteps, static_cast<int>(kTurn / plain_step));
   const double round_seconds = (steps + 1) * plain_step * static_cast<double>(variants.size());
@@ -157,10 +196,17 @@ void measure(const scene::Organ& organ, const Vec3& gravity,
   for (const Variant& v : variants) print(v, variants[0], springs);
   const Variant& best = variants[1 + sets.size()];
   const Variant &no_volume = variants[2 + sets.size()], &two = variants[3 + sets.size()];
+  const Variant &backward = variants[4 + sets.size()], &two_backward = variants[5 + sets.size()];
   std::printf(
       "  volume constraint %.1f %% of the step; two threads %.2f times one; "
       "%.1f times the streaming bound\n",
       100 * (1 - ratio(no_volume, best)), ratio(best, two), ratio(best, variants[1]));
+  const double shared = shared_part_of_backward_euler(model);
+  std::printf(
+      "  backward Euler, a step of 4 ms: two threads %.2f times one; %.1f %% of it is in loops "
+      "that "
+      "threads share, for %.2f times at best\n",
+      ratio(backward, two_backward), 100 * shared, 1 / (1 - shared / 2));
 }
 
 int run(const std::string& scene_file, const std::vector<std::size_t>& sizes) {

@@ -51,7 +51,8 @@ Dynamics on_pyramids(const ModelParts& parts) {
 
 Dynamics mass_spring(const ModelParts& parts) {
   if (parts.integrator == scene::Integrator::kBackwardEuler) {
-    return std::make_unique<BackwardEuler>(parts.model, KeptVolume{.is_kept = false});
+    return std::make_unique<BackwardEuler>(parts.model, KeptVolume{.is_kept = false},
+                                           BackwardEuler::kIterations, parts.runner);
   }
   return std::make_unique<SymplecticEuler>(parts.model, std::make_unique<NoVolume>(parts.model),
                                            parts.runner);
@@ -60,7 +61,8 @@ Dynamics mass_spring(const ModelParts& parts) {
 Dynamics implicit_volume(const ModelParts& parts) {
   const int corrections = static_cast<int>(parts.organ.volume_corrections);
   if (parts.integrator == scene::Integrator::kBackwardEuler) {
-    return std::make_unique<BackwardEuler>(parts.model, KeptVolume{.corrections = corrections});
+    return std::make_unique<BackwardEuler>(parts.model, KeptVolume{.corrections = corrections},
+                                           BackwardEuler::kIterations, parts.runner);
   }
   return std::make_unique<SymplecticEuler>(
       parts.model, std::make_unique<ImplicitVolume>(parts.model, corrections), parts.runner);

@@ -37,12 +37,14 @@ void ConstraintProjection::prepare(std::span<const Mat3> inverse_mass_blocks,
 
 void ConstraintProjection::take_inverse_masses(std::span<const Mat3> inverse_mass_blocks) {
   inverse_mass_blocks_.resize(inverse_mass_blocks.size());
-  for (std::size_t i = 0; i < inverse_mass_blocks.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) {
-      inverse_mass_blocks_[i][static_cast<std::size_t>(axis)] =
-          wide(inverse_mass_blocks[i].col(axis));
+  ranges_.each(inverse_mass_blocks.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      for (int axis = 0; axis < 3; ++axis) {
+        inverse_mass_blocks_[i][static_cast<std::size_t>(axis)] =
+            wide(inverse_mass_blocks[i].col(axis));
+      }
     }
-  }
+  });
 }
 
 void ConstraintProjection::collect_rows(std::span<const Mat3> inverse_mass_blocks,
@@ -92,27 +94,35 @@ void ConstraintProjection::factor_contacts(std::span<const Mat3> inverse_mass_bl
 }
 
 void ConstraintProjection::prepare_volume(std::span<const Vec3> gradient) {
-  gradient_.assign(inverse_mass_blocks_.size(), Vec4f::Zero());
-  volume_response_.assign(inverse_mass_blocks_.size(), Vec4f::Zero());
-  for (std::size_t i = 0; i < gradient.size(); ++i) {
-    gradient_[i] = wide(gradient[i]);
-    volume_response_[i] = apply_inverse_mass(i, gradient_[i]);
-  }
-  const double unhindered = dot(gradient_, volume_response_);
+  const std::size_t count = inverse_mass_blocks_.size();
+  gradient_.resize(count);
+  volume_response_.resize(count);
+  ranges_.each(count, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      gradient_[i] = i < gradient.size() ? wide(gradient[i]) : Vec4f(Vec4f::Zero());
+      volume_response_[i] = apply_inverse_mass(i, gradient_[i]);
+    }
+  });
+  const double unhindered = sums_of(gradient_, volume_response_).r_z;
   if (!rows_.empty()) {
     volume_shares_ = factor_.solve(times_rows(volume_response_));
     subtract_rows(volume_shares_, gradient_, volume_response_);
   }
-  volume_inverse_mass_ = dot(gradient_, volume_response_);
+  volume_inverse_mass_ = sums_of(gradient_, volume_response_).r_z;
   if (!(volume_inverse_mass_ > kVanishedInverseMass * unhindered)) volume_inverse_mass_ = 0;
 }
 
 double ConstraintProjection::project(std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
   double descent = 0;
   for (int pass = 0; pass < 2; ++pass) {
-    add(-volume_mu_, gradient_, r);
-    for (std::size_t i = 0; i < r.size(); ++i) z[i] = apply_inverse_mass(i, r[i]);
-    const Sums sums{dot(r, z), dot(gradient_, z)};
+    const auto mu = static_cast<float>(volume_mu_);
+    ranges_.each(r.size(), [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        r[i] -= mu * gradient_[i];
+        z[i] = apply_inverse_mass(i, r[i]);
+      }
+    });
+    const Sums sums = sums_of(r, z);
     descent = hold_rows(sums, r, z);
     if (descent > kMostlyTaken * sums.r_z) break;
   }
@@ -124,23 +134,43 @@ double ConstraintProjection::descend(double step, const AlignedVector<WideNode>&
                                      const std::vector<Vec4f>& q, std::vector<Vec4f>& x,
                                      std::vector<Vec4f>& r, std::vector<Vec4f>& z) {
   const auto factor = static_cast<float>(step), mu = static_cast<float>(volume_mu_);
-  Sums sums;
-  for (std::size_t first = 0; first < r.size(); first += kDotBlock) {
-    Vec4f r_z = Vec4f::Zero(), g_z = Vec4f::Zero();
-    const std::size_t end = std::min(first + kDotBlock, r.size());
-    for (std::size_t i = first; i < end; ++i) {
-      x[i] += factor * p[i].vector;
-      const Vec4f rest = r[i] - factor * q[i] - mu * gradient_[i];
-      r[i] = rest;
-      const Vec4f velocity = apply_inverse_mass(i, rest);
-      z[i] = velocity;
-      r_z += rest.cwiseProduct(velocity);
-      g_z += gradient_[i].cwiseProduct(velocity);
+  const auto sums = ranges_.sums(r.size(), [&](std::size_t begin, std::size_t end) {
+    Ranges::Sums part{};
+    for (std::size_t first = begin; first < end; first += kDotBlock) {
+      Vec4f r_z = Vec4f::Zero(), g_z = Vec4f::Zero();
+      for (std::size_t i = first; i < std::min(first + kDotBlock, end); ++i) {
+        x[i] += factor * p[i].vector;
+        const Vec4f rest = r[i] - factor * q[i] - mu * gradient_[i];
+        r[i] = rest;
+        const Vec4f velocity = apply_inverse_mass(i, rest);
+        z[i] = velocity;
+        r_z += rest.cwiseProduct(velocity);
+        g_z += gradient_[i].cwiseProduct(velocity);
+      }
+      part[0] += static_cast<double>(r_z.sum());
+      part[1] += static_cast<double>(g_z.sum());
     }
-    sums.r_z += static_cast<double>(r_z.sum());
-    sums.g_z += static_cast<double>(g_z.sum());
-  }
-  return hold_rows(sums, r, z);
+    return part;
+  });
+  return hold_rows({sums[0], sums[1]}, r, z);
+}
+
+ConstraintProjection::Sums ConstraintProjection::sums_of(const std::vector<Vec4f>& r,
+                                                         const std::vector<Vec4f>& z) {
+  const auto sums = ranges_.sums(r.size(), [&](std::size_t begin, std::size_t end) {
+    Ranges::Sums part{};
+    for (std::size_t first = begin; first < end; first += kDotBlock) {
+      Vec4f r_z = Vec4f::Zero(), g_z = Vec4f::Zero();
+      for (std::size_t i = first; i < std::min(first + kDotBlock, end); ++i) {
+        r_z += r[i].cwiseProduct(z[i]);
+        g_z += gradient_[i].cwiseProduct(z[i]);
+      }
+      part[0] += static_cast<double>(r_z.sum());
+      part[1] += static_cast<double>(g_z.sum());
+    }
+    return part;
+  });
+  return {sums[0], sums[1]};
 }
 
 /// With c = C W r:  μ_c = S⁻¹ c but for what the volume's share of it changes, μ_v = g'·W r /
@@ -162,9 +192,11 @@ double ConstraintProjection::hold_rows(const Sums& sums, std::vector<Vec4f>& r,
 void ConstraintProjection::turn(double kept, const std::vector<Vec4f>& z,
                                 AlignedVector<WideNode>& p) const {
   const auto factor = static_cast<float>(kept), mu = static_cast<float>(volume_mu_);
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    p[i].vector = z[i] - mu * volume_response_[i] + factor * p[i].vector;
-  }
+  ranges_.each(z.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      p[i].vector = z[i] - mu * volume_response_[i] + factor * p[i].vector;
+    }
+  });
 }
 
 void ConstraintProjection::take_impulses(std::span<ContactRow> contacts, double& volume_impulse,

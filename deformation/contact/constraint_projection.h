@@ -24,12 +24,16 @@
 
 #include "deformation/contact/contact_solve.h"
 #include "modules/core/aligned_vector.h"
+#include "modules/core/ranges.h"
 #include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
 class ConstraintProjection {
  public:
+  /// @param runner  outlives this; none: the calling thread alone. The bits are the same
+  explicit ConstraintProjection(ChunkRunner* runner = nullptr) : ranges_(runner) {}
+
   /// Takes as active the contacts with a normal impulse.
   /// @param inverse_mass_blocks  W, zero for fixed nodes [1/kg]  (node_count)
   /// @param gradient    g [m²]  (surface_node_count); empty: no volume row
@@ -85,6 +89,9 @@ class ConstraintProjection {
   /// r −= Cᵀ μ and z −= W Cᵀ μ
   void subtract_rows(const Eigen::VectorXd& mu, std::vector<Vec4f>& r, std::vector<Vec4f>& z) const;
 
+  Sums sums_of(const std::vector<Vec4f>& r, const std::vector<Vec4f>& z);
+
+  Ranges ranges_;
   std::vector<std::array<Vec4f, 3>> inverse_mass_blocks_;  ///< W, by columns
   std::vector<Row> rows_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;  ///< of S

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "modules/core/error.h"
+#include "modules/core/ranges.h"
 
 namespace palpate::deformation {
 namespace {
@@ -88,9 +89,11 @@ void SpringHessianProduct::find_slices(std::span<const std::uint32_t> nodes,
 
 void SpringHessianProduct::take_positions(const std::vector<Vec3>& positions) {
   PALPATE_DEMAND(positions.size() == body_.node_count());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    nodes_[i].position = wide(positions[i] - positions[0]);
-  }
+  Ranges(runner_).each(positions.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      nodes_[i].position = wide(positions[i] - positions[0]);
+    }
+  });
 }
 
 // With h = √k and c times d/h, h (c + h k) is d c + k k.
@@ -103,12 +106,7 @@ void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, const S
   contacts_.clear();
   functions_.linearise(layout_.view(), couplings(), {slices.data(), slices.size()}, blocks_.data(),
                        virtual_blocks_.data());
-  for (const std::uint32_t slice : slices) {
-    const std::size_t first = slice * kLanes, end = first + kLanes;
-    for (std::size_t i = first; i < std::min(end, body_.surface_node_count); ++i) {
-      take_row_diagonal(i, shares.mass);
-    }
-  }
+  take_row_diagonals({slices.data(), slices.size()}, shares.mass);
 }
 
 void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double h) {
@@ -122,8 +120,9 @@ void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double 
   run([&](std::size_t chunk) {
     functions_.linearise(layout, out, slices_of(chunk), blocks_.data(),
                          virtual_blocks_.data() + stride * chunk);
+    take_row_diagonals(slices_of(chunk), 1 + h * body_.drag);
   });
-  take_diagonal(h);
+  take_virtual_diagonal(h);
 }
 
 void SpringHessianProduct::take_row_diagonal(std::size_t node, double mass_share) {
@@ -134,12 +133,20 @@ void SpringHessianProduct::take_row_diagonal(std::size_t node, double mass_share
   diagonal_[node] = symmetric(numbers, mass_share * body_.masses[node]);
 }
 
-void SpringHessianProduct::take_diagonal(double h) {
+void SpringHessianProduct::take_row_diagonals(const kernel::SliceList& list, double mass_share) {
+  for (std::size_t k = 0; k < list.count; ++k) {
+    const std::size_t first = list.slices[k] * kLanes, end = first + kLanes;
+    for (std::size_t i = first; i < std::min(end, body_.surface_node_count); ++i) {
+      take_row_diagonal(i, mass_share);
+    }
+  }
+}
+
+void SpringHessianProduct::take_virtual_diagonal(double h) {
   const kernel::Layout layout = layout_.view();
   const std::size_t surface_count = layout.surface_node_count;
   const std::size_t rows = layout.slice_count * kLanes;
   const double mass_factor = 1 + h * body_.drag;
-  for (std::size_t i = 0; i < surface_count; ++i) take_row_diagonal(i, mass_factor);
   std::array<double, kBlockNumbers> numbers;
   for (std::size_t k = 0; k < layout.virtual_node_count; ++k) {
     numbers.fill(0);

@@ -70,7 +70,8 @@ class SpringHessianProduct {
   kernel::SliceList slices_of(std::size_t chunk) const;
   void take_positions(const std::vector<Vec3>& positions);
   void take_row_diagonal(std::size_t node, double mass_share);
-  void take_diagonal(double h);
+  void take_row_diagonals(const kernel::SliceList& list, double mass_share);
+  void take_virtual_diagonal(double h);
 
   const Body& body_;
   ChunkRunner* runner_;

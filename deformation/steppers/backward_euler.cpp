@@ -8,22 +8,17 @@
 #include "deformation/linear_algebra/conjugate_gradients.h"
 
 namespace palpate::deformation {
-namespace {
 
-/// a += scale · b
-void add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] += scale * b[i];
-}
-
-}  // namespace
-
-BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, int iterations)
+BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, int iterations,
+                             ChunkRunner* runner)
     : model_(model),
       volume_(volume),
       max_iterations_(iterations),
-      springs_(model, model.network(), volume.is_kept),
+      ranges_(runner),
+      springs_(model, model.network(), volume.is_kept, runner),
+      projection_(runner),
       contacts_(model, springs_),
-      kernel_(model, model.network(), volume.is_kept) {
+      kernel_(model, model.network(), volume.is_kept, runner) {
   for (const double mass : model.masses) total_mass_ += mass;
   for (auto* buffer : {&change_, &residual_, &trial_}) {
     buffer->assign(model.node_count(), Vec3::Zero());
@@ -32,6 +27,10 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
     buffer->assign(model.node_count(), Vec4f::Zero());
   }
   inverse_mass_blocks_.assign(model.node_count(), Mat3::Zero());
+}
+
+void BackwardEuler::add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) const {
+  for_nodes(a.size(), [&](std::size_t i) { a[i] += scale * b[i]; });
 }
 
 StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
@@ -111,18 +110,20 @@ void BackwardEuler::push_with(double volume_impulse, double h, std::span<Contact
 
 void BackwardEuler::linearise_springs(double h, std::span<const ContactRow> rows,
                                       const OrganState& state) {
-  predicted_.positions = state.positions;
   predicted_.velocities = state.velocities;
-  add(h, state.velocities, predicted_.positions);
+  predicted_.positions.resize(state.positions.size());
+  for_nodes(state.positions.size(), [&](std::size_t i) {
+    predicted_.positions[i] = state.positions[i] + h * state.velocities[i];
+  });
   kernel_.free_step(h, predicted_, free_);
   springs_.linearise(predicted_.positions, h);
-  for (std::size_t i = 0; i < model_.node_count(); ++i) {
+  for_nodes(model_.node_count(), [&](std::size_t i) {
     change_[i].setZero();
     residual_[i].setZero();
-    if (model_.inverse_masses[i] == 0) continue;
+    if (model_.inverse_masses[i] == 0) return;
     residual_[i] = model_.masses[i] * (free_.velocities[i] - state.velocities[i]);
     inverse_mass_blocks_[i] = 0.5 * springs_.diagonal()[i].inverse();
-  }
+  });
   without_friction_.clear();
   couplings_.clear();
   append_tilt_couplings(rows, state.positions, h, couplings_);
@@ -152,10 +153,9 @@ bool BackwardEuler::linearise_volume(double h, double target_volume,
   volume_row_.reset();
   if (!volume_.is_kept) return true;
   if (!(volume.denominator > kVanishedDenominator * model_.rest_denominator)) return false;
-  double rate = (volume.volume - target_volume) / h;
-  for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
-    rate -= volume.gradient[i].dot(velocities[i]);
-  }
+  const double rate = (volume.volume - target_volume) / h -
+                      sum_of(volume.gradient.size(),
+                             [&](std::size_t i) { return volume.gradient[i].dot(velocities[i]); });
   volume_row_.emplace(VolumeRow{volume, rate});
   take_volume_answers();
   return true;
@@ -165,54 +165,54 @@ bool BackwardEuler::linearise_volume(double h, double target_volume,
 void BackwardEuler::take_volume_answers() {
   if (!volume_row_) return;
   VolumeGradient& volume = free_.volume;
-  volume.denominator = 0;
   volume_answers_.resize(volume.gradient.size());
-  for (std::size_t i = 0; i < volume.gradient.size(); ++i) {
+  volume.denominator = sum_of(volume.gradient.size(), [&](std::size_t i) {
     volume_answers_[i] = inverse_mass_blocks_[i] * volume.gradient[i];
-    volume.denominator += volume.gradient[i].dot(volume_answers_[i]);
-  }
+    return volume.gradient[i].dot(volume_answers_[i]);
+  });
 }
 
 void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
                                    WarmStart start) {
-  for (std::size_t i = 0; i < trial_.size(); ++i) {
+  for_nodes(trial_.size(), [&](std::size_t i) {
     trial_[i] = state.velocities[i] + change_[i] + inverse_mass_blocks_[i] * residual_[i];
-  }
+  });
   hold_rows(h, rows, start);
-  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+  take_change(state);
 }
 
 void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, WarmStart start) {
   const VolumeRow* const volume = volume_row_ ? &*volume_row_ : nullptr;
-  double volume_velocity = 0;
-  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
-    volume_velocity += volume->at.gradient[i].dot(trial_[i]);
-  }
+  const std::size_t moved = volume != nullptr ? volume_answers_.size() : 0;
+  const double volume_velocity =
+      sum_of(moved, [&](std::size_t i) { return volume->at.gradient[i].dot(trial_[i]); });
   const double sigma =
       solve_contacts(inverse_mass_blocks_, volume, volume_velocity, h, rows, trial_, start)
           .volume_impulse;
   volume_impulse_ += sigma;
-  for (std::size_t i = 0; volume != nullptr && i < volume_answers_.size(); ++i) {
-    trial_[i] -= sigma * volume_answers_[i];
-  }
+  for_nodes(moved, [&](std::size_t i) { trial_[i] -= sigma * volume_answers_[i]; });
+}
+
+void BackwardEuler::take_change(const OrganState& state) {
+  for_nodes(trial_.size(), [&](std::size_t i) { change_[i] = trial_[i] - state.velocities[i]; });
 }
 
 void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
   auto& nodes = springs_.nodes();
-  for (std::size_t i = 0; i < change_.size(); ++i) nodes[i].vector = wide(change_[i]);
+  for_nodes(change_.size(), [&](std::size_t i) { nodes[i].vector = wide(change_[i]); });
   springs_.apply(product_);
-  for (std::size_t i = 0; i < change_.size(); ++i) {
+  for_nodes(change_.size(), [&](std::size_t i) {
     residual_[i] = forces_[i] - product_[i].head<3>().cast<double>();
-  }
+  });
   take_impulses_from(rows);
   if (!volume_row_) return;
   const auto& gradient = volume_row_->at.gradient;
-  for (std::size_t i = 0; i < gradient.size(); ++i) residual_[i] -= volume_impulse_ * gradient[i];
+  for_nodes(gradient.size(), [&](std::size_t i) { residual_[i] -= volume_impulse_ * gradient[i]; });
 }
 
 void BackwardEuler::update_local_residual(std::span<const ContactRow> rows) {
   auto& nodes = springs_.nodes();
-  for (std::size_t i = 0; i < change_.size(); ++i) nodes[i].vector = wide(change_[i]);
+  for_nodes(change_.size(), [&](std::size_t i) { nodes[i].vector = wide(change_[i]); });
   springs_.apply(contacts_.slices(), product_);
   for (const std::uint32_t i : contacts_.nodes()) {
     residual_[i] = forces_[i] - product_[i].head<3>().cast<double>();
@@ -233,23 +233,23 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows, const OrganState& 
   using Gradient = std::span<const Vec3>;
   projection_.prepare(inverse_mass_blocks_,
                       volume_row_ ? Gradient(volume_row_->at.gradient) : Gradient(), rows);
-  for (std::size_t i = 0; i < residual_.size(); ++i) {
+  for_nodes(residual_.size(), [&](std::size_t i) {
     inner_residual_[i] = wide(residual_[i]);
     inner_change_[i].setZero();
-  }
+  });
   // Until nothing worth the name is left to gain.
   ProjectedSystem<SpringHessianProduct> system{projection_,     springs_,   inner_change_,
                                                inner_residual_, projected_, product_};
   const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
   iterations_used_ = conjugate_gradients(system, max_iterations_, negligible).iterations;
   projection_.take_impulses(rows, volume_impulse_, inner_residual_);
-  for (std::size_t i = 0; i < residual_.size(); ++i) {
+  for_nodes(residual_.size(), [&](std::size_t i) {
     change_[i] += inner_change_[i].head<3>().cast<double>();
     trial_[i] = state.velocities[i] + change_[i];
     residual_[i] = inner_residual_[i].head<3>().cast<double>();
-  }
+  });
   friction_.apply(inverse_mass_blocks_, trial_, rows);
-  for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+  take_change(state);
 }
 
 void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state) {
@@ -264,7 +264,7 @@ void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const O
     }
     friction_.apply(inverse_mass_blocks_, trial_, rows);
     hold_rows(h, rows, WarmStart::kFrictionKept);
-    for (std::size_t i = 0; i < trial_.size(); ++i) change_[i] = trial_[i] - state.velocities[i];
+    take_change(state);
   }
 }
 
@@ -284,17 +284,16 @@ void BackwardEuler::keep_momentum(double h, std::span<const ContactRow> rows,
                                    mass_factor * change_[i]);
   }
   const Vec3 shift = missing / (mass_factor * total_mass_);
-  for (Vec3& change : change_) change += shift;
+  for_nodes(change_.size(), [&](std::size_t i) { change_[i] += shift; });
 }
 
 void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganState& state) {
-  evaluate_volume(model_, state.positions, free_.volume);
+  kernel_.evaluate_volume(state.positions, free_);
   if (!linearise_volume(h, state.target_volume, state.velocities)) return;
   trial_ = state.velocities;
   hold_rows(h, rows, WarmStart::kFrictionKept);
-  for (std::size_t i = 0; i < trial_.size(); ++i) {
-    state.positions[i] += h * (trial_[i] - state.velocities[i]);
-  }
+  for_nodes(trial_.size(),
+            [&](std::size_t i) { state.positions[i] += h * (trial_[i] - state.velocities[i]); });
   state.velocities = trial_;
 }
 

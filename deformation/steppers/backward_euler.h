@@ -38,6 +38,7 @@
 #include "deformation/springs/spring_hessian_product.h"
 #include "deformation/steppers/contact_relaxation.h"
 #include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/ranges.h"
 
 namespace palpate::deformation {
 
@@ -54,8 +55,9 @@ class BackwardEuler : public OrganDynamics {
 
   /// @param model       of springs, outlives this
   /// @param iterations  of conjugate gradients per step, at most
+  /// @param runner      outlives this; none: the calling thread alone. The bits are the same
   explicit BackwardEuler(const OrganModel& model, const KeptVolume& volume = {},
-                         int iterations = kIterations);
+                         int iterations = kIterations, ChunkRunner* runner = nullptr);
 
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
@@ -67,6 +69,24 @@ class BackwardEuler : public OrganDynamics {
   int iterations_used() const { return iterations_used_; }
 
  private:
+  /// a += scale · b
+  void add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) const;
+  /// body(i) for all nodes.
+  template <class Body>
+  void for_nodes(std::size_t count, const Body& body) const {
+    ranges_.each(count, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) body(i);
+    });
+  }
+  /// Σ body(i) over the nodes.
+  template <class Body>
+  double sum_of(std::size_t count, const Body& body) {
+    return ranges_.sums(count, [&](std::size_t first, std::size_t last) {
+      double sum = 0;
+      for (std::size_t i = first; i < last; ++i) sum += body(i);
+      return Ranges::Sums{sum, 0};
+    })[0];
+  }
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
   void push_with(double volume_impulse, double h, std::span<ContactRow> rows,
                  const OrganState& state);
@@ -82,6 +102,7 @@ class BackwardEuler : public OrganDynamics {
                       WarmStart start);
   /// Turns the unconstrained velocities in trial_ into v⁺, and adds σ to the volume's impulse.
   void hold_rows(double h, std::span<ContactRow> rows, WarmStart start);
+  void take_change(const OrganState& state);
   /// r = h F − A Δv − Bᵀ (impulses)
   void update_residual(std::span<const ContactRow> rows);
   /// The same of the nodes of contacts_ alone.
@@ -96,6 +117,7 @@ class BackwardEuler : public OrganDynamics {
   KeptVolume volume_;
   int max_iterations_, iterations_used_ = 0;
   double total_mass_ = 0;
+  Ranges ranges_;
   SpringHessianProduct springs_;
   ConstraintProjection projection_;
   ContactRelaxation contacts_;

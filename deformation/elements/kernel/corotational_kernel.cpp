@@ -17,11 +17,11 @@ void CorotationalKernel::linearise(const std::vector<Vec3>& positions, double sc
 }
 
 double CorotationalKernel::energy(const std::vector<Vec3>& positions) {
-  double sum = 0;
-  for (std::size_t e = 0; e < mesh().size(); ++e) {
-    sum += mesh().volumes[e] * law_.energy_density(mesh().deformation_gradient(e, positions));
-  }
-  return sum;
+  const kernel::CorotationalTerms terms{law_.shear_modulus, law_.lambda, 0};
+  return sum_over_parts([&](const kernel::ElementPart& part) {
+    load_positions(part, positions);
+    return functions().corotational_energy(part, parts().tetrahedra(), arrays(), terms);
+  });
 }
 
 }  // namespace palpate::deformation

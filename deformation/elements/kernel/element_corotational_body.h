@@ -192,6 +192,32 @@ struct CorotationalAssembly : PressureAssembly<Floats, Doubles> {
     }
   }
 
+  /// V (μ ‖F − R‖² + λ/2 (R:F − 3)²)
+  static double energy(const ElementPart& part, const Tetrahedra& t, const ElementArrays& a,
+                       const CorotationalTerms& terms) {
+    double all = 0;
+    for (std::size_t n = part.first_batch; n < part.first_batch + part.batch_count; ++n) {
+      Lanes<double> energies{};
+      for (std::size_t lane = 0; lane < kLanes; lane += Doubles::kWidth) {
+        Wide edges[3], g[3];
+        WidePack unused;
+        Base::load_edges(t, a, n, lane, edges, unused);
+        Base::load_gradients(t.gradients + n * 9 * kLanes, lane, g);
+        const Matrix3<Doubles> F = Base::deformation_gradient(edges, g);
+        const Matrix3<Doubles> R = NearestRotation<Doubles>::of(F);
+        const Wide x = F.x - R.x, y = F.y - R.y, z = F.z - R.z;
+        const WidePack turned = dot(x, x) + dot(y, y) + dot(z, z);
+        const WidePack trace = dot(R.x, F.x) + dot(R.y, F.y) + dot(R.z, F.z);
+        const WidePack stretch = trace - Doubles::broadcast(3);
+        const WidePack density = Doubles::broadcast(terms.shear_modulus) * turned +
+                                 Doubles::broadcast(terms.lambda / 2) * (stretch * stretch);
+        Doubles::store(energies.of + lane, Doubles::load(t.volumes + n * kLanes + lane) * density);
+      }
+      all += Base::total(energies, Base::count_in(part, n));
+    }
+    return all;
+  }
+
   static void assemble(const ElementPart& part, const Tetrahedra& t, const ElementArrays& a,
                        const CorotationalTerms& terms) {
     Base::template clear<false>(part, a);
@@ -214,6 +240,9 @@ inline constexpr ElementFunctions kElementFunctions{
     &PressureAssembly<Floats, Doubles>::take_volumes,
     &PressureAssembly<Floats, Doubles>::assemble,
     &CorotationalAssembly<Floats, Doubles>::assemble,
+    &ElementProduct<Floats>::finish_volumes,
+    &PressureAssembly<Floats, Doubles>::energy,
+    &CorotationalAssembly<Floats, Doubles>::energy,
     &ElementProduct<Floats>::template multiply<true>,
     &ElementProduct<Floats>::template multiply<false>,
     &ElementProduct<Floats>::push,

@@ -95,7 +95,9 @@ struct ElementArrays {
   float* volume_gradients = nullptr;  ///< (group × 16)
   /// Rows of the nodes' blocks, in lane 3 ∂v_i/∂x_i: of this part's tetrahedra.  (slot × 12)
   float* own_diagonals = nullptr;
-  float* diagonals = nullptr;       ///< of all; 0 where another part owns the node  (slot × 12)
+  float* diagonals = nullptr;  ///< of all; 0 where another part owns the node  (slot × 12)
+  /// The same with the volumes' part; to be summed over a node's slots.  (slot × 12)
+  float* whole_diagonals = nullptr;
   float* open = nullptr;            ///< what open pairs' gradients sum up to  (open pair × 4)
   const float* vectors = nullptr;   ///< p of the mesh's nodes  (node × 4)
   float* products = nullptr;        ///< A p, 0 in lane 3  (node × 4)
@@ -127,6 +129,14 @@ struct ElementFunctions {
                             const PressureTerms&);
   /// The same without volume gradients.
   void (*assemble_corotational)(const ElementPart&, const Tetrahedra&, const ElementArrays&,
+                                const CorotationalTerms&);
+  /// After blocks, gradients and diagonals are those of all parts: what open pairs keep, and
+  /// whole diagonals.
+  void (*finish_volumes)(const ElementPart&, const ElementArrays&);
+  /// Σ V ψ [J] of the positions, of tetrahedra whose volumes were taken.
+  double (*pressure_energy)(const ElementPart&, const Tetrahedra&, const ElementArrays&,
+                            const PressureTerms&);
+  double (*corotational_energy)(const ElementPart&, const Tetrahedra&, const ElementArrays&,
                                 const CorotationalTerms&);
   /// Brings p, and leaves product and rates.
   void (*multiply)(const ElementPart&, const ElementArrays&);

@@ -190,6 +190,39 @@ struct PressureAssembly : ElementAssembly<Floats, Doubles> {
     m.z.y = m.z.y + e.x;
   }
 
+  /// Numbers of a batch's tetrahedra, in their order.
+  static double total(const Lanes<double>& numbers, std::size_t count) {
+    double sum = 0;
+    for (std::size_t lane = 0; lane < count; ++lane) sum += numbers.of[lane];
+    return sum;
+  }
+
+  /// V (μ/2 (tr FᵀF − 3) − μ (J − 1) + α/2 (J − 1)²)
+  static double energy(const ElementPart& part, const Tetrahedra& t, const ElementArrays& a,
+                       const PressureTerms& terms) {
+    const auto number = [](double x) { return Doubles::broadcast(x); };
+    double all = 0;
+    for (std::size_t n = part.first_batch; n < part.first_batch + part.batch_count; ++n) {
+      Lanes<double> energies{};
+      for (std::size_t lane = 0; lane < kLanes; lane += Doubles::kWidth) {
+        Wide edges[3], g[3];
+        WidePack unused;
+        load_edges(t, a, n, lane, edges, unused);
+        Base::load_gradients(t.gradients + n * 9 * kLanes, lane, g);
+        const Matrix3<Doubles> F = Base::deformation_gradient(edges, g);
+        const WidePack squared = dot(F.x, F.x) + dot(F.y, F.y) + dot(F.z, F.z);
+        const WidePack rest = Doubles::load(t.volumes + n * kLanes + lane);
+        const WidePack change = Doubles::load(a.volumes + n * kLanes + lane) / rest - number(1);
+        const WidePack stretched =
+            number(terms.shear_modulus) * (number(0.5) * (squared - number(3)) - change);
+        const WidePack squeezed = number(terms.volume_modulus / 2) * (change * change);
+        Doubles::store(energies.of + lane, rest * (stretched + squeezed));
+      }
+      all += total(energies, Base::count_in(part, n));
+    }
+    return all;
+  }
+
   static void assemble(const ElementPart& part, const Tetrahedra& t, const ElementArrays& a,
                        const PressureTerms& terms) {
     Base::template clear<true>(part, a);

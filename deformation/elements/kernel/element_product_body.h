@@ -126,6 +126,64 @@ struct ElementProduct {
     }
   }
 
+  /// What assembly leaves in lane 3.
+  static Quad column_gradient(const float* block) {
+    return Quad{block[3], block[kLanes + 3], block[2 * kLanes + 3], 0};
+  }
+  static Quad fourth(const Quad& numbers, float last) {
+    return Quad{numbers[0], numbers[1], numbers[2], last};
+  }
+  /// rows += w g gᵀ
+  static void add_square(float w, const Quad& g, float* rows) {
+    const Quad weighted = repeated(w) * g;
+    add_quad(rows, repeated(g[0]) * weighted);
+    add_quad(rows + 4, repeated(g[1]) * weighted);
+    add_quad(rows + 8, repeated(g[2]) * weighted);
+  }
+
+  /// Where rings close, lane 3 becomes minus the volume gradient to the bit; elsewhere what is left
+  /// of their sum is kept. Then the nodes' blocks with Σ_a w_a (∂v_a/∂x_b)(∂v_a/∂x_b)ᵀ of the
+  /// part's pairs.
+  static void finish_volumes(const ElementPart& the_part, const ElementArrays& arrays) {
+    const ElementPart part = the_part;
+    const ElementArrays a = arrays;
+    for (std::size_t k = 0; k < part.open_count; ++k) {
+      const std::size_t pair = part.open_pairs[k].pair;
+      store_quad(a.open + 4 * (part.first_open + k), column_gradient(a.blocks + block_place(pair)) +
+                                                         load_quad(a.volume_gradients + 4 * pair));
+    }
+    for (std::size_t slot = part.first_slot; slot < part.first_slot + part.slot_count; ++slot) {
+      const float* const d = a.diagonals + 12 * slot;
+      float* const whole = a.whole_diagonals + 12 * slot;
+      for (std::size_t row = 0; row < 12; row += 4) store_quad(whole + row, load_quad(d + row));
+      add_square(a.weights[slot], Quad{d[3], d[7], d[11], 0}, whole);
+    }
+    for (std::size_t g = 0; g < part.group_count; ++g) {
+      const float row_weight = a.weights[part.rows[g] / 4];
+      for (std::size_t k = 0; k < kGroupPairs; ++k) {
+        const std::size_t pair = kGroupPairs * (part.first_group + g) + k;
+        const std::uint32_t column = part.columns[kGroupPairs * g + k];
+        const Quad gradient = load_quad(a.volume_gradients + 4 * pair);
+        float* block = a.blocks + block_place(pair);
+        for (int row = 0; row < 3; ++row, block += kLanes) {
+          store_quad(block, fourth(load_quad(block), -gradient[row]));
+        }
+        add_square(row_weight, gradient, a.whole_diagonals + 3 * column);
+        add_square(a.weights[column / 4], gradient, a.whole_diagonals + 3 * part.rows[g]);
+      }
+    }
+    for (std::size_t k = 0; k < part.open_count; ++k) {
+      const OpenPair& open = part.open_pairs[k];
+      float* const block = a.blocks + block_place(open.pair);
+      const Quad minus = column_gradient(block);
+      const Quad gradient = minus + load_quad(a.open + 4 * (part.first_open + k));
+      for (std::size_t row = 0; row < 3; ++row) block[kLanes * row + 3] = gradient[row];
+      float* const whole = a.whole_diagonals + 3 * open.row;
+      add_square(-a.weights[open.column / 4], minus, whole);
+      add_square(a.weights[open.column / 4], gradient, whole);
+    }
+  }
+
   static void collect(const ElementPart& the_part, const ElementArrays& arrays) {
     const ElementPart part = the_part;
     const ElementArrays a = arrays;

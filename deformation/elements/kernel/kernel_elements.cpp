@@ -1,6 +1,7 @@
 #include "deformation/elements/kernel/kernel_elements.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "modules/core/error.h"
 
@@ -32,11 +33,6 @@ void add_block_rows(const float* from, float* to) {
     quad(to + kTetrahedronLanes * row) +=
         Eigen::Map<const Eigen::Vector4f>(from + kTetrahedronLanes * row);
   }
-}
-
-/// rows += w g gᵀ, lane 3 of g being 0.
-void add_square(float w, const Vec4f& g, float* rows) {
-  for (int k = 0; k < 3; ++k) quad(rows + 4 * k) += w * g[k] * g;
 }
 
 }  // namespace
@@ -74,12 +70,14 @@ KernelElements::KernelElements(LinearTetrahedra tetrahedra, bool with_volumes, C
   arrays_.volume_gradients = volume_gradients_.data();
   arrays_.own_diagonals = own_diagonals_.data();
   arrays_.diagonals = part_diagonals_.data();
+  arrays_.whole_diagonals = whole_diagonals_.data();
   arrays_.open = open_.data();
   arrays_.weights = slot_weights_.data();
   arrays_.p = p_.data();
   arrays_.product = product_.data();
   arrays_.rates = rates_.data();
   arrays_.weighted_rates = weighted_rates_.data();
+  part_sums_.assign(parts_.parts().size(), 0);
   forces_.assign(mesh_.node_count, Vec3::Zero());
   diagonal_.assign(mesh_.node_count, Mat3::Zero());
 }
@@ -95,6 +93,10 @@ void KernelElements::load_positions(const ElementPart& part, const std::vector<V
   }
 }
 
+double KernelElements::total_of_parts() const {
+  return std::accumulate(part_sums_.begin(), part_sums_.end(), 0.0);
+}
+
 double KernelElements::sum_of(const double* numbers, std::size_t node) const {
   double sum = 0;
   for (const std::uint32_t slot : parts_.slots(node)) sum += numbers[slot];
@@ -104,7 +106,7 @@ double KernelElements::sum_of(const double* numbers, std::size_t node) const {
 void KernelElements::finish(std::span<const double> shift) {
   for_parts([&](const ElementPart& part) { merge(part, shift); });
   if (with_volumes_) {
-    for_parts([&](const ElementPart& part) { add_volume_diagonals(part); });
+    for_parts([&](const ElementPart& part) { functions_.finish_volumes(part, arrays_); });
   }
   for_parts([&](const ElementPart& part) { collect(part); });
 }
@@ -134,53 +136,6 @@ void KernelElements::merge(const ElementPart& part, std::span<const double> shif
     rows[4] = rows[1];  // symmetric to the last bit
     rows[8] = rows[2];
     rows[9] = rows[6];
-  }
-  if (with_volumes_) split_gradients(part);
-}
-
-/// Where rings close, lane 3 becomes minus the volume gradient to the bit; elsewhere what is left
-/// of their sum is kept.
-void KernelElements::split_gradients(const ElementPart& part) {
-  for (std::size_t k = 0; k < part.open_count; ++k) {
-    const std::uint32_t pair = part.open_pairs[k].pair;
-    quad(&open_[4 * (part.first_open + k)]) =
-        column_gradient(pair) + quad(&volume_gradients_[4 * pair]);
-  }
-  const std::size_t first = kGroupPairs * part.first_group;
-  for (std::size_t pair = first; pair < first + kGroupPairs * part.group_count; ++pair) {
-    float* const block = &blocks_[block_place(pair)];
-    for (std::size_t row = 0; row < 3; ++row) {
-      block[kTetrahedronLanes * row + 3] = -volume_gradients_[4 * pair + row];
-    }
-  }
-  for (std::size_t k = 0; k < part.open_count; ++k) {
-    float* const block = &blocks_[block_place(part.open_pairs[k].pair)];
-    for (std::size_t row = 0; row < 3; ++row) {
-      block[kTetrahedronLanes * row + 3] += open_[4 * (part.first_open + k) + row];
-    }
-  }
-}
-
-/// Σ_a w_a (∂v_a/∂x_b)(∂v_a/∂x_b)ᵀ of all pairs of this part.
-void KernelElements::add_volume_diagonals(const ElementPart& part) {
-  const std::size_t end = part.first_slot + part.slot_count;
-  for (std::size_t slot = part.first_slot; slot < end; ++slot) {
-    float* const rows = &whole_diagonals_[kRowFloats * slot];
-    const float* const own = &part_diagonals_[kRowFloats * slot];
-    std::copy_n(own, kRowFloats, rows);
-    add_square(slot_weights_[slot], Vec4f(own[3], own[7], own[11], 0), rows);
-  }
-  for (std::size_t g = 0; g < part.group_count; ++g) {
-    const std::size_t row = part.rows[g] / 4;
-    const float row_weight = slot_weights_[row];
-    for (std::size_t k = 0; k < kGroupPairs; ++k) {
-      const std::size_t column = part.columns[kGroupPairs * g + k] / 4;
-      if (column == end) continue;
-      const std::size_t pair = kGroupPairs * (part.first_group + g) + k;
-      add_square(row_weight, quad(&volume_gradients_[4 * pair]),
-                 &whole_diagonals_[kRowFloats * column]);
-      add_square(slot_weights_[column], column_gradient(pair), &whole_diagonals_[kRowFloats * row]);
-    }
   }
 }
 

@@ -42,6 +42,12 @@ class KernelElements : public ElasticForceElements {
     run([&](std::size_t index) { body(parts_.parts()[index]); });
   }
   void load_positions(const kernel::ElementPart& part, const std::vector<Vec3>& positions);
+  /// Adds up what body(part) returns.
+  template <class Body>
+  double sum_over_parts(const Body& body) {
+    run([&](std::size_t index) { part_sums_[index] = body(parts_.parts()[index]); });
+    return total_of_parts();
+  }
   /// Σ over a node's slots.
   double sum_of(const double* numbers, std::size_t node) const;
 
@@ -50,9 +56,8 @@ class KernelElements : public ElasticForceElements {
 
  private:
   void run(ChunkBody body);
+  double total_of_parts() const;
   void merge(const kernel::ElementPart& part, std::span<const double> shift);
-  void split_gradients(const kernel::ElementPart& part);
-  void add_volume_diagonals(const kernel::ElementPart& part);
   void collect(const kernel::ElementPart& part);
   Vec4f column_gradient(std::size_t pair) const;
   /// Calls body(row's slot, column's slot, pair) for all pairs.
@@ -79,6 +84,7 @@ class KernelElements : public ElasticForceElements {
       product_, rates_, weighted_rates_, slot_weights_;
   AlignedVector<float> whole_diagonals_;  ///< with the volumes' part; to be summed  (slot × 12)
   kernel::ElementArrays arrays_;
+  std::vector<double> part_sums_;
   std::vector<Vec3> forces_;
   std::vector<Mat3> diagonal_;
 };

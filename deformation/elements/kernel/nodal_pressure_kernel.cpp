@@ -49,11 +49,10 @@ void NodalPressureKernel::linearise(const std::vector<Vec3>& positions, double s
 
 double NodalPressureKernel::energy(const std::vector<Vec3>& positions) {
   take_volumes(positions);
-  double sum = 0;
-  for (std::size_t e = 0; e < mesh().size(); ++e) {
-    const Mat3 F = mesh().deformation_gradient(e, positions);
-    sum += mesh().volumes[e] * law_.energy_density(F.squaredNorm(), F.determinant());
-  }
+  const kernel::PressureTerms terms{law_.shear_modulus, law_.volume_modulus, 0};
+  double sum = sum_over_parts([&](const ElementPart& part) {
+    return functions().pressure_energy(part, parts().tetrahedra(), arrays(), terms);
+  });
   for (std::size_t i = 0; i < rest_volumes_.size() && nodal_modulus_ > 0; ++i) {
     const double p = pressure(i);
     sum += rest_volumes_[i] / 4 * p * p / (2 * nodal_modulus_);

@@ -5,6 +5,8 @@
 
 #include "deformation/steppers/xpbd_springs.h"
 #include "tests/deformation/organs.h"
+#include "tests/deformation/springs/chunk_threads.h"
+#include "tests/deformation/steppers/tetrahedral_solids.h"
 
 namespace palpate::deformation {
 namespace {
@@ -64,6 +66,66 @@ TEST_CASE("organ dynamics: the scene's number of iterations counts, 0 is the mod
     organ.iterations = iterations;
     XpbdSprings wanted(model, iterations == 0 ? 1 : 3);
     CHECK(after(*make_dynamics(organ, model, kPeriod)) == after(wanted));
+  }
+}
+
+/// Where an organ that swings and is pressed at one triangle is after some steps, and the impulse
+/// in all.
+std::pair<OrganState, double> pressed_by_hand(const scene::Organ& organ, const OrganModel& model,
+                                              ChunkRunner* runner) {
+  const auto dynamics = make_dynamics(organ, model, kPeriod, runner);
+  OrganState state = rest_state(model);
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    if (model.inverse_masses[i] == 0) continue;
+    state.velocities[i] = Vec3(state.positions[i].y(), 0.2 * state.positions[i].x(), 0);
+  }
+  ContactRow row;
+  row.nodes = model.triangles[5];
+  row.weights = Vec3(0.5, 0.3, 0.2);
+  const auto& x = state.positions;
+  row.normal = (x[row.nodes[1]] - x[row.nodes[0]]).cross(x[row.nodes[2]] - x[row.nodes[0]]);
+  row.normal.normalize();
+  row.friction = 0.3;
+  row.gap = -2e-3;
+  const double h = std::min(kPeriod, dynamics->largest_step());
+  double impulse = 0;
+  for (int k = 0; k < 3; ++k) {
+    dynamics->step(h, std::span(&row, 1), state);
+    impulse += row.normal_impulse;
+  }
+  return {state, impulse};
+}
+
+TEST_CASE("organ dynamics: the same bits on any number of threads, of springs and of solids") {
+  // Oracle: itself on one thread. Meshes of several chunks, ranges and parts.
+  auto organ = testing::ball_organ();
+  OrganModel model;
+  SECTION("symplectic Euler") {
+    organ.integrator = scene::Integrator::kSymplecticEuler;
+    model = testing::ball_model(4, organ);
+  }
+  SECTION("backward Euler") {
+    organ.integrator = scene::Integrator::kBackwardEuler;
+    organ.volume_corrections = 1;
+    model = testing::ball_model(4, organ);
+  }
+  SECTION("corotational") {
+    organ = testing::solid_organ("corotational", 0.4);
+    model = testing::cube_model(organ, Vec3::Zero(), 9);
+  }
+  SECTION("nodal pressure") {
+    organ = testing::solid_organ("nodal_pressure", 0.49);
+    model = testing::cube_model(organ, Vec3::Zero(), 9);
+  }
+  const auto [alone, impulse] = pressed_by_hand(organ, model, nullptr);
+  CHECK(impulse > 0);
+  for (const std::size_t count : {2u, 3u}) {
+    testing::ChunkThreads threads(count);
+    const auto [shared, same_impulse] = pressed_by_hand(organ, model, &threads);
+    CHECK(shared.positions == alone.positions);
+    CHECK(shared.velocities == alone.velocities);
+    CHECK(shared.pressure == alone.pressure);
+    CHECK(same_impulse == impulse);
   }
 }
 
