@@ -27,7 +27,7 @@ namespace palpate::deformation::kernel {
 /// Tetrahedra side by side, and floats of a group's pack.
 inline constexpr std::size_t kTetrahedronLanes = 16;
 inline constexpr std::size_t kBlockFloats = 48;  ///< of a group: its blocks' rows
-inline constexpr std::size_t kGroupPairs = 4;
+inline constexpr std::uint32_t kGroupPairs = 4;
 
 /// The pair of a group `pair` / 4 in blocks: its row 0; rows 1 and 2 follow 16 and 32 further on.
 inline constexpr std::size_t block_place(std::size_t pair) {

@@ -9,8 +9,8 @@ namespace {
 using kernel::kGroupPairs;
 using kernel::kTetrahedronLanes;
 
-/// Tetrahedra that are not halved further: those of a batch.
-constexpr std::size_t kLeaf = kTetrahedronLanes;
+/// Tetrahedra that are not halved further.
+constexpr std::size_t kLeaf = 4 * kTetrahedronLanes;
 
 /// Corners a, b of an edge and c, d opposite, turning with it.
 constexpr std::array<std::array<std::size_t, 4>, 6> kRings{
@@ -41,8 +41,11 @@ ElementParts::ElementParts(const LinearTetrahedra& mesh) {
 }
 
 void ElementPartsBuilder::build() {
-  order_.resize(mesh_.size());
-  std::iota(order_.begin(), order_.end(), 0u);
+  order_.reserve(mesh_.size());
+  for (std::uint32_t e = 0; e < mesh_.size(); ++e) order_.push_back({mesh_.centres[e], e});
+  for (std::uint32_t node = 0; node < mesh_.node_count; ++node) {
+    scrambled_.push_back(scrambled(node));
+  }
   halve(0, order_.size());
   numbers_.assign(mesh_.node_count, kNone);
   for (Part& part : parts_) {
@@ -78,8 +81,7 @@ void ElementPartsBuilder::halve(std::size_t first, std::size_t last) {
     const auto [from, to] = left.back();
     left.pop_back();
     if (to - from <= kLeaf) {
-      std::sort(order_.begin() + static_cast<std::ptrdiff_t>(from),
-                order_.begin() + static_cast<std::ptrdiff_t>(to));
+      std::ranges::sort(std::span(order_).subspan(from, to - from), {}, &Placed::tetrahedron);
       continue;
     }
     const std::size_t middle = cut(from, to);
@@ -89,21 +91,21 @@ void ElementPartsBuilder::halve(std::size_t first, std::size_t last) {
 }
 
 std::size_t ElementPartsBuilder::cut(std::size_t first, std::size_t last) {
-  Vec3 low = mesh_.centres[order_[first]], high = low;
-  for (std::size_t k = first; k < last; ++k) {
-    low = low.cwiseMin(mesh_.centres[order_[k]]);
-    high = high.cwiseMax(mesh_.centres[order_[k]]);
+  const std::span<Placed> cut_up = std::span(order_).subspan(first, last - first);
+  Vec3 low = cut_up.front().centre, high = low;
+  for (const Placed& placed : cut_up) {
+    low = low.cwiseMin(placed.centre);
+    high = high.cwiseMax(placed.centre);
   }
   int axis = 0;
   (high - low).maxCoeff(&axis);
   const std::size_t middle = first + (last - first) / 2;
-  const auto begin = order_.begin();
-  std::nth_element(
-      begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(middle),
-      begin + static_cast<std::ptrdiff_t>(last), [&](std::uint32_t a, std::uint32_t b) {
-        const double at_a = mesh_.centres[a][axis], at_b = mesh_.centres[b][axis];
-        return at_a != at_b ? at_a < at_b : a < b;
-      });
+  std::ranges::nth_element(cut_up, cut_up.begin() + static_cast<std::ptrdiff_t>(middle - first),
+                           [axis](const Placed& a, const Placed& b) {
+                             return a.centre[axis] != b.centre[axis]
+                                        ? a.centre[axis] < b.centre[axis]
+                                        : a.tetrahedron < b.tetrahedron;
+                           });
   return middle;
 }
 
@@ -112,7 +114,7 @@ void ElementPartsBuilder::number_nodes(Part& part) {
   for (std::size_t k = part.first; k < part.last; ++k) {
     auto& corners = part.corners.emplace_back();
     for (std::size_t c = 0; c < 4; ++c) {
-      const std::uint32_t node = mesh_.corners[order_[k]][c];
+      const std::uint32_t node = mesh_.corners[order_[k].tetrahedron][c];
       if (numbers_[node] == kNone) {
         numbers_[node] = static_cast<std::uint32_t>(part.nodes.size());
         part.nodes.push_back(node);
@@ -126,13 +128,14 @@ void ElementPartsBuilder::find_edges(Part& part) {
   std::vector<std::uint32_t> heads(part.nodes.size(), kNone);
   part.edges.reserve(8 * part.nodes.size());
   part.edges_of.reserve(part.corners.size());
+  links_.clear();
   for (const auto& corners : part.corners) {
     auto& edges = part.edges_of.emplace_back();
     for (std::size_t e = 0; e < 6; ++e) {
       const auto [a, b, c, d] = kRings[e];
       edges[e] = edge_between(part, heads, corners[a], corners[b]);
-      const std::uint64_t from = scrambled(part.nodes[corners[c]]),
-                          to = scrambled(part.nodes[corners[d]]);
+      const std::uint64_t from = scrambled_[part.nodes[corners[c]]],
+                          to = scrambled_[part.nodes[corners[d]]];
       // Seen from its lower node in the mesh, so that parts add up.
       const bool ahead = part.nodes[corners[a]] < part.nodes[corners[b]];
       part.edges[edges[e]].ring += ahead ? to - from : from - to;
@@ -143,15 +146,14 @@ void ElementPartsBuilder::find_edges(Part& part) {
 std::uint32_t ElementPartsBuilder::edge_between(Part& part, std::vector<std::uint32_t>& heads,
                                                 std::uint32_t a, std::uint32_t b) {
   const auto [low, high] = std::minmax(a, b);
-  for (std::uint32_t e = heads[low]; e != kNone; e = part.edges[e].next) {
-    if (part.edges[e].high == high) return e;
+  for (std::uint32_t e = heads[low]; e != kNone; e = links_[e].next) {
+    if (links_[e].high == high) return e;
   }
-  Edge edge;
+  links_.push_back({high, heads[low]});
+  heads[low] = static_cast<std::uint32_t>(part.edges.size());
+  Edge& edge = part.edges.emplace_back();
   edge.low = low;
   edge.high = high;
-  edge.next = heads[low];
-  heads[low] = static_cast<std::uint32_t>(part.edges.size());
-  part.edges.push_back(edge);
   return heads[low];
 }
 
@@ -341,7 +343,8 @@ void ElementPartsBuilder::take_tetrahedra(std::size_t index) {
   out_.flips_.resize(6 * out_.rest_volumes_.size());
   out_.gradients_.resize(9 * out_.rest_volumes_.size());
   for (std::size_t k = 0; k < made.batch_count * kTetrahedronLanes; ++k) {
-    const std::size_t own = std::min(k, part.corners.size() - 1), e = order_[part.first + own];
+    const std::size_t own = std::min(k, part.corners.size() - 1),
+                      e = order_[part.first + own].tetrahedron;
     const std::size_t batch = made.first_batch + k / kTetrahedronLanes,
                       lane = k % kTetrahedronLanes;
     const auto place = [&](std::size_t rows, std::size_t row) {

@@ -22,12 +22,19 @@ class ElementPartsBuilder {
   /// Two neighbours within a part, by its own numbers of nodes.
   struct Edge {
     std::uint32_t low = 0, high = 0;
-    std::uint32_t next = kNone;  ///< of those with the same `low`
-    std::uint64_t ring = 0;      ///< 0 if the tetrahedra around it close, but by rarest chance
+    std::uint64_t ring = 0;  ///< 0 if the tetrahedra around it close, but by rarest chance
     /// Of an edge that another part owns: that part and its edge there.
     std::uint32_t owning_part = kNone, owning_edge = kNone;
     bool row_is_high = false;
     std::uint32_t pair = kNone;  ///< place, over all parts
+  };
+  struct Placed {
+    Vec3 centre = Vec3::Zero();
+    std::uint32_t tetrahedron = 0;
+  };
+  /// An edge's higher node, and the edge found before with the same lower one.
+  struct Link {
+    std::uint32_t high = 0, next = kNone;
   };
   struct Part {
     std::size_t first = 0, last = 0;   ///< of order_
@@ -66,7 +73,9 @@ class ElementPartsBuilder {
 
   const LinearTetrahedra& mesh_;
   ElementParts& out_;
-  std::vector<std::uint32_t> order_;  ///< of the tetrahedra
+  std::vector<Placed> order_;             ///< of the tetrahedra
+  std::vector<std::uint64_t> scrambled_;  ///< numbers of the mesh's nodes
+  std::vector<Link> links_;               ///< of a part's edges, while they are found
   std::vector<Part> parts_;
   std::vector<std::uint32_t> numbers_;  ///< of the mesh's nodes within a part, else kNone
   std::vector<bool> is_open_;           ///< nodes with open pairs

@@ -182,51 +182,65 @@ void KernelElements::add_block(const Patch& patch, float share, Eigen::MatrixXf&
           share * Eigen::Map<const Eigen::RowVector3f>(rows + 4 * k);
     }
   }
-  for_pairs([&](std::size_t row, std::size_t column, std::size_t pair) {
-    const int a = patch.place(parts_.node(row)), b = patch.place(parts_.node(column));
-    if (a < 0 || b < 0) return;
-    const float* const rows = &blocks_[block_place(pair)];
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::RowVector3f values =
-          share * Eigen::Map<const Eigen::RowVector3f>(rows + kTetrahedronLanes * k);
-      if (b < a) {
-        sum.block<1, 3>(3 * a + k, 3 * b) += values;
-      } else {
-        sum.block<3, 1>(3 * b, 3 * a + k) += values.transpose();
-      }
-    }
+  std::vector<int> places(parts_.slot_count(), -1);  // of the slots
+  for (const std::uint32_t node : patch.nodes) {
+    for (const std::uint32_t slot : parts_.slots(node)) places[slot] = patch.place(node);
+  }
+  std::vector<Touching> touching;  // pairs of which one node at least is of the patch
+  for_pairs([&](std::uint32_t row, std::uint32_t column, std::uint32_t pair) {
+    const int a = places[row], b = places[column];
+    if (a < 0 && b < 0) return;
+    touching.push_back({parts_.node(row), parts_.node(column), pair, a, b});
+    if (a >= 0 && b >= 0) add_pair(pair, share, a, b, sum);
   });
-  if (with_volumes_) add_volume_block(patch, share, sum);
+  if (with_volumes_) add_volume_block(patch, touching, share, sum);
+}
+
+void KernelElements::add_pair(std::size_t pair, float share, int a, int b,
+                              Eigen::MatrixXf& sum) const {
+  const float* const rows = &blocks_[block_place(pair)];
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::RowVector3f values =
+        share * Eigen::Map<const Eigen::RowVector3f>(rows + kTetrahedronLanes * k);
+    if (b < a) {
+      sum.block<1, 3>(3 * a + k, 3 * b) += values;
+    } else {
+      sum.block<3, 1>(3 * b, 3 * a + k) += values.transpose();
+    }
+  }
 }
 
 /// Row by row of the volumes' matrix: a node and those of its neighbours that are of the patch.
-void KernelElements::add_volume_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const {
+void KernelElements::add_volume_block(const Patch& patch, std::span<const Touching> touching,
+                                      float share, Eigen::MatrixXf& sum) const {
+  constexpr std::uint32_t kNone = ~0u;
   struct Entry {
-    std::uint32_t node;
     int place;
+    std::uint32_t next;  ///< of the same row
     Eigen::Vector3f gradient;
   };
   std::vector<Entry> entries;
-  const auto note = [&](std::uint32_t node, std::uint32_t of, const Vec4f& gradient) {
-    const int place = patch.place(of);
-    if (place >= 0) entries.push_back({node, place, gradient.head<3>()});
+  std::vector<std::uint32_t> heads(mesh_.node_count, kNone);  // of the rows
+  const auto note = [&](std::uint32_t node, int place, const Vec4f& gradient) {
+    if (place < 0) return;
+    entries.push_back({place, heads[node], gradient.head<3>()});
+    heads[node] = static_cast<std::uint32_t>(entries.size() - 1);
   };
-  for (std::uint32_t node = 0; node < mesh_.node_count; ++node) {
+  for (const std::uint32_t node : patch.nodes) {
     const float* const own = &part_diagonals_[kRowFloats * parts_.slots(node)[0]];
-    note(node, node, Vec4f(own[3], own[7], own[11], 0));
+    note(node, patch.place(node), Vec4f(own[3], own[7], own[11], 0));
   }
-  for_pairs([&](std::size_t row, std::size_t column, std::size_t pair) {
-    const std::uint32_t i = parts_.node(row), j = parts_.node(column);
-    note(i, j, Eigen::Map<const Vec4f>(&volume_gradients_[4 * pair]));
-    note(j, i, column_gradient(pair));
-  });
-  std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.node, e.place); });
-  for (std::size_t first = 0, last = 0; first < entries.size(); first = last) {
-    while (last < entries.size() && entries[last].node == entries[first].node) ++last;
-    const float weight = share * slot_weights_[parts_.slots(entries[first].node)[0]];
-    for (std::size_t a = first; a < last; ++a) {
+  for (const Touching& t : touching) {
+    note(t.row, t.column_place, Eigen::Map<const Vec4f>(&volume_gradients_[4 * t.pair]));
+    note(t.column, t.row_place, column_gradient(t.pair));
+  }
+  for (std::uint32_t node = 0; node < mesh_.node_count; ++node) {
+    if (heads[node] == kNone) continue;
+    const float weight = share * slot_weights_[parts_.slots(node)[0]];
+    for (std::uint32_t a = heads[node]; a != kNone; a = entries[a].next) {
       const Eigen::Vector3f row = weight * entries[a].gradient;
-      for (std::size_t b = first; b <= a; ++b) {
+      for (std::uint32_t b = heads[node]; b != kNone; b = entries[b].next) {
+        if (entries[b].place > entries[a].place) continue;
         sum.block<3, 3>(3 * entries[a].place, 3 * entries[b].place) +=
             row * entries[b].gradient.transpose();
       }

@@ -64,15 +64,24 @@ class KernelElements : public ElasticForceElements {
   template <class Body>
   void for_pairs(const Body& body) const {
     for (const kernel::ElementPart& part : parts_.parts()) {
-      for (std::size_t k = 0; k < kernel::kGroupPairs * part.group_count; ++k) {
-        const std::size_t column = part.columns[k] / 4;
-        if (column == part.first_slot + part.slot_count) continue;
-        body(part.rows[k / kernel::kGroupPairs] / 4, column,
-             kernel::kGroupPairs * part.first_group + k);
+      const std::uint32_t nobody = part.first_slot + part.slot_count;
+      for (std::uint32_t g = 0; g < part.group_count; ++g) {
+        for (std::uint32_t k = 0; k < kernel::kGroupPairs; ++k) {
+          const std::uint32_t at = kernel::kGroupPairs * g + k, column = part.columns[at] / 4;
+          if (column == nobody) continue;
+          body(part.rows[g] / 4, column, kernel::kGroupPairs * part.first_group + at);
+        }
       }
     }
   }
-  void add_volume_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const;
+  /// A pair and where its nodes stand in a patch; −1: not among them.
+  struct Touching {
+    std::uint32_t row = 0, column = 0, pair = 0;
+    int row_place = 0, column_place = 0;
+  };
+  void add_pair(std::size_t pair, float share, int a, int b, Eigen::MatrixXf& sum) const;
+  void add_volume_block(const Patch& patch, std::span<const Touching> touching, float share,
+                        Eigen::MatrixXf& sum) const;
 
   LinearTetrahedra mesh_;
   bool with_volumes_;
