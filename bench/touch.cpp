@@ -1,6 +1,7 @@
 // Force under a small sphere at random places of a solid organ: what tetrahedra that are small
-// where it touches are worth, error against processor time. All meshes are halvings of one, so all
-// have the same surface. The truth is quadratic elements (P2/P1) at rest, on two of them.
+// where it touches are worth, linear and quadratic ones, error against processor time. All meshes
+// are halvings of one, so all have the same surface. The truth is quadratic elements (P2/P1) at
+// rest, on two of them.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include "modules/geometry/winding_number.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/models.h"
 #include "studies/chart/equilibria.h"
 #include "studies/report/measures.h"
 #include "studies/rigs/poked_organ.h"
@@ -39,15 +41,25 @@ struct Options {
 /// Edges of the touched part, as parts of the sphere's radius, and how they grow. No edge: as it
 /// is.
 struct Mesh {
-  const char* name;
   double edge_over_radius, growth;
-  double plateau_over_radius = 1;  ///< distance from the touched place up to which they do not grow
+  double plateau_over_radius;  ///< distance from the touched place up to which they do not grow
 };
-constexpr std::array kMeshes{Mesh{"as shipped", 0, 0},       Mesh{"R, 1", 1, 1},
-                             Mesh{"R/2, 0.7", 0.5, 0.7},     Mesh{"R/2, 0.5", 0.5, 0.5},
-                             Mesh{"R/3, 0.5", 1.0 / 3, 0.5}, Mesh{"R/3, 0.35", 1.0 / 3, 0.35}};
-constexpr Mesh kTruth{"P2/P1, R/2, 0.8", 0.5, 0.8, 0};
-constexpr Mesh kFinerTruth{"P2/P1, R/2.5, 0.65", 0.4, 0.65, 0};
+constexpr Mesh kTruth{0.5, 0.8, 0};
+constexpr Mesh kFinerTruth{0.4, 0.65, 0};
+
+struct Candidate {
+  const char* name;
+  const char* model;
+  Mesh mesh;
+};
+constexpr std::array kCandidates{
+    Candidate{"linear, as shipped", "nodal_pressure", {0, 0, 0}},
+    Candidate{"linear, R/2, 0.5", "nodal_pressure", {0.5, 0.5, 1}},
+    Candidate{"linear, R/3, 0.5", "nodal_pressure", {1.0 / 3, 0.5, 1}},
+    Candidate{"quadratic, as shipped", "quadratic_pressure", {0, 0, 0}},
+    Candidate{"quadratic, 1.4 R, 1", "quadratic_pressure", {1.4, 1, 0.5}},
+    Candidate{"quadratic, R, 1", "quadratic_pressure", {1, 1, 0.5}},
+    Candidate{"quadratic, 0.7 R, 1", "quadratic_pressure", {0.7, 1, 0.5}}};
 constexpr int kBarEvery = 5;  // sites, from which the finer truth is computed, too
 
 struct Site {
@@ -94,12 +106,14 @@ class Bench {
     return sites;
   }
 
-  Answer press(const Site& site, const Mesh& mesh, const std::function<void()>& keep_going) const {
-    const geometry::OrganShape shape = geometry::shape_of(halved(site, mesh));
+  Answer press(const Site& site, const Candidate& candidate,
+               const std::function<void()>& keep_going) const {
+    geometry::OrganShape shape = geometry::shape_of(halved(site, candidate.mesh));
+    if (scene::is_quadratic(candidate.model)) shape = geometry::with_edge_nodes(shape);
     scene::Scene scene;
     scene.organs.push_back(organ_);
     scene::Organ& organ = scene.organs[0];
-    organ.model = "nodal_pressure";
+    organ.model = candidate.model;
     organ.tissue = {};
     organ.tissue.youngs_modulus = kYoungsModulus;
     organ.tissue.density = kDensity;
@@ -182,13 +196,19 @@ class Bench {
   geometry::TetMesh mesh_;
 };
 
+/// The value that 95 of 100 do not exceed. @param values  not empty
+double not_exceeded_by_95(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[(95 * values.size() + 99) / 100 - 1];
+}
+
 int run(const Options& options) {
   const Bench bench(options);
   const auto keep_going = [] {};
   std::printf("%s, sphere of %g mm, errors of force at 3 / 6 / 9 mm\n", options.organ.c_str(),
               options.radius_mm);
   std::fflush(stdout);
-  std::array<std::vector<double>, kMeshes.size()> errors, costs, nodes;
+  std::array<std::vector<double>, kCandidates.size()> errors, costs, nodes;
   std::vector<double> bars;
   int number = 0;
   for (const Site& site : bench.random_sites(options.sites, options.seed)) {
@@ -209,9 +229,9 @@ int run(const Options& options) {
     }
     std::printf(", %zu nodes\n", truth->nodes);
     std::fflush(stdout);
-    for (std::size_t m = 0; m < kMeshes.size(); ++m) {
-      const Answer found = bench.press(site, kMeshes[m], keep_going);
-      std::printf("  %-11s %5zu nodes %6zu tetrahedra %.2f s/s:", kMeshes[m].name, found.nodes,
+    for (std::size_t m = 0; m < kCandidates.size(); ++m) {
+      const Answer found = bench.press(site, kCandidates[m], keep_going);
+      std::printf("  %-21s %5zu nodes %6zu tetrahedra %.2f s/s:", kCandidates[m].name, found.nodes,
                   found.tetrahedra, found.cost);
       for (std::size_t i = 0; i < kDepths.size(); ++i) {
         const double error = found.force[i] / truth->force[i] - 1;
@@ -227,10 +247,12 @@ int run(const Options& options) {
   if (errors[0].empty() || bars.empty()) return kExitFailed;
   std::printf("\ntruth: a finer mesh differs by %.1f %% in the median, %.1f %% at most\n",
               100 * report::median(bars), 100 * std::ranges::max(bars));
-  std::printf("%-11s %6s %10s %10s %10s\n", "mesh", "nodes", "median", "at most", "s/s");
-  for (std::size_t m = 0; m < kMeshes.size(); ++m) {
-    std::printf("%-11s %6.0f %8.1f %% %8.1f %% %10.2f\n", kMeshes[m].name, report::median(nodes[m]),
-                100 * report::median(errors[m]), 100 * std::ranges::max(errors[m]),
+  std::printf("%-21s %6s %10s %10s %10s %10s\n", "mesh", "nodes", "median", "95 of 100", "at most",
+              "s/s");
+  for (std::size_t m = 0; m < kCandidates.size(); ++m) {
+    std::printf("%-21s %6.0f %8.1f %% %8.1f %% %8.1f %% %10.2f\n", kCandidates[m].name,
+                report::median(nodes[m]), 100 * report::median(errors[m]),
+                100 * not_exceeded_by_95(errors[m]), 100 * std::ranges::max(errors[m]),
                 report::median(costs[m]));
   }
   return kExitDone;

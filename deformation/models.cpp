@@ -6,6 +6,7 @@
 
 #include "deformation/elements/kernel/corotational_kernel.h"
 #include "deformation/elements/kernel/nodal_pressure_kernel.h"
+#include "deformation/elements/quadratic_pressure.h"
 #include "deformation/steppers/backward_euler.h"
 #include "deformation/steppers/chainmail.h"
 #include "deformation/steppers/linearly_implicit_euler.h"
@@ -77,6 +78,13 @@ Dynamics linearly_implicit(const ModelParts& parts) {
                                                  parts.iterations);
 }
 
+Dynamics quadratic_pressure(const ModelParts& parts) {
+  auto elements =
+      std::make_unique<QuadraticPressure>(parts.model.rest_positions, parts.model.mesh());
+  return std::make_unique<LinearlyImplicitEuler>(parts.model, std::move(elements),
+                                                 parts.iterations);
+}
+
 Dynamics xpbd_tetrahedra(const ModelParts& parts) {
   return std::make_unique<XpbdTetrahedra>(parts.model, parts.model.mesh(), parts.iterations);
 }
@@ -97,7 +105,7 @@ Dynamics modal(const ModelParts& parts) {
 
 using enum VolumeKeeping;
 
-constexpr std::array<ModelRow, 16> kRows{{
+constexpr std::array<ModelRow, 17> kRows{{
     {.word = "mass_spring",
      .stands_for_fluid = true,
      .stands_for_solid = true,
@@ -166,6 +174,12 @@ constexpr std::array<ModelRow, 16> kRows{{
      .largest_bulk_over_shear = AverageNodalPressureSettings{}.largest_bulk_modulus,
      .stands_for_solid = true,
      .make = linearly_implicit<NodalPressureKernel>},
+    {.word = "quadratic_pressure",
+     .conserves_angular_momentum = false,
+     .step_cost = 100,
+     .largest_bulk_over_shear = QuadraticPressure::kLargestBulkModulus,
+     .stands_for_solid = true,
+     .make = quadratic_pressure},
     {.word = "modal",
      .conserves_angular_momentum = false,
      .step_cost = 100,

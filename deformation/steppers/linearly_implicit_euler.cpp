@@ -31,6 +31,7 @@ LinearlyImplicitEuler::LinearlyImplicitEuler(const Body& body,
 
 StepReport LinearlyImplicitEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
   linearise(h, state);
+  if (rows.empty()) begin_with_free_motion();
   solve(h, rows, state);
   keep_momentum(h, rows, state);
   for (std::size_t i = 0; i < velocities_.size(); ++i) {
@@ -68,6 +69,18 @@ void LinearlyImplicitEuler::linearise(double h, const OrganState& state) {
     inverse_diagonal_[i] = elements_->diagonal()[i].inverse();
     set_preconditioner(i, inverse_diagonal_[i]);
   }
+}
+
+/// Of an organ that nothing holds or touches, as one: what 3×3 blocks are slowest to find.
+void LinearlyImplicitEuler::begin_with_free_motion() {
+  if (!body_.fixed_nodes.empty()) return;
+  Vec3 load = Vec3::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < load_.size(); ++i) {
+    load += load_[i].head<3>().cast<double>();
+    mass += shift_[i];
+  }
+  std::fill(change_.begin(), change_.end(), wide(load / mass));
 }
 
 void LinearlyImplicitEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {

@@ -54,6 +54,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   };
 
   void linearise(double h, const OrganState& state);
+  void begin_with_free_motion();
   /// Δv and the contacts' impulses together.
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
   void find_contacts(std::span<ContactRow> rows, const OrganState& state);

@@ -15,7 +15,7 @@ constexpr double kBelowIncompressible = 0.4999;
 constexpr const char* kPasses = "passes over the constraints";
 constexpr const char* kGradients = "conjugate gradients at most";
 
-constexpr std::array<ModelFormat, 16> kFormats{{
+constexpr std::array<ModelFormat, 17> kFormats{{
     {.word = "mass_spring",
      .meaning = "springs alone",
      .has_integrator = true,
@@ -66,6 +66,11 @@ constexpr std::array<ModelFormat, 16> kFormats{{
     {.word = "nodal_pressure",
      .meaning = "neo-Hookean linear tetrahedra with averaged nodal pressures, implicit",
      .mesh = kLinear,
+     .iterations = 40,
+     .iterates = kGradients},
+    {.word = "quadratic_pressure",
+     .meaning = "neo-Hookean quadratic tetrahedra with a pressure each, implicit",
+     .mesh = kQuadratic,
      .iterations = 40,
      .iterates = kGradients},
     {.word = "modal",

@@ -124,7 +124,8 @@ LockingPoint locking_point(const std::string& model, double poisson_ratio,
   static const geometry::OrganShape kBall = solid_ball();
   scene::Scene scene = ball_scene(model, poisson_ratio);
   const auto plates = rigs::add_plates(scene);
-  rigs::PressedOrgan pressed(scene, kBall, plates);
+  rigs::PressedOrgan pressed(
+      scene, scene::is_quadratic(model) ? geometry::with_edge_nodes(kBall) : kBall, plates);
   const double height = kBallRadius * (1 - kLockingCompression);
   pressed.move_and_settle({{0, 0, height}, {0, 0, -height}}, kPlateSpeed, keep_going);
   LockingPoint point;

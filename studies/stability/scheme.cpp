@@ -84,14 +84,15 @@ scene::Organ organ_of(const Scheme& scheme, double youngs_modulus) {
 
 const geometry::OrganShape& Shapes::shape_for(const Scheme& scheme) {
   const bool solid = scene::is_solid(scheme.model);
-  auto& shape = scheme.model == "modal"                ? modal_
-                : scheme.model == "quadratic_elements" ? quadratic_
-                : solid                                ? solid_
-                                                       : surface_;
+  const bool quadratic = scene::is_quadratic(scheme.model);
+  auto& shape = scheme.model == "quadratic_elements" ? quadratic_
+                : quadratic                          ? modal_
+                : solid                              ? solid_
+                                                     : surface_;
   if (shape) return *shape;
   if (!solid) return shape.emplace(geometry::make_ball(kBallRadius, kLevels));
   shape = rigs::filled_ball(&shape == &modal_ ? 1 : &shape == &quadratic_ ? 0 : kLevels);
-  if (scene::is_quadratic(scheme.model)) shape = geometry::with_edge_nodes(*shape);
+  if (quadratic) shape = geometry::with_edge_nodes(*shape);
   return *shape;
 }
 

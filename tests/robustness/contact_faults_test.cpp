@@ -234,7 +234,7 @@ TEST_CASE("contact faults: a needle through a solid neither blows it up nor shak
   // 2 cm deep: driven on into what is fixed by a needle that never breaks through, their Newton
   // steps take minutes.
   const auto model = GENERATE(as<std::string>{}, "corotational", "nodal_pressure",
-                              "xpbd_tetrahedra", "quadratic_elements");
+                              "quadratic_pressure", "xpbd_tetrahedra", "quadratic_elements");
   const double speed = GENERATE(0.1, 0.5);
   const double way = model == "quadratic_elements" ? 0.12 : kNeedleWay;
   const auto scene = needle_scene(1e-3, speed, testing::organ_of({model}), way);

@@ -140,8 +140,9 @@ TEST_CASE("number faults: a bad number in any field of contacts or pose stays in
 
 TEST_CASE("number faults: a bad number stays inside of solids, too") {
   // Oracle: as above; a solid's volume comes back with its shape.
-  const auto model = GENERATE(as<std::string>{}, "corotational", "nodal_pressure",
-                              "xpbd_tetrahedra", "quadratic_elements", "modal");
+  const auto model =
+      GENERATE(as<std::string>{}, "corotational", "nodal_pressure", "quadratic_pressure",
+               "xpbd_tetrahedra", "quadratic_elements", "modal");
   int replaced = 0;
   for (std::size_t place = 0; place < places().size(); ++place) {
     for (const double bad : {Limits::quiet_NaN(), -Limits::infinity(), 1e308, 1e6}) {

@@ -13,8 +13,8 @@ namespace {
 using testing::run;
 using testing::shape_error;
 
-const std::string kSolids[] = {"corotational", "nodal_pressure", "xpbd_tetrahedra",
-                               "quadratic_elements"};
+const std::string kSolids[] = {"corotational", "nodal_pressure", "quadratic_pressure",
+                               "xpbd_tetrahedra", "quadratic_elements"};
 constexpr double kSolidBackTime = 3.0;    // [s]
 constexpr double kSolidBackShape = 2e-3;  // 0.2 mm
 constexpr double kSolidBackVolume = 1e-4;
@@ -110,7 +110,8 @@ TEST_CASE("solid faults: everted they are put back at once, or turn by themselve
       if (story.replaced == 0) continue;
       CHECK((story.first_reason == Violation::kTurnedInside ||
              story.first_reason == Violation::kEnergyGrew));
-      CHECK(story.fastest < 1e-6);
+      // Stresses in float leave nodes at rest a few 1e-9 m per step of a millisecond.
+      CHECK(story.fastest < (model == "quadratic_pressure" ? 1e-5 : 1e-6));
     }
   }
 }

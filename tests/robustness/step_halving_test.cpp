@@ -82,6 +82,7 @@ TEST_CASE("step halving: the error of every method halves with its step") {
                                {"xpbd_tetrahedra", Integrator::kAutomatic, 20, 200},
                                {"corotational", Integrator::kAutomatic, 200, 200},
                                {"nodal_pressure", Integrator::kAutomatic, 200, 200},
+                               {"quadratic_pressure", Integrator::kAutomatic, 200, 200},
                                {"quadratic_elements", Integrator::kAutomatic, 0, 200}}) {
     auto organ = testing::organ_of({kind.model, kind.integrator});
     if (scene::is_solid(kind.model)) organ.tissue.youngs_modulus = 1e3;

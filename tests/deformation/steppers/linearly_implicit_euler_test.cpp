@@ -13,7 +13,7 @@ namespace {
 
 using testing::momentum;
 
-const std::string kModels[] = {"corotational", "nodal_pressure"};
+const std::string kModels[] = {"corotational", "nodal_pressure", "quadratic_pressure"};
 
 double poisson_of(const std::string& model) { return model == "corotational" ? 0.45 : 0.5; }
 
@@ -38,17 +38,19 @@ std::vector<ContactRow> plate(const OrganModel& model, const OrganState& state, 
 }  // namespace
 
 TEST_CASE("linearly implicit Euler: at rest it stays at rest") {
-  // Oracle: invariant; rounding of 0.1 N on nodes of a gram is below 1e-12 m in 20 steps.
+  // Oracle: invariant; rounding of 0.1 N on nodes of a gram is below 1e-12 m in 20 steps. Where
+  // stresses are float, it is 1e-7 of μ, as much of strain, and a sixth of that of 6 cm.
   for (const auto& kind : kModels) {
+    const double still = kind == "quadratic_pressure" ? 1e-8 : 1e-12;
     const auto organ = solid_organ(kind, poisson_of(kind));
     const auto model = cube_model(organ);
     const auto dynamics = make_dynamics(organ, model, 0.01);
     auto state = rest_state(model);
     for (int k = 0; k < 20; ++k) dynamics->step(0.01, {}, state);
     for (std::size_t i = 0; i < model.node_count(); ++i) {
-      CHECK((state.positions[i] - model.rest_positions[i]).norm() < 1e-12);
+      CHECK((state.positions[i] - model.rest_positions[i]).norm() < still);
     }
-    CHECK(std::abs(dynamics->elastic_energy(state)) < 1e-12);
+    CHECK(std::abs(dynamics->elastic_energy(state)) < still);
   }
 }
 
@@ -78,12 +80,13 @@ TEST_CASE(
     "linearly implicit Euler: shaken, it keeps its momentum, loses energy, and comes to rest "
     "shape") {
   // Oracle: invariants. Nodes are off by up to 10 mm of 15: tetrahedra are inside out and recover.
+  // Quadratic ones, which keep the volume of a whole tetrahedron only, do from 4 mm of 7.5.
   for (const auto& kind : kModels) {
     const auto organ = solid_organ(kind, poisson_of(kind));
     const auto model = cube_model(organ);
     const auto dynamics = make_dynamics(organ, model, 0.01);
     auto state = rest_state(model);
-    state.positions = shaken(model, 10e-3);
+    state.positions = shaken(model, scene::is_quadratic(kind) ? 4e-3 : 10e-3);
     state.velocities.assign(model.node_count(), Vec3(0.1, 0.2, 0.3));
     const Vec3 before = momentum(model, state);
     const double energy = dynamics->elastic_energy(state);
@@ -113,7 +116,7 @@ TEST_CASE("linearly implicit Euler: fixed nodes do not move, and steps are the s
       second->step(0.01, {}, state);
     }
     CHECK(state.positions == again.positions);
-    REQUIRE(model.fixed_nodes.size() == 25);
+    REQUIRE(model.fixed_nodes.size() == (scene::is_quadratic(kind) ? 81 : 25));
     for (const auto i : model.fixed_nodes) {
       CHECK(state.positions[i] == model.rest_positions[i]);
     }
@@ -123,7 +126,8 @@ TEST_CASE("linearly implicit Euler: fixed nodes do not move, and steps are the s
 
 TEST_CASE("linearly implicit Euler: a block pressed between plates has the force of its material") {
   // Oracle: analytic, frictionless plates: F = E A ε; μ A (1/λ² − λ) for incompressible tissue,
-  // here of κ = 100 μ (0.5 %). Contacts give way by 10 µm at most: 0.2 %.
+  // here of κ = 100 μ (0.5 %). Contacts give way by 10 µm at most: 0.2 %; by twice that where
+  // middles of edges bear what their corners do not.
   // The mean pressure is a third of the stress.
   for (const auto& kind : kModels) {
     auto organ = solid_organ(kind, poisson_of(kind));
@@ -132,7 +136,7 @@ TEST_CASE("linearly implicit Euler: a block pressed between plates has the force
     const auto dynamics = make_dynamics(organ, model, 0.01);
     auto state = rest_state(model);
     const double area = 0.06 * 0.06, strain = 0.1, stretch = 1 - strain;
-    double depth = 0, force = 0, opposite = 0, impulses[2][200] = {};
+    double depth = 0, force = 0, opposite = 0, impulses[2][400] = {};
     for (int k = 0; k < 200; ++k) {
       const double speed = depth < strain * 0.06 - 1e-9 ? 0.03 : 0;
       auto rows = plate(model, state, 0.06 - depth, speed, 1);
@@ -151,7 +155,8 @@ TEST_CASE("linearly implicit Euler: a block pressed between plates has the force
       }
       for (const ContactRow& row : rows) {
         const double z = state.positions[row.nodes[0]].z();
-        CHECK((row.normal.z() > 0 ? 0.06 - depth - z : z) > -1e-5);
+        CHECK((row.normal.z() > 0 ? 0.06 - depth - z : z) >
+              (scene::is_quadratic(kind) ? -2e-5 : -1e-5));
       }
     }
     const bool linear = kind == "corotational";
@@ -165,9 +170,13 @@ TEST_CASE("linearly implicit Euler: a block pressed between plates has the force
 
 TEST_CASE("linearly implicit Euler: friction holds a block on a slope below its angle, not above") {
   // Oracle: analytic, tan 20° = 0.364; the block tilts and settles on the way: 0.12 m/s of 1.9.
+  // Quadratic tetrahedra that stick flutter without drag; with it, a block let go would have 0.17
+  // m/s.
   for (const auto& kind : kModels) {
-    const auto organ = solid_organ(kind, poisson_of(kind));
+    auto organ = solid_organ(kind, poisson_of(kind));
     for (const double friction : {0.6, 0.2}) {
+      const bool flutters = kind == "quadratic_pressure" && friction == 0.6;
+      organ.tissue.drag = flutters ? 20 : 0;
       const double angle = 20 * std::acos(-1.0) / 180;
       const auto model = cube_model(organ, 9.81 * Vec3(std::sin(angle), 0, -std::cos(angle)), 2);
       const auto dynamics = make_dynamics(organ, model, 0.01);
@@ -194,7 +203,7 @@ TEST_CASE("linearly implicit Euler: friction holds a block on a slope below its 
       }
       mean /= mass;
       const double slide = 9.81 * 0.6 * (std::sin(angle) - friction * std::cos(angle));
-      CHECK(mean == Approx(std::max(slide, 0.0)).margin(0.12));
+      CHECK(mean == Approx(std::max(slide, 0.0)).margin(flutters ? 0.02 : 0.12));
     }
   }
 }

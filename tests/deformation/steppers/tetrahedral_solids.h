@@ -5,6 +5,7 @@
 #include <random>
 
 #include "deformation/models.h"
+#include "modules/scene/models.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
 namespace palpate::deformation::testing {
@@ -25,7 +26,9 @@ inline scene::Organ solid_organ(const std::string& model, double poisson_ratio) 
 inline OrganModel cube_model(const scene::Organ& organ, const Vec3& gravity = Vec3::Zero(),
                              int cells = 4) {
   const auto mesh = geometry::testing::block(Vec3::Constant(0.06), cells, cells, cells);
-  return build_organ_model(organ, gravity, geometry::shape_of(mesh));
+  auto shape = geometry::shape_of(mesh);
+  if (scene::is_quadratic(organ.model)) shape = geometry::with_edge_nodes(shape);
+  return build_organ_model(organ, gravity, shape);
 }
 
 /// Rest positions off by up to `by` [m], the same every time.

@@ -20,6 +20,12 @@ TEST_CASE("locking: linear tetrahedra stiffen towards one half, averaged pressur
   CHECK(linear > 1.3 * reference);
   CHECK(averaged < 1.1 * reference);
   CHECK(averaged > 0.9 * reference);
+  // Quadratic tetrahedra feel that flat facets lie inside the ball, a tenth of what the plates
+  // close by: they are too soft, at any ν as much.
+  const double near_half = locking_point("quadratic_pressure", 0.499, kKeepOn).force / reference;
+  const double below =
+      locking_point("quadratic_pressure", 0.45, kKeepOn).force / locking_reference(0.45, kKeepOn);
+  CHECK(near_half == Approx(below).margin(0.05));
 }
 
 TEST_CASE("locking: what was measured is not measured again, and stands in the table") {

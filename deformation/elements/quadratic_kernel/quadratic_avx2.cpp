@@ -1,0 +1,28 @@
+// The kernel of quadratic tetrahedra for CPUs with AVX2.
+#include <immintrin.h>
+
+#include "deformation/elements/quadratic_kernel/quadratic_body.h"
+
+namespace palpate::deformation::kernel {
+namespace {
+
+struct Avx2Quads {
+  static constexpr std::size_t kWidth = 8;
+  using Pack = float __attribute__((vector_size(32)));
+  using Unaligned = float __attribute__((vector_size(32), aligned(4), may_alias));
+
+  static Pack join(const Quad* quads) {
+    return __builtin_shufflevector(quads[0], quads[1], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  static Quad part(const Pack& pack, std::size_t k) {
+    return k == 0 ? __builtin_shufflevector(pack, pack, 0, 1, 2, 3)
+                  : __builtin_shufflevector(pack, pack, 4, 5, 6, 7);
+  }
+  static Pack root(const Pack& x) { return _mm256_sqrt_ps(x); }
+};
+
+}  // namespace
+
+QuadraticKernel avx2_quadratic_kernel() { return Quadratic<Avx2Quads>::kernel(); }
+
+}  // namespace palpate::deformation::kernel

@@ -1,0 +1,271 @@
+// Quadratic tetrahedra for any instruction set (`Set`: quadratic_vectors.h), included once by each
+// quadratic_<set>.cpp, which is compiled for that set.
+//
+// With M_j = ∂x/∂L_j at a point, C_j = ∂det M/∂M_j and det of the edges at rest 6 V:
+//   J = det M/6V,   F Fᵀ = Σ M_i (∇L_i·∇L_j) M_jᵀ,   V/4 ∂J/∂M_j = C_j/24
+#pragma once
+
+#include "deformation/elements/quadratic_kernel/quadratic_gradients.h"
+
+namespace palpate::deformation::kernel {
+namespace {
+
+/// Below this squared stretch, of tissue crushed to nothing, limits are not divided by it.
+constexpr float kLeastSquaredStretch = 1e-3F;
+
+template <class Set>
+struct Quadratic {
+  using Pack = typename Set::Pack;
+  using Vector = Vectors<Set>;
+  using Matrix = Derivatives<Set>;  ///< by columns
+
+  static Matrix cofactor(const Matrix& m) {
+    const auto& [a, b, c] = m.along;
+    return {{cross(b, c), cross(c, a), cross(a, b)}};
+  }
+  static Pack inner(const Matrix& a, const Matrix& b) {
+    return dot(a.along[0], b.along[0]) + dot(a.along[1], b.along[1]) + dot(a.along[2], b.along[2]);
+  }
+
+  /// ∇L_i·∇L_j
+  struct Metric {
+    Pack g[6];
+
+    Metric(const QuadraticBatch& batch, std::size_t lane) {
+      for (int k = 0; k < 6; ++k) g[k] = load<Set>(batch.metric[k] + lane);
+    }
+    /// Σ_i (∇L_i·∇L_j) m_i
+    Matrix raise(const Matrix& m) const {
+      const auto& [a, b, c] = m.along;
+      return {{scaled(g[0], a) + scaled(g[3], b) + scaled(g[4], c),
+               scaled(g[3], a) + scaled(g[1], b) + scaled(g[5], c),
+               scaled(g[4], a) + scaled(g[5], b) + scaled(g[2], c)}};
+    }
+    /// ∇L_a·∇L_a of the corners.
+    void of_corners(Pack (&own)[4]) const {
+      own[0] = g[0] + g[1] + g[2] + 2 * (g[3] + g[4] + g[5]);
+      for (int j = 0; j < 3; ++j) own[j + 1] = g[j];
+    }
+    /// ∇L_a·∇L_b of the edges' ends.
+    void of_edges(Pack (&mixed)[6]) const {
+      mixed[0] = -(g[0] + g[3] + g[4]);
+      mixed[1] = g[3];
+      mixed[2] = -(g[3] + g[1] + g[5]);
+      mixed[3] = -(g[4] + g[5] + g[2]);
+      mixed[4] = g[4];
+      mixed[5] = g[5];
+    }
+  };
+
+  static Matrix load_tangent(const QuadraticBatch& batch, std::size_t lane, int point) {
+    Matrix m;
+    for (int j = 0; j < 3; ++j) {
+      const auto* axes = batch.tangents + 9 * point + 3 * j;
+      m.along[j] =
+          Vector{load<Set>(axes[0] + lane), load<Set>(axes[1] + lane), load<Set>(axes[2] + lane)};
+    }
+    return m;
+  }
+  static void store_tangent(const Matrix& m, std::size_t lane, int point, QuadraticBatch& batch) {
+    for (int j = 0; j < 3; ++j) {
+      auto* axes = batch.tangents + 9 * point + 3 * j;
+      store<Set>(axes[0] + lane, m.along[j].x);
+      store<Set>(axes[1] + lane, m.along[j].y);
+      store<Set>(axes[2] + lane, m.along[j].z);
+    }
+  }
+
+  /// Four lanes after four, so that all instruction sets add to a node in the same order.
+  static void scatter_all(float* base, std::size_t stride, const QuadraticBatch& batch,
+                          std::size_t lane, const Vector (&vectors)[10],
+                          const Pack (&fourths)[10]) {
+    for (std::size_t k = 0; k < Set::kWidth / 4; ++k) {
+      for (int a = 0; a < 10; ++a) {
+        scatter_quad(k, base, batch.nodes[a] + lane, stride, vectors[a], fourths[a]);
+      }
+    }
+  }
+  static constexpr Pack kNone[10] = {};
+
+  /// Seen from the first corner, for float's sake.
+  static void load_positions(const QuadraticPass& pass, const QuadraticBatch& batch,
+                             std::size_t lane, Vector (&x)[10]) {
+    x[0] = Vector{};
+    for (int a = 1; a < 10; ++a) {
+      float apart[3][Set::kWidth];
+      for (std::size_t l = 0; l < Set::kWidth; ++l) {
+        const double* const from = pass.positions + 3 * std::size_t{batch.nodes[0][lane + l]};
+        const double* const to = pass.positions + 3 * std::size_t{batch.nodes[a][lane + l]};
+        for (int axis = 0; axis < 3; ++axis) {
+          apart[axis][l] = static_cast<float>(to[axis] - from[axis]);
+        }
+      }
+      x[a] = Vector{load<Set>(apart[0]), load<Set>(apart[1]), load<Set>(apart[2])};
+    }
+  }
+
+  /// Bound of the squared largest singular value, exact where the other two are equal:
+  /// H. Wolkowicz, G. Styan, Linear Algebra Appl. 29, 1980.
+  /// @param raised  of m by the metric
+  static Pack squared_stretch(const Matrix& m, const Matrix& raised) {
+    const auto& [a, b, c] = m.along;
+    const auto& [p, q, r] = raised.along;
+    const Pack xx = a.x * p.x + b.x * q.x + c.x * r.x, xy = a.x * p.y + b.x * q.y + c.x * r.y;
+    const Pack yy = a.y * p.y + b.y * q.y + c.y * r.y, xz = a.x * p.z + b.x * q.z + c.x * r.z;
+    const Pack zz = a.z * p.z + b.z * q.z + c.z * r.z, yz = a.y * p.z + b.y * q.z + c.y * r.z;
+    const Pack mean = (xx + yy + zz) / 3;
+    const Pack squares = (xx * xx + yy * yy + zz * zz) + 2 * (xy * xy + xz * xz + yz * yz);
+    const Pack spread = larger<Set>(squares / 3 - mean * mean, Pack{});
+    return larger<Set>(mean + Set::root(2 * spread), Pack{} + kLeastSquaredStretch);
+  }
+
+  /// c' of c, as AverageNodalPressure::kept_turning().
+  static Pack kept_turning(const QuadraticPass& pass, const Pack& c, const Pack& squared_stretch,
+                           const Pack& stretch, const Pack& J) {
+    const float mu = pass.shear_modulus;
+    const Pack of_stretches =
+        larger<Set>(J, Pack{}) *
+        (1.5F * pass.point_modulus + 0.5F * mu / (squared_stretch * squared_stretch));
+    return smaller<Set>(larger<Set>(c, -smaller<Set>(mu / stretch, of_stretches)), Pack{});
+  }
+
+  static void linearise(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
+    const float mu = pass.shear_modulus, alpha = pass.point_modulus;
+    const Pack volume = load<Set>(batch.volume[0] + lane);
+    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    const Metric metric(batch, lane);
+    Vector nodes[10];
+    Matrix at[4], areas[4];
+    Pack J[4], shapes[4];
+    load_positions(pass, batch, lane, nodes);
+    differentiate(nodes, at);
+    for (int q = 0; q < 4; ++q) {
+      store_tangent(at[q], lane, q, batch);
+      areas[q] = cofactor(at[q]);
+      J[q] = per_volume / 6 * dot(areas[q].along[0], at[q].along[0]);
+    }
+    const Pack growth = ((J[0] - 1) + (J[1] - 1)) + ((J[2] - 1) + (J[3] - 1));
+    const Pack pressure = pass.bulk_modulus / 4 * growth;
+    for (int q = 0; q < 4; ++q) {
+      const Matrix raised = metric.raise(at[q]);
+      const Pack squared = squared_stretch(at[q], raised), stretch = Set::root(squared);
+      const Pack c = alpha * (J[q] - 1) - mu + pressure;
+      const Pack kept = kept_turning(pass, c, squared, stretch, J[q]);
+      shapes[q] = pass.scale / 4 * volume * (mu + 2 * stretch * larger<Set>(c - kept, kept - c));
+      store<Set>(batch.shapes[q] + lane, shapes[q]);
+      store<Set>(batch.turnings[q] + lane, pass.scale / 24 * kept);
+      for (int j = 0; j < 3; ++j) {
+        at[q].along[j] =
+            scaled(-mu / 4 * volume, raised.along[j]) - scaled(c / 24, areas[q].along[j]);
+      }
+    }
+    integrate(at, nodes);
+    scatter_all(pass.forces, 4, batch, lane, nodes, kNone);
+    add_diagonals(pass, batch, lane, areas, shapes);
+  }
+
+  static void add_diagonals(const QuadraticPass& pass, const QuadraticBatch& batch,
+                            std::size_t lane, const Matrix (&areas)[4], const Pack (&shapes)[4]) {
+    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    Pack own[4], mixed[6];
+    Metric(batch, lane).of_corners(own);
+    Metric(batch, lane).of_edges(mixed);
+    Vector faces[4][4];  // C ∂L_a, of the corners
+    for (int q = 0; q < 4; ++q) {
+      for (int j = 0; j < 3; ++j) faces[q][j + 1] = areas[q].along[j];
+      faces[q][0] = -1.0F * (faces[q][1] + faces[q][2] + faces[q][3]);
+    }
+    Vector squares[10], others[10];
+    Pack mixed_xy[10];
+    for (int a = 0; a < 10; ++a) {
+      Pack weight = {};
+      Vector rows[4];
+      for (int q = 0; q < 4; ++q) {
+        if (a < 4) {
+          const float f = 4 * (a == q ? kNearCorner : kFarCorner) - 1;
+          weight = weight + f * f * shapes[q] * own[a];
+          rows[q] = f * faces[q][a];
+        } else {
+          const auto [i, j] = kEdgeEnds[a - 4];
+          const float fi = 4 * (i == q ? kNearCorner : kFarCorner);
+          const float fj = 4 * (j == q ? kNearCorner : kFarCorner);
+          weight = weight +
+                   shapes[q] * (fi * fi * own[j] + 2 * fi * fj * mixed[a - 4] + fj * fj * own[i]);
+          rows[q] = fi * faces[q][j] + fj * faces[q][i];
+        }
+      }
+      const Outer block = squared(pass, per_volume, rows);
+      squares[a] = block.squares + Vector{weight, weight, weight};
+      mixed_xy[a] = block.mixed.x;
+      others[a] = Vector{block.mixed.y, block.mixed.z, Pack{}};
+    }
+    scatter_all(pass.diagonal, 8, batch, lane, squares, mixed_xy);
+    scatter_all(pass.diagonal + 4, 8, batch, lane, others, kNone);
+  }
+
+  /// xx, yy, zz and xy, xz, yz.
+  struct Outer {
+    Vector squares, mixed;
+  };
+  /// What volumes add to a node's block.
+  /// @param rows  24 V/4 ∂J/∂x of the node at the points
+  static Outer squared(const QuadraticPass& pass, const Pack& per_volume, const Vector (&rows)[4]) {
+    const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
+    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * per_volume;
+    const Vector all = (rows[0] + rows[1]) + (rows[2] + rows[3]);
+    const Vector scaled_all = scaled(of_all, all);
+    Vector squares = {scaled_all.x * all.x, scaled_all.y * all.y, scaled_all.z * all.z};
+    Vector mixed = {scaled_all.x * all.y, scaled_all.x * all.z, scaled_all.y * all.z};
+    for (const Vector& row : rows) {
+      const Vector own = scaled(of_points, row);
+      squares = squares + Vector{own.x * row.x, own.y * row.y, own.z * row.z};
+      mixed = mixed + Vector{own.x * row.y, own.x * row.z, own.y * row.z};
+    }
+    return {squares, mixed};
+  }
+
+  static void multiply(const QuadraticPass& pass, const QuadraticBatch& batch, std::size_t lane) {
+    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    const Metric metric(batch, lane);
+    Vector nodes[10];
+    Matrix at[4];
+    Pack rates[4];  // of 6 V J
+    for (int a = 0; a < 10; ++a) nodes[a] = gather<Set>(pass.vector, batch.nodes[a] + lane);
+    differentiate(nodes, at);
+    for (int q = 0; q < 4; ++q) rates[q] = inner(cofactor(load_tangent(batch, lane, q)), at[q]);
+    const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
+    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * per_volume *
+                        ((rates[0] + rates[1]) + (rates[2] + rates[3]));
+    for (int q = 0; q < 4; ++q) {
+      const Matrix tangent = load_tangent(batch, lane, q), areas = cofactor(tangent);
+      const Matrix raised = metric.raise(at[q]);
+      const Pack shape = load<Set>(batch.shapes[q] + lane);
+      const Pack turning = load<Set>(batch.turnings[q] + lane);
+      const Pack push = of_points * rates[q] + of_all;
+      const auto& [a, b, c] = tangent.along;
+      const auto& [u, v, w] = at[q].along;
+      const Matrix turned = {
+          {cross(b, w) + cross(v, c), cross(c, u) + cross(w, a), cross(a, v) + cross(u, b)}};
+      for (int j = 0; j < 3; ++j) {
+        at[q].along[j] = scaled(shape, raised.along[j]) + scaled(push, areas.along[j]) +
+                         scaled(turning, turned.along[j]);
+      }
+    }
+    integrate(at, nodes);
+    scatter_all(pass.product, 4, batch, lane, nodes, kNone);
+  }
+
+  template <auto visit>
+  static void run(const QuadraticPass& pass) {
+    for (std::size_t b = 0; b < pass.batch_count; ++b) {
+      for (std::size_t lane = 0; lane < kQuadraticLanes; lane += Set::kWidth) {
+        visit(pass, pass.batches[b], lane);
+      }
+    }
+  }
+
+  static QuadraticKernel kernel() { return {&run<&linearise>, &run<&multiply>}; }
+};
+
+}  // namespace
+}  // namespace palpate::deformation::kernel
