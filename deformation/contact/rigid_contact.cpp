@@ -23,6 +23,15 @@ std::array<double, 6> rest_areas(const QuadraticMesh& mesh, const BoundaryFace& 
   return areas;
 }
 
+/// @param turning  ∂(position − centre)/∂position
+Gap gap_around(const Vec3& centre, double radius, const Vec3& position, const Mat3& turning) {
+  const Vec3 arm = position - centre;
+  const double distance = arm.norm();
+  if (distance < 1e-9 * radius) return {-radius, Vec3::UnitZ(), Mat3::Zero()};
+  const Vec3 normal = arm / distance;
+  return {distance - radius, normal, (turning - normal * normal.transpose()) / distance};
+}
+
 /// Of μ.
 constexpr double kMostBending = 4;
 
@@ -32,13 +41,16 @@ Gap gap_at(const Obstacle& obstacle, const Vec3& position) {
   if (const auto* plane = std::get_if<Plane>(&obstacle)) {
     return {plane->normal.dot(position - plane->point), plane->normal, Mat3::Zero()};
   }
-  const auto& sphere = std::get<Sphere>(obstacle);
-  const Vec3 arm = position - sphere.centre;
-  const double distance = arm.norm();
-  if (distance < 1e-9 * sphere.radius) return {-sphere.radius, Vec3::UnitZ(), Mat3::Zero()};
-  const Vec3 normal = arm / distance;
-  return {distance - sphere.radius, normal,
-          (Mat3::Identity() - normal * normal.transpose()) / distance};
+  if (const auto* sphere = std::get_if<Sphere>(&obstacle)) {
+    return gap_around(sphere->centre, sphere->radius, position, Mat3::Identity());
+  }
+  const auto& capsule = std::get<Capsule>(obstacle);
+  const Vec3 axis = capsule.b - capsule.a;
+  const double along = axis.dot(position - capsule.a) / axis.squaredNorm();
+  const Vec3 centre = capsule.a + std::clamp(along, 0.0, 1.0) * axis;
+  const bool beside = along > 0 && along < 1;  // the centre moves along with the point
+  const Mat3 turning = Mat3::Identity() - axis * axis.transpose() / axis.squaredNorm();
+  return gap_around(centre, capsule.radius, position, beside ? turning : Mat3::Identity());
 }
 
 RigidContact::RigidContact(const TaylorHoodElements& solid, std::vector<std::uint32_t> faces,

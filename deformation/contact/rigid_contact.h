@@ -1,5 +1,5 @@
-// Rigid, frictionless contact of a solid's boundary with planes and spheres, by an augmented
-// Lagrangian at integration points of the boundary faces.
+// Rigid, frictionless contact of a solid's boundary with planes, spheres and capsules, by an
+// augmented Lagrangian at integration points of the boundary faces.
 //   P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991; T. Laursen, "Computational
 //   Contact and Impact Mechanics", Springer 2002.
 //
@@ -28,7 +28,12 @@ struct Sphere {
   double radius = 0;  ///< > 0 [m]
 };
 
-using Obstacle = std::variant<Plane, Sphere>;
+struct Capsule {
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< ends of the axis, apart [m]
+  double radius = 0;                        ///< > 0 [m]
+};
+
+using Obstacle = std::variant<Plane, Sphere, Capsule>;
 
 struct Gap {
   double gap = 0;                         ///< signed distance, negative inside [m]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/linear_algebra/dense_product.h"
 #include "modules/core/error.h"
 
 namespace palpate::deformation {
@@ -10,7 +11,9 @@ namespace {
 
 /// Fewer, and fronts are too small for dense work; more, and zeros are multiplied.
 constexpr std::size_t kLeafElements = 8;
-constexpr Eigen::Index kPanel = 48;
+constexpr Eigen::Index kPanel = 64, kBlock = 16;
+/// Of a product: strips of that many columns stay in the second cache.
+constexpr Eigen::Index kDepth = 256;
 
 /// L D Lᵀ of a small symmetric matrix in place: L below the diagonal, D on it.
 bool factor_diagonal_block(Eigen::Ref<Eigen::MatrixXd> a) {
@@ -28,24 +31,37 @@ bool factor_diagonal_block(Eigen::Ref<Eigen::MatrixXd> a) {
   return true;
 }
 
-/// Eliminates the first columns of the lower triangle of a, panel by panel; the rest becomes the
-/// Schur complement.
-bool eliminate(Eigen::MatrixXd& a, Eigen::Index count) {
-  const Eigen::Index size = a.rows();
+/// X ← X L⁻ᵀ, block by block, so that most of it is products.
+void solve_on_the_right(const DenseProduct::ConstBlock& lower, DenseProduct::Block x,
+                        DenseProduct& product) {
+  const Eigen::Index width = lower.cols();
+  for (Eigen::Index begin = 0; begin < width; begin += kBlock) {
+    const Eigen::Index count = std::min(kBlock, width - begin), end = begin + count;
+    auto block = x.middleCols(begin, count);
+    lower.block(begin, begin, count, count)
+        .triangularView<Eigen::UnitLower>()
+        .transpose()
+        .solveInPlace<Eigen::OnTheRight>(block);
+    product.subtract(block, lower.block(end, begin, width - end, count), x.rightCols(width - end));
+  }
+}
+
+/// Eliminates all columns of the lower trapezium `a`, panel by panel: L D afterwards in `scaled`
+/// below each panel, L and D in `a`.
+bool eliminate(Eigen::MatrixXd& a, Eigen::MatrixXd& scaled, DenseProduct& product) {
+  const Eigen::Index size = a.rows(), count = a.cols();
   for (Eigen::Index begin = 0; begin < count; begin += kPanel) {
     const Eigen::Index width = std::min(kPanel, count - begin), end = begin + width;
     auto block = a.block(begin, begin, width, width);
     if (!factor_diagonal_block(block)) return false;
     auto below = a.block(end, begin, size - end, width);
     // below = L D Lᵀ_block  ⇒  L = below L⁻ᵀ D⁻¹
-    block.triangularView<Eigen::UnitLower>().transpose().solveInPlace<Eigen::OnTheRight>(below);
-    const Eigen::MatrixXd scaled = below;
-    below = scaled * block.diagonal().cwiseInverse().asDiagonal();
-    for (Eigen::Index c = end; c < size; c += 2 * kPanel) {
-      const Eigen::Index columns = std::min(2 * kPanel, size - c);
-      a.block(c, c, size - c, columns).noalias() -=
-          below.bottomRows(size - c) * scaled.middleRows(c - end, columns).transpose();
-    }
+    solve_on_the_right(block, below, product);
+    const auto scaled_below = scaled.block(end, begin, size - end, width);
+    scaled.block(end, begin, size - end, width) = below;
+    below = scaled_below * block.diagonal().cwiseInverse().asDiagonal();
+    product.subtract_lower(below, scaled_below.topRows(count - end),
+                           a.block(end, end, size - end, count - end));
   }
   return true;
 }
@@ -152,52 +168,95 @@ void MultifrontalLdlt::add_front(std::vector<DofUse>& uses, Front front) {
   }
   front.eliminated = static_cast<Eigen::Index>(front.dofs.size());
   for (const DofUse& use : uses) front.dofs.push_back(use.dof);
+  stack_size_ = std::max(stack_size_, stacked_ + uses.size() * uses.size());
+  for (const int child : front.children) {
+    if (child < 0) continue;
+    const std::size_t left = fronts_[static_cast<std::size_t>(child)].waiting_dofs().size();
+    stacked_ -= left * left;
+  }
+  stacked_ += uses.size() * uses.size();
   fronts_.push_back(std::move(front));
 }
 
-void MultifrontalLdlt::assemble(const MatrixOf& matrix_of, Front& front, Eigen::MatrixXd& matrix) {
-  const auto size = static_cast<Eigen::Index>(front.dofs.size());
-  matrix.setZero(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    places_[static_cast<std::size_t>(front.dofs[static_cast<std::size_t>(i)])] = i;
+/// Adds one column of a part of the front at hand, rows `begin` and later, to where they belong.
+void MultifrontalLdlt::Sum::add_column(std::span<const Eigen::Index> places, std::size_t begin,
+                                       const double* values) {
+  const Eigen::Index column = places[begin];
+  if (column < 0) return;
+  const bool is_own = column < own.cols();
+  const Eigen::Index skipped = is_own ? 0 : own.cols();
+  double* into = is_own ? &own(0, column) : &waiting(0, column - skipped);
+  for (std::size_t i = begin; i < places.size(); ++i) {
+    const Eigen::Index row = places[i];
+    if (row >= column) {
+      into[row - skipped] += values[i];
+    } else if (row >= 0 && row < own.cols()) {
+      own(column, row) += values[i];
+    } else if (row >= 0) {
+      waiting(column - own.cols(), row - own.cols()) += values[i];
+    }
   }
-  const auto add = [&](int row_dof, int column_dof, double value) {
-    const auto i = places_[static_cast<std::size_t>(row_dof)];
-    const auto j = places_[static_cast<std::size_t>(column_dof)];
-    matrix(std::max(i, j), std::min(i, j)) += value;
+}
+
+/// The front's sum of its elements and of what its children left, the last on the stack.
+/// @param children  behind the last of it
+void MultifrontalLdlt::assemble(const MatrixOf& matrix_of, const Front& front,
+                                const double* children, Sum sum) {
+  sum.own.setZero();
+  sum.waiting.setZero();
+  for (std::size_t i = 0; i < front.dofs.size(); ++i) {
+    places_[static_cast<std::size_t>(front.dofs[i])] = static_cast<Eigen::Index>(i);
+  }
+  std::vector<Eigen::Index> places;
+  const auto look_up = [&](std::span<const int> dofs) {
+    places.clear();
+    for (const int dof : dofs) {
+      places.push_back(dof < 0 ? -1 : places_[static_cast<std::size_t>(dof)]);
+    }
   };
   for (const std::size_t e : front.elements) {
     const Eigen::Ref<const Eigen::MatrixXd> local = matrix_of(e);
-    const std::vector<int>& dofs = dofs_[e];
-    for (std::size_t j = 0; j < dofs.size(); ++j) {
-      for (std::size_t i = j; i < dofs.size(); ++i) {
-        if (dofs[i] < 0 || dofs[j] < 0) continue;
-        add(dofs[i], dofs[j], local(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
-      }
+    look_up(dofs_[e]);
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      sum.add_column(places, j, local.col(static_cast<Eigen::Index>(j)).data());
     }
   }
-  for (const int c : front.children) {
-    if (c < 0) continue;
-    Front& child = fronts_[static_cast<std::size_t>(c)];
-    const int* dofs = child.dofs.data() + child.eliminated;
-    for (Eigen::Index j = 0; j < child.waiting.cols(); ++j) {
-      for (Eigen::Index i = j; i < child.waiting.rows(); ++i) {
-        add(dofs[i], dofs[j], child.waiting(i, j));
-      }
+  for (auto child = front.children.rbegin(); child != front.children.rend(); ++child) {
+    if (*child < 0) continue;
+    look_up(fronts_[static_cast<std::size_t>(*child)].waiting_dofs());
+    children -= places.size() * places.size();
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      sum.add_column(places, j, children + j * places.size());
     }
-    child.waiting.resize(0, 0);
   }
 }
 
 bool MultifrontalLdlt::factor(const MatrixOf& matrix_of) {
-  Eigen::MatrixXd matrix;
+  stack_.resize(stack_size_);
+  double* top = stack_.data();
+  DenseProduct product;
+  Eigen::MatrixXd scaled;
   for (Front& front : fronts_) {
-    assemble(matrix_of, front, matrix);
-    if (!eliminate(matrix, front.eliminated)) return false;
-    front.columns = matrix.leftCols(front.eliminated);
-    front.pivots = matrix.diagonal().head(front.eliminated);
-    const Eigen::Index waiting = matrix.rows() - front.eliminated;
-    front.waiting = matrix.bottomRightCorner(waiting, waiting);
+    const auto size = static_cast<Eigen::Index>(front.dofs.size());
+    const Eigen::Index count = size - front.eliminated;
+    Eigen::Map<Eigen::MatrixXd> waiting(top, count, count);  // moved to where its children were
+    front.columns.resize(size, front.eliminated);
+    assemble(matrix_of, front, top, {front.columns, waiting});
+    scaled.resize(size, front.eliminated);
+    if (!eliminate(front.columns, scaled, product)) return false;
+    for (Eigen::Index begin = 0; begin < front.eliminated; begin += kDepth) {
+      const Eigen::Index depth = std::min(kDepth, front.eliminated - begin);
+      product.subtract_lower(front.columns.block(front.eliminated, begin, count, depth),
+                             scaled.block(front.eliminated, begin, count, depth), waiting);
+    }
+    front.pivots = front.columns.diagonal();
+    for (const int child : front.children) {
+      if (child < 0) continue;
+      const std::size_t left = fronts_[static_cast<std::size_t>(child)].waiting_dofs().size();
+      top -= left * left;
+    }
+    std::copy_n(waiting.data(), waiting.size(), top);
+    top += waiting.size();
   }
   return true;
 }

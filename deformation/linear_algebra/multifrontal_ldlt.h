@@ -52,7 +52,16 @@ class MultifrontalLdlt {
     std::array<int, 2> children{-1, -1};
     Eigen::MatrixXd columns;  ///< L, unit diagonal not stored  (dofs × eliminated)
     Eigen::VectorXd pivots;   ///< D
-    Eigen::MatrixXd waiting;  ///< lower triangle; only until the parent took it
+
+    /// What goes up to the parent, as a lower triangle on the stack.
+    std::span<const int> waiting_dofs() const {
+      return std::span(dofs).subspan(static_cast<std::size_t>(eliminated));
+    }
+  };
+  /// A front being assembled, lower triangles: the columns to eliminate, and the rest.
+  struct Sum {
+    Eigen::Ref<Eigen::MatrixXd> own, waiting;
+    void add_column(std::span<const Eigen::Index> places, std::size_t begin, const double* values);
   };
   struct DofUse {
     int dof = 0, elements = 0;
@@ -61,7 +70,7 @@ class MultifrontalLdlt {
   std::vector<DofUse> build(std::span<std::size_t> elements);
   std::size_t split(std::span<std::size_t> elements);
   void add_front(std::vector<DofUse>& uses, Front front);
-  void assemble(const MatrixOf& matrix_of, Front& front, Eigen::MatrixXd& matrix);
+  void assemble(const MatrixOf& matrix_of, const Front& front, const double* children, Sum sum);
 
   std::size_t dof_count_ = 0;
   std::vector<std::vector<int>> dofs_;
@@ -71,6 +80,8 @@ class MultifrontalLdlt {
   std::vector<Eigen::Index> places_;  ///< scratch: an unknown's row in the front at hand
   int mark_ = 0;
   std::vector<Front> fronts_;  ///< children before parents
+  std::size_t stack_size_ = 0, stacked_ = 0;
+  std::vector<double> stack_;  ///< scratch: what fronts without a parent yet left for it
 };
 
 }  // namespace palpate::deformation

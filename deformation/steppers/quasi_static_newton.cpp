@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kMostTrials = 10;
 constexpr double kSlopeFraction = 0.5;
+/// Of the residual, by a step with a factorisation that may be of an earlier state.
+constexpr double kUsefulDecrease = 0.4;
 
 MultifrontalLdlt make_factor(const TaylorHoodElements& solid,
                              const std::vector<char>& constrained) {
@@ -148,21 +150,28 @@ bool QuasiStaticNewton::search(const Eigen::VectorXd& direction,
   return false;
 }
 
-NewtonReport QuasiStaticNewton::solve(SolidState& state, std::optional<Inertia> inertia) {
+NewtonReport QuasiStaticNewton::solve(SolidState& state, std::optional<Inertia> inertia,
+                                      const NewtonGoal& goal) {
   NewtonReport report;
+  bool is_useful = false;  // the factorisation there is, of a state before
   Eigen::VectorXd r = residual(state, inertia);
   while (r.size() > 0 && r.allFinite()) {
-    while (norm(r) > kForceTolerance) {
-      if (++report.iterations > kMostIterations || !factor_descending(state, inertia))
-        return report;
+    while (norm(r) > goal.force_tolerance) {
+      if (++report.iterations > kMostIterations) return report;
+      if (!is_useful) {
+        ++report.factorisations;
+        if (!factor_descending(state, inertia)) return report;
+      }
+      const double before = norm(r);
       r = -r;
       factor_.solve(r);
       const Eigen::VectorXd direction = r;
       r = residual(state, inertia);
       if (!search(direction, inertia, state, r)) return report;
+      is_useful = goal.keeps_factor && norm(r) < kUsefulDecrease * before;
     }
     report.deepest = contact_ ? contact_->deepest(state) : 0;
-    report.converged = report.deepest <= kMostPenetration * solid_.size() &&
+    report.converged = report.deepest <= goal.most_penetration * solid_.size() &&
                        (!contact_ || contact_->is_settled(state));
     if (report.converged) return report;
     contact_->augment(state);

@@ -19,16 +19,23 @@ struct Inertia {
 
 struct NewtonReport {
   bool converged = false;
-  int iterations = 0;  ///< of Newton: factorisations
-  double deepest = 0;  ///< penetration left [m]
+  int iterations = 0;      ///< of Newton
+  int factorisations = 0;  ///< fewer where they are kept
+  double deepest = 0;      ///< penetration left [m]
+};
+
+/// What an equilibrium is good enough for. Force unit f = μ · size².
+struct NewtonGoal {
+  double force_tolerance = 1e-9;   ///< of f
+  double most_penetration = 2e-5;  ///< of the size
+  /// A factorisation is used again while steps with it get nearer by more than half. For large
+  /// meshes, where a factorisation costs as much as twenty residuals.
+  bool keeps_factor = false;
 };
 
 class QuasiStaticNewton {
  public:
-  /// Force unit f = μ · size².
-  static constexpr double kForceTolerance = 1e-9;   ///< of f
-  static constexpr int kMostIterations = 40;        ///< in all
-  static constexpr double kMostPenetration = 2e-5;  ///< of the size
+  static constexpr int kMostIterations = 40;  ///< in all
 
   /// @param solid    outlives this
   /// @param constrained     true: this coordinate of this node does not move  (3 · node_count)
@@ -37,11 +44,12 @@ class QuasiStaticNewton {
                     ElementContact* contact);
 
   /// From `state`, constrained coordinates where they are to be. Stops when, in this order,
-  ///   1. ‖r_u‖ ≤ kForceTolerance f and ‖r_p‖ ≤ kForceTolerance size³, and
-  ///   2. no point penetrates by more than kMostPenetration · size, and friction is settled: else
+  ///   1. ‖r_u‖ ≤ force_tolerance f and ‖r_p‖ ≤ force_tolerance size³, and
+  ///   2. no point penetrates by more than most_penetration · size, and friction is settled: else
   ///      λ is augmented and 1. starts anew;
   /// not converged after kMostIterations, or where no step along Newton's direction keeps J > 0.
-  NewtonReport solve(SolidState& state, std::optional<Inertia> inertia = {});
+  NewtonReport solve(SolidState& state, std::optional<Inertia> inertia = {},
+                     const NewtonGoal& goal = {});
 
   /// Residual of the whole; empty if J ≤ 0 somewhere. Constrained coordinates have their reactions'
   /// sign turned: r is the force the support has to exert [N].

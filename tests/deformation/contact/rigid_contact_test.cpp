@@ -17,18 +17,25 @@ std::vector<std::uint32_t> all_faces(const TaylorHoodElements& solid) {
   return faces;
 }
 
-TEST_CASE("rigid contact: gap and normal of plane and sphere") {
-  // Oracle: geometry; normal derivative by central differences.
+TEST_CASE("rigid contact: gap and normal of plane, sphere and capsule") {
+  // Oracle: geometry; normal derivative by central differences, beside a capsule and at its ends.
   const Plane plane{Vec3(0, 0, 1), Vec3::UnitZ()};
   CHECK(gap_at(plane, {5, 5, 3}).gap == 2);
-  const Sphere sphere{Vec3(1, 2, 3), 0.5};
-  const Vec3 x(1.3, 2.4, 2.8);
-  const auto at = gap_at(sphere, x);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 step = 1e-6 * Vec3::Unit(i);
-    const auto up = gap_at(sphere, x + step), down = gap_at(sphere, x - step);
-    CHECK(at.normal[i] == Approx((up.gap - down.gap) / 2e-6));
-    CHECK((at.normal_derivative.col(i) - (up.normal - down.normal) / 2e-6).norm() < 1e-8);
+  const Capsule capsule{Vec3(1, 2, 3), Vec3(1, 2, 4), 0.5};
+  CHECK(gap_at(capsule, {2, 2, 3.7}).gap == Approx(0.5));
+  CHECK(gap_at(capsule, {1, 2, 5}).gap == Approx(0.5));
+  const std::vector<std::pair<Obstacle, Vec3>> all{{Sphere{Vec3(1, 2, 3), 0.5}, {1.3, 2.4, 2.8}},
+                                                   {capsule, {1.3, 2.4, 2.8}},
+                                                   {capsule, {1.3, 2.4, 3.4}},
+                                                   {capsule, {1.3, 2.4, 4.1}}};
+  for (const auto& [obstacle, x] : all) {
+    const auto at = gap_at(obstacle, x);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 step = 1e-6 * Vec3::Unit(i);
+      const auto up = gap_at(obstacle, x + step), down = gap_at(obstacle, x - step);
+      CHECK(at.normal[i] == Approx((up.gap - down.gap) / 2e-6));
+      CHECK((at.normal_derivative.col(i) - (up.normal - down.normal) / 2e-6).norm() < 1e-8);
+    }
   }
 }
 
@@ -91,7 +98,7 @@ TEST_CASE("rigid contact: a block between frictionless plates carries the uniaxi
   auto state = solid.rest_state();
   const auto report = solver.solve(state);
   REQUIRE(report.converged);
-  CHECK(report.deepest <= QuasiStaticNewton::kMostPenetration * solid.size());
+  CHECK(report.deepest <= NewtonGoal().most_penetration * solid.size());
   const auto outcome = contact.outcomes(state)[0];
   const double stress = 1000 * (1 / (0.8 * 0.8) - 0.8);
   CHECK(outcome.force.z() == Approx(stress * 0.0004).epsilon(3e-4));  // 2e-5 of the size deep
