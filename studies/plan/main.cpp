@@ -18,6 +18,9 @@ int main(int argc, char** argv) {
       .shows_default();
   program.add_each("--set", options.settings,
                    "Another value for a key of the scene: --set needs.force_error=0.1");
+  program.add("--touches", options.touches, "Instants at which the truth of a solid is computed")
+      .range(1, 100)
+      .shows_default();
   program.flag("--json", options.json, "Print JSON");
   return program.run(argc, argv, [&] { return plan::run_plan(options, std::cout, std::cerr); });
 }

@@ -3,8 +3,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <set>
+#include <tuple>
 
 #include "deformation/models.h"
 #include "haptics/devices/device.h"
@@ -20,7 +21,15 @@ namespace {
 
 constexpr std::size_t kMarks = 60;
 constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
-constexpr double kReferenceRateOfFluid = 500, kReferenceRateOfSolid = 200;  // [Hz]
+constexpr double kReferenceRate = 500;  // [Hz]
+constexpr double kLongestHold = 1.5;    // [s]
+constexpr const char* kRefined = "nodal_pressure";
+
+/// Longest edge at a touched place in radii, and its growth with the distance.
+struct Rung {
+  double edge, growth;
+};
+constexpr std::array kRungs{Rung{1, 1}, Rung{0.5, 0.7}, Rung{0.5, 0.5}, Rung{1.0 / 3, 0.35}};
 
 std::vector<std::string> models_for(scene::Needs::Contents contents) {
   const bool fluid = contents == scene::Needs::Contents::kFluid;
@@ -77,11 +86,30 @@ void check(const char* what, const std::optional<double>& need, double value,
   failures.push_back(fmt::format("{} {:.3g} > {:.3g}", what, value, *need));
 }
 
+/// Of an error that is known to ± `bar`.
+void check(const char* what, const std::optional<double>& need, double value, double bar,
+           std::vector<std::string>& failures) {
+  if (!need || value + bar <= *need) return;
+  failures.push_back(bar > 0 ? fmt::format("{} {:.3g} ± {:.1g} > {:.3g}", what, value, bar, *need)
+                             : fmt::format("{} {:.3g} > {:.3g}", what, value, *need));
+}
+
+std::vector<Vec3> forces_of(const rigs::PressedOrgan& pressed, std::size_t probes) {
+  std::vector<Vec3> forces;
+  for (std::uint32_t i = 0; i < probes; ++i) forces.push_back(pressed.force(i));
+  return forces;
+}
+
 }  // namespace
 
 std::string Candidate::name() const {
-  return fmt::format("{}, {} nodes, {:g} Hz{}", model, nodes, rate,
-                     integrator == scene::Integrator::kBackwardEuler ? ", backward_euler" : "");
+  auto text =
+      fmt::format("{}, {} nodes, {:g} Hz{}", model, nodes, rate,
+                  integrator == scene::Integrator::kBackwardEuler ? ", backward_euler" : "");
+  if (!refine.near.empty()) {
+    text += fmt::format(", {:.3g} mm + {:.2g} d", 1e3 * refine.edge_length, refine.growth);
+  }
+  return text;
 }
 
 std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface) {
@@ -95,15 +123,12 @@ std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface) {
 }
 
 Candidate reference_of(const scene::Scene& scene) {
-  const std::size_t nodes = nodes_of(scene);
-  if (scene.needs.contents == scene::Needs::Contents::kSolid) {
-    return {"nodal_pressure", nodes, kReferenceRateOfSolid};
-  }
-  return {"implicit_volume", std::min(4 * nodes, kMostNodes), kReferenceRateOfFluid,
+  return {"implicit_volume", std::min(4 * nodes_of(scene), kMostNodes), kReferenceRate,
           scene::Integrator::kSymplecticEuler};
 }
 
-std::vector<Candidate> candidates_of(const scene::Scene& scene) {
+std::vector<Candidate> candidates_of(const scene::Scene& scene,
+                                     const std::vector<scene::Region>& touched, double radius) {
   const std::size_t nodes = nodes_of(scene);
   const double least = scene.needs.step_rate;
   std::vector<Candidate> candidates;
@@ -115,14 +140,19 @@ std::vector<Candidate> candidates_of(const scene::Scene& scene) {
         if (count < kLeastNodes || count > kMostNodes || rate > 2000) continue;
         candidates.push_back({model, count, rate});
       }
+      if (model != kRefined || touched.empty() || count > nodes || count < kLeastNodes) continue;
+      for (const auto& [edge, growth] : kRungs) {
+        candidates.push_back(
+            {model, count, least, scene::Integrator::kAutomatic, {touched, edge * radius, growth}});
+      }
     }
   }
   return candidates;
 }
 
-scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
+scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate, std::size_t number) {
   scene::Scene changed = scene;
-  scene::Organ& organ = changed.organs[0];
+  scene::Organ& organ = changed.organs[number];
   organ.model = candidate.model;
   organ.integrator = candidate.integrator;
   organ.iterations = 0;
@@ -130,6 +160,7 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
   organ.solid.poisson_ratio =
       chart::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
   organ.mesh.nodes = candidate.nodes;
+  if (!candidate.refine.near.empty()) organ.solid.refine = candidate.refine;
   if (candidate.rate > 0) changed.rates.deformation = candidate.rate;
   changed.rates.collision = std::max(changed.rates.collision, changed.rates.deformation);
   changed.rates.haptics = std::max(changed.rates.haptics, changed.needs.haptics_rate);
@@ -137,7 +168,7 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate) {
 }
 
 Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
-                  const std::vector<Vec3>& marks, double duration,
+                  const std::vector<Vec3>& marks, double duration, const std::vector<double>& held,
                   const std::function<void()>& keep_going) {
   std::vector<std::unique_ptr<haptics::Device>> devices;
   std::vector<Pose> poses;
@@ -151,20 +182,31 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
   Course course;
   course.node_count = shape.node_count();
   double next_sample = 0;
-  while (pressed.time() < duration && !pressed.diverged()) {
+  std::size_t next_held = 0;
+  const double period = pressed.period();
+  for (double time = period; time < duration + period && !pressed.diverged(); time += period) {
     keep_going();
-    const double time = pressed.time() + pressed.period();
     for (std::size_t i = 0; i < devices.size(); ++i) poses[i] = devices[i]->read(time).pose;
     pressed.advance(poses);
-    if (pressed.time() + pressed.period() / 2 < next_sample) continue;
+    if (next_held < held.size() && time + period / 2 >= held[next_held]) {
+      ++next_held;
+      course.moving_forces.push_back(forces_of(pressed, devices.size()));
+      pressed.settle(kLongestHold);
+      course.held_forces.push_back(forces_of(pressed, devices.size()));
+      course.held_surfaces.push_back(marked(pressed, places));
+    }
+    if (time + period / 2 < next_sample) continue;
     next_sample += 1 / kSampleRate;
-    auto& forces = course.forces.emplace_back();
-    for (std::uint32_t i = 0; i < devices.size(); ++i) forces.push_back(pressed.force(i));
+    course.forces.push_back(forces_of(pressed, devices.size()));
     course.surfaces.push_back(marked(pressed, places));
   }
   course.volume_error = pressed.volume_error();
   course.deformation_cost = pressed.busy() / pressed.time();
-  course.collision_cost = pressed.searching() / pressed.time();
+  const auto& rates = scene.rates;
+  course.collision_cost =
+      pressed.searching() / pressed.time() * rates.collision / rates.deformation;
+  course.publishing_cost = pressed.encoding() * rates.deformation;
+  course.haptic_tick = pressed.rendering() / pressed.time() * period;
   course.diverged = pressed.diverged();
   course.contacts = pressed.contact_troubles();
   return course;
@@ -189,18 +231,67 @@ Errors compare(const Course& course, const Course& reference) {
   return errors;
 }
 
+Errors compare(const Course& course, const std::vector<TrueTouch>& truths) {
+  Errors errors;
+  errors.volume = course.volume_error;
+  if (course.diverged || course.held_forces.size() < truths.size()) {
+    errors.force = errors.surface = std::numeric_limits<double>::infinity();
+    return errors;
+  }
+  double off = 0, scale = 0, bars = 0, moved = 0, across = 0, surface = 0, surface_bars = 0;
+  double ratios = 0, squared_ratios = 0;
+  std::size_t count = 0, marks = 0;
+  for (std::size_t k = 0; k < truths.size(); ++k) {
+    const auto& [time, probes, truth] = truths[k];
+    for (std::size_t j = 0; j < probes.size(); ++j) {
+      const double expected = truth.forces[j].norm();
+      if (expected == 0) continue;
+      const Vec3 along = truth.forces[j] / expected;
+      const Vec3 held = course.held_forces[k][probes[j]],
+                 moving = course.moving_forces[k][probes[j]];
+      const double found = held.dot(along), ratio = found / expected - 1;
+      off += (found - expected) * (found - expected);
+      scale += expected * expected;
+      bars += truth.bars[j] * truth.bars[j];
+      moved += std::pow(moving.dot(along) - found, 2);
+      across += (moving - moving.dot(along) * along).squaredNorm();
+      ratios += ratio;
+      squared_ratios += ratio * ratio;
+      ++count;
+    }
+    for (std::size_t m = 0; m < truth.displacements.size(); ++m, ++marks) {
+      surface += (course.held_surfaces[k][m] - truth.displacements[m]).squaredNorm();
+      surface_bars += truth.displacement_bar * truth.displacement_bar;
+    }
+  }
+  if (count > 0) {
+    const double n = static_cast<double>(count), mean = ratios / n;
+    errors.force = std::sqrt(off / scale);
+    // Both the difference and what it is a part of are known to the bar.
+    errors.force_bar = std::sqrt(bars / scale) * (1 + errors.force);
+    errors.feel = {mean, std::sqrt(std::max(0.0, squared_ratios / n - mean * mean)),
+                   std::sqrt(moved / scale), std::sqrt(across / scale)};
+  }
+  if (marks > 0) {
+    errors.surface = std::sqrt(surface / static_cast<double>(marks));
+    errors.surface_bar = std::sqrt(surface_bars / static_cast<double>(marks));
+  }
+  return errors;
+}
+
 Verdict judge(const scene::Needs& needs, const Candidate& candidate, const Course& course,
-              const Course& reference) {
+              const Errors& errors) {
   Verdict verdict;
   verdict.candidate = candidate;
-  verdict.errors = compare(course, reference);
+  verdict.errors = errors;
   verdict.node_count = course.node_count;
   verdict.deformation_load = course.deformation_cost;
-  verdict.total_load =
-      course.deformation_cost + course.collision_cost + needs.haptics_rate * kHapticTick;
-  check("force error", needs.force_error, verdict.errors.force, verdict.failures);
-  check("surface error [m]", needs.surface_error, verdict.errors.surface, verdict.failures);
-  check("volume error", needs.volume_error, verdict.errors.volume, verdict.failures);
+  verdict.total_load = course.deformation_cost + course.collision_cost + course.publishing_cost +
+                       needs.haptics_rate * course.haptic_tick;
+  check("force error", needs.force_error, errors.force, errors.force_bar, verdict.failures);
+  check("surface error [m]", needs.surface_error, errors.surface, errors.surface_bar,
+        verdict.failures);
+  check("volume error", needs.volume_error, errors.volume, verdict.failures);
   check("load of the core of deformation", kLargestLoad, verdict.deformation_load,
         verdict.failures);
   check("load of all cores", kLargestLoad * static_cast<double>(needs.cores), verdict.total_load,
@@ -212,11 +303,22 @@ Verdict judge(const scene::Needs& needs, const Candidate& candidate, const Cours
   return verdict;
 }
 
-const Verdict* best(const std::vector<Verdict>& verdicts) {
+const Verdict* best(const std::vector<Verdict>& verdicts, std::optional<double> rate) {
+  const auto qualifies = [&](const Verdict& v) {
+    return v.failures.empty() && (!rate || v.candidate.rate == *rate);
+  };
+  double least = std::numeric_limits<double>::infinity();
+  for (const Verdict& v : verdicts) {
+    if (qualifies(v)) least = std::min(least, v.total_load);
+  }
+  const auto rank = [](const Verdict& v) {
+    return std::tuple(v.node_count, deformation::row_of(v.candidate.model).step_cost,
+                      v.candidate.rate, v.total_load);
+  };
   const Verdict* found = nullptr;
-  for (const Verdict& verdict : verdicts) {
-    if (!verdict.failures.empty()) continue;
-    if (found == nullptr || verdict.total_load < found->total_load) found = &verdict;
+  for (const Verdict& v : verdicts) {
+    if (!qualifies(v) || v.total_load > (1 + kLoadNoise) * least) continue;
+    if (found == nullptr || rank(v) < rank(*found)) found = &v;
   }
   return found;
 }
@@ -229,9 +331,10 @@ std::vector<std::string> ways_out(const scene::Needs& needs, const std::vector<V
   std::vector<std::string> ways;
   const Verdict *most_accurate = nullptr, *fastest = nullptr;
   for (const Verdict& v : verdicts) {
-    const bool accurate = v.errors.force <= needs.force_error.value_or(1e9) &&
-                          v.errors.surface <= needs.surface_error.value_or(1e9) &&
-                          v.errors.volume <= needs.volume_error.value_or(1e9);
+    const bool accurate =
+        v.errors.force + v.errors.force_bar <= needs.force_error.value_or(1e9) &&
+        v.errors.surface + v.errors.surface_bar <= needs.surface_error.value_or(1e9) &&
+        v.errors.volume <= needs.volume_error.value_or(1e9);
     if (accurate && (fastest == nullptr || v.total_load < fastest->total_load)) fastest = &v;
     if (fits(v) && (most_accurate == nullptr || v.errors.force < most_accurate->errors.force)) {
       most_accurate = &v;
@@ -247,7 +350,8 @@ std::vector<std::string> ways_out(const scene::Needs& needs, const std::vector<V
   if (most_accurate != nullptr) {
     ways.push_back(
         fmt::format("force_error {:.2g}, surface_error_m {:.2g}, volume_error {:.2g}: {}",
-                    most_accurate->errors.force, most_accurate->errors.surface,
+                    most_accurate->errors.force + most_accurate->errors.force_bar,
+                    most_accurate->errors.surface + most_accurate->errors.surface_bar,
                     most_accurate->errors.volume, most_accurate->candidate.name()));
   }
   return ways;

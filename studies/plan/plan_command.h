@@ -13,6 +13,7 @@ struct PlanOptions {
   double seconds = 6;         ///< of the scene, from its start
   std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
   bool json = false;                       ///< the verdicts as JSON
+  std::size_t touches = 6;                 ///< instants at which a solid's truth is computed
 };
 
 /// The whole command: measures, prints choice and runners-up with what they lost by, writes the

@@ -53,13 +53,16 @@ class PressedOrgan {
   ContactTroubles contact_troubles() const { return session_.contact_troubles(); }
   double busy() const { return busy_; }            ///< processor time in deformation so far [s]
   double searching() const { return searching_; }  ///< the same in collision [s]
+  double rendering() const { return rendering_; }  ///< the same in haptics [s]
+  /// Processor time in which all that is said in a period becomes bytes; nothing is sent [s].
+  double encoding() const;
   double time() const { return session_.world().time(); }  ///< simulated so far [s]
 
  private:
   session::InProcessOptions timed();
   void place_probes();
 
-  double period_, busy_ = 0, searching_ = 0, volume_error_ = 0;
+  double period_, busy_ = 0, searching_ = 0, rendering_ = 0, volume_error_ = 0;
   bool diverged_ = false;
   std::vector<Pose> poses_;
   session::InProcess session_;

@@ -1,0 +1,49 @@
+// Where a scene's probes go, whatever the organ answers, and what they touch on the way.
+#pragma once
+
+#include <vector>
+
+#include "modules/scene/scene.h"
+#include "studies/truth/force_truth.h"
+
+namespace palpate::plan {
+
+/// Radii within which a probe touches what is about to be pressed.
+inline constexpr double kNear = 1.5;
+
+class ProbePaths {
+ public:
+  /// @param skin  the organ's surface at rest, in W
+  /// @param duration  of the scene, from its start [s]
+  ProbePaths(const scene::Scene& scene, geometry::TriangleSurface skin, double duration);
+
+  /// At most `count` instants, spread evenly over the time in which a probe is deeper in the organ
+  /// at rest than a twentieth of its radius [s].
+  std::vector<double> touching(std::size_t count) const;
+  /// The poses at that instant, come to straight from outside, for the truth.
+  /// @param probes  numbers of those that are asked, in its order: others are not near
+  truth::Question question_at(double time, std::vector<std::uint32_t>& probes) const;
+  /// Where tetrahedra are to be small: balls of the probes' radius around the places they touch.
+  std::vector<scene::Region> regions() const;
+  /// The smallest radius of a probe [m].
+  double smallest_radius() const;
+
+ private:
+  struct Near {
+    Vec3 place = Vec3::Zero(), outward = Vec3::UnitZ();  ///< on the skin, and its normal there
+    double depth = 0;                                    ///< of the probe in the organ at rest [m]
+  };
+  geometry::RoundedSegment probe_at(std::size_t probe, double time) const;
+  Near near(const geometry::RoundedSegment& probe) const;
+  truth::Station freed(const truth::Station& station) const;
+
+  static constexpr double kRate = 50;  // [Hz]
+  geometry::TriangleSurface skin_;
+  std::vector<geometry::RoundedSegment> forms_;  ///< in P
+  std::vector<std::vector<Pose>> poses_;         ///< per probe, at kRate
+};
+
+/// @throws InputError naming the probe whose shape the truth does not know
+void check_shapes(const scene::Scene& scene);
+
+}  // namespace palpate::plan
