@@ -9,6 +9,7 @@
 #include "collision/near_surface.h"
 #include "collision/node_contacts.h"
 #include "collision/probe_model.h"
+#include "collision/surface_change.h"
 #include "modules/core/error.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
@@ -29,6 +30,14 @@ class ProbeSearch {
     nodes_.reset();
     edges_.reset();
     seen_versions_.clear();
+  }
+
+  void change_surface(const SurfaceChange& change) {
+    cores_.change_surface(change);
+    nodes_.change_surface(change);
+    edges_.change_surface(change);
+    if (change.organ >= seen_versions_.size() || seen_versions_[change.organ] == 0) return;
+    seen_versions_[change.organ] = change.after.version();
   }
 
   SearchReport find(const ProbeMotion& motion, double margin, std::vector<OrganSurface>& organs,
@@ -242,6 +251,27 @@ void ContactFinder::take_organ(std::size_t organ, std::vector<float>& positions,
                                std::vector<geometry::BlockBox>& boxes) {
   PALPATE_DEMAND(organ < impl_->organs.size());
   impl_->organs[organ].take(positions, boxes);
+}
+
+void ContactFinder::change_organ(std::size_t organ, std::vector<geometry::Triangle> triangles,
+                                 std::span<const std::uint32_t> blocks,
+                                 std::span<const Vec3> rest_before,
+                                 std::span<const Vec3> rest_after) {
+  PALPATE_DEMAND(organ < impl_->organs.size());
+  OrganSurface& before = impl_->organs[organ];
+  OrganSurface after(std::move(triangles), blocks);
+  const geometry::SurfaceTransfer to(rest_before, before.triangles(), rest_after,
+                                     after.triangles());
+  if (before.present()) {
+    const geometry::SurfaceTransfer back(rest_after, after.triangles(), rest_before,
+                                         before.triangles());
+    after.update(carried_positions(before, after, back));
+    after.mark_found();
+  }
+  for (ProbeSearch& probe : impl_->probes) {
+    probe.change_surface({static_cast<std::uint32_t>(organ), before, after, to});
+  }
+  before = std::move(after);
 }
 
 void ContactFinder::reset() {

@@ -51,6 +51,14 @@ class ContactFinder {
   void take_organ(std::size_t organ, std::vector<float>& positions,
                   std::vector<geometry::BlockBox>& boxes);
 
+  /// Other triangles of the same surface, until the next positions where they lie in those of now;
+  /// what is remembered of the search is found again on them.
+  /// @param rest_before, rest_after  of the surfaces' nodes at rest [m]
+  /// @param blocks                   as at construction
+  void change_organ(std::size_t organ, std::vector<geometry::Triangle> triangles,
+                    std::span<const std::uint32_t> blocks, std::span<const Vec3> rest_before,
+                    std::span<const Vec3> rest_after);
+
   /// Forgets what is remembered of earlier calls, of all probes or of one (reset, silence, jump):
   /// it is heard of for the first time again.
   void reset();

@@ -36,6 +36,12 @@ void CoreContacts::reset() {
   now_.clear();
 }
 
+void CoreContacts::change_surface(const SurfaceChange& change) {
+  for (Behind& behind : now_) {
+    if (behind.organ == change.organ) behind.triangle = change.triangle(behind.triangle);
+  }
+}
+
 void CoreContacts::begin_step() {
   before_.swap(now_);
   now_.clear();

@@ -20,6 +20,7 @@
 
 #include "collision/closed_surface.h"
 #include "collision/core_wall.h"
+#include "collision/surface_change.h"
 
 namespace palpate::collision {
 
@@ -30,6 +31,8 @@ inline constexpr double kWallTriangles = 128;
 class CoreContacts {
  public:
   void reset();
+  /// What is remembered of an organ is found again on other triangles.
+  void change_surface(const SurfaceChange& change);
 
   /// Begins a step: what was behind after the last one is the memory for this one.
   void begin_step();

@@ -103,6 +103,12 @@ void EdgeContacts::reset() {
   now_.clear();
 }
 
+void EdgeContacts::change_surface(const SurfaceChange& change) {
+  for (Crossed& crossed : now_) {
+    if (crossed.organ == change.organ) crossed.pair.second = change.edge(crossed.pair.second);
+  }
+}
+
 void EdgeContacts::begin_step() {
   before_.swap(now_);
   now_.clear();

@@ -14,6 +14,7 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/mesh_solid.h"
+#include "collision/surface_change.h"
 
 namespace palpate::collision {
 
@@ -22,6 +23,8 @@ using EdgePair = std::pair<std::uint32_t, std::uint32_t>;  ///< probe's edge, or
 class EdgeContacts {
  public:
   void reset();
+  /// What is remembered of an organ is found again on other triangles.
+  void change_surface(const SurfaceChange& change);
   void begin_step();
   void append_remembered(std::uint32_t organ, std::vector<EdgePair>& pairs) const;
 

@@ -22,6 +22,13 @@ void NodeContacts::reset() {
   now_.clear();
 }
 
+void NodeContacts::change_surface(const SurfaceChange& change) {
+  std::erase_if(now_, [&](Hold& hold) {
+    if (hold.organ == change.organ) hold.node = change.node(hold.node);
+    return hold.node == geometry::kNoPlace;
+  });
+}
+
 void NodeContacts::begin_step() {
   before_.swap(now_);
   now_.clear();

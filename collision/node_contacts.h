@@ -12,12 +12,15 @@
 
 #include "collision/contact_reduction.h"
 #include "collision/probe_solid.h"
+#include "collision/surface_change.h"
 
 namespace palpate::collision {
 
 class NodeContacts {
  public:
   void reset();
+  /// What is remembered of an organ is found again on other triangles.
+  void change_surface(const SurfaceChange& change);
   void begin_step();
   /// Nodes of an organ held since the last step.
   void append_remembered(std::uint32_t organ, std::vector<std::uint32_t>& nodes) const;

@@ -46,7 +46,9 @@ class OrganInputs {
     std::size_t surface_node_count = 0;
     std::vector<float> rest_positions;  ///< x, y, z per node [m]
     std::size_t block_count = 0;        ///< of triangle_blocks
-    bool boxes_misfit = false;          ///< of the newest node positions
+    /// Told, but no positions have come that are of it.
+    std::optional<SurfaceTopology> next;
+    bool boxes_misfit = false;  ///< of the newest node positions
   };
 
   static void read_boxes(std::span<const float> from, std::vector<geometry::BlockBox>& boxes) {
@@ -58,24 +60,54 @@ class OrganInputs {
     }
   }
 
-  /// A surface starts its organ anew: what was remembered of the search before no longer holds.
+  /// The first surface puts its organ at rest. One of the same triangles starts it anew: what was
+  /// remembered of the search before no longer holds. One of others waits for its positions: until
+  /// then the organ is where it was.
   void take_surface() {
     if (surface_.organ >= organs_.size()) return;
     OrganInput& organ = organs_[surface_.organ];
-    const bool same_shape = finder_ && organ.triangles == surface_.triangles &&
-                            organ.triangle_blocks == surface_.triangle_blocks;
-    organ.generation = surface_.generation;
-    organ.surface_node_count = surface_.surface_node_count;
-    organ.triangles = surface_.triangles;
-    organ.triangle_blocks = surface_.triangle_blocks;
+    if (!finder_ || surface_.triangles.empty()) {
+      know(surface_, organ);
+      return make_finder();
+    }
+    organ.next.reset();
+    if (organ.triangles != surface_.triangles ||
+        organ.triangle_blocks != surface_.triangle_blocks) {
+      organ.next = surface_;
+      return;
+    }
+    know(surface_, organ);
+    finder_->reset();
+    put_at_rest(surface_.organ);
+  }
+
+  static void know(const SurfaceTopology& surface, OrganInput& organ) {
+    organ.generation = surface.generation;
+    organ.surface_node_count = surface.surface_node_count;
+    organ.triangles = surface.triangles;
+    organ.triangle_blocks = surface.triangle_blocks;
     organ.block_count = 0;
     for (const std::uint32_t block : organ.triangle_blocks) {
       organ.block_count = std::max(organ.block_count, std::size_t{block} + 1);
     }
-    organ.rest_positions = surface_.rest_positions;
-    if (!same_shape) return make_finder();
-    finder_->reset();
-    put_at_rest(surface_.organ);
+    organ.rest_positions = surface.rest_positions;
+  }
+
+  static std::vector<Vec3> rest_of(const OrganInput& organ) {
+    std::vector<Vec3> rest;
+    for (std::size_t i = 0; i < organ.surface_node_count; ++i) {
+      const float* x = organ.rest_positions.data() + 3 * i;
+      rest.emplace_back(x[0], x[1], x[2]);
+    }
+    return rest;
+  }
+
+  void take_next(std::size_t index) {
+    OrganInput& organ = organs_[index];
+    const std::vector<Vec3> before = rest_of(organ);
+    know(*organ.next, organ);
+    organ.next.reset();
+    finder_->change_organ(index, organ.triangles, organ.triangle_blocks, before, rest_of(organ));
   }
 
   void put_at_rest(std::size_t organ) {
@@ -101,6 +133,7 @@ class OrganInputs {
   void take_positions() {
     if (newest_.organ >= organs_.size() || !finder_) return;
     OrganInput& organ = organs_[newest_.organ];
+    if (organ.next && newest_.generation == organ.next->generation) take_next(newest_.organ);
     if (newest_.generation != organ.generation ||
         newest_.positions.size() < 3 * organ.surface_node_count) {
       return;

@@ -47,6 +47,8 @@ constexpr std::array<Text, kGuardCodes> kTexts{{
      "an organ held more energy than it was given: its steps are shortened"},
     {GuardCode::kLawBounded,
      "a sliding touch would have been stiffer than a sticking one, or no stiffness was found"},
+    {GuardCode::kMeshCoarser,
+     "a solid has as many nodes as it may ('nodes'): under a probe it is coarser than asked for"},
 }};
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "deformation/following_organ.h"
 #include "modules/core/sort_unique.h"
 
 namespace palpate::deformation {
@@ -31,14 +32,8 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const TetMesh& mesh) {
   return edges;
 }
 
-}  // namespace
-
-SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ) {
-  const OrganModel& model = world.model(organ);
+SurfaceTopology surface_message(const OrganModel& model) {
   SurfaceTopology message;
-  message.organ = static_cast<std::uint32_t>(organ);
-  message.generation = world.generation(organ);
-  message.name = world.name(organ);
   message.surface_node_count = static_cast<std::uint32_t>(model.surface_node_count);
   write_float32(model.rest_positions, message.rest_positions);
   message.triangles = model.triangles;
@@ -56,6 +51,25 @@ SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ
     message.springs.push_back({spring.node_a, spring.node_b, network.family(s)});
   }
   return message;
+}
+
+SurfaceTopology named(SurfaceTopology message, const DeformationWorld& world, std::size_t organ,
+                      std::uint32_t generation) {
+  message.organ = static_cast<std::uint32_t>(organ);
+  message.generation = generation;
+  message.name = world.name(organ);
+  return message;
+}
+
+}  // namespace
+
+SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ) {
+  return named(surface_message(world.model(organ)), world, organ, world.generation(organ));
+}
+
+SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ,
+                                const OrganMesh& next) {
+  return named(surface_message(*next.model), world, organ, next.generation);
 }
 
 void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out) {

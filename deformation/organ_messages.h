@@ -10,6 +10,10 @@ namespace palpate::deformation {
 
 /// Rest shape, triangles and springs of an organ; of a solid the edges of its tetrahedra, as inner.
 SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ);
+/// The same of the mesh that it will go on with.
+/// @param next  DeformationWorld::next_mesh()
+SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ,
+                                const OrganMesh& next);
 
 /// Positions (float32), volume, pressure and energies of an organ. No allocation once `out` has
 /// held the organ.

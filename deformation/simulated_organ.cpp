@@ -27,7 +27,8 @@ SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const 
     : model_(std::move(model)),
       dynamics_(std::move(dynamics)),
       target_volume_(organ.filling),
-      detector_(*model_, row_of(organ.model).knows_energy),
+      knows_energy_(row_of(organ.model).knows_energy),
+      detector_(std::make_unique<DivergenceDetector>(*model_, knows_energy_)),
       guarding_(guarding),
       holds_volume_(row_of(organ.model).has_volume_constraint),
       pressure_limit_(holds_volume_ ? pressure_cap(organ.tissue, model_->rest_volume)
@@ -43,7 +44,7 @@ int SimulatedOrgan::substeps(double period) const {
 void SimulatedOrgan::put(const OrganState& state) {
   state_ = state;
   release_volume();
-  detector_.begin(state_, dynamics_->elastic_energy(state_));
+  detector_->begin(state_, dynamics_->elastic_energy(state_));
   advances_ = kThoroughCheckEvery;
   folded_ = false;
   collapsed_time_ = 0;
@@ -52,11 +53,23 @@ void SimulatedOrgan::put(const OrganState& state) {
 void SimulatedOrgan::reset() {
   target_volume_.reset();
   state_ = last_good_ = rest_state(*model_);
-  detector_.begin(state_, dynamics_->elastic_energy(state_));
+  detector_->begin(state_, dynamics_->elastic_energy(state_));
   halvings_ = failures_ = advances_ = 0;
   folded_ = false;
   collapsed_time_ = suspension_time_ = gentle_time_ = 0;
   quiet_time_ = kQuietTime;
+}
+
+void SimulatedOrgan::change_mesh(std::unique_ptr<const OrganModel> model,
+                                 std::unique_ptr<OrganDynamics> dynamics,
+                                 const MeshChange& change) {
+  state_ = change.carried(state_);
+  last_good_ = change.carried(last_good_);
+  auto detector = std::make_unique<DivergenceDetector>(*model, knows_energy_);
+  detector->take_over(*detector_, state_);
+  detector_ = std::move(detector);
+  dynamics_ = std::move(dynamics);
+  model_ = std::move(model);
 }
 
 void SimulatedOrgan::step(double time, double h, std::span<ContactRow> rows,
@@ -106,7 +119,7 @@ double SimulatedOrgan::begin_step(double time, double h, std::span<ContactRow> r
 
 void SimulatedOrgan::end_step(double h, std::span<const ContactRow> rows, double target_before,
                               const StepReport& stepped, AdvanceReport& report) {
-  detector_.add_work(h, rows, state_.target_volume - target_before, state_);
+  detector_->add_work(h, rows, state_.target_volume - target_before, state_);
   report.contacts_unsolved += std::ranges::any_of(rows, [&](const ContactRow& row) {
     return excess_depth(*model_, row, h, state_.velocities) > kUnsolvedDepth;
   });
@@ -129,20 +142,20 @@ void SimulatedOrgan::correct_step(double h, std::span<const Vec3> surface, doubl
     state_.positions[i] = surface[i];
   }
   state_.pressure -= volume_impulse / h;
-  detector_.add_work(0, rows, 0, state_);
+  detector_->add_work(0, rows, 0, state_);
 }
 
 bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   if (guarding_ == Guarding::kOff) return true;
   const bool thorough = ++advances_ >= kThoroughCheckEvery;
-  Violation seen = thorough ? detector_.check_thoroughly(state_, period, *dynamics_)
-                            : detector_.check_bounds(state_, period);
+  Violation seen = thorough ? detector_->check_thoroughly(state_, period, *dynamics_)
+                            : detector_->check_bounds(state_, period);
   if (collapsed_time_ > kCollapsedTime) seen = Violation::kCollapsed;
   if (seen != Violation::kNone) {
     recover(seen, report);
     return false;
   }
-  if (detector_.suspicious() && quiet_time_ >= kAdvancesToShow * period) shorten_steps();
+  if (detector_->suspicious() && quiet_time_ >= kAdvancesToShow * period) shorten_steps();
   lengthen_steps(period);
   report.step_reduced |= halvings_ > 0;
   report.contacts_suspended |= contacts_suspended();
@@ -155,7 +168,7 @@ bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
       model_->is_solid() && inverted_tetrahedra(model_->mesh(), state_.positions) > 0;
   report.tissue_inverted |= inverted;
   folded_ = inverted && !has_rest_volume();
-  if (!detector_.suspicious() && !far && !folded_ && collapsed_time_ == 0) last_good_ = state_;
+  if (!detector_->suspicious() && !far && !folded_ && collapsed_time_ == 0) last_good_ = state_;
   return true;
 }
 

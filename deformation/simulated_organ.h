@@ -18,6 +18,7 @@
 #include "deformation/contact/starting_impulses.h"
 #include "deformation/guard/advance_report.h"
 #include "deformation/guard/divergence_detector.h"
+#include "deformation/model/mesh_change.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/target_volume.h"
 #include "deformation/steppers/organ_dynamics.h"
@@ -62,6 +63,11 @@ class SimulatedOrgan {
   void reset();                                                     ///< at rest, at time 0
   void ask_for_volume(double ratio) { target_volume_.ask(ratio); }  ///< target_volume.h
 
+  /// Goes on as the same organ on another mesh; guards do, too.
+  /// @param change  from the model it has to `model`
+  void change_mesh(std::unique_ptr<const OrganModel> model, std::unique_ptr<OrganDynamics> dynamics,
+                   const MeshChange& change);
+
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
   /// The same; it is taken again from its start, with the rows there are then and the impulses
@@ -100,7 +106,8 @@ class SimulatedOrgan {
   std::unique_ptr<const OrganModel> model_;
   std::unique_ptr<OrganDynamics> dynamics_;
   TargetVolume target_volume_;
-  DivergenceDetector detector_;
+  bool knows_energy_;
+  std::unique_ptr<DivergenceDetector> detector_;
   OrganState state_, last_good_;
   OrganState start_;  ///< of a step that may be taken again
   StartingImpulses started_;

@@ -1,8 +1,10 @@
 #include "deformation/stage.h"
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 
+#include "deformation/following_organ.h"
 #include "deformation/guard_text.h"
 #include "deformation/organ_messages.h"
 #include "modules/core/units.h"
@@ -11,6 +13,39 @@
 
 namespace palpate::deformation {
 namespace {
+
+/// Which meshes node positions were of, by sequence number: contacts name that they were found on.
+class ToldMeshes {
+ public:
+  explicit ToldMeshes(std::size_t organs) : generations_(organs, 1) {
+    told_.push_back({0, generations_});
+  }
+
+  /// @param sequence  of an organ's node positions
+  void note(std::uint64_t sequence, std::size_t organ, std::uint32_t generation) {
+    if (generations_[organ] == generation) return;
+    generations_[organ] = generation;
+    told_.push_back({sequence, generations_});
+    if (told_.size() > kMostTold) told_.pop_front();
+  }
+
+  /// The generation of each organ; none where that is no longer known.
+  std::span<const std::uint32_t> at(std::uint64_t sequence) const {
+    for (auto told = told_.rbegin(); told != told_.rend(); ++told) {
+      if (told->sequence <= sequence) return told->generations;
+    }
+    return {};
+  }
+
+ private:
+  static constexpr std::size_t kMostTold = 32;
+  struct Told {
+    std::uint64_t sequence = 0;  ///< the first of these
+    std::vector<std::uint32_t> generations;
+  };
+  std::deque<Told> told_;
+  std::vector<std::uint32_t> generations_;  ///< the newest
+};
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
 class ProbeInputs {
@@ -22,7 +57,7 @@ class ProbeInputs {
         contacts_heard_(probes, runtime::kInputStaleAfter),
         sampled_ns_(probes, 0) {}
 
-  void bring(std::int64_t now_ns, DeformationWorld& world) {
+  void bring(std::int64_t now_ns, const ToldMeshes& told, DeformationWorld& world) {
     while (states_.take(state_)) {
       states_heard_.heard(state_.probe, state_.header.source_time_ns);
       if (state_.probe < sampled_ns_.size())
@@ -31,7 +66,7 @@ class ProbeInputs {
     }
     while (contacts_.take(newest_)) {
       contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
-      world.set_contacts(newest_);
+      world.set_contacts(newest_, told.at(newest_.node_positions_sequence));
     }
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
       if (!states_heard_.silent(probe, now_ns) && !contacts_heard_.silent(probe, now_ns)) continue;
@@ -86,16 +121,31 @@ double least_advance(const DeformationWorld& world, double period) {
 /// What leaves the process.
 class Outputs {
  public:
-  explicit Outputs(bus::Bus& bus)
-      : surfaces_(bus.writer(bus::kSurface)),
+  Outputs(bus::Bus& bus, std::size_t organs)
+      : told_(organs),
+        surfaces_(bus.writer(bus::kSurface)),
         positions_(bus.writer(bus::kNodePositions)),
         models_(bus.writer(bus::kContactModel)) {}
 
   void publish_surfaces(const DeformationWorld& world) {
     blocks_.clear();
+    next_blocks_.resize(world.organ_count());
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
       SurfaceTopology surface = surface_message(world, organ);
       blocks_.emplace_back(surface.triangles, surface.triangle_blocks);
+      next_blocks_[organ].generation = surface.generation;
+      surfaces_.write(surface);
+    }
+  }
+
+  /// An advance before an organ has it, so that nobody is without when it does.
+  void publish_next_surfaces(const DeformationWorld& world) {
+    for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
+      const OrganMesh* next = world.next_mesh(organ);
+      if (next == nullptr || next->generation == next_blocks_[organ].generation) continue;
+      SurfaceTopology surface = surface_message(world, organ, *next);
+      next_blocks_[organ] = {next->generation,
+                             geometry::SurfaceBlocks(surface.triangles, surface.triangle_blocks)};
       surfaces_.write(surface);
     }
   }
@@ -103,12 +153,16 @@ class Outputs {
   void publish_positions(double sim_time, const DeformationWorld& world) {
     const Header header{0, ns_from_seconds(sim_time), 0};
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
+      if (next_blocks_[organ].generation == world.generation(organ)) take_next_blocks(organ);
       write_node_positions(world, organ, node_positions_);
       write_block_boxes(blocks_[organ], node_positions_);
       node_positions_.header = header;
       positions_.write(node_positions_);
+      told_.note(node_positions_.header.sequence, organ, node_positions_.generation);
     }
   }
+
+  const ToldMeshes& told() const { return told_; }
 
   /// @returns whether the stiffness of one was bounded
   bool publish_laws(double sim_time, const DeformationWorld& world, const ProbeInputs& inputs,
@@ -129,10 +183,22 @@ class Outputs {
   }
 
  private:
+  struct NextBlocks {
+    std::uint32_t generation = 0;
+    std::optional<geometry::SurfaceBlocks> blocks;  ///< none: the organ has them
+  };
+  void take_next_blocks(std::size_t organ) {
+    if (!next_blocks_[organ].blocks) return;
+    blocks_[organ] = std::move(*next_blocks_[organ].blocks);
+    next_blocks_[organ].blocks.reset();
+  }
+
+  ToldMeshes told_;
   bus::Writer<SurfaceTopology> surfaces_;
   bus::Writer<NodePositions> positions_;
   bus::Writer<ContactModel> models_;
   std::vector<geometry::SurfaceBlocks> blocks_;  ///< by organ
+  std::vector<NextBlocks> next_blocks_;          ///< told last
   NodePositions node_positions_;
   ContactModel model_;
 };
@@ -152,7 +218,7 @@ struct DeformationStage::Impl {
        ChunkRunner* runner, Guarding guarding)
       : world(scene, std::move(shapes), runner, guarding),
         inputs(bus, world.probe_count()),
-        outputs(bus),
+        outputs(bus, world.organ_count()),
         period(1 / scene.rates.deformation) {
     outputs.publish_surfaces(world);
   }
@@ -204,10 +270,15 @@ DeformationStage::~DeformationStage() = default;
 
 runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   if (now.reset) impl_->reset();
-  impl_->inputs.bring(now.now_ns, impl_->world);
+  impl_->inputs.bring(now.now_ns, impl_->outputs.told(), impl_->world);
   runtime::Health health;
-  if (now.running) health = impl_->advance(now);
+  if (now.running) {
+    health = impl_->advance(now);
+  } else {
+    impl_->world.take_next_meshes();
+  }
   const double sim_time = impl_->time.on_session_clock(impl_->world.time());
+  impl_->outputs.publish_next_surfaces(impl_->world);
   impl_->outputs.publish_positions(sim_time, impl_->world);
   if (now.running) {
     impl_->law_bounded =

@@ -26,6 +26,9 @@ constexpr double kMostGrowth = 0.5;
 constexpr std::size_t kGrowthPeriods = 3;
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
 constexpr double kFarthestContact = 10;
+/// A mesh made at the end of an advance is taken in the next and used for some: looked at from
+/// their middle, in advances.
+constexpr double kLookAhead = 2.5;
 /// How often a step is halved so that a probe does not go through the wall.
 constexpr int kMostSplits = 5;
 
@@ -36,6 +39,7 @@ struct DeformationWorld::Impl {
   std::vector<ProbeContacts> probes;
   std::optional<OrganContacts> organ_contacts;  ///< none: the scene has them off
   std::vector<Contact> accepted;                ///< buffer of set_contacts()
+  std::vector<Pose> poses;                      ///< buffer of look_ahead()
   /// Mean forces on a probe over the last advances, the newest first [N].
   using Forces = std::array<Vec3, kGrowthPeriods + 1>;
   std::vector<Forces> forces;
@@ -58,6 +62,20 @@ struct DeformationWorld::Impl {
            (probe.to_world(contact.point_P) - tissue).stableNorm() <= kFarthestContact;
   }
 
+  /// Puts a contact that was found on an earlier mesh on that of now.
+  bool carry(std::span<const std::uint32_t> generations, Contact& contact) const {
+    if (contact.organ >= std::min(organs.size(), generations.size())) return true;
+    const WorldOrgan& organ = organs[contact.organ];
+    const std::uint32_t found_on = generations[contact.organ];
+    return found_on == organ.generation || !organ.following ||
+           organ.following->carry(found_on, contact);
+  }
+  bool carry(std::span<const std::uint32_t> generations, std::uint32_t of,
+             std::uint32_t& node) const {
+    if (of >= generations.size() || generations[of] == organs[of].generation) return true;
+    return !organs[of].following || organs[of].following->carry(generations[of], node);
+  }
+
   bool is_plausible(const Contact& contact, const Pose& probe) {
     if (!names_our_triangle(contact)) return false;
     const bool near = is_near(contact, probe);
@@ -67,11 +85,12 @@ struct DeformationWorld::Impl {
 
   /// The contacts of a face's nodes where the nodes are now.
   void append_face(const FaceContacts& face, std::span<const std::uint32_t> nodes,
-                   const Pose& probe) {
+                   const Pose& probe, std::span<const std::uint32_t> generations) {
     if (face.organ >= organs.size()) return;
     const WorldOrgan& organ = organs[face.organ];
     const OrganModel& model = organ.simulated.model();
-    for (const std::uint32_t node : nodes) {
+    for (std::uint32_t node : nodes) {
+      if (!carry(generations, face.organ, node)) continue;
       if (node >= model.surface_node_count || organ.surface->around(node).empty()) continue;
       Contact contact =
           contact_on_face(face, probe.to_body(organ.simulated.state().positions[node]));
@@ -83,15 +102,16 @@ struct DeformationWorld::Impl {
   }
 
   /// All contacts of a message that can be believed, sorted by (organ, triangle).
-  void accept(const ContactSet& contacts) {
+  void accept(const ContactSet& contacts, std::span<const std::uint32_t> generations) {
     accepted.clear();
     std::span<const std::uint32_t> nodes = contacts.face_nodes;
     for (const FaceContacts& face : contacts.faces) {
       const std::size_t count = std::min<std::size_t>(face.node_count, nodes.size());
-      append_face(face, nodes.first(count), contacts.probe_pose);
+      append_face(face, nodes.first(count), contacts.probe_pose, generations);
       nodes = nodes.subspan(count);
     }
-    for (const Contact& contact : contacts.contacts) {
+    for (Contact contact : contacts.contacts) {
+      if (!carry(generations, contact)) continue;
       if (is_plausible(contact, contacts.probe_pose)) accepted.push_back(contact);
     }
     const auto place = [](const Contact& c) { return std::pair(c.organ, c.triangle); };
@@ -169,6 +189,30 @@ struct DeformationWorld::Impl {
       }
       organ_contacts->end_step(period / substeps, rows, report);
       for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i, period / substeps);
+    }
+  }
+
+  /// Organs that follow go on with what was made for them; contacts stay where they are on them.
+  void change_meshes(AdvanceReport& report) {
+    for (std::uint32_t i = 0; i < organs.size(); ++i) {
+      WorldOrgan& organ = organs[i];
+      if (!organ.following) continue;
+      if (organ.following->next() != nullptr) {
+        organ.change_mesh();
+        for (auto& probe : probes) probe.change_surface(i, organ.following->last_transfer());
+      }
+      report.mesh_coarser |= organ.is_coarser;
+    }
+  }
+
+  /// Makes meshes for where the probes will be when they are taken.
+  void look_ahead() {
+    poses.clear();
+    for (const auto& probe : probes) poses.push_back(probe.ahead(kLookAhead));
+    for (WorldOrgan& organ : organs) {
+      if (!organ.following) continue;
+      organ.following->look(poses, organ.simulated.model(), organ.simulated.state().positions,
+                            organ.generation + 1);
     }
   }
 
@@ -292,9 +336,15 @@ void DeformationWorld::ask_for_volume(std::size_t organ, double ratio) {
   impl_->organs.at(organ).simulated.ask_for_volume(ratio);
 }
 
-void DeformationWorld::set_contacts(const ContactSet& contacts) {
+const OrganMesh* DeformationWorld::next_mesh(std::size_t organ) const {
+  const auto& following = impl_->organs.at(organ).following;
+  return following ? following->next() : nullptr;
+}
+
+void DeformationWorld::set_contacts(const ContactSet& contacts,
+                                    std::span<const std::uint32_t> generations) {
   if (contacts.probe >= impl_->probes.size()) return;
-  impl_->accept(contacts);
+  impl_->accept(contacts, generations);
   impl_->probes[contacts.probe].set_contacts(impl_->accepted);
 }
 
@@ -302,10 +352,16 @@ void DeformationWorld::forget_contacts(std::size_t probe) {
   if (probe < impl_->probes.size()) impl_->probes[probe].forget_contacts();
 }
 
+void DeformationWorld::take_next_meshes() {
+  AdvanceReport report;
+  impl_->change_meshes(report);
+}
+
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
   report.contact_refused = std::exchange(impl_->contact_refused, false);
   impl_->period = period;
+  impl_->change_meshes(report);
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
   if (impl_->organ_contacts) {
     impl_->advance_together(report);
@@ -313,6 +369,7 @@ AdvanceReport DeformationWorld::advance(double period) {
     impl_->advance_apart(report);
   }
   impl_->finish(report);
+  impl_->look_ahead();
   for (auto& probe : impl_->probes) probe.end();
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     if (impl_->organs[i].replaced) impl_->drop_contacts(i);
@@ -323,10 +380,7 @@ AdvanceReport DeformationWorld::advance(double period) {
 }
 
 void DeformationWorld::reset() {
-  for (auto& organ : impl_->organs) {
-    organ.simulated.reset();
-    ++organ.generation;
-  }
+  for (auto& organ : impl_->organs) organ.reset();
   for (auto& probe : impl_->probes) probe.reset();
   impl_->forget_forces();
   if (impl_->organ_contacts) impl_->organ_contacts->reset();

@@ -26,6 +26,8 @@ struct OrganReading {
   std::size_t organ_contacts = 0;   ///< places where it presses on another organ or on itself
 };
 
+struct OrganMesh;
+
 class DeformationWorld {
  public:
   /// @param rest_shapes  one per organ of the scene, closed, outward, in W [m]
@@ -41,7 +43,10 @@ class DeformationWorld {
   std::size_t probe_count() const;
   const std::string& name(std::size_t organ) const;  ///< as the scene calls it
   const OrganModel& model(std::size_t organ) const;
-  std::uint32_t generation(std::size_t organ) const;  ///< counts up from 1 with each reset
+  /// Of its mesh; counts up from 1 with each reset, and where an organ follows with each change.
+  std::uint32_t generation(std::size_t organ) const;
+  /// What the organ will go on with in the next advance, to be told before; nullptr: as it is.
+  const OrganMesh* next_mesh(std::size_t organ) const;
 
   /// Newest pose X_WP of a probe. Contacts are carried along rigidly with it until the next ones.
   /// A probe the scene does not have is ignored.
@@ -49,7 +54,8 @@ class DeformationWorld {
   /// Newest contacts of the probe they name; replaces those it had. Entries naming no organ or
   /// triangle of this world are ignored; those metres away from their tissue or probe are refused,
   /// too, and the next advance says so.
-  void set_contacts(const ContactSet& contacts);
+  /// @param generations  of each organ's mesh that they were found on; empty: of the present ones
+  void set_contacts(const ContactSet& contacts, std::span<const std::uint32_t> generations = {});
 
   /// V*/V₀ of an organ from now on, until reset(), in place of the scene's filling; followed no
   /// faster than that.
@@ -57,6 +63,10 @@ class DeformationWorld {
 
   /// Nobody knows where this probe touches any more: it touches nothing until set_contacts().
   void forget_contacts(std::size_t probe);
+
+  /// Goes on with next_mesh() now, without an advance: who joins while the world stands is told
+  /// that.
+  void take_next_meshes();
 
   /// Advances every organ by `period` [s] in its stable sub-steps. Contacts hold unilaterally,
   /// with friction, inside the volume solve.

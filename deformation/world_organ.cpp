@@ -47,6 +47,39 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
       });
 }
 
+/// What is kept of the model beside it.
+void WorldOrgan::know_model() {
+  const OrganModel& model = simulated.model();
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
+  surface = std::make_unique<SurfaceWalk>(model);
+  compliance = std::make_unique<PatchCompliance>(
+      model, Neighbours(model, tetrahedra), model.is_solid() ? kPatchOfSolid : kPatchOfSprings);
+  mean_edge = geometry::mean_edge_length(
+      {{model.rest_positions.begin(),
+        model.rest_positions.begin() + static_cast<std::ptrdiff_t>(model.surface_node_count)},
+       model.triangles});
+}
+
+void WorldOrgan::take(OrganMesh mesh) {
+  auto dynamics = following->dynamics_of(*mesh.model);
+  const OrganModel& next = *mesh.model;
+  const MeshChange change(simulated.model(), parents, next, mesh.refined.parents);
+  simulated.change_mesh(std::move(mesh.model), std::move(dynamics), change);
+  parents = std::move(mesh.refined.parents);
+  is_coarser = mesh.refined.is_coarser;
+  generation = mesh.generation;
+  know_model();
+}
+
+void WorldOrgan::change_mesh() { take(following->take_next(generation, simulated.model())); }
+
+void WorldOrgan::reset() {
+  generation += following != nullptr && following->next() != nullptr ? 2 : 1;
+  if (following) take(following->begin(generation));
+  simulated.reset();
+}
+
 WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
                       const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding) {
   const scene::Organ organ = stepped_organ(scene, index);
@@ -65,19 +98,17 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
       .name = organ.name,
       .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
       .integrator = integrator,
-      .mean_edge = geometry::mean_edge_length(shape.surface),
   };
   const OrganModel& kept = made.simulated.model();
-  made.surface = std::make_unique<SurfaceWalk>(kept);
   made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;
-  std::vector<geometry::Tetrahedron> tetrahedra;
-  if (kept.is_solid()) {
-    tetrahedra = kept.mesh().tetrahedra;
-  } else {
+  if (!kept.is_solid()) {
     made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
   }
-  made.compliance = std::make_unique<PatchCompliance>(
-      kept, Neighbours(kept, tetrahedra), kept.is_solid() ? kPatchOfSolid : kPatchOfSprings);
+  if (organ.solid.refine.follow) {
+    made.following = std::make_unique<FollowingOrgan>(scene, organ, shape, runner);
+    made.parents = made.following->begin(made.generation).refined.parents;
+  }
+  made.know_model();
   return made;
 }
 

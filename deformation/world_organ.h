@@ -10,6 +10,7 @@
 
 #include "deformation/contact/patch_compliance.h"
 #include "deformation/contact/surface_walk.h"
+#include "deformation/following_organ.h"
 #include "deformation/models.h"
 #include "deformation/simulated_organ.h"
 #include "deformation/springs/patch_springs.h"
@@ -32,11 +33,26 @@ struct WorldOrgan {
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
   std::unique_ptr<SurfaceWalk> surface = nullptr;
-  VolumeGradient volume = {};  ///< buffer of contact_compliance()
+  VolumeGradient volume = {};                           ///< buffer of contact_compliance()
+  std::unique_ptr<FollowingOrgan> following = nullptr;  ///< none: it keeps its mesh
+  /// Of its mesh, where it follows: the middles' ends.
+  std::vector<geometry::HalvedMesh::Parents> parents = {};
+  bool is_coarser = false;  ///< its mesh, than it should be under a probe
 
   /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N], symmetric, one row and column each.
   /// @param period  [s], above 0
   Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period);
+
+  /// Of one that follows: goes on with the mesh that was made for it.
+  void change_mesh();
+  /// At rest, at time 0, with the next generation; one that follows with its coarse mesh.
+  void reset();
+
+ private:
+  friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
+                               ChunkRunner*, Guarding);
+  void take(OrganMesh mesh);
+  void know_model();
 };
 
 /// Organ `index` of a scene at rest. In a scene whose organs may touch, springs whose integrator is

@@ -15,6 +15,7 @@ namespace {
 constexpr double kLeastStrainTop = 0.05;
 constexpr double kFelt = 1e-3;                   // less is no touch [N]
 constexpr double kLeastDisplacementTop = 0.005;  // [m]
+constexpr std::size_t kMostNext = 8;             // surfaces that wait for their positions
 
 bool indices_fit(const SurfaceTopology& surface) {
   const std::size_t nodes = surface.rest_positions.size() / 3;
@@ -84,6 +85,18 @@ void SceneView::note_time(std::int64_t sim_time_ns) { seconds_ = seconds_from_ns
 bool SceneView::receive(SurfaceTopology surface) {
   if (surface.organ >= organs_.size() || !indices_fit(surface)) return ignore();
   OrganView& organ = organs_[surface.organ];
+  if (organ.known) {
+    if (organ.next.size() == kMostNext) organ.next.erase(organ.next.begin());
+    organ.next.push_back(std::move(surface));
+    return true;
+  }
+  show(std::move(surface));
+  return true;
+}
+
+/// Puts an organ at rest.
+void SceneView::show(SurfaceTopology surface) {
+  OrganView& organ = organs_[surface.organ];
   organ.known = true;
   organ.newest = NodePositions{};
   organ.newest.organ = surface.organ;
@@ -95,12 +108,18 @@ bool SceneView::receive(SurfaceTopology surface) {
   ++organ.positions_version;
   sort_springs_by_family(organ);
   find_extent();
-  return true;
 }
 
 bool SceneView::receive(NodePositions positions, std::int64_t now_ns) {
   if (positions.organ >= organs_.size()) return ignore();
   OrganView& organ = organs_[positions.organ];
+  const auto next =
+      std::ranges::find(organ.next, positions.generation, &SurfaceTopology::generation);
+  if (next != organ.next.end()) {
+    SurfaceTopology surface = std::move(*next);
+    organ.next.erase(organ.next.begin(), next + 1);
+    show(std::move(surface));
+  }
   if (!organ.known || positions.generation != organ.surface.generation ||
       positions.positions.size() != organ.surface.rest_positions.size()) {
     return ignore();

@@ -20,6 +20,8 @@ struct OrganView {
   bool solid = false;  ///< made of tetrahedra, whose edges take the springs' place
   bool known = false;  ///< a surface has arrived
   SurfaceTopology surface;
+  /// Told, but no positions have come that are of them: the picture stays until then.
+  std::vector<SurfaceTopology> next;
   std::uint64_t shape_version = 0;      ///< counts accepted surfaces
   std::uint64_t positions_version = 0;  ///< counts accepted surfaces and node positions
   NodePositions newest;                 ///< positions of the surface's generation, else at rest
@@ -98,6 +100,7 @@ class SceneView {
 
  private:
   bool ignore();
+  void show(SurfaceTopology surface);
   void note_time(std::int64_t sim_time_ns);
   void find_extent();
 

@@ -32,7 +32,7 @@ struct Inputs {
   bus::Reader<ModuleStatus> statuses;
 
   explicit Inputs(bus::Bus& bus)
-      : surfaces(bus.reader(bus::kSurface)),
+      : surfaces(bus.reader(bus::kSurface, bus::Keep::kBacklog)),
         positions(bus.reader(bus::kNodePositions)),
         probes(bus.reader(bus::kProbeState)),
         contacts(bus.reader(bus::kContacts)),

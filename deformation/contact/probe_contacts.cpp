@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
 
 namespace palpate::deformation {
@@ -71,6 +72,41 @@ void ProbeContacts::take_forces_of_previous(CarriedContact& carried) {
   if (!nearest) return;
   carried.normal_force = std::exchange(nearest->normal_force, 0);
   carried.tangential_force = std::exchange(nearest->tangential_force, Vec3::Zero());
+}
+
+void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer) {
+  for (Near& near : near_) {
+    if (near.organ != organ) continue;
+    for (std::uint32_t& triangle : near.triangles) {
+      triangle = transfer.place({triangle, Vec3::Constant(1.0 / 3)}).triangle;
+    }
+    sort_unique(near.triangles);
+  }
+  for (CarriedContact& contact : contacts_) {
+    if (contact.organ != organ) continue;
+    const auto moved = transfer.place({contact.triangle, contact.barycentric});
+    contact.triangle = moved.triangle;
+    contact.barycentric = moved.weights;
+  }
+  std::ranges::stable_sort(contacts_, {}, triangle_of);
+  if (core_) unite_contacts_of_triangles();
+}
+
+/// Of a round probe there is one to a triangle; forces of several are its.
+void ProbeContacts::unite_contacts_of_triangles() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (kept > 0 && triangle_of(contacts_[kept - 1]) == triangle_of(contacts_[i])) {
+      CarriedContact& one = contacts_[kept - 1];
+      one.normal_force += contacts_[i].normal_force;
+      one.tangential_force += contacts_[i].tangential_force;
+      one.behind |= contacts_[i].behind;
+    } else {
+      if (kept != i) contacts_[kept] = contacts_[i];
+      ++kept;
+    }
+  }
+  contacts_.erase(contacts_.begin() + static_cast<std::ptrdiff_t>(kept), contacts_.end());
 }
 
 /// Whether the search found the core on the inner side of the contact's tissue.
@@ -142,6 +178,12 @@ bool ProbeContacts::begin(double period) {
 Pose ProbeContacts::pose_at(double fraction) const {
   return {start_.position + fraction * (target_.position - start_.position),
           start_.rotation.slerp(fraction, target_.rotation)};
+}
+
+Pose ProbeContacts::ahead(double advances) const {
+  Vec3 on = advances * (target_.position - start_.position);
+  if (radius() > 0 && on.norm() > radius()) on *= radius() / on.norm();
+  return {target_.position + on, target_.rotation};
 }
 
 ProbeContacts::Near& ProbeContacts::near_of(std::uint32_t organ) {

@@ -9,6 +9,7 @@
 #include "deformation/contact/surface_walk.h"
 #include "deformation/model/organ_state.h"
 #include "modules/core/touch.h"
+#include "modules/geometry/surface_transfer.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
@@ -54,6 +55,9 @@ class ProbeContacts {
   /// it was not seen coming: until it is out, it is pushed at no more than kGentleSpeed.
   void set_contacts(std::span<const Contact> contacts);
 
+  /// An organ's surface has other triangles from now on: contacts stay where they are on it.
+  void change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer);
+
   /// Begins an advance of `period` [s], in which the probe moves from where it was to the newest
   /// pose. @returns false if it jumped: its contacts are dropped
   bool begin(double period);
@@ -83,6 +87,8 @@ class ProbeContacts {
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance
+  /// So many advances further, if it goes on as in this one; no more than its own size.
+  Pose ahead(double advances) const;
   Vec3 impulse() const;  ///< on the probe over the advance [N·s]
   const std::vector<CarriedContact>& contacts() const { return contacts_; }
 
@@ -104,6 +110,7 @@ class ProbeContacts {
   void look_around(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                    const Pose& pose);
   void take_forces_of_previous(CarriedContact& carried);
+  void unite_contacts_of_triangles();
   CarriedContact& contact_on(std::uint32_t organ, std::uint32_t triangle);
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
   /// @returns false if it is seen from behind by a core outside: the wall is not touched there

@@ -29,6 +29,7 @@ struct AdvanceReport {
   bool tissue_inverted = false;          ///< some tetrahedra of a solid are turned inside out
   bool contact_refused = false;          ///< it was too far from its tissue to be one
   bool law_bounded = false;              ///< a law before it: RowStiffness::bounded
+  bool mesh_coarser = false;             ///< under a probe than asked for: as many nodes as may be
   bool probe_jumped = false;             ///< a probe moved faster than is plausible: no contacts
   bool organ_motion_cut = false;         ///< surfaces about to cross were held for a step
   bool organ_contacts_unsolved = false;  ///< of organs: their sweeps were cut

@@ -60,6 +60,15 @@ void DivergenceDetector::begin(const OrganState& state, double elastic_energy) {
   suspicious_ = false;
 }
 
+void DivergenceDetector::take_over(const DivergenceDetector& before, const OrganState& state) {
+  energy_budget_ = before.energy_budget_;
+  injected_energy_ = before.injected_energy_;
+  kinetic_energy_ = before.kinetic_energy_;
+  suspicious_ = before.suspicious_;
+  first_moment_ = first_moment(body_, state.positions);
+  seen_ = state.positions;
+}
+
 void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, double volume_change,
                                   const OrganState& state) {
   injected_energy_ -= std::min(h / kInjectionMemory, 1.0) * injected_energy_;

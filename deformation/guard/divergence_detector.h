@@ -50,6 +50,10 @@ class DivergenceDetector {
   /// Begins anew with `state`, whose stored energy is `elastic_energy` [J].
   void begin(const OrganState& state, double elastic_energy);
 
+  /// Goes on where `before` was, of another mesh of the same organ: what that changes of the energy
+  /// is not given to it.
+  void take_over(const DivergenceDetector& before, const OrganState& state);
+
   /// Energy given in one step of h [s]. `state` is that after it.
   /// @param volume_change  V*⁺ − V* [m³]
   void add_work(double h, std::span<const ContactRow> rows, double volume_change,

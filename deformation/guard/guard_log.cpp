@@ -44,6 +44,8 @@ bool acted(GuardCode code, const AdvanceReport& r) {
       return r.step_reduced;
     case GuardCode::kLawBounded:
       return r.law_bounded;
+    case GuardCode::kMeshCoarser:
+      return r.mesh_coarser;
     case GuardCode::kNone:
       break;
   }

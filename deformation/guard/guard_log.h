@@ -30,6 +30,7 @@ enum class GuardCode : std::uint8_t {
   kContactsUnsolved,
   kStepReduced,
   kLawBounded,
+  kMeshCoarser,
   kNone
 };
 inline constexpr auto kGuardCodes = static_cast<std::size_t>(GuardCode::kNone);

@@ -1,47 +1,66 @@
 #include "deformation/linear_algebra/node_block_matrix.h"
 
 #include <algorithm>
-
-#include "modules/core/sort_unique.h"
+#include <numeric>
+#include <utility>
 
 namespace palpate::deformation {
 namespace {
 
-std::vector<std::vector<std::uint32_t>> nodes_sharing_elements(
-    std::size_t node_count, std::span<const std::array<std::uint32_t, 4>> elements) {
-  std::vector<std::vector<std::uint32_t>> neighbours(node_count);
-  for (std::uint32_t i = 0; i < node_count; ++i) neighbours[i].push_back(i);
-  for (const auto& nodes : elements) {
-    for (const auto a : nodes) {
-      for (const auto b : nodes) neighbours[a].push_back(b);
+/// The elements of each node, one after the other, and which of their corners it is: 4 element +
+/// corner.
+struct Corners {
+  std::vector<std::uint32_t> starts, of_nodes;
+
+  Corners(std::size_t node_count, std::span<const std::array<std::uint32_t, 4>> elements)
+      : starts(node_count + 1, 0), of_nodes(4 * elements.size()) {
+    for (const auto& nodes : elements) {
+      for (const auto node : nodes) ++starts[node + 1];
+    }
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    std::vector<std::uint32_t> next(starts.begin(), starts.end() - 1);
+    for (std::uint32_t e = 0; e < elements.size(); ++e) {
+      for (std::uint32_t k = 0; k < 4; ++k) of_nodes[next[elements[e][k]]++] = 4 * e + k;
     }
   }
-  for (auto& row : neighbours) sort_unique(row);
-  return neighbours;
-}
+
+  std::span<const std::uint32_t> of(std::size_t node) const {
+    return std::span(of_nodes).subspan(starts[node], starts[node + 1] - starts[node]);
+  }
+};
 
 }  // namespace
 
-NodePairs::NodePairs(std::size_t node_count,
-                     std::span<const std::array<std::uint32_t, 4>> elements) {
-  row_starts.push_back(0);
-  for (const auto& row : nodes_sharing_elements(node_count, elements)) {
-    columns.insert(columns.end(), row.begin(), row.end());
-    row_starts.push_back(static_cast<std::uint32_t>(columns.size()));
-  }
-  const auto find = [&](std::uint32_t i, std::uint32_t j) {
-    const auto end = columns.begin() + row_starts[i + 1];
-    const auto at = std::lower_bound(columns.begin() + row_starts[i], end, j);
-    return static_cast<std::uint32_t>(at - columns.begin());
-  };
+NodePairs::NodePairs(std::size_t node_count, std::span<const std::array<std::uint32_t, 4>> elements)
+    : row_starts(node_count + 1, 0), diagonals(node_count), of_elements(elements.size()) {
+  const Corners corners(node_count, elements);
+  std::vector<std::uint32_t> row, place(node_count), seen_in(node_count, 0);
   for (std::uint32_t i = 0; i < node_count; ++i) {
-    diagonals.push_back(find(i, i));
-    for (auto k = row_starts[i]; k < row_starts[i + 1]; ++k) mirrors.push_back(find(columns[k], i));
+    row.assign(1, i);
+    seen_in[i] = i + 1;
+    for (const std::uint32_t corner : corners.of(i)) {
+      for (const std::uint32_t j : elements[corner / 4]) {
+        if (std::exchange(seen_in[j], i + 1) != i + 1) row.push_back(j);
+      }
+    }
+    std::ranges::sort(row);
+    for (const std::uint32_t j : row) {
+      place[j] = static_cast<std::uint32_t>(columns.size());
+      columns.push_back(j);
+    }
+    row_starts[i + 1] = static_cast<std::uint32_t>(columns.size());
+    diagonals[i] = place[i];
+    for (const std::uint32_t corner : corners.of(i)) {
+      const auto& nodes = elements[corner / 4];
+      for (std::size_t k = 0; k < 4; ++k) {
+        of_elements[corner / 4][4 * (corner % 4) + k] = place[nodes[k]];
+      }
+    }
   }
-  for (const auto& nodes : elements) {
-    auto& pairs = of_elements.emplace_back();
-    for (std::size_t k = 0; k < 16; ++k) pairs[k] = find(nodes[k / 4], nodes[k % 4]);
-  }
+  // Rows are gone through in order, so each row's columns are met in theirs.
+  std::vector<std::uint32_t> next(row_starts.begin(), row_starts.end() - 1);
+  mirrors.reserve(columns.size());
+  for (const std::uint32_t column : columns) mirrors.push_back(next[column]++);
 }
 
 void NodeBlockMatrix::set_zero() {

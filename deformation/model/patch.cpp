@@ -3,30 +3,42 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <utility>
 
 #include "modules/core/sort_unique.h"
 
 namespace palpate::deformation {
 
-Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_t, 4>> tetrahedra) {
-  std::vector<std::vector<std::uint32_t>> lists(body.node_count());
-  const auto join = [&](std::uint32_t a, std::uint32_t b) {
-    lists[a].push_back(b);
-    lists[b].push_back(a);
-  };
-  for (const auto& t : body.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) join(t[k], t[(k + 1) % 3]);
-  }
-  for (const auto& t : tetrahedra) {
-    for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t b = a + 1; b < 4; ++b) join(t[a], t[b]);
+Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_t, 4>> tetrahedra)
+    : starts_(body.node_count() + 1, 0) {
+  const auto for_each_edge = [&](const auto& join) {
+    for (const auto& t : body.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) join(t[k], t[(k + 1) % 3]);
     }
-  }
-  starts_.push_back(0);
-  for (auto& list : lists) {
-    sort_unique(list);
-    neighbours_.insert(neighbours_.end(), list.begin(), list.end());
-    starts_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
+    for (const auto& t : tetrahedra) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = a + 1; b < 4; ++b) join(t[a], t[b]);
+      }
+    }
+  };
+  // As often as edges say so, list by list; then each once.
+  std::vector<std::uint32_t> ends(body.node_count() + 1, 0);
+  for_each_edge([&](std::uint32_t a, std::uint32_t b) { ++ends[a + 1], ++ends[b + 1]; });
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::uint32_t> all(ends.back()), firsts = ends;
+  for_each_edge([&](std::uint32_t a, std::uint32_t b) {
+    all[ends[a]++] = b;
+    all[ends[b]++] = a;
+  });
+  std::vector<std::uint32_t> seen_by(body.node_count(), 0);
+  for (std::uint32_t i = 0; i < body.node_count(); ++i) {
+    const auto begin = static_cast<std::ptrdiff_t>(neighbours_.size());
+    for (std::uint32_t k = firsts[i]; k < firsts[i + 1]; ++k) {
+      if (std::exchange(seen_by[all[k]], i + 1) != i + 1) neighbours_.push_back(all[k]);
+    }
+    std::sort(neighbours_.begin() + begin, neighbours_.end());
+    starts_[i + 1] = static_cast<std::uint32_t>(neighbours_.size());
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "modules/core/error.h"
@@ -11,158 +10,220 @@
 namespace palpate::geometry {
 namespace {
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
+/// Of a tree; one that has grown beyond it is planted again.
+constexpr std::size_t kMostTetrahedraKept = 400'000;
 
-struct PairHash {
-  std::size_t operator()(const Edge& edge) const {
-    return std::hash<std::uint64_t>()(std::uint64_t{edge.first} << 32 | edge.second);
-  }
-};
+/// The corner opposite each of kTetrahedronFaces.
+constexpr std::array<int, 4> kOpposite{3, 2, 0, 1};
 
-class Bisection {
- public:
-  Bisection(const TetMesh& mesh, const SizeField& size, std::size_t most_nodes)
-      : nodes_(mesh.nodes), size_(size), most_nodes_(most_nodes) {
-    leaves_.reserve(mesh.tetrahedra.size());
-    for (const Tetrahedron& t : mesh.tetrahedra) leaves_.push_back({t, false});
-  }
+using Place = std::tuple<double, double, double>;
 
-  /// Once over all leaves; children take their parent's place in the order.
-  /// @returns false if nothing was left to halve
-  bool sweep() {
-    const std::size_t before = leaves_.size();
-    std::vector<Leaf> next;
-    next.reserve(before);
-    for (const Leaf& leaf : leaves_) append_leaves(leaf, next);
-    leaves_ = std::move(next);
-    return leaves_.size() > before;
-  }
-
-  /// New nodes are numbered as the tetrahedra come to them: by the tree, not by the sweeps.
-  TetMesh mesh(std::size_t kept) const {
-    TetMesh result;
-    result.nodes.assign(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(kept));
-    std::vector<std::uint32_t> numbers(nodes_.size(), kNone);
-    for (std::uint32_t i = 0; i < kept; ++i) numbers[i] = i;
-    result.tetrahedra.reserve(leaves_.size());
-    for (const Leaf& leaf : leaves_) {
-      Tetrahedron t = leaf.corners;
-      for (std::uint32_t& node : t) {
-        if (numbers[node] == kNone) {
-          numbers[node] = static_cast<std::uint32_t>(result.nodes.size());
-          result.nodes.push_back(nodes_[node]);
-        }
-        node = numbers[node];
-      }
-      result.tetrahedra.push_back(t);
-    }
-    return result;
-  }
-
- private:
-  struct Leaf {
-    Tetrahedron corners;
-    bool is_small_enough;  ///< its sizes were looked at
-  };
-
-  static Edge edge_of(std::uint32_t a, std::uint32_t b) { return std::minmax(a, b); }
-
-  using Place = std::tuple<double, double, double>;
-
-  std::pair<Place, Place> ends(const Edge& edge) const {
-    const Vec3 &p = nodes_[edge.first], &q = nodes_[edge.second];
-    const Place a{p.x(), p.y(), p.z()}, b{q.x(), q.y(), q.z()};
-    return {std::min(a, b), std::max(a, b)};
-  }
-
-  bool comes_first(const Edge& a, const Edge& b) const { return ends(a) < ends(b); }
-
-  double squared_length(const Edge& edge) const {
-    return (nodes_[edge.first] - nodes_[edge.second]).squaredNorm();
-  }
-
-  /// Places in kTetrahedronEdges.
-  std::size_t longest_edge(const Tetrahedron& t) const {
-    std::size_t longest = 0;
-    Edge best{};
-    double best_length = -1;
-    for (std::size_t e = 0; e < kTetrahedronEdges.size(); ++e) {
-      const Edge edge = edge_at(t, e);
-      const double length = squared_length(edge);
-      if (length < best_length || (length == best_length && !comes_first(edge, best))) continue;
-      longest = e;
-      best = edge;
-      best_length = length;
-    }
-    return longest;
-  }
-
-  static Edge edge_at(const Tetrahedron& t, std::size_t e) {
-    const auto& [a, b] = kTetrahedronEdges[e];
-    return edge_of(t[static_cast<std::size_t>(a)], t[static_cast<std::size_t>(b)]);
-  }
-
-  bool lost_an_edge(const Tetrahedron& t) const {
-    for (std::size_t e = 0; e < kTetrahedronEdges.size(); ++e) {
-      if (middles_.contains(edge_at(t, e))) return true;
-    }
-    return false;
-  }
-
-  bool is_too_large(const Tetrahedron& t) const {
-    double longest = 0;
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t e = 0; e < kTetrahedronEdges.size(); ++e) {
-      const Edge edge = edge_at(t, e);
-      const double length = squared_length(edge);
-      const double allowed = size_((nodes_[edge.first] + nodes_[edge.second]) / 2);
-      if (length > allowed * allowed) return true;
-      longest = std::max(longest, length);
-    }
-    for (const auto node : t) mean += nodes_[node] / 4;
-    const double allowed = size_(mean);
-    return longest > allowed * allowed;
-  }
-
-  std::uint32_t middle_of(const Edge& edge) {
-    const auto [at, is_new] = middles_.try_emplace(edge, static_cast<std::uint32_t>(nodes_.size()));
-    if (is_new) {
-      if (nodes_.size() >= most_nodes_) {
-        throw InputError("refined, it would have more than " + std::to_string(most_nodes_) +
-                         " nodes; allow longer edges or let them grow faster");
-      }
-      nodes_.push_back((nodes_[edge.first] + nodes_[edge.second]) / 2);
-    }
-    return at->second;
-  }
-
-  void append_leaves(Leaf leaf, std::vector<Leaf>& leaves) {
-    leaf.is_small_enough = leaf.is_small_enough || !is_too_large(leaf.corners);
-    if (leaf.is_small_enough && !lost_an_edge(leaf.corners)) return leaves.push_back(leaf);
-    const std::size_t e = longest_edge(leaf.corners);
-    const std::uint32_t middle = middle_of(edge_at(leaf.corners, e));
-    for (const int end : {kTetrahedronEdges[e][1], kTetrahedronEdges[e][0]}) {
-      Leaf half{leaf.corners, false};
-      half.corners[static_cast<std::size_t>(end)] = middle;
-      append_leaves(half, leaves);
-    }
-  }
-
-  std::vector<Vec3> nodes_;
-  const SizeField& size_;
-  std::size_t most_nodes_;
-  std::vector<Leaf> leaves_;
-  std::unordered_map<Edge, std::uint32_t, PairHash> middles_;  ///< of the edges that were halved
-};
+Place place_of(const Vec3& x) { return {x.x(), x.y(), x.z()}; }
 
 }  // namespace
 
-TetMesh bisected(const TetMesh& mesh, const SizeField& size, std::size_t most_nodes) {
-  Bisection bisection(mesh, size, most_nodes);
-  while (bisection.sweep()) {
+BisectionTree::BisectionTree(TetMesh mesh)
+    : coarse_(std::move(mesh)), coarse_outer_(coarse_.tetrahedra.size(), 0) {
+  for (const BoundaryTriangle& triangle : boundary_triangles(coarse_)) {
+    coarse_outer_[triangle.tetrahedron] |=
+        static_cast<std::uint8_t>(1 << kOpposite[static_cast<std::size_t>(triangle.face)]);
   }
-  return bisection.mesh(mesh.nodes.size());
+  plant();
+}
+
+void BisectionTree::plant() {
+  nodes_.clear();
+  edges_.clear();
+  tetrahedra_.clear();
+  edge_numbers_.clear();
+  leaves_.clear();
+  choice_ = 0;
+  nodes_chosen_ = coarse_.nodes.size();
+  for (const Vec3& place : coarse_.nodes) nodes_.push_back({place, {kNone, kNone}});
+  for (std::size_t t = 0; t < coarse_.tetrahedra.size(); ++t) {
+    leaves_.push_back(static_cast<std::uint32_t>(t));
+    add(coarse_.tetrahedra[t], coarse_outer_[t]);
+  }
+}
+
+void BisectionTree::add(const Tetrahedron& corners, std::uint8_t outer) {
+  Tet tet;
+  tet.corners = corners;
+  tet.outer = outer;
+  for (std::size_t e = 0; e < kTetrahedronEdges.size(); ++e) {
+    const auto& [i, j] = kTetrahedronEdges[e];
+    tet.edges[e] =
+        edge_between(corners[static_cast<std::size_t>(i)], corners[static_cast<std::size_t>(j)]);
+  }
+  tet.longest = longest_of(tet);
+  tetrahedra_.push_back(tet);
+}
+
+std::uint32_t BisectionTree::edge_between(std::uint32_t a, std::uint32_t b) {
+  if (a > b) std::swap(a, b);
+  const auto [at, is_new] = edge_numbers_.try_emplace(std::uint64_t{a} << 32 | b,
+                                                      static_cast<std::uint32_t>(edges_.size()));
+  if (is_new) {
+    Edge edge;
+    edge.a = a;
+    edge.b = b;
+    edge.squared_length = (nodes_[a].place - nodes_[b].place).squaredNorm();
+    edges_.push_back(edge);
+  }
+  return at->second;
+}
+
+bool BisectionTree::comes_first(const Edge& a, const Edge& b) const {
+  const auto ends = [&](const Edge& edge) {
+    const Place p = place_of(nodes_[edge.a].place), q = place_of(nodes_[edge.b].place);
+    return std::pair(std::min(p, q), std::max(p, q));
+  };
+  return ends(a) < ends(b);
+}
+
+std::uint8_t BisectionTree::longest_of(const Tet& tet) const {
+  std::uint8_t longest = 0;
+  for (std::uint8_t e = 1; e < 6; ++e) {
+    const Edge &edge = edges_[tet.edges[e]], &best = edges_[tet.edges[longest]];
+    if (edge.squared_length < best.squared_length) continue;
+    if (edge.squared_length > best.squared_length || comes_first(edge, best)) longest = e;
+  }
+  return longest;
+}
+
+void BisectionTree::halve(std::uint32_t number) {
+  const Tet tet = tetrahedra_[number];
+  Edge& edge = edges_[tet.edges[tet.longest]];
+  if (edge.middle == kNone) {
+    edge.middle = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({(nodes_[edge.a].place + nodes_[edge.b].place) / 2, {edge.a, edge.b}});
+  }
+  const std::uint32_t middle = edge.middle;
+  tetrahedra_[number].halves = static_cast<std::uint32_t>(tetrahedra_.size());
+  const auto& ends = kTetrahedronEdges[tet.longest];
+  for (const int given : {ends[1], ends[0]}) {
+    const int kept = ends[0] + ends[1] - given;
+    Tetrahedron corners = tet.corners;
+    corners[static_cast<std::size_t>(given)] = middle;
+    // Opposite the end that is kept lies the new face between both halves.
+    add(corners, static_cast<std::uint8_t>(tet.outer & ~(1 << kept)));
+  }
+}
+
+bool BisectionTree::is_too_large(const Tet& tet, const SizeField& size) {
+  for (const std::uint32_t e : tet.edges) {
+    Edge& edge = edges_[e];
+    if (edge.sized_in != choice_) {
+      const double allowed = size((nodes_[edge.a].place + nodes_[edge.b].place) / 2);
+      edge.too_long = edge.squared_length > allowed * allowed;
+      edge.sized_in = choice_;
+    }
+    if (edge.too_long) return true;
+  }
+  Vec3 mean = Vec3::Zero();
+  for (const auto node : tet.corners) mean += nodes_[node].place / 4;
+  const double allowed = size(mean);
+  return edges_[tet.edges[tet.longest]].squared_length > allowed * allowed;
+}
+
+bool BisectionTree::lost_an_edge(const Tet& tet) const {
+  return std::ranges::any_of(tet.edges,
+                             [&](std::uint32_t e) { return edges_[e].halved_in == choice_; });
+}
+
+/// Children take their parent's place in the order.
+/// @param is_small_enough  its sizes were looked at
+/// @returns false if there are too many nodes
+bool BisectionTree::append_leaves(std::uint32_t number, bool is_small_enough, const SizeField& size,
+                                  std::size_t most_nodes) {
+  is_small_enough = is_small_enough || !is_too_large(tetrahedra_[number], size);
+  if (is_small_enough && !lost_an_edge(tetrahedra_[number])) {
+    next_leaves_.push_back(number);
+    return true;
+  }
+  if (tetrahedra_[number].halves == kNone) halve(number);
+  const Tet& tet = tetrahedra_[number];
+  Edge& edge = edges_[tet.edges[tet.longest]];
+  if (edge.halved_in != choice_) {
+    edge.halved_in = choice_;
+    if (++nodes_chosen_ > most_nodes) return false;
+  }
+  const std::uint32_t first = tet.halves;
+  return append_leaves(first, false, size, most_nodes) &&
+         append_leaves(first + 1, false, size, most_nodes);
+}
+
+bool BisectionTree::choose(const SizeField& size, std::size_t most_nodes) {
+  if (tetrahedra_.size() > kMostTetrahedraKept) plant();
+  ++choice_;
+  nodes_chosen_ = coarse_.nodes.size();
+  leaves_.resize(coarse_.tetrahedra.size());
+  for (std::uint32_t t = 0; t < leaves_.size(); ++t) leaves_[t] = t;
+  bool looked_at = false, any = true;
+  while (any) {
+    next_leaves_.clear();
+    for (const std::uint32_t leaf : leaves_) {
+      if (append_leaves(leaf, looked_at, size, most_nodes)) continue;
+      leaves_.clear();
+      return false;
+    }
+    any = next_leaves_.size() > leaves_.size();
+    looked_at = true;
+    std::swap(leaves_, next_leaves_);
+  }
+  return true;
+}
+
+HalvedMesh BisectionTree::mesh() const {
+  HalvedMesh result;
+  TetMesh& mesh = result.mesh;
+  mesh.nodes = coarse_.nodes;
+  mesh.tetrahedra.reserve(leaves_.size());
+  std::vector<std::uint32_t> numbers(nodes_.size(), kNone), chosen;
+  for (std::uint32_t i = 0; i < mesh.nodes.size(); ++i) {
+    numbers[i] = i;
+    chosen.push_back(i);
+  }
+  for (const std::uint32_t leaf : leaves_) {
+    // Numbered as the tetrahedra come to them: by the tree, not by what was chosen before.
+    Tetrahedron corners = tetrahedra_[leaf].corners;
+    for (std::uint32_t& node : corners) {
+      if (numbers[node] == kNone) {
+        numbers[node] = static_cast<std::uint32_t>(mesh.nodes.size());
+        mesh.nodes.push_back(nodes_[node].place);
+        chosen.push_back(node);
+      }
+      node = numbers[node];
+    }
+    for (int face = 0; face < 4; ++face) {
+      if ((tetrahedra_[leaf].outer & 1 << kOpposite[static_cast<std::size_t>(face)]) == 0) continue;
+      BoundaryTriangle triangle{{}, static_cast<std::uint32_t>(mesh.tetrahedra.size()), face};
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.nodes[k] =
+            corners[static_cast<std::size_t>(kTetrahedronFaces[static_cast<std::size_t>(face)][k])];
+      }
+      result.boundary.push_back(triangle);
+    }
+    mesh.tetrahedra.push_back(corners);
+  }
+  for (const std::uint32_t node : chosen) {
+    HalvedMesh::Parents parents = nodes_[node].parents;
+    if (parents[0] != kNone) {
+      const auto [low, high] = std::minmax(numbers[parents[0]], numbers[parents[1]]);
+      parents = {low, high};
+    }
+    result.parents.push_back(parents);
+  }
+  return result;
+}
+
+TetMesh bisected(const TetMesh& mesh, const SizeField& size, std::size_t most_nodes) {
+  BisectionTree tree(mesh);
+  if (!tree.choose(size, most_nodes)) {
+    throw InputError("refined, it would have more than " + std::to_string(most_nodes) +
+                     " nodes; allow longer edges or let them grow faster");
+  }
+  return tree.mesh().mesh;
 }
 
 }  // namespace palpate::geometry

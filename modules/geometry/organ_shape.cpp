@@ -58,8 +58,15 @@ std::vector<std::vector<Triangle>> triangles_of(const std::vector<OrganShape>& s
 }
 
 OrganShape shape_of(const TetMesh& mesh) {
-  const auto boundary = boundary_triangles(mesh);
-  std::vector<std::uint32_t> number(mesh.nodes.size(), kNone);
+  std::vector<std::uint32_t> numbers;
+  OrganShape shape = shape_of(mesh, boundary_triangles(mesh), numbers);
+  check_boundary(shape.surface);
+  return shape;
+}
+
+OrganShape shape_of(const TetMesh& mesh, std::span<const BoundaryTriangle> boundary,
+                    std::vector<std::uint32_t>& number) {
+  number.assign(mesh.nodes.size(), kNone);
   for (const auto& triangle : boundary) {
     for (const auto node : triangle.nodes) number[node] = 0;
   }
@@ -81,7 +88,6 @@ OrganShape shape_of(const TetMesh& mesh) {
   for (const auto& [a, b, c, d] : mesh.tetrahedra) {
     shape.tetrahedra.push_back({number[a], number[b], number[c], number[d]});
   }
-  check_boundary(shape.surface);
   return shape;
 }
 

@@ -1,6 +1,8 @@
 // The shape of an organ at rest: its surface and, for models of solids, what fills it.
 #pragma once
 
+#include <span>
+
 #include "modules/geometry/tet_mesh.h"
 
 namespace palpate::geometry {
@@ -31,6 +33,11 @@ std::vector<std::vector<Triangle>> triangles_of(const std::vector<OrganShape>& s
 /// Renumbers the mesh: nodes of its boundary first, in their order, then the others in theirs.
 /// @throws InputError if its boundary is not one closed manifold surface
 OrganShape shape_of(const TetMesh& mesh);
+/// The same of a boundary that is known, and known to be sound.
+/// @param boundary  as boundary_triangles()
+/// @param numbers   out: of the mesh's nodes in the shape
+OrganShape shape_of(const TetMesh& mesh, std::span<const BoundaryTriangle> boundary,
+                    std::vector<std::uint32_t>& numbers);
 
 /// The same solid of quadratic tetrahedra: straight edges get a node in their middle, each triangle
 /// of the surface becomes four. Nodes that there were keep their order.

@@ -10,6 +10,7 @@
 #include "modules/runtime/session.h"
 #include "modules/runtime/status_reporter.h"
 #include "modules/runtime/stop_signal.h"
+#include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::runtime {
@@ -74,6 +75,7 @@ class LockstepModule {
       clock_ns_ = cursor_->next_ns();
       const Health health = cursor_->step(*stage_);
       ++loop_.cycles;
+      wait_until_states_are_heard();
       if (*health.guard != '\0') guard_ = health.guard;
       status_.set_contact_troubles(health.contacts);
       finished_ = health.finished;
@@ -120,6 +122,17 @@ class LockstepModule {
   /// while would wait for it in vain. A signal ends it.
   void wait_until_heard() {
     for (bus::Output* output : bus_.outputs()) {
+      while (!stop_.requested() && !output->raw().wait_until_received(kLongestWait)) {
+      }
+    }
+  }
+
+  /// What a state says now, a reader may need by the next cycle, and no cycle waits for it: a mesh
+  /// is told once, an advance before node positions are of it.
+  void wait_until_states_are_heard() {
+    for (bus::Output* output : bus_.outputs()) {
+      const bus::TopicInfo& topic = output->topic();
+      if (topic.delivery != bus::Delivery::kState || find_wire(topic.name) == nullptr) continue;
       while (!stop_.requested() && !output->raw().wait_until_received(kLongestWait)) {
       }
     }

@@ -73,12 +73,13 @@ void check_size(const geometry::OrganShape& shape, const std::string& owner) {
 geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
   const Refinement& refine = organ.solid.refine;
   if (refine.near.empty()) return mesh;
+  const double edge = refine.edge_length.value_or(Refinement::kRegionEdge);
   const auto longest_edge = [&](const Vec3& x) {
     double least = std::numeric_limits<double>::infinity();
     for (const Region& region : refine.near) {
       least = std::min(least, distance(region, organ.pose.to_world(x)));
     }
-    return refine.edge_length + refine.growth * least;
+    return edge + refine.growth * least;
   };
   try {
     return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);

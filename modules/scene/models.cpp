@@ -62,12 +62,14 @@ constexpr std::array<ModelFormat, 17> kFormats{{
      .mesh = kLinear,
      .iterations = 20,
      .iterates = kGradients,
+     .may_change_mesh = true,
      .largest_poisson_ratio = kBelowIncompressible},
     {.word = "nodal_pressure",
      .meaning = "neo-Hookean linear tetrahedra with averaged nodal pressures, implicit",
      .mesh = kLinear,
      .iterations = 40,
-     .iterates = kGradients},
+     .iterates = kGradients,
+     .may_change_mesh = true},
     {.word = "quadratic_pressure",
      .meaning = "neo-Hookean quadratic tetrahedra with a pressure each, implicit",
      .mesh = kQuadratic,
@@ -126,8 +128,7 @@ const std::array kOptionalKeys{
     OptionalKey{"solid.element_size_m", of_solids,
                 [](const Organ& o) { return o.solid.element_size == kDefaults.solid.element_size; },
                 [](Organ& o) { o.solid.element_size = kDefaults.solid.element_size; }},
-    OptionalKey{"solid.refine", of_solids,
-                [](const Organ& o) { return o.solid.refine.near.empty(); },
+    OptionalKey{"solid.refine", of_solids, [](const Organ& o) { return !o.solid.refine.any(); },
                 [](Organ& o) { o.solid.refine = kDefaults.solid.refine; }},
     OptionalKey{"solid.modes", [](const ModelFormat& f) { return f.has_modes; },
                 [](const Organ& o) { return o.solid.modes == kDefaults.solid.modes; },
@@ -163,6 +164,11 @@ Misfit impossible_for_model(const Organ& organ) {
   if (has_filling(organ)) {
     return {"filling",
             "does not go with model " + organ.model + ", a solid; models of surfaces are filled"};
+  }
+  if (organ.solid.refine.follow && !format.may_change_mesh) {
+    return {"solid.refine.follow",
+            "does not go with model " + organ.model + "; tetrahedra change while they move with " +
+                words_where([](const ModelFormat& f) { return f.may_change_mesh; })};
   }
   if (organ.solid.poisson_ratio <= format.largest_poisson_ratio) return {};
   return {"solid.poisson_ratio", "model " + organ.model + " needs at most 0.4999; up to 0.5 take " +

@@ -27,7 +27,9 @@ struct ModelFormat {
   std::size_t iterations = 0;           ///< of `iterations` the model's own; 0: it has no such key
   const char* iterates = "";            ///< what those are
   bool has_modes = false;               ///< reads `solid.modes`
-  double largest_poisson_ratio = 0.5;   ///< of `solid.poisson_ratio`, of a model of solids
+  /// Goes with `solid.refine.follow`: a step needs no more of the last than positions, velocities.
+  bool may_change_mesh = false;
+  double largest_poisson_ratio = 0.5;  ///< of `solid.poisson_ratio`, of a model of solids
 
   bool is_solid() const { return mesh != MeshKind::kSurfaceSprings; }
   bool is_quadratic() const { return mesh == MeshKind::kQuadraticTetrahedra; }

@@ -47,9 +47,16 @@ using Region = std::variant<SphereRegion, BoxRegion>;  ///< keys `sphere`, `box`
 
 /// Where a solid's tetrahedra are smaller than elsewhere.
 struct Refinement {
-  std::vector<Region> near;   ///< `near`; none: nowhere
-  double edge_length = 4e-3;  ///< `edge_m`, longest edge inside them [1e-4 … 1]
-  double growth = 0.5;        ///< `growth`: longer by this per metre of distance [0.05 … 100]
+  std::vector<Region> near;  ///< `near`; none: nowhere
+  /// `edge_m`, longest edge there [1e-4 … 1]; none: kRegionEdge in regions, under a probe what its
+  /// radius and needs.force_error want
+  std::optional<double> edge_length;
+  double growth = 0.5;       ///< `growth`: longer by this per metre of distance [0.05 … 100]
+  bool follow = false;       ///< `follow`: where probes touch, as they go
+  std::size_t nodes = 2500;  ///< `nodes` of an organ that follows, at most [100 … 50000]
+
+  static constexpr double kRegionEdge = 4e-3;
+  bool any() const { return follow || !near.empty(); }
 };
 
 /// Parameters that models of solids need beside the tissue.

@@ -74,10 +74,14 @@ void describe(V& v, Springs& springs) {
 template <class V>
 void describe(V& v, Refinement& refine) {
   v.field("near", refine.near, plain("regions of W that are touched; none = nowhere"));
+  v.field("follow", refine.follow, plain("smaller tetrahedra under the probes, wherever they go"));
   v.field("edge_m", refine.edge_length,
-          ranged("m", 1e-4, 1, "longest edge there; half a probe's radius is a start"));
+          ranged("m", 1e-4, 1, "longest edge there; half a probe's radius is a start")
+              .otherwise("0.004 in regions; under a probe by its radius and needs.force_error"));
   v.field("growth", refine.growth,
-          ranged("", 0.05, 100, "how much longer edges may be per metre beyond the regions"));
+          ranged("", 0.05, 100, "how much longer edges may be per metre of distance"));
+  v.field("nodes", refine.nodes,
+          ranged("", 100, 50000, "most of an organ that follows; edges are longer where needed"));
 }
 
 template <class V>

@@ -107,7 +107,9 @@ std::string Candidate::name() const {
       fmt::format("{}, {} nodes, {:g} Hz{}", model, nodes, rate,
                   integrator == scene::Integrator::kBackwardEuler ? ", backward_euler" : "");
   if (!refine.near.empty()) {
-    text += fmt::format(", {:.3g} mm + {:.2g} d", 1e3 * refine.edge_length, refine.growth);
+    text += fmt::format(", {:.3g} mm + {:.2g} d",
+                        1e3 * refine.edge_length.value_or(scene::Refinement::kRegionEdge),
+                        refine.growth);
   }
   return text;
 }

@@ -44,6 +44,9 @@ class PressedOrgan {
   Vec3 rest_position(std::size_t node) const;  ///< [m]
   std::size_t node_count() const { return model().node_count(); }
   const deformation::OrganModel& model() const { return session_.world().model(0); }
+  deformation::OrganReading read() const { return session_.world().read(0); }
+  /// Of the last period.
+  const deformation::AdvanceReport& report() const { return session_.deformation().report(); }
   double step() const { return period_ / session_.world().substeps(0, period_); }  ///< h [s]
 
   double volume_error() const { return volume_error_; }  ///< largest |V − V*|/V* so far

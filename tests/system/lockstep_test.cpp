@@ -13,6 +13,7 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/recording/inspect.h"
+#include "modules/recording/sample_reader.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
@@ -30,12 +31,16 @@ constexpr const char* kPress =
 constexpr double kRunDeadline = 100;  // [s]; a run takes about one
 
 /// `palpate run` to its end. @param meddle  called again and again while it runs
-int run(const BallScene& scene, std::vector<std::string> more,
+int run(const std::filesystem::path& scene, std::vector<std::string> more,
         const std::function<void(pid_t)>& meddle = {},
         const bus::BusOptions& options = own_bus_options()) {
-  std::vector<std::string> arguments{
-      "run",      scene.file().string(),         "--headless", "--session", options.session,
-      "--domain", std::to_string(options.domain)};
+  std::vector<std::string> arguments{"run",
+                                     scene.string(),
+                                     "--headless",
+                                     "--session",
+                                     options.session,
+                                     "--domain",
+                                     std::to_string(options.domain)};
   arguments.insert(arguments.end(), more.begin(), more.end());
   launcher::ChildProcess child(std::filesystem::path(PALPATE_BIN_DIR) / "palpate", arguments);
   const bool ended = wait_until(
@@ -47,6 +52,12 @@ int run(const BallScene& scene, std::vector<std::string> more,
       kRunDeadline);
   if (!ended || !WIFEXITED(*child.ended())) return -1;
   return WEXITSTATUS(*child.ended());
+}
+
+int run(const BallScene& scene, std::vector<std::string> more,
+        const std::function<void(pid_t)>& meddle = {},
+        const bus::BusOptions& options = own_bus_options()) {
+  return run(scene.file(), std::move(more), meddle, options);
 }
 
 std::string bytes(const std::filesystem::path& file) {
@@ -90,6 +101,45 @@ TEST_CASE(
           0);
   CHECK(stops > 3);
   CHECK(bytes(four) == expected);
+}
+
+TEST_CASE("lockstep: a solid that follows the touch changes its mesh alike in four processes") {
+  // Oracle: the same session in one process, byte for byte; the recording holds surfaces of rising
+  // generations, each before the first positions of it, and every positions message is of one told.
+  const Scripts files;
+  scene::Scene liver =
+      scene::load_scene(std::filesystem::path(PALPATE_SOURCE_DIR) / "scenes" / "liver_solid.yaml");
+  liver.organs[0].solid.refine.follow = true;
+  liver.organs[0].solid.refine.nodes = 800;
+  const Vec3 start(-0.020, -0.082, 0.013);
+  scene::ScriptedDevice script;
+  script.start = start;
+  script.moves = {{start + Vec3(0, 0.016, 0), 0.3}, {start + Vec3(0.02, 0.016, 0), 0.5}};
+  liver.probes[0].device = script;
+  const auto file = files.folder() / "follow.yaml";
+  std::ofstream(file) << scene::resolved_text(liver);
+  const auto one = files.folder() / "one.mcap", four = files.folder() / "four.mcap";
+  REQUIRE(run(file, {"--in-process", "--duration", "1", "--record", one.string()}) == 0);
+  REQUIRE(run(file, {"--lockstep", "--duration", "1", "--record", four.string()}) == 0);
+  CHECK(bytes(four) == bytes(one));
+
+  recording::SampleReader reader(one);
+  std::map<std::uint32_t, std::size_t> nodes;  // of each generation told
+  messages::AnyMessage message;
+  std::uint32_t shown = 0;
+  while (const auto sample = reader.next()) {
+    REQUIRE(sample->topic->type->decode(sample->payload, message) == nullptr);
+    if (const auto* surface = std::get_if<SurfaceTopology>(&message)) {
+      nodes[surface->generation] = surface->rest_positions.size();
+    } else if (const auto* positions = std::get_if<NodePositions>(&message)) {
+      REQUIRE(nodes.contains(positions->generation));
+      CHECK(nodes[positions->generation] == positions->positions.size());
+      CHECK(positions->generation >= shown);
+      shown = positions->generation;
+    }
+  }
+  CHECK(shown > 5);
+  CHECK(nodes.size() >= shown);
 }
 
 TEST_CASE("lockstep: a recorder that was stopped gets what the others said before they left") {

@@ -101,13 +101,22 @@ TEST_CASE("scene view: unknown organs and probes and bad indices are refused",
 
 TEST_CASE("scene view: a new generation replaces the surface and sorts its springs",
           "[visualizer]") {
-  // Oracle: counts of a closed surface: edges = 3/2 triangles.
+  // Oracle: counts of a closed surface: edges = 3/2 triangles; the stated rule: the picture stays
+  // until positions of the new surface come, and those of one passed over are never shown.
   SceneView view(two_probe_scene());
-  REQUIRE(view.receive(ball_topology(1)));
-  const auto finer = topology_of(geometry::make_ball(0.05, 3), 2);
+  const auto coarse = ball_topology(1);
+  REQUIRE(view.receive(coarse));
+  REQUIRE(view.receive(positions_of(coarse, 1), kSecond));
+  const auto finer = topology_of(geometry::make_ball(0.05, 3), 3);
+  REQUIRE(view.receive(ball_topology(2)));
   REQUIRE(view.receive(finer));
   const OrganView& organ = view.organs()[0];
+  CHECK(organ.shape_version == 1);
+  CHECK(view.receive(positions_of(coarse, 1.1), kSecond));
+  CHECK(view.receive(positions_of(finer, 1.2), kSecond));
   CHECK(organ.shape_version == 2);
+  CHECK(organ.surface.generation == 3);
+  CHECK_FALSE(view.receive(positions_of(ball_topology(2), 1.3), kSecond));
   CHECK(organ.springs[0].size() == 3 * finer.triangles.size() / 2);
   CHECK(organ.springs[1].empty());
   CHECK(organ.springs[2].size() == finer.surface_node_count);

@@ -26,12 +26,13 @@ TEST_CASE("guard log: every guard has a code of its own, and every code a guard"
   for (int reason = 1; reason <= static_cast<int>(Violation::kCollapsed); ++reason) {
     reports.push_back(replaced(static_cast<Violation>(reason)));
   }
-  for (const auto flag : {&AdvanceReport::back_to_rest, &AdvanceReport::step_reduced,
-                          &AdvanceReport::pressure_capped, &AdvanceReport::volume_released,
-                          &AdvanceReport::volume_skipped, &AdvanceReport::contacts_suspended,
-                          &AdvanceReport::tissue_inverted, &AdvanceReport::contact_refused,
-                          &AdvanceReport::probe_jumped, &AdvanceReport::organ_motion_cut,
-                          &AdvanceReport::organ_contacts_unsolved, &AdvanceReport::law_bounded}) {
+  for (const auto flag :
+       {&AdvanceReport::back_to_rest, &AdvanceReport::step_reduced, &AdvanceReport::pressure_capped,
+        &AdvanceReport::volume_released, &AdvanceReport::volume_skipped,
+        &AdvanceReport::contacts_suspended, &AdvanceReport::tissue_inverted,
+        &AdvanceReport::contact_refused, &AdvanceReport::probe_jumped,
+        &AdvanceReport::organ_motion_cut, &AdvanceReport::organ_contacts_unsolved,
+        &AdvanceReport::law_bounded, &AdvanceReport::mesh_coarser}) {
     reports.emplace_back();
     reports.back().*flag = true;
   }

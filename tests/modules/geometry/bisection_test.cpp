@@ -160,6 +160,48 @@ TEST_CASE("bisection: tetrahedra do not go flat, however often they are halved")
   }
 }
 
+TEST_CASE("bisection: a tree that was asked for others gives the mesh that one made anew gives") {
+  // Oracle: bit for bit a fresh tree, and brute force over faces and places; the boundary and each
+  // middle's ends found again from the nodes. Centres at random, some of them outside.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-0.01, 0.09);
+  const TetMesh coarse = shaken_block(4);
+  BisectionTree tree(coarse);
+  for (int change = 0; change < 60; ++change) {
+    const Vec3 centre(place(random), place(random), place(random));
+    const SizeField size = about(centre, 8e-3, 5e-3, 0.6);
+    REQUIRE(tree.choose(size, kMostNodes));
+    const HalvedMesh used = tree.mesh();
+    const TetMesh fresh = bisected(coarse, size, kMostNodes);
+    CHECK(used.mesh.nodes == fresh.nodes);
+    CHECK(used.mesh.tetrahedra == fresh.tetrahedra);
+    const auto boundary = boundary_triangles(fresh);
+    REQUIRE(used.boundary.size() == boundary.size());
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+      CHECK(used.boundary[i].nodes == boundary[i].nodes);
+    }
+    for (std::size_t i = 0; i < fresh.nodes.size(); ++i) {
+      const auto& [a, b] = used.parents[i];
+      CHECK((a == HalvedMesh::kNone) == (i < coarse.nodes.size()));
+      if (a != HalvedMesh::kNone) CHECK(fresh.nodes[i] == (fresh.nodes[a] + fresh.nodes[b]) / 2);
+    }
+    if (change % 10 != 0) continue;
+    check_conforming(used.mesh);
+    CHECK(testing::volume_of(used.mesh) == Approx(testing::volume_of(coarse)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("bisection: a tree that would take too many nodes says so and goes on") {
+  // Oracle: the number of nodes of the mesh itself, and the mesh of a fresh tree.
+  const TetMesh coarse = shaken_block(4);
+  BisectionTree tree(coarse);
+  const SizeField size = about({0.04, 0.04, 0.08}, 8e-3, 3e-3, 0.5);
+  const TetMesh fine = bisected(coarse, size, kMostNodes);
+  CHECK_FALSE(tree.choose(size, fine.nodes.size() - 1));
+  CHECK(tree.choose(size, fine.nodes.size()));
+  CHECK(tree.mesh().mesh.tetrahedra == fine.tetrahedra);
+}
+
 TEST_CASE("bisection: more nodes than allowed are refused") {
   // Oracle: the message.
   CHECK_THROWS_WITH(bisected(

@@ -93,7 +93,8 @@ std::vector<double> depths(const Probe& probe, const geometry::TriangleSurface& 
 }
 
 const std::vector<std::string> kOneProbeScenes{"stomach_probe", "stomach_probe_refined",
-                                               "liver_probe", "liver_solid", "own_mesh"};
+                                               "liver_probe",   "liver_solid",
+                                               "liver_touch",   "own_mesh"};
 
 }  // namespace
 
@@ -109,8 +110,8 @@ TEST_CASE("shipped scenes: are the ones promised, and every one loads") {
     CHECK(parse_scene(resolved_text(scene), scene.file).organs.size() == scene.organs.size());
   }
   CHECK(found == std::set<std::string>{"ball_squeeze", "liver_on_stomach", "liver_probe",
-                                       "liver_solid", "own_mesh", "press_me", "stomach_folded",
-                                       "stomach_insufflated", "stomach_probe",
+                                       "liver_solid", "liver_touch", "own_mesh", "press_me",
+                                       "stomach_folded", "stomach_insufflated", "stomach_probe",
                                        "stomach_probe_refined"});
 }
 

@@ -1,0 +1,100 @@
+#include "deformation/model/mesh_change.h"
+
+#include <algorithm>
+
+#include "modules/geometry/surface_transfer.h"
+
+namespace palpate::deformation {
+namespace {
+
+using geometry::kNoPlace;
+using Parents = MeshChange::Parents;
+
+constexpr std::uint32_t kCoarse = geometry::HalvedMesh::kNone;
+
+/// 0 of the coarse mesh, else one more than the higher parent's.
+std::vector<int> levels_of(std::span<const Parents> parents) {
+  constexpr int kUnknown = -1;
+  std::vector<int> levels(parents.size(), kUnknown);
+  std::vector<std::uint32_t> waiting;
+  for (std::uint32_t i = 0; i < parents.size(); ++i) {
+    waiting.assign(1, i);
+    while (!waiting.empty()) {
+      const std::uint32_t node = waiting.back();
+      const auto& [a, b] = parents[node];
+      if (a != kCoarse && levels[a] == kUnknown) {
+        waiting.push_back(a);
+      } else if (a != kCoarse && levels[b] == kUnknown) {
+        waiting.push_back(b);
+      } else {
+        levels[node] = a == kCoarse ? 0 : 1 + std::max(levels[a], levels[b]);
+        waiting.pop_back();
+      }
+    }
+  }
+  return levels;
+}
+
+}  // namespace
+
+MeshChange::MeshChange(const Body& from, std::span<const Parents> from_parents, const Body& to,
+                       std::span<const Parents> to_parents)
+    : from_(from), to_(to), kept_(geometry::same_places(to.rest_positions, from.rest_positions)) {
+  std::vector<bool> stays(from.node_count(), false);
+  for (std::uint32_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] == kNoPlace) {
+      coming_.push_back({i, to_parents[i]});
+    } else {
+      stays[kept_[i]] = true;
+    }
+  }
+  for (std::uint32_t i = 0; i < stays.size(); ++i) {
+    if (!stays[i]) going_.push_back({i, from_parents[i]});
+  }
+  const std::vector<int> to_levels = levels_of(to_parents), from_levels = levels_of(from_parents);
+  std::ranges::stable_sort(coming_, {}, [&](const Middle& m) { return to_levels[m.node]; });
+  std::ranges::stable_sort(going_, {}, [&](const Middle& m) { return -from_levels[m.node]; });
+}
+
+OrganState MeshChange::carried(const OrganState& state) const {
+  std::vector<double> masses = from_.masses;
+  std::vector<Vec3> momenta(masses.size());
+  for (std::size_t i = 0; i < masses.size(); ++i) momenta[i] = masses[i] * state.velocities[i];
+  for (const Middle& middle : going_) {
+    for (const std::uint32_t end : middle.ends) {
+      masses[end] += masses[middle.node] / 2;
+      momenta[end] += momenta[middle.node] / 2;
+    }
+  }
+  OrganState carried = state;
+  carried.internal = {};
+  carried.positions.assign(to_.node_count(), Vec3::Zero());
+  carried.velocities.assign(to_.node_count(), Vec3::Zero());
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] == kNoPlace) continue;
+    carried.positions[i] = state.positions[kept_[i]];
+    carried.velocities[i] = momenta[kept_[i]] / masses[kept_[i]];
+  }
+  for (const Middle& middle : coming_) {
+    const auto& [a, b] = middle.ends;
+    carried.positions[middle.node] = (carried.positions[a] + carried.positions[b]) / 2;
+    carried.velocities[middle.node] = (carried.velocities[a] + carried.velocities[b]) / 2;
+  }
+  for (const std::uint32_t node : to_.fixed_nodes) carried.velocities[node].setZero();
+  return carried;
+}
+
+void hold_as_coarse(std::span<const MeshChange::Parents> parents, Body& body) {
+  const std::vector<int> levels = levels_of(parents);
+  std::vector<std::uint32_t> held = body.fixed_nodes;
+  std::ranges::stable_sort(held, {}, [&](std::uint32_t node) { return levels[node]; });
+  for (const std::uint32_t node : held) {
+    const auto& [a, b] = parents[node];
+    if (a == kCoarse || (body.inverse_masses[a] == 0 && body.inverse_masses[b] == 0)) continue;
+    body.inverse_masses[node] = 1 / body.masses[node];
+  }
+  std::erase_if(body.fixed_nodes,
+                [&](std::uint32_t node) { return body.inverse_masses[node] > 0; });
+}
+
+}  // namespace palpate::deformation
