@@ -7,6 +7,7 @@
 using namespace palpate;
 using namespace palpate::visualizer;
 using visualizer::testing::Picture;
+using visualizer::testing::positions_of;
 using visualizer::testing::Studio;
 using visualizer::testing::topology_of;
 
@@ -37,6 +38,7 @@ TEST_CASE(
   const Picture empty = studio.draw_nothing();
   studio.topology = topology_of(geometry::make_ball(0.03, 2), 2);
   studio.view.receive(studio.topology);
+  studio.view.receive(positions_of(studio.topology), 0);  // until then the old picture stays
   const Pixel was_organ = studio.pixel_of(Vec3(-0.045, 0, 0));
   CHECK(plain.at(was_organ.x, was_organ.y) != empty.at(was_organ.x, was_organ.y));
   CHECK(studio.draw().at(was_organ.x, was_organ.y) == empty.at(was_organ.x, was_organ.y));

@@ -1,5 +1,6 @@
 #include "studies/chart/sweep.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -47,8 +48,10 @@ TEST_CASE("sweep: quick is less than usual, usual less than full") {
     }
   }
   const auto ball = settings_of(find_case("ball"), Extent::kUsual);
-  CHECK(std::count_if(ball.begin(), ball.end(),
-                      [](const Setting& setting) { return setting.iterations > 0; }) == 12);
+  const auto iterating = std::ranges::count_if(
+      scene::model_formats(), [](const scene::ModelFormat& each) { return each.iterations > 0; });
+  CHECK(std::ranges::count_if(ball, [](const Setting& each) { return each.iterations > 0; }) ==
+        3 * iterating);
 }
 
 TEST_CASE("sweep: what it says is left shrinks to nothing as points are done") {
