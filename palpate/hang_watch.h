@@ -16,24 +16,28 @@ namespace palpate::launcher {
 class HangWatch {
  public:
   static constexpr double kIdle = 3, kComputing = 60;  ///< [s]
-  static constexpr double kComputes = 0.05;            ///< of a core, at least
+  /// A process that has not said a word loads, and may wait for a program of its own [s].
+  static constexpr double kLoading = 60;
+  static constexpr double kComputes = 0.05;  ///< of a core, at least
   /// A pause of the listener itself counts for this much only: what came meanwhile it has not read.
   static constexpr std::int64_t kLongestStrideNs = kNanosecondsPerSecond / 10;
 
-  /// @param sequence  of its newest status
+  /// @param process   a name for this life of it
+  /// @param sequence  of its newest status; 0: none yet
   /// @param cpu       what it has computed in all [s]
   /// @returns for how long it has said nothing, as far as the listener was awake, if it hangs; else
   ///          0 [s]
-  double hangs_for(const std::string& module, std::uint64_t sequence, double cpu,
+  double hangs_for(const std::string& process, std::uint64_t sequence, double cpu,
                    std::int64_t now_ns) {
-    Silence& silence = silences_[module];
+    Silence& silence = silences_[process];
     if (silence.looked_ns == 0 || sequence != silence.sequence)
       silence = {sequence, now_ns, 0, cpu};
     silence.silent_ns += std::min(now_ns - silence.looked_ns, kLongestStrideNs);
     silence.looked_ns = now_ns;
     const double silent = seconds_from_ns(silence.silent_ns);
     const bool computes = cpu - silence.cpu > kComputes * silent;
-    return silent < (computes ? kComputing : kIdle) ? 0 : silent;
+    const double idle = sequence == 0 ? kLoading : kIdle;
+    return silent < (computes ? kComputing : idle) ? 0 : silent;
   }
 
  private:

@@ -65,7 +65,7 @@ ModuleEnd ModuleGroup::end_of(Member& member, int wait_status) {
                 code == kExitBadInput,
                 member.hung.empty() ? describe_exit(wait_status) : member.hung + ", was killed",
                 member.last_error,
-                command_text(member.command)};
+                command_text(again(member.command, member.restarts + 1))};
   if (restarting_ == Restarting::kNever || !end.failed || end.bad_input) return end;
   const std::int64_t now = runtime::monotonic_now_ns();
   const auto pause =
@@ -86,6 +86,7 @@ void ModuleGroup::listen(Member& member) {
 }
 
 std::vector<ModuleEnd> ModuleGroup::poll() {
+  start_due();  // first: an end is told before the return
   std::vector<ModuleEnd> ends;
   for (auto& member : members_) {
     const auto ended = member.process->ended();
@@ -94,7 +95,6 @@ std::vector<ModuleEnd> ModuleGroup::poll() {
     member.end_reported = true;
     ends.push_back(end_of(member, *ended));
   }
-  start_due();
   return ends;
 }
 
@@ -156,6 +156,12 @@ double ModuleGroup::computed(const std::string& module) const {
   if (process < 0 || clock_getcpuclockid(process, &clock) != 0) return 0;
   if (clock_gettime(clock, &time) != 0) return 0;
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+std::vector<std::string> ModuleGroup::modules() const {
+  std::vector<std::string> names;
+  for (const auto& member : members_) names.push_back(member.command.module);
+  return names;
 }
 
 std::vector<std::string> ModuleGroup::reporting_modules() const {

@@ -56,6 +56,7 @@ class ModuleGroup {
   bool running(const std::string& module);
   pid_t process_id(const std::string& module) const;  ///< of its last process; -1: no such module
   double computed(const std::string& module) const;   ///< by that process, in all [s]
+  std::vector<std::string> modules() const;           ///< all
   /// Those that publish a module_status.
   std::vector<std::string> reporting_modules() const;
   std::map<std::string, std::string> last_words() const;  ///< last line of each

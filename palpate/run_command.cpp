@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <fstream>
 #include <optional>
 #include <ostream>
@@ -79,7 +80,7 @@ class Run {
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
     monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
     monitor_.poll();
-    if (options_.restart && begun() && !ended_) end_hung();
+    if (options_.restart && !ended_) end_hung();
     for (const auto& end : modules_.poll()) note(end);
     return !stop_.requested() && modules_.any_running();
   }
@@ -127,17 +128,27 @@ class Run {
     out_ << status_line(monitor_.tally()) << std::endl;
   }
 
-  /// Before its first status nothing is expected of a process: it loads.
   void end_hung() {
-    for (const auto& name : modules_.reporting_modules()) {
-      const ModuleTally* module = monitor_.tally().module(name);
-      if (module == nullptr || !modules_.running(name)) continue;
-      const ModuleStatus& said = module->newest;
-      if (said.process_id != modules_.process_id(name)) continue;
+    for (const auto& name : modules_.modules()) {
+      if (!modules_.running(name)) continue;
+      const pid_t process = modules_.process_id(name);
       const double silent =
-          hangs_.hangs_for(name, said.header.sequence, modules_.computed(name), loop_.woke_ns());
+          hangs_.hangs_for(fmt::format("{} {}", name, process), last_word(name, process),
+                           modules_.computed(name), loop_.woke_ns());
       if (silent > 0) modules_.kill_hung(name, fmt::format("said nothing for {:.0f} s", silent));
     }
+  }
+
+  /// What changes as long as a process lives: its status counts up; a recorder, which has none,
+  /// takes a little of the processor's time again and again.
+  std::uint64_t last_word(const std::string& name, pid_t process) const {
+    const auto reporting = modules_.reporting_modules();
+    if (std::ranges::find(reporting, name) == reporting.end()) {
+      return 1 + static_cast<std::uint64_t>(1e9 * modules_.computed(name));
+    }
+    const ModuleTally* module = monitor_.tally().module(name);
+    const bool its_own = module != nullptr && module->newest.process_id == process;
+    return its_own ? module->newest.header.sequence : 0;
   }
 
   void note(const ModuleEnd& end) {

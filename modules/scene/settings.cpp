@@ -24,15 +24,21 @@ SceneValue plain_value(const std::string& text) {
   return {text};
 }
 
-SceneValue value_of(const YAML::Node& node) {
+/// An anchor may hold itself: no value of a scene is as deep.
+constexpr int kDeepest = 32;
+
+/// @throws InputError for one that is deeper
+SceneValue value_of(const YAML::Node& node, int depth = 0) {
+  if (depth > kDeepest) throw InputError("setting: its value is nested too deep");
   if (node.IsSequence()) {
     SceneValue::List list;
-    for (const auto& entry : node) list.push_back(value_of(entry));
+    for (const auto& entry : node) list.push_back(value_of(entry, depth + 1));
     return {list};
   }
   if (node.IsMap()) {
     SceneValue::Map map;
-    for (const auto& entry : node) map.emplace_back(entry.first.Scalar(), value_of(entry.second));
+    for (const auto& entry : node)
+      map.emplace_back(entry.first.Scalar(), value_of(entry.second, depth + 1));
     return {map};
   }
   if (!node.IsScalar()) return {};

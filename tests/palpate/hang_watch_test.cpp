@@ -29,3 +29,19 @@ TEST_CASE("hang watch: news end a silence, and a pause of the listener is none")
   }
   CHECK(watch.hangs_for("m", 9, 0, at(500)) == 0);
 }
+
+TEST_CASE("hang watch: who has not said a word may load for a minute, and each life counts alone") {
+  // Oracle: the stated limits. A successor's first status may bear its predecessor's number.
+  HangWatch watch;
+  double time = 0;
+  const auto hangs = [&](const char* process, std::uint64_t sequence) {
+    time += 0.1;
+    return watch.hangs_for(process, sequence, 0, std::int64_t(1e9 * (100 + time))) > 0;
+  };
+  while (!hangs("m 1", 0)) {
+  }
+  CHECK(time == Approx(HangWatch::kLoading).margin(0.3));
+  while (!hangs("m 2", 1)) {
+  }
+  CHECK_FALSE(hangs("m 3", 1));
+}

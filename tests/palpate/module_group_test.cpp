@@ -50,6 +50,17 @@ TEST_CASE("module group: an end comes with its reason, last error and how to sta
   CHECK_FALSE(group.any_running());
 }
 
+TEST_CASE("module group: a recorder is not started again over what it recorded") {
+  // Oracle: the command that is printed.
+  const Scripts scripts;
+  const auto script = scripts.add("palpate-recorder", "exit 1");
+  std::ostringstream log;
+  ModuleGroup group({{"recorder", script, {"run.mcap", "--session", "s"}, false}}, log);
+  const auto ends = wait_for_ends(group, 1);
+  REQUIRE(ends.size() == 1);
+  CHECK(ends[0].start_again == script.string() + " run.part2.mcap --session s");
+}
+
 TEST_CASE("module group: exit code 2 is bad input, 0 is no failure") {
   // Oracle: the exit codes of core/error.h.
   const Scripts scripts;

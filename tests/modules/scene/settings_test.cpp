@@ -69,7 +69,8 @@ TEST_CASE("settings: what is not a setting is refused in one line") {
   for (const char* setting :
        {"", "=", "rates", "=3", "rates.=3", "organs[7].model=mass_spring", "organs[x].model=a",
         "organs[0.model=a", "organs[].model=a", "organs[-1].model=a", "duration_s.deep=1", "..=1",
-        "[0]=1", "gravity_m_per_s2=[0", "organs[0].name.a.b=1", "duration_s=1\n--- \n2"}) {
+        "[0]=1", "gravity_m_per_s2=[0", "organs[0].name.a.b=1", "name=&a [*a]",
+        "organs=&a [{b: *a}]", "duration_s=1\n--- \n2"}) {
     INFO(setting);
     const std::string said = refusal(folder, {setting});
     CHECK(said != "");
