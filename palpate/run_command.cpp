@@ -33,7 +33,7 @@ constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 /// A session that already runs has been heard by then: twice the longest discovery measured.
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
 constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
-/// After a pause forces are back by then, and statuses, one a second, say so.
+/// After a pause, and after the start, all have heard each other by then, and statuses say so.
 constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
 
 std::string joined(const std::vector<std::string>& names) {
@@ -103,7 +103,7 @@ class Run {
   }
 
   void start() {
-    began_ns_ = line_ns_ = loop_.woke_ns();
+    began_ns_ = line_ns_ = stood_ns_ = loop_.woke_ns();
     joined_ = session_.phase() != runtime::SessionPhase::kWaiting;
     if (!joined_) {
       conductor_.command(session_.state(), SessionCommand::kStart);
@@ -212,7 +212,7 @@ class Run {
   runtime::PeriodicLoop loop_;
   double duration_ = 0;  ///< 0: until stopped [s]
   std::int64_t began_ns_ = 0, line_ns_ = 0;
-  std::int64_t stood_ns_ = 0;  ///< when it was last paused; 0: never
+  std::int64_t stood_ns_ = 0;  ///< when it was last paused or had not begun; 0: never
   bool joined_ = false;        ///< another launcher conducts the session
   bool ended_ = false;         ///< the run; its window may stay
   int exit_code_ = kExitDone;
