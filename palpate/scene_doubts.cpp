@@ -113,6 +113,18 @@ class Doubts {
     }
   }
 
+  /// Deformation loads no probe's mesh, and a plane touches everywhere (decision 15).
+  void followed(const std::string& owner, const scene::Probe& probe) {
+    const bool plane = std::holds_alternative<scene::PlaneShape>(probe.shape);
+    if (!plane && scene::mesh_of(probe.shape) == nullptr) return;
+    for (const scene::Organ& organ : scene_.organs) {
+      if (!organ.solid.refine.follow) continue;
+      say("{} is a {}, under which organ '{}' does not refine: solid.refine.follow knows round and "
+          "flat shapes; name the place in solid.refine.near",
+          owner, plane ? "plane" : "mesh", organ.name);
+    }
+  }
+
   void probe(std::size_t index) {
     const scene::Probe& probe = scene_.probes[index];
     const std::string owner = "probe '" + probe.name + "'";
@@ -125,6 +137,7 @@ class Doubts {
       say("{} has a radius of {}; is radius_m in metres?", owner,
           length_text(radius_of(probe.shape)));
     }
+    followed(owner, probe);
     const collision::Approach approach = approach_of(scene_, index, skins_, lines_);
     if (approach.begins_inside) {
       say("{} begins inside an organ: the nearest wall will push it out; begin outside", owner);

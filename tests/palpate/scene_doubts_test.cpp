@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
@@ -76,6 +77,22 @@ TEST_CASE("doubts: what lets an organ fly or keeps it from moving is named") {
              Contains("fixed[0] holds no node"));
   CHECK_THAT(doubt(scene, {"organs[0].fixed=[{sphere: {center_m: [0, 0, 0], radius_m: 1}}]"}),
              Contains("all of its surface is fixed"));
+}
+
+TEST_CASE("doubts: a probe that a following mesh does not follow is named") {
+  // Oracle: decision 15.
+  const auto said = [](const std::vector<std::string>& settings) {
+    const auto scene =
+        scene::load_scene_with(data_folder() / "scenes" / "liver_touch.yaml", settings);
+    return std::ranges::count_if(doubts_about(scene, load_skins(scene)),
+                                 [](const std::string& line) {
+                                   return line.find(
+                                              "is a plane, under which organ 'liver' does "
+                                              "not refine") != std::string::npos;
+                                 });
+  };
+  CHECK(said({}) == 0);
+  CHECK(said({"probes[0].shape={plane: {}}"}) == 1);
 }
 
 TEST_CASE("doubts: a probe that begins inside, or never touches, is named") {
