@@ -1,13 +1,13 @@
 #include "deformation/world.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "deformation/contact/contact_law.h"
+#include "deformation/force_history.h"
 #include "deformation/organ_contacts.h"
 #include "deformation/world_organ.h"
 #include "modules/core/error.h"
@@ -19,11 +19,6 @@ namespace {
 /// The contact model is believed within this part of the mean edge: the touched nodes stay the
 /// same.
 constexpr double kValidityOfEdge = 0.5;
-/// Forces that change faster than this part of themselves in a period are not taken to go on so.
-constexpr double kMostGrowth = 0.5;
-/// A law is used for up to a period and a half more: a change over fewer periods than that, which a
-/// chatter of contacts may be, it would make larger.
-constexpr std::size_t kGrowthPeriods = 3;
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
 constexpr double kFarthestContact = 10;
 /// A mesh made at the end of an advance is taken in the next and used for some: looked at from
@@ -40,11 +35,9 @@ struct DeformationWorld::Impl {
   std::optional<OrganContacts> organ_contacts;  ///< none: the scene has them off
   std::vector<Contact> accepted;                ///< buffer of set_contacts()
   std::vector<Pose> poses;                      ///< buffer of look_ahead()
-  /// Mean forces on a probe over the last advances, the newest first [N].
-  using Forces = std::array<Vec3, kGrowthPeriods + 1>;
-  std::vector<Forces> forces;
-  double time = 0, period = 0;   ///< simulated; of the last advance [s]
-  bool contact_refused = false;  ///< since the last advance
+  std::vector<ForceHistory> forces;             ///< on each probe
+  double time = 0, period = 0;                  ///< simulated; of the last advance [s]
+  bool contact_refused = false;                 ///< since the last advance
 
   bool names_our_triangle(const Contact& contact) const {
     return contact.organ < organs.size() &&
@@ -268,27 +261,6 @@ struct DeformationWorld::Impl {
     }
     return lower;
   }
-
-  void forget_forces() {
-    Forces none;
-    none.fill(Vec3::Zero());
-    forces.assign(probes.size(), none);
-  }
-
-  void note_force(std::size_t probe) {
-    Forces& of_probe = forces[probe];
-    std::shift_right(of_probe.begin(), of_probe.end(), 1);
-    of_probe[0] = probes[probe].impulse() / period;
-  }
-
-  /// How fast the force on a probe grew over the last kGrowthPeriods advances, in the mean [1/s].
-  double growth(std::size_t probe) const {
-    const Vec3 &now = forces[probe].front(), &then = forces[probe].back();
-    const double strength = now.norm();
-    if (!(strength > 0) || forces[probe][1].isZero(0) || !(period > 0)) return 0;
-    const double grown = (now - then).dot(now) / (strength * strength) / kGrowthPeriods;
-    return std::clamp(grown, -kMostGrowth, kMostGrowth) / period;
-  }
 };
 
 DeformationWorld::DeformationWorld(const scene::Scene& scene,
@@ -307,7 +279,7 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     impl_->organ_contacts.emplace(scene, std::move(simulated));
   }
   for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
-  impl_->forget_forces();
+  impl_->forces.assign(impl_->probes.size(), {});
 }
 
 DeformationWorld::~DeformationWorld() = default;
@@ -374,7 +346,9 @@ AdvanceReport DeformationWorld::advance(double period) {
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     if (impl_->organs[i].replaced) impl_->drop_contacts(i);
   }
-  for (std::size_t i = 0; i < impl_->probes.size(); ++i) impl_->note_force(i);
+  for (std::size_t i = 0; i < impl_->probes.size(); ++i) {
+    impl_->forces[i].note(impl_->probes[i].impulse() / period);
+  }
   impl_->time += period;
   return report;
 }
@@ -382,7 +356,7 @@ AdvanceReport DeformationWorld::advance(double period) {
 void DeformationWorld::reset() {
   for (auto& organ : impl_->organs) organ.reset();
   for (auto& probe : impl_->probes) probe.reset();
-  impl_->forget_forces();
+  impl_->forces.assign(impl_->probes.size(), {});
   if (impl_->organ_contacts) impl_->organ_contacts->reset();
   impl_->time = impl_->period = 0;
 }
@@ -422,7 +396,7 @@ std::span<const Vec3> DeformationWorld::positions(std::size_t organ) const {
 }
 
 const Vec3& DeformationWorld::force(std::size_t probe) const {
-  return impl_->forces.at(probe).front();
+  return impl_->forces.at(probe).newest();
 }
 
 LocalLaw DeformationWorld::local_law(std::size_t probe_index, bool* bounded) const {
@@ -447,7 +421,7 @@ LocalLaw DeformationWorld::local_law(std::size_t probe_index, bool* bounded) con
                  contact.row.gap + kValidityOfEdge * impl_->organs[contact.organ].mean_edge);
   }
   law.compliance = impl_->compliance_of(contacts, law.directions());
-  law.growth = impl_->growth(probe_index);
+  law.growth = impl_->forces[probe_index].growth(impl_->period);
   const RowStiffness stiffness = stiffness_of(law);
   law.stiffness = stiffness.matrix;
   if (bounded != nullptr) *bounded = stiffness.bounded;

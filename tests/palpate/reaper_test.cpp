@@ -46,14 +46,22 @@ TEST_CASE("reaper: a stopped child does not outlive a parent that was killed") {
   CHECK(wait_until([&] { return ::kill(child, 0) != 0; }));
 }
 
-TEST_CASE("reaper: goes when it is let go, and harms nobody who ended before") {
-  // Oracle: its destructor returns.
-  const pid_t child = fork();
-  if (child == 0) _exit(0);
+TEST_CASE("reaper: goes when it is let go, and ends nobody who is not its own") {
+  // Oracle: the process table: a bystander lives on, and no child is left when it is gone.
+  const pid_t bystander = fork();
+  if (bystander == 0) {
+    execl("/bin/sleep", "sleep", "60", nullptr);
+    _exit(1);
+  }
+  const pid_t ended = fork();
+  if (ended == 0) _exit(0);
   {
     Reaper reaper;
-    reaper.watch(child);
-    waitpid(child, nullptr, 0);
+    reaper.watch(ended);
+    waitpid(ended, nullptr, 0);
   }
-  SUCCEED();
+  CHECK(waitpid(bystander, nullptr, WNOHANG) == 0);
+  ::kill(bystander, SIGKILL);
+  CHECK(waitpid(bystander, nullptr, 0) == bystander);
+  CHECK(waitpid(-1, nullptr, WNOHANG) == -1);
 }
