@@ -85,7 +85,7 @@ TEST_CASE("pipeline page: every stage's function is in the file it names") {
 
 TEST_CASE("pipeline page: every function of a traced cycle is in the file it names") {
   // Oracle: the sources. A line is a function, how often it was called, and its file; or a message.
-  static const std::regex kCall(R"(^ *([\w:]+)(?: x\d+)? +(\S+\.cpp)$)"),
+  static const std::regex kCall(R"(^ *([\w:]+)(?: x\d+)? +(\S+\.(?:cpp|h))$)"),
       kMessage(R"(^ *(<-|->) (\w+)(?: x\d+)?$)");
   const std::string messages = read(kRoot / "modules/messages/messages.h");
   std::istringstream page(read(kRoot / "docs/pipeline.md"));
