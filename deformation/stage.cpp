@@ -118,14 +118,36 @@ double least_advance(const DeformationWorld& world, double period) {
   return least;
 }
 
+/// How wrong the forces are by the meshes: it changes slowly, and costs more than a law.
+class ForceErrors {
+ public:
+  explicit ForceErrors(std::size_t probes) : errors_(probes, 0.0) {}
+
+  void look(const DeformationWorld& world) {
+    const bool was_reset = world.time() + kEvery < next_;
+    if (world.time() < next_ && !was_reset) return;
+    for (std::size_t probe = 0; probe < errors_.size(); ++probe) {
+      errors_[probe] = world.estimated_force_error(probe);
+    }
+    next_ = world.time() + kEvery;
+  }
+  double of(std::size_t probe) const { return errors_[probe]; }
+
+ private:
+  static constexpr double kEvery = 0.1;  // [s]
+  std::vector<double> errors_;           ///< by probe
+  double next_ = 0;                      ///< simulated [s]
+};
+
 /// What leaves the process.
 class Outputs {
  public:
-  Outputs(bus::Bus& bus, std::size_t organs)
+  Outputs(bus::Bus& bus, std::size_t organs, std::size_t probes)
       : told_(organs),
         surfaces_(bus.writer(bus::kSurface)),
         positions_(bus.writer(bus::kNodePositions)),
-        models_(bus.writer(bus::kContactModel)) {}
+        models_(bus.writer(bus::kContactModel)),
+        force_errors_(probes) {}
 
   void publish_surfaces(const DeformationWorld& world) {
     blocks_.clear();
@@ -169,6 +191,7 @@ class Outputs {
                     std::int64_t now_ns) {
     const Header header{0, ns_from_seconds(sim_time), 0};
     bool any_bounded = false;
+    force_errors_.look(world);
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
       model_ = contact_model_message(world, probe, &bounded);
@@ -177,6 +200,7 @@ class Outputs {
       // The law's age counts from the cycle's beginning, where its probes were.
       model_.header.source_time_ns = now_ns;
       model_.anchor_age = inputs.age(probe, now_ns);
+      model_.force_error = model_.touching() ? force_errors_.of(probe) : 0;
       models_.write(model_);
     }
     return any_bounded;
@@ -197,6 +221,7 @@ class Outputs {
   bus::Writer<SurfaceTopology> surfaces_;
   bus::Writer<NodePositions> positions_;
   bus::Writer<ContactModel> models_;
+  ForceErrors force_errors_;
   std::vector<geometry::SurfaceBlocks> blocks_;  ///< by organ
   std::vector<NextBlocks> next_blocks_;          ///< told last
   NodePositions node_positions_;
@@ -218,7 +243,7 @@ struct DeformationStage::Impl {
        ChunkRunner* runner, Guarding guarding)
       : world(scene, std::move(shapes), runner, guarding),
         inputs(bus, world.probe_count()),
-        outputs(bus, world.organ_count()),
+        outputs(bus, world.organ_count(), world.probe_count()),
         period(1 / scene.rates.deformation) {
     outputs.publish_surfaces(world);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "deformation/contact/contact_law.h"
+#include "deformation/force_error.h"
 #include "deformation/force_history.h"
 #include "deformation/organ_contacts.h"
 #include "deformation/world_organ.h"
@@ -397,6 +398,18 @@ std::span<const Vec3> DeformationWorld::positions(std::size_t organ) const {
 
 const Vec3& DeformationWorld::force(std::size_t probe) const {
   return impl_->forces.at(probe).newest();
+}
+
+double DeformationWorld::estimated_force_error(std::size_t probe) const {
+  double worst = 0;
+  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
+    const OrganModel& model = impl_->organs[i].simulated.model();
+    if (!model.is_solid()) continue;
+    const TouchedPart part = touched_part(impl_->probes.at(probe), i, model);
+    if (!(part.reach > 0)) continue;
+    worst = std::max(worst, palpate::deformation::estimated_force_error(model, positions(i), part));
+  }
+  return worst;
 }
 
 LocalLaw DeformationWorld::local_law(std::size_t probe_index, bool* bounded) const {

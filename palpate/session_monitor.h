@@ -23,9 +23,11 @@ class SessionMonitor {
   bus::Reader<ModuleStatus> statuses_;
   bus::Reader<NodePositions> positions_;
   bus::Reader<HapticForce> forces_;
+  bus::Reader<ContactModel> laws_;
   ModuleStatus status_;
   NodePositions node_positions_;
   HapticForce force_;
+  ContactModel law_;
   SessionTally tally_;
 };
 

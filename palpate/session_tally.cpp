@@ -23,7 +23,7 @@ double ModuleTally::on_time_fraction() const {
 
 SessionTally::SessionTally(const scene::Scene& scene) {
   for (const auto& organ : scene.organs) organs_.push_back({organ.name});
-  for (const auto& probe : scene.probes) probes_.push_back({probe.name, 0, 0, 0});
+  for (const auto& probe : scene.probes) probes_.push_back({probe.name});
 }
 
 void SessionTally::start() {
@@ -71,9 +71,16 @@ void SessionTally::receive(const HapticForce& force) {
   ProbeTally& probe = probes_[force.probe];
   probe.force = force.force.norm();
   if (!started_) return;
-  probe.greatest_force = std::max(probe.greatest_force, probe.force);
+  if (probe.force > probe.greatest_force) {
+    probe.greatest_force = probe.force;
+    probe.error_of_greatest = probe.force_error;
+  }
   constexpr std::uint32_t kFadesWhileStanding = kForceStaleFade | kForceSlewLimited;
   probe.limits |= force.limits & ~(standing_ ? kFadesWhileStanding : 0u);
+}
+
+void SessionTally::receive(const ContactModel& law) {
+  if (law.probe < probes_.size()) probes_[law.probe].force_error = law.force_error;
 }
 
 ContactTroubles SessionTally::contact_troubles() const {

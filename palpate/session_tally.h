@@ -20,9 +20,11 @@ struct OrganTally {
 
 struct ProbeTally {
   std::string name;
-  double force = 0;           ///< newest magnitude [N]
-  double greatest_force = 0;  ///< since the start [N]
-  std::uint32_t limits = 0;   ///< ForceLimit bits that ever acted since the start
+  double force = 0;              ///< newest magnitude [N]
+  double greatest_force = 0;     ///< since the start [N]
+  std::uint32_t limits = 0;      ///< ForceLimit bits that ever acted since the start
+  double force_error = 0;        ///< newest estimate of the mesh's part, see ContactModel
+  double error_of_greatest = 0;  ///< the same when the force was greatest
 };
 
 struct ModuleTally {
@@ -49,6 +51,7 @@ class SessionTally {
   void receive(const ModuleStatus& status);
   void receive(const NodePositions& positions);
   void receive(const HapticForce& force);
+  void receive(const ContactModel& law);
 
   const std::vector<OrganTally>& organs() const { return organs_; }
   const std::vector<ProbeTally>& probes() const { return probes_; }

@@ -24,11 +24,19 @@ std::string organ_lines(const SessionTally& tally) {
   return text;
 }
 
+/// " (too large by about 12 %: the mesh)".
+std::string mesh_part(double force_error) {
+  if (force_error <= 0) return "";
+  if (force_error >= 1) return " (twice too large, or more: the mesh)";
+  return fmt::format(" (too large by about {:.0f} %: the mesh)", 100 * force_error);
+}
+
 std::string probe_lines(const SessionTally& tally) {
   std::string text;
   for (const auto& probe : tally.probes()) {
-    text += fmt::format("probe {:<14} force at most {:.3f} N   limits that acted: {}\n", probe.name,
-                        probe.greatest_force, limit_names(probe.limits));
+    text += fmt::format("probe {:<14} force at most {:.3f} N{}   limits that acted: {}\n",
+                        probe.name, probe.greatest_force, mesh_part(probe.error_of_greatest),
+                        limit_names(probe.limits));
   }
   return text;
 }

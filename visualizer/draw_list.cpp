@@ -140,6 +140,20 @@ void add_contacts(const ProbeView& probe, const SceneView& view, DrawList& list)
   }
 }
 
+/// @param force  [N]
+std::string force_label(const ProbeView& probe, double force) {
+  std::array<char, 64> label{};
+  if (probe.force_error >= 1) {
+    std::snprintf(label.data(), label.size(), "%.2f N (mesh: twice too large)", force);
+  } else if (probe.force_error > 0) {
+    std::snprintf(label.data(), label.size(), "%.2f N (mesh +%.0f %%)", force,
+                  100 * probe.force_error);
+  } else {
+    std::snprintf(label.data(), label.size(), "%.2f N", force);
+  }
+  return label.data();
+}
+
 void add_probe(const ProbeView& probe, std::size_t index, const SceneView& view, DrawList& list) {
   const bool plane =
       std::holds_alternative<geometry::HalfSpace>(scene::form_of(probe.description.shape));
@@ -161,9 +175,7 @@ void add_probe(const ProbeView& probe, std::size_t index, const SceneView& view,
   arrow.tip = arrow.tail + force_scale(view) * probe.force.force;
   arrow.shaft_radius = 0.012 * view.radius();
   arrow.color = kForceColor;
-  std::array<char, 32> label{};
-  std::snprintf(label.data(), label.size(), "%.2f N", force);
-  arrow.label = label.data();
+  arrow.label = force_label(probe, force);
   list.arrows.push_back(arrow);
 }
 

@@ -152,6 +152,12 @@ bool SceneView::receive(Contacts contacts) {
   return true;
 }
 
+bool SceneView::receive(const ContactModel& law) {
+  if (law.probe >= probes_.size()) return ignore();
+  probes_[law.probe].force_error = law.force_error;
+  return true;
+}
+
 bool SceneView::receive(const HapticForce& force) {
   if (force.probe >= probes_.size()) return ignore();
   ProbeView& probe = probes_[force.probe];

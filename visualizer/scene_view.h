@@ -47,6 +47,7 @@ struct ProbeView {
   Contacts contacts;
   bool has_force = false;
   HapticForce force;
+  double force_error = 0;                      ///< see ContactModel
   History force_magnitude;                     ///< [N]
   double greatest_force = 0, greatest_at = 0;  ///< of all that came [N], and when [s]
   double touched_for = 0;                      ///< simulated time with a force [s]
@@ -69,6 +70,7 @@ class SceneView {
   bool receive(const ProbeState& probe);
   bool receive(Contacts contacts);
   bool receive(const HapticForce& force);
+  bool receive(const ContactModel& law);
   void receive(ModuleStatus status, std::int64_t now_ns);
   void receive(const SessionControl& control);
 

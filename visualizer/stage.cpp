@@ -29,6 +29,7 @@ struct Inputs {
   bus::Reader<ProbeState> probes;
   bus::Reader<Contacts> contacts;
   bus::Reader<HapticForce> forces;
+  bus::Reader<ContactModel> laws;
   bus::Reader<ModuleStatus> statuses;
 
   explicit Inputs(bus::Bus& bus)
@@ -37,6 +38,7 @@ struct Inputs {
         probes(bus.reader(bus::kProbeState)),
         contacts(bus.reader(bus::kContacts)),
         forces(bus.reader(bus::kHapticForce, bus::Keep::kBacklog)),
+        laws(bus.reader(bus::kContactModel)),
         statuses(bus.reader(bus::kModuleStatus)) {}
 
   /// Surfaces first: node positions of a surface not known yet are of no use.
@@ -51,6 +53,8 @@ struct Inputs {
     while (contacts.take(touching)) view.receive(std::move(touching));
     HapticForce force;
     while (forces.take(force)) view.receive(force);
+    ContactModel law;
+    while (laws.take(law)) view.receive(law);
     ModuleStatus status;
     while (statuses.take(status)) view.receive(std::move(status), now_ns);
   }

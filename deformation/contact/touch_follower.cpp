@@ -13,6 +13,7 @@ namespace {
 constexpr double kReach = 2, kLeave = 2.5, kPatch = 0.5, kStay = 0.25, kGrid = 1.0 / 16;
 constexpr double kPlateau = 1 + kStay;
 
+constexpr double kErrorAtRadius = 0.27, kErrorOrder = 1.6;
 constexpr std::size_t kMostBalls = 24, kMostCorners = 16;
 
 /// Points that lie furthest apart, one after the other, from the first on.
@@ -42,7 +43,11 @@ double least_extent(const std::vector<Vec3>& points) {
 }  // namespace
 
 double edge_over_radius(double force_error) {
-  return std::clamp(std::pow(force_error / 0.27, 1 / 1.6), 0.25, 1.0);
+  return std::clamp(std::pow(force_error / kErrorAtRadius, 1 / kErrorOrder), 0.25, 1.0);
+}
+
+double force_error_of_edge(double edge_over_radius) {
+  return kErrorAtRadius * std::pow(edge_over_radius, kErrorOrder);
 }
 
 TouchFollower::TouchFollower(const geometry::ProbeForm& form, std::optional<double> edge,

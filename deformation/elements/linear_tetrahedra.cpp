@@ -23,8 +23,7 @@ LinearTetrahedra::LinearTetrahedra(const std::vector<Vec3>& rest_positions,
   }
 }
 
-Mat3 LinearTetrahedra::deformation_gradient(std::size_t e,
-                                            const std::vector<Vec3>& positions) const {
+Mat3 LinearTetrahedra::deformation_gradient(std::size_t e, std::span<const Vec3> positions) const {
   // Differences first: large coordinates cancel exactly enough.
   const auto& t = corners[e];
   const Vec3& origin = positions[t[0]];

@@ -1,6 +1,7 @@
 // Tetrahedra with linear shape functions N_a: what of them is constant.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "modules/geometry/tet_mesh.h"
@@ -23,7 +24,7 @@ struct LinearTetrahedra {
   std::size_t size() const { return corners.size(); }
 
   /// F = Σ_a x_a g_aᵀ
-  Mat3 deformation_gradient(std::size_t e, const std::vector<Vec3>& positions) const;
+  Mat3 deformation_gradient(std::size_t e, std::span<const Vec3> positions) const;
 };
 
 }  // namespace palpate::deformation

@@ -198,6 +198,7 @@ void describe(V& v, M& m) {
   v.field("friction_coefficient", m.friction_coefficient, Rule::kAtLeastZero);
   v.field("validity_radius_m", m.validity_radius, Rule::kAtLeastZero);
   v.field("stiffness_n_per_m", m.stiffness, Rule::kSymmetric);
+  v.field("force_error", m.force_error, Rule::kAtLeastZero);
   v.list("rows", m.rows, kMaxLawRows, "row_count");
   v.numbers("compliance_m_per_n", m.compliance, Bounds{1, 0, kMaxLawCompliance, nullptr});
   v.derived("force_n", [&] { return m.force().norm(); });

@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 7;
+inline constexpr std::uint32_t kProtocolVersion = 8;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
@@ -50,6 +50,9 @@ struct Contacts : ContactSet {
 struct ContactModel : LocalLaw {
   Header header;
   std::uint32_t probe = 0;  ///< (key)
+  /// How much too large the force is because of the organ's mesh, estimated a few times a second: a
+  /// part of it, 0 … 1, 1: as much or more; 0 where nothing is estimated.
+  double force_error = 0;
 };
 
 /// Deformed nodes of one organ: surface nodes first, then virtual nodes.

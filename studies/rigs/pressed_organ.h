@@ -38,6 +38,10 @@ class PressedOrgan {
   double period() const { return period_; }
   const Pose& pose(std::size_t probe) const { return poses_[probe]; }
   Vec3 force(std::uint32_t probe) const;  ///< on the probe in the last period [N]
+  /// See DeformationWorld.
+  double estimated_force_error(std::uint32_t probe) const {
+    return session_.world().estimated_force_error(probe);
+  }
   LocalLaw law(std::uint32_t probe) const { return session_.world().local_law(probe); }
   // As deformation computes them: the wire's float32 is for others.
   Vec3 position(std::size_t node) const;       ///< now [m]

@@ -87,6 +87,24 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
                        !Contains("bye"));
 }
 
+TEST_CASE("summary: a force says what of it is the mesh's, as it was when it was greatest") {
+  // Oracle: the numbers given.
+  SessionTally tally = stomach_tally();
+  const auto felt = [&](double newtons, double error) {
+    ContactModel law;
+    law.force_error = error;
+    tally.receive(law);
+    HapticForce force;
+    force.force = Vec3(0, 0, newtons);
+    tally.receive(force);
+    return summary(tally, {"stomach_probe", 12, 12.1, {}, {}, false});
+  };
+  CHECK_THAT(felt(0.8, 0.12),
+             Contains("force at most 0.800 N (too large by about 12 %: the mesh)"));
+  CHECK_THAT(felt(0.7, 0.3), Contains("0.800 N (too large by about 12 %"));
+  CHECK_THAT(felt(0.9, 1), Contains("0.900 N (twice too large, or more: the mesh)"));
+}
+
 TEST_CASE("summary: in lockstep speed is simulated over wall time, and nobody is late") {
   // Oracle: the numbers given.
   const auto text = summary(stomach_tally(), {"stomach_probe", 12, 4, {}, {}, true});

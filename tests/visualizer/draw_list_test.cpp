@@ -95,6 +95,18 @@ TEST_CASE("draw list: one surface, the probes seen, the contacts that touch, one
   CHECK(list.springs.empty());
 }
 
+TEST_CASE("draw list: a force says what of it is the mesh's", "[visualizer]") {
+  // Oracle: the numbers put in.
+  SceneView view = pressed_ball();
+  ContactModel law;
+  law.force_error = 0.12;
+  REQUIRE(view.receive(law));
+  CHECK(make_draw_list(view, {}).arrows.at(0).label == "1.50 N (mesh +12 %)");
+  law.force_error = 1;
+  REQUIRE(view.receive(law));
+  CHECK(make_draw_list(view, {}).arrows.at(0).label == "1.50 N (mesh: twice too large)");
+}
+
 TEST_CASE("draw list: a contact is drawn where its probe is drawn", "[visualizer]") {
   // Oracle: Pose's own transformation, for a probe that has moved on since its contacts were found.
   SceneView view = pressed_ball();

@@ -95,7 +95,10 @@ TEST_CASE("scene view: unknown organs and probes and bad indices are refused",
   HapticForce force;
   force.probe = 2;
   CHECK_FALSE(view.receive(force));
-  CHECK(view.ignored_messages() == 8);
+  ContactModel law;
+  law.probe = 2;
+  CHECK_FALSE(view.receive(law));
+  CHECK(view.ignored_messages() == 9);
   CHECK_FALSE(view.organs()[0].known);
 }
 

@@ -118,6 +118,7 @@ inline void check_same(const idl::ContactModel& w, const ContactModel& m) {
   REQUIRE(w.anchor_position_m() == xyz(m.anchor.position));
   REQUIRE(w.anchor_rotation_xyzw() == xyzw(m.anchor.rotation));
   REQUIRE(w.anchor_age_s() == m.anchor_age);
+  REQUIRE(w.force_error() == m.force_error);
   REQUIRE(w.period_s() == m.period);
   REQUIRE(w.growth_per_s() == m.growth);
   REQUIRE(w.friction_coefficient() == m.friction_coefficient);

@@ -153,6 +153,7 @@ TEST_CASE("message checks: ContactModel", "[messages]") {
   check_unit<M>(
       "anchor_rotation_xyzw", [](M & m) -> auto& { return m.anchor.rotation.coeffs(); });
   check_finite_at_least_zero<M>("anchor_age_s", [](M& m) -> double& { return m.anchor_age; });
+  check_finite_at_least_zero<M>("force_error", [](M& m) -> double& { return m.force_error; });
   check_finite_at_least_zero<M>("period_s", [](M& m) -> double& { return m.period; });
   check_finite<M>("growth_per_s", [](M& m) -> double& { return m.growth; });
   check_finite<M>("stiffness_n_per_m", [](M& m) -> double& { return m.stiffness(2, 1); });
