@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "modules/bus/session_token.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/recording/commands.h"
@@ -168,6 +169,15 @@ void add_new(Program& program, NewOptions& options) {
   command.add("--unit", options.unit, "Unit of the mesh: m, dm, cm, mm, um, in; else guessed");
 }
 
+void add_token(Program& program, bus::BusOptions& session) {
+  Options command = program.command(
+      "token", "Print what samples of a session bear, for drivers over another DDS", [&session] {
+        std::cout << bus::token_text(bus::session_token(session.domain, session.session)) << '\n';
+        return kExitDone;
+      });
+  runtime::add_bus_options(command, session);
+}
+
 void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   Options command = program.command(
       "mesh", "Check, repair, decimate or refine a surface mesh",
@@ -224,6 +234,7 @@ int palpate_command(int argc, char** argv) {
   recording::InspectOptions inspect;
   recording::DiffOptions diff;
   geometry::MeshCommandOptions mesh;
+  bus::BusOptions session;
   add_run(program, run);
   add_replay(program, recording, replay);
   add_inspect(program, inspect);
@@ -232,6 +243,7 @@ int palpate_command(int argc, char** argv) {
   add_mesh(program, mesh);
   add_new(program, fresh);
   add_list(program, kind);
+  add_token(program, session);
   for (const Study& study : studies()) add_study(program, study);
   program.command_with_words("completion", "Words for the shell: source <(palpate completion)",
                              [&program](const auto& words) { return completion(program, words); });

@@ -19,11 +19,11 @@ static const int64_t kForceHolds = 100000000;  // [ns]
 static const double kMaxForce = 3.3;           // of the device [N]
 static const double kOmega = 2 * M_PI / 4;     // of the stand-in below [rad/s]
 
-// Palpate talks on 127.0.0.1 (PALPATE_INTERFACES changes that), without multicast: participants look for
-// each other at the ports that the domain gives to the first hundred of a host.
-// The lease is the longest that Cyclone takes: Fast DDS 2.9.1, which looks at each participant once
-// per lease, may abort if that is just leaving. Nobody needs it: who is silent is told by the age
-// of samples.
+// Palpate talks on 127.0.0.1 (PALPATE_INTERFACES changes that), without multicast: participants
+// look for each other at the ports that the domain gives to the first hundred of a host. The lease
+// is the longest that Cyclone takes: Fast DDS 2.9.1, which looks at each participant once per
+// lease, may abort if that is just leaving. Nobody needs it: who is silent is told by the age of
+// samples.
 static const char* kConfiguration =
     "<General><Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"
     "<AllowMulticast>false</AllowMulticast></General>"
@@ -75,6 +75,15 @@ static void guard(const double heard[3], int64_t age, double force[3]) {
   for (int i = 0; i < 3; ++i) force[i] = isfinite(size) ? share * heard[i] : 0;  // (4)
 }
 
+// What samples of the session bear. Started as
+//   PALPATE_TOKEN=$(palpate token --session SESSION --domain DOMAIN) driver SESSION DOMAIN …
+static uint64_t session_token(void) {
+  const char* text = getenv("PALPATE_TOKEN");
+  if (text != NULL) return strtoull(text, NULL, 16);
+  fprintf(stderr, "driver: PALPATE_TOKEN is not set: palpate token says it\n");
+  exit(2);
+}
+
 static dds_entity_t checked(dds_entity_t result, const char* what) {
   if (result >= 0) return result;
   fprintf(stderr, "driver: %s: %s\n", what, dds_strretcode(-result));
@@ -90,6 +99,7 @@ int main(int argc, char** argv) {
   const dds_domainid_t domain = (dds_domainid_t)atoi(argv[2]);
   const uint32_t probe = (uint32_t)atoi(argv[3]);
   const double origin[3] = {atof(argv[4]), atof(argv[5]), atof(argv[6])};  // [m]
+  const uint64_t token = session_token();
   signal(SIGINT, want_stop);
   signal(SIGTERM, want_stop);
 
@@ -114,6 +124,7 @@ int main(int argc, char** argv) {
 
   palpate_idl_ProbeState state;
   memset(&state, 0, sizeof state);
+  state.session_token = token;
   state.probe = probe;
   state.rotation_xyzw[3] = 1;  // this device does not turn
   double newest[3] = {0, 0, 0}, force[3];
@@ -128,7 +139,7 @@ int main(int argc, char** argv) {
     dds_sample_info_t info;
     while (dds_take(reader, &sample, &info, 1, 1) > 0) {
       const palpate_idl_HapticForce* said = sample;
-      if (info.valid_data && said->probe == probe) {
+      if (info.valid_data && said->session_token == token && said->probe == probe) {
         memcpy(newest, said->force_n, sizeof newest);  // on the probe, in the scene's world [N]
         heard = now;
         ++samples;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,12 +21,14 @@ struct BusOptions {
   int domain = 0;                   ///< DDS domain id [0 … 200]
   std::string session = "default";  ///< DDS partition: sessions do not hear each other
   std::string participant_name = "palpate";
+  /// What every sample must bear; else session_token() (session_token.h).
+  std::optional<std::uint64_t> token = {};
   /// For lockstep: streams lose nothing either, and readers get every sample in order. All
   /// processes of a session must agree.
   bool every_sample = false;
 };
 
-/// Packets that were not sound, or in another participant's name.
+/// Packets that were not sound, in another participant's name, or of another session.
 struct Refusals {
   std::uint64_t count = 0;
   const char* last = nullptr;  ///< why the last one was refused

@@ -72,6 +72,7 @@ class DdsReader : public RawReader {
     sample_.into = &sample.payload;
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;  // a writer has left
+      if (!participant_.admit(sample.payload)) continue;
       sample.writer = writer_of(info);
       sample.received_time_ns = monotonic(info.reception_timestamp);
       return true;

@@ -18,10 +18,13 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 struct Descriptor : transport::ChainingTransportDescriptor {
   Descriptor(std::shared_ptr<transport::TransportDescriptorInterface> under,
-             std::shared_ptr<PacketTally> packets)
-      : ChainingTransportDescriptor(std::move(under)), tally(std::move(packets)) {}
+             std::uint64_t session_token, std::shared_ptr<PacketTally> packets)
+      : ChainingTransportDescriptor(std::move(under)),
+        token(session_token),
+        tally(std::move(packets)) {}
   transport::TransportInterface* create_transport() const override;
 
+  std::uint64_t token;
   std::shared_ptr<PacketTally> tally;
 };
 
@@ -43,14 +46,11 @@ class FilteredTransport : public transport::ChainingTransport {
                const rtps::Locator_t& remote) override {
     std::vector<std::uint8_t>
         kept;  // takes memory only where a packet loses something in its middle
-    FilteredPacket filtered = filter_packet({packet, bytes}, kept);
+    FilteredPacket filtered = filter_packet({packet, bytes}, descriptor_.token, kept);
     if (!filtered.packet.empty() && !known_sender(filtered.packet, remote)) {
       filtered = {{}, PacketFault::kIdentity};
     }
-    if (filtered.fault != PacketFault::kNone) {
-      descriptor_.tally->last = filtered.fault;
-      ++descriptor_.tally->refused;
-    }
+    if (filtered.fault != PacketFault::kNone) descriptor_.tally->refuse(filtered.fault);
     if (filtered.packet.empty()) return;
     next->OnDataReceived(filtered.packet.data(), static_cast<std::uint32_t>(filtered.packet.size()),
                          local, remote);
@@ -79,9 +79,9 @@ transport::TransportInterface* Descriptor::create_transport() const {
 }  // namespace
 
 std::shared_ptr<transport::TransportDescriptorInterface> filtered(
-    std::shared_ptr<transport::TransportDescriptorInterface> under,
+    std::shared_ptr<transport::TransportDescriptorInterface> under, std::uint64_t token,
     std::shared_ptr<PacketTally> tally) {
-  return std::make_shared<Descriptor>(std::move(under), std::move(tally));
+  return std::make_shared<Descriptor>(std::move(under), token, std::move(tally));
 }
 
 }  // namespace palpate::bus

@@ -14,15 +14,21 @@ struct TransportDescriptorInterface;
 
 namespace palpate::bus {
 
-/// What a participant's filter did. Written by its receiving threads.
+/// What a participant's filter did. Written by its receiving threads, and by who takes samples.
 struct PacketTally {
   std::atomic<std::uint64_t> refused{0};  ///< packets with a fault
   std::atomic<PacketFault> last{PacketFault::kNone};
+
+  void refuse(PacketFault fault) {
+    last = fault;
+    ++refused;
+  }
 };
 
 /// Describes a filter over the transport that `under` describes.
+/// @param token  of the samples that may pass
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> filtered(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> under,
-    std::shared_ptr<PacketTally> tally);
+    std::uint64_t token, std::shared_ptr<PacketTally> tally);
 
 }  // namespace palpate::bus

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "modules/bus/byte_cursor.h"
+#include "modules/messages/message_types.h"
 
 namespace palpate::bus {
 namespace {
@@ -44,7 +45,8 @@ enum Flag : std::uint8_t {
 struct Submessage {
   std::uint8_t kind = 0, flags = 0;
   Bytes content;
-  Bytes owner;  ///< prefix of the packet's participant
+  Bytes owner;          ///< prefix of the packet's participant
+  std::uint64_t token;  ///< of the session
   bool has(Flag flag) const { return (flags & flag) != 0; }
   Cursor cursor() const { return {content, has(kLittleEndian)}; }
 };
@@ -108,6 +110,9 @@ bool carries_parameters(std::uint32_t writer) {
 PacketFault check_payload(const Submessage& message, std::uint32_t writer, Bytes payload) {
   if (!message.has(kPayload) && !message.has(kKey)) return PacketFault::kNone;
   if (payload.size() < 4) return PacketFault::kLength;  // encapsulation
+  if (!built_in(writer) && message.has(kPayload) && messages::token_of(payload) != message.token) {
+    return PacketFault::kToken;
+  }
   if (!carries_parameters(writer)) return PacketFault::kNone;
   const std::uint8_t encapsulation = payload[1];
   if (payload[0] != 0 || (encapsulation != 2 && encapsulation != 3)) {
@@ -155,6 +160,7 @@ PacketFault check_data_frag(const Submessage& message) {
     const PacketFault fault = check_parameters(cursor, Owner());
     if (fault != PacketFault::kNone) return fault;
   }
+  if (first == 1 && messages::token_of(cursor.left()) != message.token) return PacketFault::kToken;
   if (first == 0 || count == 0 || size == 0 || sample > kMaxSampleBytes ||
       (first + count - 2) * size >= sample) {
     return PacketFault::kFragment;
@@ -248,6 +254,14 @@ PacketFault check(const Submessage& message) {
   }
 }
 
+// No sample: that a key of a topic is not written any more.
+bool ends_key(const Submessage& message) {
+  if (message.kind != kData || message.has(kPayload)) return false;
+  Cursor cursor = message.cursor();
+  cursor.skip(8);
+  return !built_in(cursor.entity());
+}
+
 // The bytes that a sub-message with this header takes; none if it ends beyond the packet.
 std::optional<std::size_t> size_of(Bytes rest) {
   if (rest.size() < kSubmessageHeaderBytes) return {};
@@ -274,11 +288,12 @@ const char* text_of(PacketFault fault) {
                               "a gap of more than a million samples",
                               "fragments that do not fit their sample",
                               "a broken list of parameters",
-                              "words in another participant's name"};
+                              "words in another participant's name",
+                              "a sample without this session's token"};
   return kTexts.at(static_cast<std::size_t>(fault));
 }
 
-FilteredPacket filter_packet(Bytes packet, std::vector<std::uint8_t>& kept) {
+FilteredPacket filter_packet(Bytes packet, std::uint64_t token, std::vector<std::uint8_t>& kept) {
   if (!is_rtps(packet)) return {{}, PacketFault::kHeader};
   PacketFault last = PacketFault::kNone;
   kept.clear();
@@ -289,11 +304,11 @@ FilteredPacket filter_packet(Bytes packet, std::vector<std::uint8_t>& kept) {
     const bool vendor = rest[0] >= kFirstVendorKind;
     const Submessage message{rest[0], rest[1],
                              rest.subspan(kSubmessageHeaderBytes, *size - kSubmessageHeaderBytes),
-                             packet.subspan(kPrefixAt, kPrefixBytes)};
+                             packet.subspan(kPrefixAt, kPrefixBytes), token};
     const PacketFault fault = vendor ? PacketFault::kNone : check(message);
     if (fault != PacketFault::kNone) last = fault;
     if (fault != PacketFault::kNone && fault != PacketFault::kGap) return {{}, fault};
-    if (!vendor && fault == PacketFault::kNone) {
+    if (!vendor && !ends_key(message) && fault == PacketFault::kNone) {
       const std::size_t at = packet.size() - rest.size();
       if (at == sound) {
         sound += *size;

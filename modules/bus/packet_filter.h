@@ -19,6 +19,7 @@ enum class PacketFault {
   kFragment,    ///< fragments that do not fit their sample, or a sample beyond kMaxSampleBytes
   kParameters,  ///< a parameter list without its end, or with a wrong length
   kIdentity,    ///< discovery of another participant than the packet's own, or its name taken
+  kToken,       ///< a sample of another session
 };
 const char* text_of(PacketFault fault);  ///< one line, without a full stop
 
@@ -34,9 +35,12 @@ struct FilteredPacket {
 
 /// Keeps the sub-messages that RTPS 2.5 (OMG formal/22-04-01, section 9.4.5) describes, well formed
 /// and within our own limits; leaves out those of vendors, which the standard lets every reader
-/// ignore. A fault refuses the whole packet, but a GAP that is too wide: it alone is left out.
+/// ignore, and what ends a key of a topic, for nothing of ours does. A fault refuses the whole
+/// packet, but a GAP that is too wide: it alone is left out.
 /// @param packet  of any content and size
+/// @param token   that samples of topics must bear (messages::token_of)
 /// @param kept    memory for what is kept of a packet that loses something in its middle
-FilteredPacket filter_packet(std::span<const std::uint8_t> packet, std::vector<std::uint8_t>& kept);
+FilteredPacket filter_packet(std::span<const std::uint8_t> packet, std::uint64_t token,
+                             std::vector<std::uint8_t>& kept);
 
 }  // namespace palpate::bus

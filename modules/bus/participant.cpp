@@ -15,6 +15,7 @@
 #include "modules/bus/filtered_transport.h"
 #include "modules/bus/payload_type.h"
 #include "modules/bus/qos.h"
+#include "modules/bus/session_token.h"
 #include "modules/core/error.h"
 
 namespace palpate::bus {
@@ -50,10 +51,11 @@ Entity* demand_created(Entity* entity, const char* what) {
 
 Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
   check(options);
+  token_ = options.token ? *options.token : session_token(options.domain, options.session);
   dds::DomainParticipantQos qos;
   packets_ = apply_transport(
       addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS")),
-      options.domain, qos);
+      options.domain, token_, qos);
   qos.name(options.participant_name);
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(options.domain), qos);
@@ -80,6 +82,16 @@ Refusals Participant::packets_refused() const {
   return {packets_->refused, text_of(packets_->last)};
 }
 
+bool Participant::admit(std::span<std::uint8_t> payload) {
+  const auto token = messages::token_of(payload);
+  if (token == token_) {
+    messages::set_token(payload, 0);
+    return true;
+  }
+  packets_->refuse(PacketFault::kToken);
+  return false;
+}
+
 void Participant::close() {
   participant_->delete_contained_entities();
   dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
@@ -88,7 +100,7 @@ void Participant::close() {
 dds::Topic* Participant::topic(const TopicInfo& topic) {
   const auto known = topics_.find(topic.name);
   if (known != topics_.end()) return known->second;
-  const dds::TypeSupport support(new PayloadType(*topic.type));
+  const dds::TypeSupport support(new PayloadType(*topic.type, token_));
   participant_->register_type(support);
   dds::Topic* created = demand_created(
       participant_->create_topic(std::string(topic.name), support.get_type_name(), dds::TopicQos()),

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -38,14 +39,18 @@ class Participant {
   void remove(eprosima::fastdds::dds::DataWriter* writer);
   void remove(eprosima::fastdds::dds::DataReader* reader);
 
-  Refusals packets_refused() const;  ///< by the filter in front of DDS
+  Refusals packets_refused() const;  ///< by the filter in front of DDS, and by admit()
+
+  /// Takes the token off a payload that came; false, and counted, if it is not this session's.
+  bool admit(std::span<std::uint8_t> payload);
 
  private:
   eprosima::fastdds::dds::Topic* topic(const TopicInfo& topic);
   void close();
 
   bool every_sample_;
-  std::shared_ptr<const PacketTally> packets_;
+  std::uint64_t token_ = 0;
+  std::shared_ptr<PacketTally> packets_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber_ = nullptr;

@@ -16,7 +16,8 @@ constexpr unsigned char kUnreadable = 0xff;  // every byte of the handle
 
 }  // namespace
 
-PayloadType::PayloadType(const messages::MessageType& type) : type_(type) {
+PayloadType::PayloadType(const messages::MessageType& type, std::uint64_t token)
+    : type_(type), token_(token) {
   setName(std::string(type.wire_name).c_str());
   m_typeSize = kUsualBytes;
   m_isGetKeyDefined = type.key != messages::MessageType::Key::kNone;
@@ -26,6 +27,7 @@ bool PayloadType::serialize(void* data, rtps::SerializedPayload_t* payload) {
   const messages::Payload bytes = static_cast<Sample*>(data)->bytes;
   if (bytes.size() > payload->max_size || bytes.size() < 4) return false;
   std::memcpy(payload->data, bytes.data(), bytes.size());
+  messages::set_token({payload->data, bytes.size()}, token_);
   payload->length = static_cast<std::uint32_t>(bytes.size());
   payload->encapsulation = (bytes[1] & 1u) != 0 ? CDR_LE : CDR_BE;
   return true;

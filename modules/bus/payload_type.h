@@ -18,7 +18,8 @@ class PayloadType : public eprosima::fastdds::dds::TopicDataType {
     std::vector<std::uint8_t>* into = &own;  ///< memory for what is read
   };
 
-  explicit PayloadType(const messages::MessageType& type);
+  /// @param token  is written into each payload that leaves
+  PayloadType(const messages::MessageType& type, std::uint64_t token);
 
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
@@ -31,6 +32,7 @@ class PayloadType : public eprosima::fastdds::dds::TopicDataType {
 
  private:
   const messages::MessageType& type_;
+  std::uint64_t token_;
 };
 
 }  // namespace palpate::bus

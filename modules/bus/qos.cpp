@@ -99,8 +99,8 @@ void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolCo
 
 }  // namespace
 
-std::shared_ptr<const PacketTally> apply_transport(const Addresses& addresses, int domain,
-                                                   dds::DomainParticipantQos& qos) {
+std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
+                                             std::uint64_t token, dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses.own;
   udp->sendBufferSize = kSocketBufferBytes;
@@ -109,7 +109,7 @@ std::shared_ptr<const PacketTally> apply_transport(const Addresses& addresses, i
   udp->maxInitialPeersRange = kMaxParticipants;
   auto tally = std::make_shared<PacketTally>();
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(filtered(udp, tally));
+  qos.transport().user_transports.push_back(filtered(udp, token, tally));
   apply_discovery(addresses, domain, qos.wire_protocol());
   qos.allocation().participants = {0, PacketSenders::kMaxParticipants, 1};
   return tally;

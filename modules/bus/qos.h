@@ -21,9 +21,11 @@ inline constexpr int kMaxKeys = 256;
 
 /// UDP on our own addresses only, through the packet filter, without multicast or shared memory;
 /// quick discovery, a lease of a day.
+/// @param token  of the samples that may pass
 /// @returns what the filter will have done
-std::shared_ptr<const PacketTally> apply_transport(
-    const Addresses& addresses, int domain, eprosima::fastdds::dds::DomainParticipantQos& qos);
+std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
+                                             std::uint64_t token,
+                                             eprosima::fastdds::dds::DomainParticipantQos& qos);
 
 /// stream: best effort, volatile; state: reliable, transient local. Both: newest sample per key (a
 /// reader may ask for more), written in the calling thread, no data sharing, memory grows to the

@@ -125,6 +125,7 @@ void describe(V& v, H& h) {
   v.field("sequence_number", h.sequence, Rule::kFromOne);
   v.field("sim_time_ns", h.sim_time_ns, Rule::kPlain);
   v.field("source_time_ns", h.source_time_ns, Rule::kSinceSetUp);
+  v.field("session_token", h.session_token, Rule::kPlain);
 }
 
 template <class V, Is<ProbeState> M>

@@ -11,7 +11,7 @@
 namespace palpate::messages {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 24;
+constexpr std::size_t kHeaderBytes = 32, kTokenAt = 24;
 
 template <class Message>
 MessageType::Key key_kind() {
@@ -27,12 +27,13 @@ const char* decode_any(Payload payload, AnyMessage& message) {
   return decode(payload, std::get<Message>(message));
 }
 
+bool is_big_endian(Payload payload) { return (payload[1] & 1u) == 0; }
+
 template <class T>
 T number(Payload payload, std::size_t place) {
   std::array<std::uint8_t, sizeof(T)> bytes;
   std::memcpy(bytes.data(), payload.data() + kEncapsulationBytes + place, sizeof(T));
-  const bool big_endian = (payload[1] & 1u) == 0;
-  if (big_endian) std::ranges::reverse(bytes);
+  if (is_big_endian(payload)) std::ranges::reverse(bytes);
   return std::bit_cast<T>(bytes);
 }
 
@@ -85,7 +86,19 @@ KeyBytes key_of(const MessageType& type, Payload payload) {
 Header header_of(Payload payload) {
   if (payload.size() < kEncapsulationBytes + kHeaderBytes) return {};
   return {number<std::uint64_t>(payload, 0), number<std::int64_t>(payload, 8),
-          number<std::int64_t>(payload, 16)};
+          number<std::int64_t>(payload, 16), number<std::uint64_t>(payload, kTokenAt)};
+}
+
+std::optional<std::uint64_t> token_of(Payload payload) {
+  if (payload.size() < kEncapsulationBytes + kHeaderBytes) return std::nullopt;
+  return number<std::uint64_t>(payload, kTokenAt);
+}
+
+void set_token(std::span<std::uint8_t> payload, std::uint64_t token) {
+  if (payload.size() < kEncapsulationBytes + kHeaderBytes) return;
+  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof token>>(token);
+  if (is_big_endian(payload)) std::ranges::reverse(bytes);
+  std::ranges::copy(bytes, payload.begin() + kEncapsulationBytes + kTokenAt);
 }
 
 }  // namespace palpate::messages

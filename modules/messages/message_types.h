@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -55,5 +56,10 @@ KeyBytes key_of(const MessageType& type, Payload payload);
 
 /// The first fields of every message, without decoding the rest. Zeros if the payload is too short.
 Header header_of(Payload payload);
+
+/// What such a payload says of the session it belongs to; nothing if it is too short.
+std::optional<std::uint64_t> token_of(Payload payload);
+/// Leaves a payload that is too short as it is.
+void set_token(std::span<std::uint8_t> payload, std::uint64_t token);
 
 }  // namespace palpate::messages

@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 8;
+inline constexpr std::uint32_t kProtocolVersion = 9;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
@@ -28,6 +28,7 @@ struct Header {
   std::uint64_t sequence = 0;       ///< counts up from 1 per writer
   std::int64_t sim_time_ns = 0;     ///< simulated time since the session started [ns]
   std::int64_t source_time_ns = 0;  ///< the writer's monotonic clock at sampling [ns]
+  std::uint64_t session_token = 0;  ///< only on the wire: buses write it and take it off
 };
 
 /// Pose of one probe. Written by haptics (topic probe_state) and by outside drivers of a probe

@@ -12,11 +12,11 @@ using namespace palpate::testing;
 
 namespace {
 
-/// ProbeState in little-endian CDR: encapsulation, three 8-byte header fields, key, padding, 13
+/// ProbeState in little-endian CDR: encapsulation, four 8-byte header fields, key, padding, 13
 /// doubles, buttons. Written by hand, because our own writer refuses what is not finite.
 std::vector<std::uint8_t> probe_state_payload(std::uint32_t probe, const double (&pose)[7],
                                               double speed = 0) {
-  std::vector<std::uint8_t> bytes(4 + 140);
+  std::vector<std::uint8_t> bytes(4 + 148);
   bytes[1] = 0x01;  // CDR, little-endian
   std::size_t at = 4;
   const auto append = [&](auto value) {
@@ -26,6 +26,7 @@ std::vector<std::uint8_t> probe_state_payload(std::uint32_t probe, const double 
   append(std::uint64_t{1});
   append(std::int64_t{0});
   append(runtime::monotonic_now_ns());
+  append(std::uint64_t{0});  // the bus writes its own
   append(probe);
   append(std::uint32_t{0});
   for (const double value : pose) append(value);

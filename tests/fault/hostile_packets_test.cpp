@@ -30,7 +30,7 @@ Bytes any_message(std::mt19937_64& random, const Bytes& prefix) {
     case 5:
       return statistics();
     case 6:
-      return data_frag(number(), 1, 1, 1000, static_cast<std::uint32_t>(number()), 1000);
+      return data_frag(number(), 1, 1, 1000, static_cast<std::uint32_t>(number()), Bytes(1000));
     case 7:
       return data(0x000003c2, number(), Bytes(random() % 200));
     case 8:

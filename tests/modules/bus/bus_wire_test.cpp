@@ -25,6 +25,8 @@ using testing::own_options;
 using testing::take_soon;
 using testing::wait_until;
 
+constexpr std::uint64_t kWireToken = 0x1122334455667788;
+
 // A wire type whose serialized bytes the test may corrupt before they leave.
 template <class Support>
 class CorruptedSupport : public Support {
@@ -44,7 +46,7 @@ class ForeignWriter {
   ForeignWriter(const BusOptions& options, std::string_view topic)
       : corrupted_(new CorruptedSupport<Support>), support_(corrupted_) {
     dds::DomainParticipantQos qos;
-    apply_transport({{"127.0.0.1"}, {}}, options.domain, qos);
+    apply_transport({{"127.0.0.1"}, {}}, options.domain, options.token.value(), qos);
     auto* factory = dds::DomainParticipantFactory::get_instance();
     participant_ = factory->create_participant(static_cast<std::uint32_t>(options.domain), qos);
     participant_->register_type(support_);
@@ -84,9 +86,16 @@ class ForeignWriter {
 using ForeignProbe = ForeignWriter<idl::ProbeState, idl::ProbeStatePubSubType>;
 using ForeignContacts = ForeignWriter<idl::Contacts, idl::ContactsPubSubType>;
 
+BusOptions wire_options() {
+  BusOptions options = own_options();
+  options.token = kWireToken;
+  return options;
+}
+
 idl::ProbeState good_probe(std::uint64_t sequence) {
   idl::ProbeState wire;
   wire.sequence_number(sequence);
+  wire.session_token(kWireToken);
   wire.rotation_xyzw({0, 0, 0, 1});
   return wire;
 }
@@ -101,7 +110,7 @@ bool matched(const Foreign& writer, const Reader<Message>& reader) {
 TEST_CASE("wire: samples that break a rule are counted and skipped, and the field is named",
           "[bus]") {
   // Oracle: the wire specification; the good sample after the bad one arrives.
-  const BusOptions options = own_options();
+  const BusOptions options = wire_options();
   DdsBus bus(options);
   auto reader = bus.reader(kProbeInput);
   ForeignProbe foreign(options, kProbeInput.name);
@@ -124,7 +133,7 @@ TEST_CASE("wire: samples that break a rule are counted and skipped, and the fiel
 
 TEST_CASE("wire: a reader counts the sequence numbers that never came", "[bus]") {
   // Oracle: the gap made by hand, 2 to 6.
-  const BusOptions options = own_options();
+  const BusOptions options = wire_options();
   DdsBus bus(options);
   auto reader = bus.reader(kProbeInput);
   ForeignProbe foreign(options, kProbeInput.name);
@@ -141,13 +150,14 @@ TEST_CASE("wire: a reader counts the sequence numbers that never came", "[bus]")
 TEST_CASE("wire: payloads that cannot be read are counted and do not stop a reader", "[bus]") {
   // Oracle: the good sample after each corrupted one arrives.
   using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
-  const BusOptions options = own_options();
+  const BusOptions options = wire_options();
   DdsBus bus(options);
   auto reader = bus.reader(kContacts);
   ForeignContacts foreign(options, kContacts.name);
   REQUIRE(matched(foreign, reader));
 
   idl::Contacts wire;
+  wire.session_token(kWireToken);
   wire.probe_rotation_xyzw({0, 0, 0, 1});
   std::uint64_t sequence = 0;
   const auto check_survives = [&](const char* field, std::function<void(Payload&)> change) {
@@ -168,7 +178,7 @@ TEST_CASE("wire: payloads that cannot be read are counted and do not stop a read
   // From the end: three lengths of lists of 4 bytes, 3 of padding, the boolean `truncated`.
   check_survives("truncated", [](Payload& p) { p.data[p.length - 16] = 2; });
   check_survives("payload", [](Payload& p) { std::memset(p.data + p.length - 4, 0xff, 4); });
-  check_survives("payload", [](Payload& p) { p.length = 20; });
+  check_survives("payload", [](Payload& p) { p.length = 40; });
   check_survives("payload", [](Payload& p) { p.data[1] = 0x77; });
 }
 

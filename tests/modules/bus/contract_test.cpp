@@ -210,7 +210,7 @@ TEMPLATE_TEST_CASE("bus contract: a payload that cannot be read is counted and s
   };
   send(1, std::nan(""), 1000);
   CHECK(rejected_for(1) == "position_m");
-  send(2, 0, 20);
+  send(2, 0, 40);
   CHECK(rejected_for(2) == "payload");
   send(4, 7, 1000);
   REQUIRE(take_soon(reader, received));

@@ -10,6 +10,23 @@ namespace {
 
 using namespace testing;
 
+constexpr std::uint64_t kFilterToken = 0x1122334455667788;
+
+/// The first fields of a sample, and some more.
+Bytes sample(std::uint64_t token = kFilterToken) {
+  return Content()
+      .number(std::uint32_t{0x100})
+      .raw(Bytes(24))
+      .number(token)
+      .raw(Bytes(968 - 4))
+      .bytes();
+}
+
+Bytes short_of(Bytes bytes) {
+  bytes.pop_back();
+  return bytes;
+}
+
 struct Verdict {
   Bytes packet;
   PacketFault fault = PacketFault::kNone;
@@ -17,7 +34,7 @@ struct Verdict {
 
 Verdict filtered(const Bytes& packet) {
   Bytes kept;
-  const FilteredPacket result = filter_packet(packet, kept);
+  const FilteredPacket result = filter_packet(packet, kFilterToken, kept);
   return {Bytes(result.packet.begin(), result.packet.end()), result.fault};
 }
 
@@ -25,15 +42,14 @@ PacketFault fault_of(const Bytes& message) { return filtered(joined({header(), m
 
 /// One sound sub-message of each kind.
 std::vector<Bytes> sound_messages() {
-  const Bytes payload = Content().number(std::uint32_t{0x100}).four(7).bytes();
   return {timestamp(),
           submessage(9, 3, Content()),  // no time
           submessage(0x0e, 1, Content().raw(kSomebodyElse)),
-          data(kUserWriter, 1, payload),
+          data(kUserWriter, 1, sample()),
           announcement(kSomebody),
           farewell(kSomebody),
-          data_frag(1, 1, 1, 1000, 2500, 1000),
-          data_frag(1, 3, 1, 1000, 2500, 500),
+          data_frag(1, 1, 1, 1000, 2500, sample()),
+          data_frag(1, 3, 1, 1000, 2500, Bytes(500)),
           gap(1, 5, 33),
           gap(1, 1 + kMaxGap),
           heartbeat(1, 0),
@@ -82,7 +98,7 @@ TEST_CASE("packet filter: each rule that is broken refuses the packet and names 
   // Oracle: one fault by hand per case, each a step beyond what passes above.
   CHECK(filtered({'R', 'T', 'P', 'S', 2}).fault == PacketFault::kHeader);
   CHECK(filtered(joined({Bytes{'R', 'T', 'P', 'X'}, Bytes(30)})).fault == PacketFault::kHeader);
-  const Bytes user = Content().number(std::uint32_t{0x100}).bytes();
+  const Bytes user = sample();
   CHECK(fault_of({0x09, 1, 9, 0, 1, 2, 3, 4, 5, 6, 7, 8}) == PacketFault::kLength);
   CHECK(fault_of({0x09, 1, 4, 0, 1, 2, 3, 4}) == PacketFault::kLength);
   CHECK(fault_of({0x09, 1}) == PacketFault::kLength);
@@ -98,11 +114,12 @@ TEST_CASE("packet filter: each rule that is broken refuses the packet and names 
   CHECK(fault_of(gap(6, 5)) == PacketFault::kSequence);
   CHECK(fault_of(gap(1, 5, 257)) == PacketFault::kLength);
   CHECK(fault_of(acknack(1, 257)) == PacketFault::kLength);
-  CHECK(fault_of(data_frag(1, 0, 1, 1000, 2500, 1000)) == PacketFault::kFragment);
-  CHECK(fault_of(data_frag(1, 4, 1, 1000, 2500, 1000)) == PacketFault::kFragment);
-  CHECK(fault_of(data_frag(1, 1, 1, 1000, 200'000'000, 1000)) == PacketFault::kFragment);
-  CHECK(fault_of(data_frag(1, 0xffffffff, 0xffff, 0xffff, 0xffff, 1000)) == PacketFault::kFragment);
-  CHECK(fault_of(data_frag(1, 1, 1, 1000, 2500, 999)) == PacketFault::kLength);
+  CHECK(fault_of(data_frag(1, 0, 1, 1000, 2500, sample())) == PacketFault::kFragment);
+  CHECK(fault_of(data_frag(1, 4, 1, 1000, 2500, sample())) == PacketFault::kFragment);
+  CHECK(fault_of(data_frag(1, 1, 1, 1000, 200'000'000, sample())) == PacketFault::kFragment);
+  CHECK(fault_of(data_frag(1, 0xffffffff, 0xffff, 0xffff, 0xffff, sample())) ==
+        PacketFault::kFragment);
+  CHECK(fault_of(data_frag(1, 1, 1, 1000, 2500, short_of(sample()))) == PacketFault::kLength);
   CHECK(fault_of(submessage(0x0f, 1, Content().four(0xffffffff))) == PacketFault::kLength);
   const Bytes list = Content().number(std::uint32_t{0x300}).two(0x62).two(8).four(0).bytes();
   CHECK(fault_of(data(kAnnouncer, 1, list)) == PacketFault::kParameters);  // ends in a value
@@ -114,6 +131,50 @@ TEST_CASE("packet filter: nobody announces or buries another participant", "[bus
   // Oracle: the GUID of the header against that of the words.
   CHECK(fault_of(announcement(kSomebodyElse)) == PacketFault::kIdentity);
   CHECK(fault_of(farewell(kSomebodyElse)) == PacketFault::kIdentity);
+}
+
+TEST_CASE("packet filter: samples of topics bear the token, in their first fragment at least",
+          "[bus]") {
+  // Oracle: the place of the token in idl/: after the encapsulation and three numbers of 8 bytes.
+  const Bytes foreign = sample(kFilterToken + 1);
+  CHECK(fault_of(data(kUserWriter, 1, foreign)) == PacketFault::kToken);
+  CHECK(fault_of(data_frag(1, 1, 1, 1000, 2500, foreign)) == PacketFault::kToken);
+  CHECK(fault_of(data_frag(1, 2, 1, 1000, 2500, foreign)) == PacketFault::kNone);  // no token there
+  Bytes big_endian = foreign;
+  big_endian[1] = 0;
+  for (int k = 0; k < 8; ++k) {
+    big_endian[std::size_t(28 + k)] = static_cast<std::uint8_t>(kFilterToken >> 8 * (7 - k));
+  }
+  CHECK(fault_of(data(kUserWriter, 1, big_endian)) == PacketFault::kNone);
+  const Bytes whole = sample();
+  CHECK(fault_of(data(kUserWriter, 1, Bytes(whole.begin(), whole.begin() + 35))) ==
+        PacketFault::kToken);
+  CHECK(fault_of(data_frag(1, 1, 1, 35, 2500, Bytes(whole.begin(), whole.begin() + 35))) ==
+        PacketFault::kToken);
+  CHECK(fault_of(joined({timestamp(), data(kUserWriter, 1, foreign)})) == PacketFault::kToken);
+}
+
+TEST_CASE("packet filter: the end of a key is left out, and is no fault", "[bus]") {
+  // Oracle: the packet without it. It would take the place of the key's newest sample.
+  const auto ends_key = [](std::uint32_t writer) {
+    return submessage(0x15, 11,
+                      Content()
+                          .two(0)
+                          .two(16)
+                          .entity(0)
+                          .entity(writer)
+                          .sequence(1)
+                          .two(0x71)
+                          .two(4)
+                          .raw({0, 0, 0, 1})
+                          .two(1)
+                          .two(0)
+                          .four(0x100)
+                          .four(7));
+  };
+  const Verdict verdict = filtered(joined({header(), timestamp(), ends_key(kUserWriter)}));
+  CHECK(verdict.packet == joined({header(), timestamp()}));
+  CHECK(verdict.fault == PacketFault::kNone);
 }
 
 TEST_CASE("packet filter: a gap too wide is left out alone, and counts", "[bus]") {
@@ -170,7 +231,7 @@ TEST_CASE("packet filter: whatever passes passes again unchanged", "[bus]") {
 TEST_CASE("packet filter: every fault has a text of its own", "[bus]") {
   // Oracle: no two equal.
   std::vector<std::string> texts;
-  for (int fault = 0; fault <= int(PacketFault::kIdentity); ++fault) {
+  for (int fault = 0; fault <= int(PacketFault::kToken); ++fault) {
     texts.emplace_back(text_of(PacketFault(fault)));
   }
   std::sort(texts.begin(), texts.end());

@@ -107,7 +107,7 @@ inline Bytes farewell(const Bytes& prefix) {
                         .two(0));
 }
 inline Bytes data_frag(std::int64_t sequence, std::uint32_t first, std::uint16_t count,
-                       std::uint16_t size, std::uint32_t sample, std::size_t payload) {
+                       std::uint16_t size, std::uint32_t sample, const Bytes& payload) {
   return submessage(0x16, 1,
                     Content()
                         .two(0)
@@ -119,7 +119,7 @@ inline Bytes data_frag(std::int64_t sequence, std::uint32_t first, std::uint16_t
                         .two(count)
                         .two(size)
                         .four(sample)
-                        .raw(Bytes(payload)));
+                        .raw(payload));
 }
 inline Bytes gap(std::int64_t start, std::int64_t base, std::uint32_t bits = 0) {
   return submessage(

@@ -89,8 +89,8 @@ TEST_CASE("docs/topics.md: sizes are those of the wire types", "[bus]") {
   CHECK(row_with("session_control", bytes(idl::SessionControl()) + " B"));
   CHECK(row_with("contacts", bytes(idl::Contacts()) + " B \\+ 88 B per contact"));
   // Halved until no block has more than 128 of 1,096 and of 38,996 triangles.
-  CHECK(node_positions_bytes(550, 16) == "7072");
-  CHECK(node_positions_bytes(19'500, 512) == "246376");
+  CHECK(node_positions_bytes(550, 16) == "7080");
+  CHECK(node_positions_bytes(19'500, 512) == "246384");
   CHECK(row_with("node_positions", "7.1 KB / 246 KB"));
 }
 

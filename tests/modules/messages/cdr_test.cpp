@@ -21,7 +21,8 @@ void check_round_trip() {
   std::vector<std::uint8_t> payload;
   Message decoded;  // serves every round, so leftovers of the last would show
   for (int round = 0; round < kRounds; ++round) {
-    const auto message = random_message<Message>(random);
+    auto message = random_message<Message>(random);
+    message.header.session_token = random();
     REQUIRE(encode(message, payload) == nullptr);
     REQUIRE(decode(payload, decoded) == nullptr);
     testing::check_same(testing::generated(payload, message), decoded);
@@ -33,7 +34,8 @@ void check_against_generated_code() {
   CAPTURE(type_of<Message>().name);
   Random random(12);
   for (int round = 0; round < kRounds; ++round) {
-    const auto message = random_message<Message>(random);
+    auto message = random_message<Message>(random);
+    message.header.session_token = random();
     const auto ours = payload_of(message);
     auto wire = testing::generated(ours, message);
     testing::check_same(wire, message);
@@ -152,7 +154,7 @@ TEST_CASE("cdr: words and flags that do not exist are refused by name, also beyo
           "[messages]") {
   // Oracle: idl/; 256 would be 0 if narrowed first. A command lies after the header.
   for (const std::uint32_t value : {5u, 256u, ~0u}) {
-    CHECK(refused<SessionControl>([&](auto& p) { std::memcpy(&p[28], &value, 4); }) == "command");
+    CHECK(refused<SessionControl>([&](auto& p) { std::memcpy(&p[36], &value, 4); }) == "command");
   }
 }
 
@@ -181,9 +183,9 @@ TEST_CASE("cdr: quaternions go x, y, z, w and matrices row by row", "[messages]"
 
 TEST_CASE("cdr: the header is read in both byte orders without the rest", "[messages]") {
   // Oracle: bytes written by hand; CDR says its order in its second byte.
-  std::vector<std::uint8_t> little(28), big(28);
+  std::vector<std::uint8_t> little(36), big(36);
   little[1] = 1;
-  for (std::size_t field = 0; field < 3; ++field) {
+  for (std::size_t field = 0; field < 4; ++field) {
     little[4 + 8 * field] = big[4 + 8 * field + 7] = static_cast<std::uint8_t>(field + 1);
     little[5 + 8 * field] = big[4 + 8 * field + 6] = 1;
   }
@@ -192,9 +194,32 @@ TEST_CASE("cdr: the header is read in both byte orders without the rest", "[mess
     CHECK(header.sequence == 257);
     CHECK(header.sim_time_ns == 258);
     CHECK(header.source_time_ns == 259);
+    CHECK(header.session_token == 260);
+    CHECK(token_of(payload) == 260);
   }
   little.pop_back();
   CHECK(header_of(little).sequence == 0);
+  CHECK_FALSE(token_of(little).has_value());
+}
+
+TEST_CASE("cdr: the token is written in a payload's own byte order, and nothing else",
+          "[messages]") {
+  // Oracle: the payload with another token, written as a whole by the generated code.
+  Random random(17);
+  auto message = random_message<HapticForce>(random);
+  message.header.session_token = 0x1122334455667788;
+  const auto ours = payload_of(message);
+  const auto wire = testing::generated(ours, message);
+  message.header.session_token = 5;
+  const auto other = testing::generated(payload_of(message), message);
+  for (const auto order : {testing::kLittleEndian, testing::kBigEndian}) {
+    auto payload = testing::serialized(other, order);
+    set_token(payload, 0x1122334455667788);
+    CHECK(payload == testing::serialized(wire, order));
+  }
+  std::vector<std::uint8_t> cut(35, 7);
+  set_token(cut, 1);
+  CHECK(cut == std::vector<std::uint8_t>(35, 7));
 }
 
 }  // namespace palpate::messages

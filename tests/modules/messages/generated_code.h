@@ -69,6 +69,7 @@ void check_header(const Wire& w, const Message& m) {
   REQUIRE(w.sequence_number() == m.header.sequence);
   REQUIRE(w.sim_time_ns() == m.header.sim_time_ns);
   REQUIRE(w.source_time_ns() == m.header.source_time_ns);
+  REQUIRE(w.session_token() == m.header.session_token);
 }
 
 inline void check_same(const idl::ProbeState& w, const ProbeState& m) {
