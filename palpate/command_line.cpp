@@ -78,6 +78,9 @@ void add_run_options(Options& command, RunOptions& options) {
   command.add("--duration", options.duration, "Seconds to run; else the scene's duration_s")
       .range(0.0, 1e6);
   command.add_output("--record", options.record, "Recording to write (MCAP)");
+  command.add("--record-topics", options.record_topics,
+              "What it holds: all, TOPIC, or TOPIC=HZ for at most so many a second; else all in "
+              "lockstep, and in real time all,node_positions=25,contact_model=25,contacts=25");
   command.add_output("--summary", options.summary, "Text file for the summary of the end");
   const Option lockstep = command.flag(
       "--lockstep", options.lockstep,
@@ -108,16 +111,20 @@ void add_run(Program& program, RunOptions& options) {
   add_run_options(command, options);
 }
 
-void add_replay(Program& program, std::filesystem::path& recording, RunOptions& options) {
+void add_replay(Program& program, std::filesystem::path& recording, Playing& playing,
+                RunOptions& options) {
   Options command = program.command(
       "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion",
-      [&recording, &options] {
+      [&recording, &playing, &options] {
         options.headless |= no_display();
         options.scene = scene_file(options.scene);
-        return replay_command(recording, options, std::cout, std::cerr);
+        return replay_command(recording, playing, options, std::cout, std::cerr);
       });
   command.add_input("RECORDING", recording, "Recording (MCAP)").required();
   command.add_input("SCENE", options.scene, kSceneHelp);
+  command.add("--start", playing.start, "Seconds of the recording to leave out").range(0.0, 1e6);
+  command.add("--rate", playing.rate, "Times as fast as it was").range(0.01, 100.0).shows_default();
+  command.flag("--step", playing.step, "A picture for each press of Enter");
   add_run_options(command, options);
 }
 
@@ -127,6 +134,8 @@ void add_inspect(Program& program, recording::InspectOptions& options) {
   });
   command.add("RECORDING", options.recording, "Recording (MCAP)").required();
   command.add("--csv", options.csv_folder, "Folder for one CSV file per topic");
+  command.add_output("--repair", options.repaired,
+                     "File for what can be read of a torn or damaged recording; with its indexes");
   command.flag("--json", options.json, "Print JSON");
 }
 
@@ -228,6 +237,7 @@ int palpate_command(int argc, char** argv) {
   RunOptions run;
   RunOptions replay = run;
   std::filesystem::path recording;
+  Playing playing;
   CheckOptions check;
   std::string kind;
   NewOptions fresh;
@@ -236,7 +246,7 @@ int palpate_command(int argc, char** argv) {
   geometry::MeshCommandOptions mesh;
   bus::BusOptions session;
   add_run(program, run);
-  add_replay(program, recording, replay);
+  add_replay(program, recording, playing, replay);
   add_inspect(program, inspect);
   add_diff(program, diff);
   add_check(program, check);

@@ -238,7 +238,8 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   scenes.write(description);
   if (!options.record.empty()) {
     session.add("recorder", [&](bus::Bus& bus) {
-      return std::make_unique<recording::RecorderStage>(bus, options.record);
+      return std::make_unique<recording::RecorderStage>(
+          bus, options.record, recording::TopicSelection(options.record_topics));
     });
   }
   SessionMonitor monitor(session.bus(), scene);

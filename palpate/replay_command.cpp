@@ -31,8 +31,8 @@ std::string recorded_scene(const std::filesystem::path& recording) {
   throw InputError(recording.string() + ": holds no scene: it began after the session or is torn");
 }
 
-int show(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
-         std::ostream& log) {
+int show(const std::filesystem::path& recording, const Playing& playing, const RunOptions& run,
+         std::ostream& out, std::ostream& log) {
   const runtime::StopSignal stop;
   const TemporaryFolder folder;
   RunOptions viewing = run;
@@ -47,7 +47,10 @@ int show(const std::filesystem::path& recording, const RunOptions& run, std::ost
     visualizer.poll();
     return stop.requested() || (shown && !visualizer.any_running());
   };
-  const recording::ReplayOptions options{recording, run.bus};
+  recording::ReplayOptions options{recording, run.bus};
+  options.start = playing.start;
+  options.rate = playing.rate;
+  options.step = playing.step;
   const int code = recording::run_replay_command(options, stop_requested, out, log);
   visualizer.stop();
   return code;
@@ -71,9 +74,14 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
 
 }  // namespace
 
-int replay_command(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
-                   std::ostream& log) {
-  if (run.scene.empty()) return show(recording, run, out, log);
+int replay_command(const std::filesystem::path& recording, const Playing& playing,
+                   const RunOptions& run, std::ostream& out, std::ostream& log) {
+  if (run.scene.empty()) return show(recording, playing, run, out, log);
+  if (playing.start > 0 || playing.rate != 1 || playing.step) {
+    throw InputError(
+        "--start, --rate and --step: of a replay without SCENE; with one all is "
+        "computed anew");
+  }
   const runtime::StopSignal stop;  // or a signal would leave the folder
   const TemporaryFolder folder;
   const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),

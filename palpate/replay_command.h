@@ -7,12 +7,18 @@
 
 namespace palpate::launcher {
 
+struct Playing {
+  double start = 0;   ///< seconds of the recording to leave out
+  double rate = 1;    ///< times as fast
+  bool step = false;  ///< a picture for each press of Enter
+};
+
 /// Without a scene in `run`: plays every sample into the session, with a visualizer that shows it
 /// (unless run.headless without frames). With one: runs that scene, every probe of the recording
 /// moving as it moved then; all else is computed anew.
 /// @return an exit code of core/error.h
 /// @throws InputError for a recording or scene that cannot be used
-int replay_command(const std::filesystem::path& recording, const RunOptions& run, std::ostream& out,
-                   std::ostream& log);
+int replay_command(const std::filesystem::path& recording, const Playing& playing,
+                   const RunOptions& run, std::ostream& out, std::ostream& log);
 
 }  // namespace palpate::launcher

@@ -9,6 +9,7 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/sample_reader.h"
+#include "modules/recording/topic_selection.h"
 
 namespace palpate::launcher {
 namespace {
@@ -76,11 +77,17 @@ ModuleCommand module_command(const RunOptions& options, std::string_view module,
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder) {
   check_names(options.only);
+  static_cast<void>(recording::TopicSelection(options.record_topics));  // throws what is wrong
   std::vector<ModuleCommand> commands;
   if (!options.record.empty()) {
     ModuleCommand recorder{
         "recorder", program_folder / "palpate-recorder", {options.record.string()}, false};
     for (auto& argument : session_arguments(options.bus)) recorder.arguments.push_back(argument);
+    if (!options.record_topics.empty()) {
+      recorder.arguments.insert(
+          recorder.arguments.end(),
+          {"--topics", fmt::format("{}", fmt::join(options.record_topics, ","))});
+    }
     if (options.lockstep) {
       recorder.reports_status = true;
       recorder.arguments.insert(recorder.arguments.end(),

@@ -19,15 +19,16 @@ struct RunOptions {
   bool visualizer = true;
   bool close = false;  ///< the window, too, when the run ends; else it stays
   bool realtime = true;
-  bool restart = true;            ///< modules that die or hang
-  bool lockstep = false;          ///< without a wall clock, as fast as the machine allows
-  bool in_process = false;        ///< the same in one process
-  double ready_deadline = 60;     ///< lockstep: longest wait for a process [s]
-  std::vector<std::string> only;  ///< modules to start; empty: all
-  std::filesystem::path record;   ///< recording to write; empty: none
-  std::filesystem::path frames;   ///< folder for pictures; empty: none
-  double frame_interval = 1;      ///< simulated, between two pictures [s]
-  std::filesystem::path summary;  ///< text file for the summary; empty: none
+  bool restart = true;                     ///< modules that die or hang
+  bool lockstep = false;                   ///< without a wall clock, as fast as the machine allows
+  bool in_process = false;                 ///< the same in one process
+  double ready_deadline = 60;              ///< lockstep: longest wait for a process [s]
+  std::vector<std::string> only;           ///< modules to start; empty: all
+  std::filesystem::path record;            ///< recording to write; empty: none
+  std::vector<std::string> record_topics;  ///< as recording::TopicSelection; empty: the usual
+  std::filesystem::path frames;            ///< folder for pictures; empty: none
+  double frame_interval = 1;               ///< simulated, between two pictures [s]
+  std::filesystem::path summary;           ///< text file for the summary; empty: none
 };
 
 /// One program to start.

@@ -1,5 +1,8 @@
 #include "modules/recording/commands.h"
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <ostream>
 #include <thread>
@@ -9,12 +12,14 @@
 #include "modules/core/units.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/player.h"
+#include "modules/recording/repair.h"
 #include "modules/runtime/clock.h"
 
 namespace palpate::recording {
 namespace {
 
 constexpr double kAcknowledgeTimeout = 1;  // [s] per topic
+constexpr int kInputPollMs = 20;
 
 template <class Job>
 int report_failure(std::ostream& err, const Job& job) {
@@ -42,6 +47,18 @@ bool wait_for_reader(const SessionWriter& session, double timeout,
   return true;
 }
 
+// False at the end of standard input, or when asked to stop.
+bool wait_for_line(const std::function<bool()>& stop_requested) {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (!stop_requested()) {
+    if (::poll(&input, 1, kInputPollMs) <= 0) continue;
+    char letter = 0;
+    if (::read(STDIN_FILENO, &letter, 1) != 1) return false;
+    if (letter == '\n') return true;
+  }
+  return false;
+}
+
 void replay(const ReplayOptions& options, const std::function<bool()>& stop_requested,
             std::ostream& out, std::ostream& err) {
   SampleReader recording(options.recording);
@@ -51,7 +68,12 @@ void replay(const ReplayOptions& options, const std::function<bool()>& stop_requ
     err << "warning: nobody listens in session '" << options.session.session << "', domain "
         << options.session.domain << "; playing all the same\n";
   }
-  const PlayReport report = play(recording, session, stop_requested);
+  PlayOptions playing{options.start, options.rate, {}};
+  if (options.step) {
+    err << "a picture for each press of Enter; Ctrl-C ends\n";
+    playing.wait_for_step = [&] { return wait_for_line(stop_requested); };
+  }
+  const PlayReport report = play(recording, session, stop_requested, playing);
   if (!report.stopped) session.wait_until_received(kAcknowledgeTimeout);
   if (recording.torn()) err << "warning: " << recording.torn_warning() << '\n';
   if (report.refused > 0) err << "warning: " << report.refused << " samples could not be sent\n";
@@ -63,7 +85,14 @@ void replay(const ReplayOptions& options, const std::function<bool()>& stop_requ
 
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err) {
   return report_failure(err, [&] {
-    const RecordingSummary summary = summarize(options.recording, options.csv_folder);
+    if (!options.repaired.empty()) {
+      const RepairReport report = repair(options.recording, options.repaired);
+      err << options.repaired.string() << ": " << report.samples
+          << " samples; left out: " << report.skipped << " damaged pieces"
+          << (report.torn ? " and a torn end" : "") << '\n';
+    }
+    const auto& file = options.repaired.empty() ? options.recording : options.repaired;
+    const RecordingSummary summary = summarize(file, options.csv_folder);
     options.json ? print_json(summary, out) : print_summary(summary, out);
     if (summary.torn) err << "warning: " << summary.torn_warning << '\n';
   });

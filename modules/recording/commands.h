@@ -11,12 +11,14 @@
 namespace palpate::recording {
 
 struct InspectOptions {
-  std::filesystem::path recording;   ///< RECORDING
-  std::filesystem::path csv_folder;  ///< --csv DIR; empty: none
-  bool json = false;                 ///< --json
+  std::filesystem::path recording;      ///< RECORDING
+  std::filesystem::path csv_folder;     ///< --csv DIR; empty: none
+  bool json = false;                    ///< --json
+  std::filesystem::path repaired = {};  ///< --repair OUT; empty: none
 };
 
-/// Prints the recording's table to `out`; a torn file's warning and errors go to `err`.
+/// Prints the recording's table to `out`; a torn file's warning and errors go to `err`. To repair
+/// it, writes what can be read to another file and prints the table of that.
 /// @return an exit code of core/error.h
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err);
 
@@ -28,6 +30,9 @@ struct ReplayOptions {
   std::filesystem::path recording;  ///< RECORDING
   bus::BusOptions session;          ///< --session, --domain: where it is played
   double wait_for_reader = 5;       ///< longest wait for someone who shows it [s]
+  double start = 0;                 ///< --start: seconds of it to leave out
+  double rate = 1;                  ///< --rate: times as fast
+  bool step = false;                ///< --step: a picture for each line of standard input
 };
 
 /// Plays a recording into a session (without SCENE; with one, see extract_probe_trajectories).

@@ -3,6 +3,7 @@
 #include <json/json.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <iomanip>
 #include <limits>
@@ -41,6 +42,7 @@ class Summarizer {
     ++topic.samples;
     topic.bytes += sample.payload.size();
     if (!valid) ++topic.invalid;
+    topic.thinned |= sample.thinned;
     add_sequence(sample);
   }
 
@@ -48,7 +50,7 @@ class Summarizer {
     for (const auto& [channel, writer] : writers_) {
       TopicSummary& topic = topics_[channel.first];
       ++topic.writers;
-      topic.missing += writer.missing();
+      if (!topic.thinned) topic.missing += writer.missing();
     }
     summary.first_ns = topics_.empty() ? 0 : std::numeric_limits<std::int64_t>::max();
     for (const auto& [name, topic] : topics_) {
@@ -102,8 +104,9 @@ void print_row(const TopicSummary& topic, std::int64_t start_ns, std::ostream& o
       << std::setw(8) << topic.samples << std::setw(9) << fixed(topic.rate_hz(), 1) << std::setw(12)
       << topic.bytes << std::setw(9) << fixed(seconds_from_ns(topic.first_ns - start_ns), 3)
       << std::setw(9) << fixed(seconds_from_ns(topic.last_ns - start_ns), 3) << std::setw(9)
-      << topic.missing << std::setw(12) << fixed(1e3 * seconds_from_ns(topic.longest_spacing_ns), 1)
-      << std::setw(8) << topic.invalid << std::setw(8) << topic.writers << '\n';
+      << (topic.thinned ? "thinned" : std::to_string(topic.missing)) << std::setw(12)
+      << fixed(1e3 * seconds_from_ns(topic.longest_spacing_ns), 1) << std::setw(8) << topic.invalid
+      << std::setw(8) << topic.writers << '\n';
 }
 
 }  // namespace
@@ -138,8 +141,20 @@ RecordingSummary summarize(const std::filesystem::path& recording,
   if (summary.torn) summary.torn_warning = reader.torn_warning();
   summary.session = reader.metadata(kSessionMetadata);
   summary.scene = reader.metadata(kSceneMetadata);
+  summary.cost = reader.metadata(kCostMetadata);
   summarizer.finish(summary);
   return summary;
+}
+
+std::string cost_text(const McapMap& cost, std::uint64_t bytes) {
+  const auto number = [&](const char* key) {
+    return std::strtod(entry(cost, key).c_str(), nullptr);
+  };
+  const double wall = number("wall_s");
+  if (!(wall > 0)) return "what it took is not known";
+  return fixed(60e-6 * static_cast<double>(bytes) / wall, 1) + " MB a minute, " +
+         fixed(100 * number("processor_s") / wall, 1) + " % of a core, " +
+         entry(cost, "samples_lost") + " samples lost";
 }
 
 void print_summary(const RecordingSummary& summary, std::ostream& out) {
@@ -156,8 +171,11 @@ void print_summary(const RecordingSummary& summary, std::ostream& out) {
     out << "scene      " << entry(summary.scene, "name") << ", digest "
         << entry(summary.scene, "digest") << '\n';
   }
-  out << "duration   " << fixed(seconds_from_ns(summary.last_ns - summary.first_ns), 3) << " s\n\n"
-      << "topic            type               samples  rate Hz       bytes  first s   last s"
+  out << "duration   " << fixed(seconds_from_ns(summary.last_ns - summary.first_ns), 3) << " s\n";
+  if (!summary.cost.empty()) {
+    out << "recorder   " << cost_text(summary.cost, summary.file_bytes) << '\n';
+  }
+  out << "\ntopic            type               samples  rate Hz       bytes  first s   last s"
          "  missing  longest ms invalid writers\n";
   for (const TopicSummary& topic : summary.topics) print_row(topic, summary.first_ns, out);
 }
@@ -169,6 +187,7 @@ void print_json(const RecordingSummary& summary, std::ostream& out) {
   value["torn"] = summary.torn;
   for (const auto& [key, text] : summary.session) value["session"][key] = text;
   for (const auto& [key, text] : summary.scene) value["scene"][key] = text;
+  for (const auto& [key, text] : summary.cost) value["recorder"][key] = text;
   value["duration_s"] = seconds_from_ns(summary.last_ns - summary.first_ns);
   value["topics"] = Json::arrayValue;
   for (const TopicSummary& topic : summary.topics) {
@@ -180,6 +199,7 @@ void print_json(const RecordingSummary& summary, std::ostream& out) {
     row["first_s"] = seconds_from_ns(topic.first_ns - summary.first_ns);
     row["last_s"] = seconds_from_ns(topic.last_ns - summary.first_ns);
     row["missing"] = Json::UInt64(topic.missing);
+    row["thinned"] = topic.thinned;
     row["invalid"] = Json::UInt64(topic.invalid);
     row["longest_spacing_s"] = seconds_from_ns(topic.longest_spacing_ns);
     row["writers"] = Json::UInt64(topic.writers);

@@ -16,6 +16,7 @@ struct TopicSummary {
   std::uint64_t samples = 0;
   std::uint64_t bytes = 0;              ///< of the payloads
   std::uint64_t missing = 0;            ///< gaps in the writers' sequence numbers
+  bool thinned = false;                 ///< gaps were asked for, and are not counted
   std::uint64_t invalid = 0;            ///< refused by the codec: size, range, not finite
   std::int64_t first_ns = 0;            ///< earliest receive time
   std::int64_t last_ns = 0;             ///< latest receive time
@@ -30,6 +31,7 @@ struct RecordingSummary {
   int parts = 1;  ///< files: a recorder that was started again began another
   bool torn = false;
   std::string torn_warning;  ///< one line; empty if the file is whole
+  McapMap cost;              ///< recorder.h: kCostMetadata; empty if torn, or in lockstep
   McapMap session;           ///< recorder.h: kSessionMetadata
   McapMap scene;             ///< recorder.h: kSceneMetadata; empty if no scene was heard
   std::int64_t first_ns = 0, last_ns = 0;  ///< receive times over all topics
@@ -45,6 +47,9 @@ struct RecordingSummary {
 /// @throws InputError as SampleReader does; std::runtime_error if a CSV file cannot be written
 RecordingSummary summarize(const std::filesystem::path& recording,
                            const std::filesystem::path& csv_folder = {});
+
+/// "18.2 MB a minute, 2.1 % of a core, 0 samples lost": of a whole recording in real time.
+std::string cost_text(const McapMap& cost, std::uint64_t bytes);
 
 /// The one-screen table.
 void print_summary(const RecordingSummary& summary, std::ostream& out);

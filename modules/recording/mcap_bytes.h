@@ -1,4 +1,4 @@
-// Little-endian fields of MCAP records, and the CRC-32 of its summary.
+// Little-endian fields of MCAP records, and their CRC-32.
 #pragma once
 
 #include <cstdint>
@@ -59,6 +59,7 @@ class ByteReader {
 };
 
 /// CRC-32 (polynomial 0xEDB88320, as zlib's).
-std::uint32_t crc32(std::span<const std::uint8_t> bytes);
+/// @param before  of the bytes that come before these: crc32(ab) = crc32(b, crc32(a))
+std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);
 
 }  // namespace palpate::recording

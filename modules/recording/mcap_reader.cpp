@@ -5,51 +5,20 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/mcap_bytes.h"
+#include "modules/recording/mcap_chunk.h"
+#include "modules/recording/mcap_codec.h"
 
 namespace palpate::recording {
 namespace {
 
-McapStatistics parse_statistics(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapStatistics statistics;
-  statistics.message_count = reader.u64();
-  statistics.schema_count = reader.u16();
-  statistics.channel_count = reader.u32();
-  reader.u32();  // attachments
-  statistics.metadata_count = reader.u32();
-  reader.u32();  // chunks
-  statistics.message_start_time_ns = reader.u64();
-  statistics.message_end_time_ns = reader.u64();
-  ByteReader counts(reader.take(reader.u32()));
-  while (!counts.rest().empty()) {
-    const std::uint16_t channel = counts.u16();
-    statistics.channel_message_counts[channel] = counts.u64();
-  }
-  return statistics;
-}
-
-McapSchema parse_schema(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapSchema schema;
-  schema.id = reader.u16();
-  if (schema.id == 0) throw McapFieldError("schema id 0 is not allowed");
-  schema.name = reader.text();
-  schema.encoding = reader.text();
-  schema.data = reader.text();
-  return schema;
-}
-
-McapMetadata parse_metadata(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapMetadata metadata;
-  metadata.name = reader.text();
-  metadata.entries = reader.text_map();
-  return metadata;
+std::string in_chunk(std::size_t place, const std::string& what) {
+  return "byte " + std::to_string(place) + " of the chunk that begins there: " + what;
 }
 
 }  // namespace
 
-McapReader::McapReader(const std::filesystem::path& file) : file_(file) {
+McapReader::McapReader(const std::filesystem::path& file, McapDamage damage)
+    : file_(file), damage_(damage) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError(file.string() + ": no such recording");
@@ -70,26 +39,56 @@ McapReader::McapReader(const std::filesystem::path& file) : file_(file) {
            "an MCAP header record must come first, not opcode " + std::to_string(opcode));
   }
   try {
-    ByteReader reader(content_);
-    header_.profile = reader.text();
-    header_.library = reader.text();
+    header_ = parse_header(content_);
   } catch (const McapFieldError& field) {
     refuse(record_offset_, field.what());
   }
 }
 
 std::optional<McapRecord> McapReader::next() {
+  while (!ended_) {
+    auto record = chunk_place_ < chunk_.size() ? next_in_chunk() : next_beside_chunks();
+    if (record) return record;
+  }
+  return std::nullopt;
+}
+
+std::optional<McapRecord> McapReader::next_beside_chunks() {
   std::uint8_t opcode = 0;
-  while (!ended_ && read_envelope(opcode)) {
-    if (opcode == static_cast<std::uint8_t>(McapOpcode::kDataEnd)) {
-      read_closing_part();
-      break;
+  if (!read_envelope(opcode)) return std::nullopt;
+  try {
+    switch (static_cast<McapOpcode>(opcode)) {
+      case McapOpcode::kDataEnd:
+        damage_ == McapDamage::kSkip ? void(ended_ = true) : read_closing_part();
+        return std::nullopt;
+      case McapOpcode::kChunk:
+        chunk_ = unpacked_chunk(content_);
+        chunk_place_ = 0;
+        return std::nullopt;
+      default:
+        return parse(static_cast<McapOpcode>(opcode), content_);
     }
-    try {
-      if (auto record = parse(static_cast<McapOpcode>(opcode))) return record;
-    } catch (const McapFieldError& field) {
-      refuse(record_offset_, field.what());
+  } catch (const McapFieldError& field) {
+    damaged(field.what());
+    return std::nullopt;
+  }
+}
+
+std::optional<McapRecord> McapReader::next_in_chunk() {
+  const std::size_t place = chunk_place_;
+  try {
+    ByteReader reader(std::span<const std::uint8_t>(chunk_).subspan(place));
+    const auto opcode = static_cast<McapOpcode>(reader.u8());
+    const auto content = reader.take(reader.u64());
+    chunk_place_ = chunk_.size() - reader.rest().size();
+    if (opcode == McapOpcode::kSchema || opcode == McapOpcode::kChannel ||
+        opcode == McapOpcode::kMessage) {
+      return parse(opcode, content);
     }
+    if (static_cast<std::uint8_t>(opcode) < 0x80) throw McapFieldError("no record of a chunk");
+  } catch (const McapFieldError& field) {
+    chunk_place_ = chunk_.size();
+    damaged(in_chunk(place, field.what()));
   }
   return std::nullopt;
 }
@@ -99,10 +98,12 @@ bool McapReader::read_envelope(std::uint8_t& opcode) {
   std::array<std::uint8_t, kMcapEnvelopeBytes> envelope{};
   const std::uint64_t left = file_bytes_ - offset_;
   record_offset_ = offset_;
+  crc_before_ = crc_;
   torn_ = ended_ = true;
   if (left < envelope.size() || !read_bytes(envelope.data(), envelope.size())) return false;
   opcode = envelope[0];
   const std::uint64_t length = ByteReader(std::span(envelope).subspan(1)).u64();
+  if (opcode == 0 && damage_ == McapDamage::kSkip) return false;
   if (opcode == 0) refuse(record_offset_, "opcode 0: no MCAP record begins here");
   if (length > left - envelope.size()) return false;
   content_.resize(length);
@@ -112,77 +113,88 @@ bool McapReader::read_envelope(std::uint8_t& opcode) {
   return true;
 }
 
-std::optional<McapRecord> McapReader::parse(McapOpcode opcode) {
+std::optional<McapRecord> McapReader::parse(McapOpcode opcode,
+                                            std::span<const std::uint8_t> content) {
   switch (opcode) {
     case McapOpcode::kSchema: {
-      McapSchema schema = parse_schema(content_);
+      McapSchema schema = parse_schema(content);
       schema_ids_.insert(schema.id);
       return schema;
     }
-    case McapOpcode::kChannel:
-      return parse_channel();
-    case McapOpcode::kMessage:
-      return parse_message();
+    case McapOpcode::kChannel: {
+      McapChannel channel = parse_channel(content);
+      remember(channel);
+      return channel;
+    }
+    case McapOpcode::kMessage: {
+      McapMessage message = parse_message(content);
+      check(message);
+      return message;
+    }
     case McapOpcode::kMetadata:
-      return parse_metadata(content_);
-    case McapOpcode::kChunk:
-      refuse(record_offset_, "chunked MCAP files are not read here");
+      return parse_metadata(content);
+    case McapOpcode::kAttachment:
+      return parse_attachment(content);
     case McapOpcode::kHeader:
     case McapOpcode::kFooter:
-      refuse(record_offset_, "a header or footer inside the data section");
+      throw McapFieldError("a header or footer inside the data section");
     default:
       return std::nullopt;
   }
 }
 
-McapChannel McapReader::parse_channel() {
-  ByteReader reader(content_);
-  McapChannel channel;
-  channel.id = reader.u16();
-  channel.schema_id = reader.u16();
-  channel.topic = reader.text();
-  channel.message_encoding = reader.text();
-  channel.metadata = reader.text_map();
+void McapReader::remember(const McapChannel& channel) {
   if (channel.schema_id != 0 && !schema_ids_.contains(channel.schema_id)) {
     throw McapFieldError("channel '" + channel.topic + "' names schema " +
                          std::to_string(channel.schema_id) + ", which was not defined before it");
   }
   channel_ids_.insert(channel.id);
-  return channel;
 }
 
-McapMessage McapReader::parse_message() {
-  ByteReader reader(content_);
-  McapMessage message;
-  message.channel_id = reader.u16();
-  message.sequence = reader.u32();
-  message.log_time_ns = reader.u64();
-  message.publish_time_ns = reader.u64();
-  message.data.assign(reader.rest().begin(), reader.rest().end());
+void McapReader::check(const McapMessage& message) {
   if (!channel_ids_.contains(message.channel_id)) {
     throw McapFieldError("message on channel " + std::to_string(message.channel_id) +
                          ", which was not defined before it");
   }
   ++message_count_;
-  return message;
 }
 
 // The summary repeats what was read; only its statistics and its being whole matter here.
 void McapReader::read_closing_part() {
+  check_data_crc();
+  crc_ = 0;
   std::uint8_t opcode = 0;
   while (read_envelope(opcode)) {
-    try {
-      if (opcode == static_cast<std::uint8_t>(McapOpcode::kStatistics)) {
-        statistics_ = parse_statistics(content_);
-      }
-    } catch (const McapFieldError& field) {
-      refuse(record_offset_, field.what());
+    if (opcode == static_cast<std::uint8_t>(McapOpcode::kStatistics)) {
+      statistics_ = parse_statistics(content_);
     }
-    if (opcode == static_cast<std::uint8_t>(McapOpcode::kFooter)) return check_footer();
+    if (opcode == static_cast<std::uint8_t>(McapOpcode::kFooter)) {
+      check_summary_crc();
+      return check_end();
+    }
   }
 }
 
-void McapReader::check_footer() {
+void McapReader::check_data_crc() {
+  const std::uint32_t stated = ByteReader(content_).u32();
+  if (stated == 0 || stated == crc_before_) return;
+  refuse(record_offset_, "the recording is damaged before this place: its CRC is wrong");
+}
+
+// It covers the summary and the footer up to itself.
+void McapReader::check_summary_crc() {
+  ByteReader footer(content_);
+  std::vector<std::uint8_t> covered;
+  ByteWriter(covered)
+      .u8(static_cast<std::uint8_t>(McapOpcode::kFooter))
+      .u64(content_.size())
+      .raw(footer.take(kFooterBytes - sizeof(std::uint32_t)));
+  const std::uint32_t stated = footer.u32();
+  if (stated == 0 || stated == crc32(covered, crc_before_)) return;
+  refuse(record_offset_, "the summary is damaged: its CRC is wrong");
+}
+
+void McapReader::check_end() {
   ended_ = true;
   std::array<std::uint8_t, kMcapMagic.size()> magic{};
   if (!read_bytes(magic.data(), magic.size())) {
@@ -200,7 +212,14 @@ void McapReader::check_footer() {
 
 bool McapReader::read_bytes(std::uint8_t* bytes, std::size_t size) {
   stream_.read(reinterpret_cast<char*>(bytes), static_cast<std::streamsize>(size));
-  return static_cast<std::size_t>(stream_.gcount()) == size;
+  const auto count = static_cast<std::size_t>(stream_.gcount());
+  crc_ = crc32({bytes, count}, crc_);
+  return count == size;
+}
+
+void McapReader::damaged(const std::string& what) {
+  if (damage_ == McapDamage::kRefuse) refuse(record_offset_, what);
+  ++skipped_;
 }
 
 void McapReader::refuse(std::uint64_t offset, const std::string& what) const {

@@ -11,45 +11,18 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/mcap_bytes.h"
+#include "modules/recording/mcap_codec.h"
 
 namespace palpate::recording {
 namespace {
 
 constexpr std::size_t kFlushBytes = 1u << 20;
 
-std::vector<std::uint8_t> content_of(const McapSchema& schema) {
-  std::vector<std::uint8_t> content;
-  ByteWriter(content).u16(schema.id).text(schema.name).text(schema.encoding).text(schema.data);
-  return content;
-}
-
-std::vector<std::uint8_t> content_of(const McapChannel& channel) {
-  std::vector<std::uint8_t> content;
-  ByteWriter(content)
-      .u16(channel.id)
-      .u16(channel.schema_id)
-      .text(channel.topic)
-      .text(channel.message_encoding)
-      .text_map(channel.metadata);
-  return content;
-}
-
-std::vector<std::uint8_t> content_of(const McapStatistics& statistics) {
-  std::vector<std::uint8_t> content;
-  ByteWriter writer(content);
-  writer.u64(statistics.message_count)
-      .u16(statistics.schema_count)
-      .u32(statistics.channel_count)
-      .u32(0)  // attachments
-      .u32(statistics.metadata_count)
-      .u32(0)  // chunks
-      .u64(statistics.message_start_time_ns)
-      .u64(statistics.message_end_time_ns)
-      .u32(static_cast<std::uint32_t>(10 * statistics.channel_message_counts.size()));
-  for (const auto& [channel, count] : statistics.channel_message_counts) {
-    writer.u16(channel).u64(count);
-  }
-  return content;
+template <class Record>
+std::vector<McapContent> contents_of(const std::vector<Record>& records) {
+  std::vector<McapContent> contents;
+  for (const Record& record : records) contents.push_back(content_of(record));
+  return contents;
 }
 
 /// A scene, or a mesh it names, given as the recording by mistake.
@@ -70,10 +43,9 @@ McapWriter::McapWriter(const std::filesystem::path& file) : file_(file) {
   refuse_to_replace_what_is_no_recording(file);
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("open", errno);
-  append(kMcapMagic);
-  std::vector<std::uint8_t> content;
-  ByteWriter(content).text("").text("palpate");  // no profile: topics are documented by schemas
-  append_record(McapOpcode::kHeader, content);
+  pending_.assign(kMcapMagic.begin(), kMcapMagic.end());
+  appended(kMcapMagic.size());
+  append(McapOpcode::kHeader, content_of(McapHeader{"", "palpate"}));  // no profile: schemas tell
   flush();
 }
 
@@ -84,7 +56,7 @@ McapWriter::~McapWriter() {
 std::uint16_t McapWriter::add_schema(McapSchema schema) {
   PALPATE_DEMAND(schemas_.size() < 0xFFFF);
   schema.id = static_cast<std::uint16_t>(schemas_.size() + 1);
-  append_record(McapOpcode::kSchema, content_of(schema));
+  append(McapOpcode::kSchema, content_of(schema));
   schemas_.push_back(std::move(schema));
   statistics_.schema_count = static_cast<std::uint16_t>(schemas_.size());
   return schemas_.back().id;
@@ -93,7 +65,7 @@ std::uint16_t McapWriter::add_schema(McapSchema schema) {
 std::uint16_t McapWriter::add_channel(McapChannel channel) {
   PALPATE_DEMAND(channel.schema_id <= schemas_.size() && channels_.size() < 0xFFFF);
   channel.id = static_cast<std::uint16_t>(channels_.size() + 1);
-  append_record(McapOpcode::kChannel, content_of(channel));
+  append(McapOpcode::kChannel, content_of(channel));
   channels_.push_back(std::move(channel));
   statistics_.channel_count = static_cast<std::uint32_t>(channels_.size());
   return channels_.back().id;
@@ -101,14 +73,7 @@ std::uint16_t McapWriter::add_channel(McapChannel channel) {
 
 void McapWriter::add_message(const McapMessage& message, std::span<const std::uint8_t> data) {
   PALPATE_DEMAND(message.channel_id >= 1 && message.channel_id <= channels_.size());
-  scratch_.clear();
-  ByteWriter(scratch_)
-      .u16(message.channel_id)
-      .u32(message.sequence)
-      .u64(message.log_time_ns)
-      .u64(message.publish_time_ns)
-      .raw(data);
-  append_record(McapOpcode::kMessage, scratch_);
+  chunk_.add(message, data);
 
   McapStatistics& s = statistics_;
   const bool first = s.message_count == 0;
@@ -117,107 +82,119 @@ void McapWriter::add_message(const McapMessage& message, std::span<const std::ui
   s.message_end_time_ns = std::max(s.message_end_time_ns, message.log_time_ns);
   ++s.message_count;
   ++s.channel_message_counts[message.channel_id];
+  if (chunk_.due()) end_chunk();
+}
+
+void McapWriter::end_chunk() {
+  if (chunk_.empty()) return;
+  const std::size_t before = pending_.size();
+  chunks_.push_back(chunk_.finish(offset_, pending_));
+  ++statistics_.chunk_count;
+  appended(pending_.size() - before);
 }
 
 void McapWriter::add_metadata(const McapMetadata& metadata) {
   const std::uint64_t offset = offset_;
-  std::vector<std::uint8_t> content;
-  ByteWriter(content).text(metadata.name).text_map(metadata.entries);
-  append_record(McapOpcode::kMetadata, content);
-  metadata_places_.push_back({offset, offset_ - offset, metadata.name});
+  append(McapOpcode::kMetadata, content_of(metadata));
+  ByteWriter(metadata_indexes_.emplace_back())
+      .u64(offset)
+      .u64(offset_ - offset)
+      .text(metadata.name);
   ++statistics_.metadata_count;
 }
 
-void McapWriter::append(std::span<const std::uint8_t> bytes) {
-  pending_.insert(pending_.end(), bytes.begin(), bytes.end());
-  offset_ += bytes.size();
+void McapWriter::add_attachment(const McapAttachment& attachment) {
+  const std::uint64_t offset = offset_;
+  append(McapOpcode::kAttachment, content_of(attachment));
+  ByteWriter(attachment_indexes_.emplace_back())
+      .u64(offset)
+      .u64(offset_ - offset)
+      .u64(attachment.log_time_ns)
+      .u64(0)  // when it was made
+      .u64(attachment.data.size())
+      .text(attachment.name)
+      .text(attachment.media_type);
+  ++statistics_.attachment_count;
 }
 
-void McapWriter::append_record(McapOpcode opcode, std::span<const std::uint8_t> content) {
+void McapWriter::append(McapOpcode opcode, std::span<const std::uint8_t> content) {
   PALPATE_DEMAND(descriptor_ >= 0);
-  ByteWriter(pending_).u8(static_cast<std::uint8_t>(opcode)).u64(content.size());
-  offset_ += kMcapEnvelopeBytes;
-  append(content);
+  const std::size_t before = pending_.size();
+  append_record(pending_, opcode, content);
+  appended(pending_.size() - before);
+}
+
+void McapWriter::appended(std::size_t bytes) {
+  offset_ += bytes;
   if (pending_.size() >= kFlushBytes) flush();
 }
 
 void McapWriter::flush() {
   std::size_t done = 0;
+  const auto count = [&] {
+    crc_ = crc32(std::span(pending_).first(done), crc_);
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(done));
+  };
   while (done < pending_.size()) {
     const ssize_t written = ::write(descriptor_, pending_.data() + done, pending_.size() - done);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       const int reason = errno;
-      pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(done));
+      count();
       fail("write", reason);
     }
     done += static_cast<std::size_t>(written);
   }
-  pending_.clear();
+  count();
 }
 
 void McapWriter::close() {
   if (descriptor_ < 0) return;
-  std::vector<std::uint8_t> content;
-  ByteWriter(content).u32(0);  // CRC of the data section: not given, it would cost every sample
-  append_record(McapOpcode::kDataEnd, content);
+  end_chunk();
+  flush();
+  McapContent content;
+  ByteWriter(content).u32(crc_);  // of all before
+  append(McapOpcode::kDataEnd, content);
   flush();
   append_summary();
-  append(kMcapMagic);
   flush();
   const int closed = ::close(descriptor_);
   descriptor_ = -1;
   if (closed != 0) fail("close", errno);
 }
 
-// Schemas, channels, statistics and metadata index each as one group, then one offset per group.
-// pending_ holds exactly the summary when its CRC is taken.
+// Each kind of record as one group, then one offset per group.
 void McapWriter::append_summary() {
-  struct Group {
-    McapOpcode opcode;
-    std::vector<std::vector<std::uint8_t>> contents;
-  };
-  std::vector<Group> groups{{McapOpcode::kSchema, {}},
-                            {McapOpcode::kChannel, {}},
-                            {McapOpcode::kStatistics, {content_of(statistics_)}},
-                            {McapOpcode::kMetadataIndex, {}}};
-  for (const McapSchema& schema : schemas_) groups[0].contents.push_back(content_of(schema));
-  for (const McapChannel& channel : channels_) groups[1].contents.push_back(content_of(channel));
-  for (const MetadataPlace& place : metadata_places_) {
-    ByteWriter(groups[3].contents.emplace_back())
-        .u64(place.offset)
-        .u64(place.length)
-        .text(place.name);
-  }
-
-  std::vector<std::uint8_t> summary;
-  std::vector<std::uint8_t> offsets;
-  const auto append_to = [](std::vector<std::uint8_t>& bytes, McapOpcode opcode,
-                            const std::vector<std::uint8_t>& content) {
-    ByteWriter(bytes).u8(static_cast<std::uint8_t>(opcode)).u64(content.size()).raw(content);
-  };
-  const std::uint64_t summary_start = offset_;
-  for (const Group& group : groups) {
-    if (group.contents.empty()) continue;
+  std::vector<std::pair<McapOpcode, std::vector<McapContent>>> groups{
+      {McapOpcode::kSchema, contents_of(schemas_)},
+      {McapOpcode::kChannel, contents_of(channels_)},
+      {McapOpcode::kStatistics, {content_of(statistics_)}},
+      {McapOpcode::kChunkIndex, contents_of(chunks_)},
+      {McapOpcode::kAttachmentIndex, attachment_indexes_},
+      {McapOpcode::kMetadataIndex, metadata_indexes_}};
+  std::vector<std::uint8_t> summary, offsets;
+  for (const auto& [opcode, contents] : groups) {
+    if (contents.empty()) continue;
     const std::uint64_t start = summary.size();
-    for (const auto& content : group.contents) append_to(summary, group.opcode, content);
-    std::vector<std::uint8_t> content;
+    for (const auto& content : contents) append_record(summary, opcode, content);
+    McapContent content;
     ByteWriter(content)
-        .u8(static_cast<std::uint8_t>(group.opcode))
-        .u64(summary_start + start)
+        .u8(static_cast<std::uint8_t>(opcode))
+        .u64(offset_ + start)
         .u64(summary.size() - start);
-    append_to(offsets, McapOpcode::kSummaryOffset, content);
+    append_record(offsets, McapOpcode::kSummaryOffset, content);
   }
-  const std::uint64_t summary_offset_start = summary_start + summary.size();
+  const std::uint64_t offsets_start = offset_ + summary.size();
   ByteWriter(summary).raw(offsets);
   // The CRC covers the summary and the footer up to the CRC itself.
   ByteWriter(summary)
       .u8(static_cast<std::uint8_t>(McapOpcode::kFooter))
-      .u64(20)
-      .u64(summary_start)
-      .u64(summary_offset_start);
-  ByteWriter(summary).u32(crc32(summary));
-  append(summary);
+      .u64(kFooterBytes)
+      .u64(offset_)
+      .u64(offsets_start);
+  ByteWriter(summary).u32(crc32(summary)).raw(kMcapMagic);
+  ByteWriter(pending_).raw(summary);
+  offset_ += summary.size();
 }
 
 void McapWriter::fail(const char* doing, int system_error) const {

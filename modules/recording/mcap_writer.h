@@ -1,17 +1,19 @@
-// Writes an MCAP file: no chunks, no compression, so that every record stands by itself and a
-// file whose writer was killed is whole up to its last record.
+// Writes an MCAP file as any reader of the format expects it: chunked, compressed, indexed, with
+// CRCs. A file whose writer was killed is whole up to its last chunk.
 #pragma once
 
 #include <filesystem>
 #include <span>
 #include <vector>
 
+#include "modules/recording/mcap_chunk.h"
 #include "modules/recording/mcap_records.h"
 
 namespace palpate::recording {
 
-/// Records are gathered in memory and written whole by flush(), by close(), and when a megabyte
-/// has gathered. Not thread-safe.
+/// Messages are gathered into chunks of half a second or a megabyte. Whole chunks and the other
+/// records, which lie beside them, are written by flush(), by close(), and when a megabyte has
+/// gathered. Not thread-safe.
 class McapWriter {
  public:
   /// Replaces an existing recording. @throws InputError if the file holds something else;
@@ -29,23 +31,22 @@ class McapWriter {
   /// @param data  payload; all else is taken from `message`, whose own data is not read
   void add_message(const McapMessage& message, std::span<const std::uint8_t> data);
   void add_metadata(const McapMetadata& metadata);
+  void add_attachment(const McapAttachment& attachment);
 
+  /// Ends the chunk that messages are gathered in.
+  void end_chunk();
   /// @throws std::runtime_error naming the file and the system's reason (disk full, …)
   void flush();
   /// Ends the data section, writes the summary and the footer, closes. A second call does nothing.
   void close();
 
   const McapStatistics& statistics() const { return statistics_; }
-  std::uint64_t bytes_written() const { return offset_; }  ///< including what flush() still holds
+  /// Including what flush() still holds, without the chunk that has not ended.
+  std::uint64_t bytes_written() const { return offset_; }
 
  private:
-  struct MetadataPlace {
-    std::uint64_t offset = 0, length = 0;
-    std::string name;
-  };
-
-  void append(std::span<const std::uint8_t> bytes);
-  void append_record(McapOpcode opcode, std::span<const std::uint8_t> content);
+  void append(McapOpcode opcode, std::span<const std::uint8_t> content);
+  void appended(std::size_t bytes);
   void append_summary();
   [[noreturn]] void fail(const char* doing, int system_error) const;
 
@@ -53,10 +54,12 @@ class McapWriter {
   int descriptor_ = -1;
   std::uint64_t offset_ = 0;
   std::vector<std::uint8_t> pending_;
-  std::vector<std::uint8_t> scratch_;  ///< content of the record being built
+  std::uint32_t crc_ = 0;  ///< of what was flushed
+  McapChunkBuilder chunk_;
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;
-  std::vector<MetadataPlace> metadata_places_;
+  std::vector<McapChunkIndex> chunks_;
+  std::vector<std::vector<std::uint8_t>> attachment_indexes_, metadata_indexes_;
   McapStatistics statistics_;
 };
 

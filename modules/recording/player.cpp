@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
@@ -26,6 +27,27 @@ bool sleep_until(std::int64_t due_ns, const std::function<bool()>& stop_requeste
     if (left <= 0) return true;
     std::this_thread::sleep_for(std::chrono::nanoseconds(std::min(left, kLongestSleepNs)));
   }
+}
+
+// Leaves out the samples before an instant.
+// @param next  the first sample; becomes the first that is not left out
+// @return the newest of each topic, writer and key, in the order they were received
+std::vector<RecordedSample> skip_to(std::int64_t start_ns, std::optional<RecordedSample>& next,
+                                    SampleReader& recording) {
+  std::map<std::tuple<std::string_view, std::uint16_t, std::string>, RecordedSample> newest;
+  messages::AnyMessage message;
+  for (; next && next->received_time_ns < start_ns; next = recording.next()) {
+    if (next->topic->type->decode(next->payload, message) != nullptr) continue;
+    const std::tuple key(next->topic->name, next->channel, messages::key_text(message));
+    newest[key] = std::move(*next);
+  }
+  if (!next && !newest.empty()) {
+    throw InputError(recording.file().string() + ": ends before the start asked for");
+  }
+  std::vector<RecordedSample> held;
+  for (auto& [key, sample] : newest) held.push_back(std::move(sample));
+  std::ranges::stable_sort(held, {}, &RecordedSample::received_time_ns);
+  return held;
 }
 
 struct MotionRow {
@@ -83,23 +105,32 @@ void write_trajectory(const std::filesystem::path& file, const std::vector<Motio
 }  // namespace
 
 PlayReport play(SampleReader& recording, SessionWriter& session,
-                const std::function<bool()>& stop_requested) {
+                const std::function<bool()>& stop_requested, const PlayOptions& options) {
   PlayReport report;
-  std::optional<std::int64_t> shift_ns;  // from a sample's time to the present
-  std::int64_t first_ns = 0;
-  while (const auto sample = recording.next()) {
-    if (!shift_ns) {
-      first_ns = sample->received_time_ns;
-      shift_ns = runtime::monotonic_now_ns() - first_ns;
-    }
-    if (!sleep_until(sample->received_time_ns + *shift_ns, stop_requested)) {
+  std::optional<RecordedSample> sample = recording.next();
+  if (!sample) return report;
+  const std::int64_t start_ns = sample->received_time_ns + ns_from_seconds(options.start);
+  const auto write = [&](const RecordedSample& each) {
+    if (!session.write(*each.topic, each.payload)) ++report.refused;
+    ++report.samples;
+  };
+  for (const RecordedSample& held : skip_to(start_ns, sample, recording)) write(held);
+
+  const std::int64_t began_ns = runtime::monotonic_now_ns();
+  for (; sample; sample = recording.next()) {
+    const std::int64_t played_ns = sample->received_time_ns - start_ns;
+    const auto due_ns = began_ns + std::int64_t(double(played_ns) / options.rate);
+    if (stop_requested() || (!options.wait_for_step && !sleep_until(due_ns, stop_requested))) {
       report.stopped = true;
       break;
     }
-    if (!session.write(*sample->topic, sample->payload)) ++report.refused;
-    ++report.samples;
-    report.duration =
-        std::max(report.duration, seconds_from_ns(sample->received_time_ns - first_ns));
+    write(*sample);
+    report.duration = std::max(report.duration, seconds_from_ns(played_ns));
+    const bool picture = sample->topic->name == bus::kNodePositions.name;
+    if (picture && options.wait_for_step && !options.wait_for_step()) {
+      report.stopped = true;
+      break;
+    }
   }
   return report;
 }

@@ -18,12 +18,19 @@ struct PlayReport {
   bool stopped = false;       ///< before the end
 };
 
+struct PlayOptions {
+  double start = 0;  ///< of the recording to leave out [s]; what held then is written first
+  double rate = 1;   ///< times as fast as it was received
+  /// Called after each picture (node_positions), instead of keeping time; false ends it.
+  std::function<bool()> wait_for_step;
+};
+
 /// Writes every sample, byte for byte, with the spacing at which it was received. A sample that is
 /// late is written at once; none is left out.
 /// @param stop_requested  asked at least every 20 ms
-/// @throws InputError as SampleReader::next does
+/// @throws InputError as SampleReader::next does, and where the recording ends before the start
 PlayReport play(SampleReader& recording, SessionWriter& session,
-                const std::function<bool()>& stop_requested);
+                const std::function<bool()>& stop_requested, const PlayOptions& options = {});
 
 /// A probe's recorded motion as a file for the device `trajectory`.
 struct ProbeTrajectory {

@@ -1,16 +1,25 @@
 #include "modules/recording/recorder.h"
 
+#include <spdlog/fmt/fmt.h>
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
+#include <fstream>
+#include <iterator>
+#include <set>
 
+#include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
+#include "modules/runtime/program.h"
+#include "modules/scene/scene_reader.h"
 
 namespace palpate::recording {
 namespace {
 
 template <class Clock>
-std::string now_ns_text() {
-  return std::to_string(std::chrono::nanoseconds(Clock::now().time_since_epoch()).count());
+std::int64_t now_ns() {
+  return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
 }
 
 std::string hex(const bus::WriterId& id) {
@@ -23,37 +32,65 @@ std::string hex(const bus::WriterId& id) {
   return text;
 }
 
+/// None where the text is no scene of this version, or names files that are not here.
+std::set<std::filesystem::path> meshes_of(const std::string& resolved_text) {
+  std::set<std::filesystem::path> files;
+  try {
+    const scene::Scene scene = scene::parse_scene(resolved_text, "recorded scene");
+    for (const auto& organ : scene.organs) files.insert(organ.mesh.file);
+  } catch (const InputError&) {
+  }
+  return files;
+}
+
 }  // namespace
 
-SampleFile::SampleFile(const std::filesystem::path& file, const bus::BusOptions& session)
-    : writer_(file) {
-  // Times in the file are of the monotonic clock; these two tell what time of day that was.
+Clocks Clocks::now() {
+  return {now_ns<std::chrono::steady_clock>(), now_ns<std::chrono::system_clock>()};
+}
+
+SampleFile::SampleFile(const std::filesystem::path& file, const bus::BusOptions& session,
+                       const Clocks& clocks)
+    : writer_(file), to_time_of_day_ns_(clocks.unix - clocks.monotonic) {
   writer_.add_metadata({kSessionMetadata,
                         {{"session", session.session},
                          {"domain", std::to_string(session.domain)},
                          {"protocol_version", std::to_string(kProtocolVersion)},
-                         {"start_monotonic_ns", now_ns_text<std::chrono::steady_clock>()},
-                         {"start_unix_ns", now_ns_text<std::chrono::system_clock>()}}});
+                         {"version", runtime::version_text()},
+                         {"clock", kTimeOfDay},
+                         {"start_monotonic_ns", std::to_string(clocks.monotonic)},
+                         {"start_unix_ns", std::to_string(clocks.unix)}}});
   writer_.flush();
 }
 
 SampleFile::SampleFile(const std::filesystem::path& file) : writer_(file) {
-  writer_.add_metadata(
-      {kSessionMetadata,
-       {{"protocol_version", std::to_string(kProtocolVersion)}, {"clock", "simulated"}}});
+  writer_.add_metadata({kSessionMetadata,
+                        {{"protocol_version", std::to_string(kProtocolVersion)},
+                         {"version", runtime::version_text()},
+                         {"clock", "simulated"}}});
   writer_.flush();
 }
 
 void SampleFile::add(const TopicSample& sample) {
   const Header header = messages::header_of(sample.payload);
+  count_lost(sample, header.sequence);
+  if (!topics_.takes(sample)) return;
   McapMessage message;
   message.channel_id = channel_of(sample);
   message.sequence = static_cast<std::uint32_t>(header.sequence);
-  message.log_time_ns = static_cast<std::uint64_t>(sample.received_time_ns);
-  message.publish_time_ns =
-      static_cast<std::uint64_t>(std::max<std::int64_t>(0, header.source_time_ns));
+  message.log_time_ns = static_cast<std::uint64_t>(sample.received_time_ns + to_time_of_day_ns_);
+  if (header.source_time_ns > 0) {
+    message.publish_time_ns =
+        static_cast<std::uint64_t>(header.source_time_ns + to_time_of_day_ns_);
+  }
   writer_.add_message(message, sample.payload);
   if (sample.topic->name == bus::kScene.name) note_scene(sample);
+}
+
+void SampleFile::count_lost(const TopicSample& sample, std::uint64_t sequence) {
+  const auto [place, first] = newest_.try_emplace({sample.topic, sample.writer}, sequence);
+  if (!first && sequence > place->second) lost_ += sequence - place->second - 1;
+  place->second = std::max(place->second, sequence);
 }
 
 std::uint16_t SampleFile::channel_of(const TopicSample& sample) {
@@ -67,8 +104,10 @@ std::uint16_t SampleFile::channel_of(const TopicSample& sample) {
         {0, std::string(topic.type->wire_name), "omgidl", std::string(idl_text_of(*topic.type))});
     schema = schemas_.emplace(topic.type->wire_name, id).first;
   }
-  const std::uint16_t channel = writer_.add_channel(
-      {0, schema->second, std::string(topic.name), "cdr", {{"writer", hex(sample.writer)}}});
+  McapMap about{{"writer", hex(sample.writer)}};
+  if (topics_.rate(topic.name) > 0) about[kThinned] = fmt::format("{}", topics_.rate(topic.name));
+  const std::uint16_t channel =
+      writer_.add_channel({0, schema->second, std::string(topic.name), "cdr", std::move(about)});
   channels_.emplace(std::pair{sample.topic, sample.writer}, channel);
   return channel;
 }
@@ -81,19 +120,54 @@ void SampleFile::note_scene(const TopicSample& sample) {
   if (scene.digest == scene_digest_) return;
   scene_digest_ = scene.digest;
   writer_.add_metadata({kSceneMetadata, {{"name", scene.name}, {"digest", scene.digest}}});
+  attach_files(scene, static_cast<std::uint64_t>(sample.received_time_ns + to_time_of_day_ns_));
 }
 
-Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file)
-    : reader_(bus), file_(file, session) {}
+/// The scene, and the meshes it names where they lie on this host, too.
+void SampleFile::attach_files(const SceneDescription& scene, std::uint64_t log_time_ns) {
+  writer_.add_attachment({log_time_ns, "scene.yaml", "application/yaml", scene.resolved_text});
+  for (const auto& mesh : meshes_of(scene.resolved_text)) {
+    std::ifstream stream(mesh, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+    if (bytes.empty()) continue;
+    writer_.add_attachment(
+        {log_time_ns, mesh.filename().string(), "application/octet-stream", std::move(bytes)});
+  }
+}
 
-void Recorder::poll() {
+Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file,
+                   const TopicSelection& topics)
+    : reader_(bus, [&](std::string_view topic) { return topics.has(topic); }),
+      file_(file, session),
+      space_(file) {
+  file_.select(topics);
+}
+
+std::string Recorder::poll() {
   for (const TopicSample& sample : reader_.take_all()) file_.add(sample);
   file_.flush();
+  return space_.look(age(), file_.bytes_written());
 }
 
-void Recorder::close() {
+McapMap Recorder::close() {
   poll();
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval& time) {
+    return double(time.tv_sec) + 1e-6 * double(time.tv_usec);
+  };
+  file_.end_chunk();
+  const double processor = seconds(used.ru_utime) + seconds(used.ru_stime);
+  McapMap cost{{"wall_s", fmt::format("{:.3f}", age())},
+               {"processor_s", fmt::format("{:.3f}", processor)},
+               {"samples_lost", std::to_string(file_.lost())}};
+  file_.add_metadata({kCostMetadata, cost});
   file_.close();
+  return cost;
+}
+
+double Recorder::age() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
 }
 
 }  // namespace palpate::recording

@@ -1,41 +1,73 @@
 // Records a session: every sample of every topic, into one MCAP file (docs/recording.md).
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <utility>
 
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/session_samples.h"
+#include "modules/recording/space_watch.h"
+#include "modules/recording/topic_selection.h"
 
 namespace palpate::recording {
 
 // Names of the metadata records.
 inline constexpr const char* kSessionMetadata = "palpate session";  ///< first record of the file
+inline constexpr const char* kCostMetadata = "palpate recorder";    ///< last: what it took
 inline constexpr const char* kSceneMetadata = "palpate scene";      ///< name, digest; once known
+
+/// Metadata `clock` of a session: the file's times are nanoseconds since 1970. Before, they were of
+/// the monotonic clock, and the entry was missing.
+inline constexpr const char* kTimeOfDay = "time of day";
+
+/// One instant on two clocks [ns].
+struct Clocks {
+  std::int64_t monotonic = 0;
+  std::int64_t unix = 0;
+
+  static Clocks now();
+};
 
 /// Puts samples into the file. Each writer of a topic has a channel of its own, so that gaps in
 /// its sequence numbers can be told from other writers' samples.
 class SampleFile {
  public:
   /// @throws std::runtime_error as McapWriter does
-  SampleFile(const std::filesystem::path& file, const bus::BusOptions& session);
+  /// @param clocks  what time of day the samples' monotonic times are: the file's are of the day
+  SampleFile(const std::filesystem::path& file, const bus::BusOptions& session,
+             const Clocks& clocks = Clocks::now());
   /// Of a lockstep session: times are simulated, nothing tells of the machine.
   explicit SampleFile(const std::filesystem::path& file);
 
+  /// What is to be added from now on; at first everything.
+  void select(TopicSelection topics) { topics_ = std::move(topics); }
+
+  /// Leaves out what was not selected.
   void add(const TopicSample& sample);
+  void add_metadata(const McapMetadata& metadata) { writer_.add_metadata(metadata); }
+  void end_chunk() { writer_.end_chunk(); }
   void flush() { writer_.flush(); }
   void close() { writer_.close(); }
   const McapStatistics& statistics() const { return writer_.statistics(); }
   std::uint64_t bytes_written() const { return writer_.bytes_written(); }
+  /// Gaps in the sequence numbers of what was to be added, selected or not.
+  std::uint64_t lost() const { return lost_; }
 
  private:
+  void count_lost(const TopicSample& sample, std::uint64_t sequence);
   std::uint16_t channel_of(const TopicSample& sample);
   void note_scene(const TopicSample& sample);
+  void attach_files(const SceneDescription& scene, std::uint64_t log_time_ns);
 
   McapWriter writer_;
+  TopicSelection topics_;
+  std::int64_t to_time_of_day_ns_ = 0;
   std::map<std::string_view, std::uint16_t> schemas_;  ///< by type name
   std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, std::uint16_t> channels_;
+  std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, std::uint64_t> newest_;
+  std::uint64_t lost_ = 0;
   std::string scene_digest_;
 };
 
@@ -44,21 +76,30 @@ class Recorder {
  public:
   /// @param session  told in the file: what `bus` was made of
   /// @throws std::runtime_error if the bus or the file fails
-  Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file);
+  Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file,
+           const TopicSelection& topics = {});
 
   /// Writes all that has arrived. Call at least every 50 ms, or fast topics lose samples.
+  /// @return what is to be said of the disk's space, mostly nothing
   /// @throws std::runtime_error naming the file and the system's reason (disk full, …)
-  void poll();
+  std::string poll();
+  /// The disk has no more room: close().
+  bool full() const { return space_.full(); }
 
-  /// Writes what is left and ends the file.
-  void close();
+  /// Writes what is left, and what the recorder took, and ends the file.
+  /// @return that: `wall_s`, `processor_s` of this process, `samples_lost`
+  McapMap close();
 
   int matched_writers() const { return reader_.matched_writers(); }
   const SampleFile& file() const { return file_; }
 
  private:
+  double age() const;  ///< [s]
+
   SessionReader reader_;
   SampleFile file_;
+  SpaceWatch space_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace palpate::recording

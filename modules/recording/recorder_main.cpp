@@ -3,6 +3,7 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
+#include "modules/recording/inspect.h"
 #include "modules/recording/recorder.h"
 #include "modules/recording/recorder_stage.h"
 #include "modules/runtime/lockstep_module.h"
@@ -13,32 +14,43 @@
 
 namespace {
 
+using Words = std::vector<std::string>;
+
 constexpr double kPollRateHz = 100;  // a tenth of what the readers can hold at 4 kHz
 
 void record_in_lockstep(const palpate::runtime::ModuleOptions& options,
-                        const std::filesystem::path& file) {
+                        const std::filesystem::path& file, const Words& topics) {
   using namespace palpate;
   if (options.scene.empty()) throw InputError("--lockstep: --scene is missing");
   const scene::Scene scene = scene::load_scene(options.scene);
   runtime::run_in_lockstep(options, scene, "recorder", [&](bus::Bus& bus) {
-    return std::make_unique<recording::RecorderStage>(bus, file);
+    return std::make_unique<recording::RecorderStage>(bus, file, recording::TopicSelection(topics));
   });
 }
 
-void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file) {
-  if (!options.lockstep.empty()) return record_in_lockstep(options, file);
+void say(const std::string& what) {
+  if (!what.empty()) std::cerr << "[recorder] " << what << std::endl;
+}
+
+void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file,
+            const Words& topics) {
+  if (!options.lockstep.empty()) return record_in_lockstep(options, file, topics);
   const palpate::bus::BusOptions& session = options.bus;
   const palpate::runtime::StopSignal stop;
+  const palpate::recording::TopicSelection selection(
+      topics.empty() ? palpate::recording::kRealTimeTopics : topics);
   palpate::bus::DdsBus bus(session);  // first: a bad session leaves no file
-  palpate::recording::Recorder recorder(bus, session, file);
+  palpate::recording::Recorder recorder(bus, session, file, selection);
   palpate::runtime::PeriodicLoop loop(kPollRateHz);
-  while (!stop.requested()) {
+  while (!stop.requested() && !recorder.full()) {
     loop.wait_for_period();
-    recorder.poll();
+    say(recorder.poll());
   }
-  recorder.close();
-  std::cerr << "[recorder] " << file.string() << ": " << recorder.file().statistics().message_count
-            << " samples, " << recorder.file().bytes_written() << " bytes\n";
+  const auto cost = recorder.close();
+  const std::uint64_t bytes = recorder.file().bytes_written();
+  say(file.string() + ": " + std::to_string(recorder.file().statistics().message_count) +
+      " samples, " + std::to_string(bytes) + " bytes, " +
+      palpate::recording::cost_text(cost, bytes));
 }
 
 }  // namespace
@@ -51,12 +63,15 @@ int main(int argc, char** argv) {
   std::filesystem::path file;
   program.add_output("FILE", file, "the recording to write; an existing one is replaced")
       .required();
+  Words topics;
+  program.add("--topics", topics,
+              "Topics to record: all, NAME, or NAME=HZ for at most so many samples a second");
   palpate::runtime::add_bus_options(program, options.bus);
   palpate::runtime::add_lockstep_option(program, options.lockstep);
   program.add_input("--scene", options.scene,
                     "Scene file; needed in lockstep, which follows its rates");
   return program.run(argc, argv, [&] {
-    record(options, file);
+    record(options, file, topics);
     return palpate::kExitDone;
   });
 }

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <exception>
 
+#include "modules/core/units.h"
+#include "modules/runtime/clock.h"
 #include "modules/runtime/wiring.h"
 
 namespace palpate::recording {
 
-RecorderStage::RecorderStage(bus::Bus& bus, const std::filesystem::path& file) : file_(file) {
+RecorderStage::RecorderStage(bus::Bus& bus, const std::filesystem::path& file,
+                             TopicSelection topics)
+    : file_(file), space_(file), name_(file) {
+  file_.select(std::move(topics));
   for (const bus::TopicInfo& topic : bus::all_topics()) {
     if (runtime::find_wire(topic.name) == nullptr) continue;
     inputs_.push_back(std::make_unique<bus::Input>(bus, topic));
@@ -53,6 +58,11 @@ void RecorderStage::write_all() {
                    });
   for (const TopicSample& sample : samples_) file_.add(sample);
   file_.flush();
+  space_.look(seconds_from_ns(runtime::monotonic_now_ns()), file_.bytes_written());
+  if (!space_.full()) return;
+  file_.close();
+  throw std::runtime_error(name_.string() +
+                           ": the disk is full; the recording is whole up to here");
 }
 
 }  // namespace palpate::recording

@@ -17,7 +17,7 @@ namespace palpate::recording {
 class RecorderStage : public runtime::Stage {
  public:
   /// @throws std::runtime_error naming the file if it cannot be written
-  RecorderStage(bus::Bus& bus, const std::filesystem::path& file);
+  RecorderStage(bus::Bus& bus, const std::filesystem::path& file, TopicSelection topics = {});
   ~RecorderStage() override;  ///< ends the file, if finish() did not: by a signal, or a failure
   runtime::Health cycle(const runtime::Cycle& now) override;
   void finish(const runtime::Cycle& now) override;
@@ -30,6 +30,8 @@ class RecorderStage : public runtime::Stage {
   std::vector<std::unique_ptr<bus::Input>> inputs_;
   std::vector<TopicSample> samples_;
   SampleFile file_;
+  SpaceWatch space_;
+  std::filesystem::path name_;
 };
 
 }  // namespace palpate::recording

@@ -1,6 +1,7 @@
 #include "modules/recording/sample_reader.h"
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "modules/core/error.h"
@@ -61,7 +62,8 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
     if (auto* message = std::get_if<McapMessage>(&*record)) {
       const int channel = first_channel_ + message->channel_id;
       return RecordedSample{topics_.at(message->channel_id), static_cast<std::uint16_t>(channel),
-                            static_cast<std::int64_t>(message->log_time_ns),
+                            thinned_.contains(message->channel_id),
+                            static_cast<std::int64_t>(message->log_time_ns) - to_time_of_day_ns_,
                             std::move(message->data)};
     }
     if (const auto* schema = std::get_if<McapSchema>(&*record)) {
@@ -69,12 +71,28 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
       schema_names_[schema->id] = schema->name;
     } else if (const auto* channel = std::get_if<McapChannel>(&*record)) {
       add(*channel);
-    } else {
-      const auto& metadata = std::get<McapMetadata>(*record);
-      metadata_[metadata.name] = metadata.entries;
+    } else if (const auto* metadata = std::get_if<McapMetadata>(&*record)) {
+      metadata_[metadata->name] = metadata->entries;
+      if (metadata->name == kSessionMetadata) read_clocks(metadata->entries);
     }
   }
   return std::nullopt;
+}
+
+void SampleReader::read_clocks(const McapMap& session) {
+  const auto number = [&](const char* key) {
+    const auto entry = session.find(key);
+    std::int64_t value = 0;
+    if (entry == session.end()) return value;
+    const char* end = entry->second.data() + entry->second.size();
+    if (std::from_chars(entry->second.data(), end, value).ptr != end || value < 0) {
+      refuse(std::string(key) + " '" + entry->second + "' is no time in ns");
+    }
+    return value;
+  };
+  const auto clock = session.find("clock");
+  if (clock == session.end() || clock->second != kTimeOfDay) return;
+  to_time_of_day_ns_ = number("start_unix_ns") - number("start_monotonic_ns");
 }
 
 void SampleReader::check(const McapSchema& schema) const {
@@ -104,6 +122,7 @@ void SampleReader::add(const McapChannel& channel) {
            "'; allowed: cdr");
   }
   topics_[channel.id] = topic;
+  if (channel.metadata.contains(kThinned)) thinned_.insert(channel.id);
   channel_count_ =
       std::max<std::uint16_t>(channel_count_, static_cast<std::uint16_t>(channel.id + 1));
 }

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "modules/bus/topics.h"
@@ -16,9 +17,13 @@ namespace palpate::recording {
 struct RecordedSample {
   const bus::TopicInfo* topic = nullptr;
   std::uint16_t channel = 0;          ///< one for each writer of a topic
+  bool thinned = false;               ///< of its writer's samples only some are here
   std::int64_t received_time_ns = 0;  ///< monotonic clock of the recorder's host
   std::vector<std::uint8_t> payload;  ///< CDR with its encapsulation header
 };
+
+/// Metadata of a channel whose topic was recorded at most so many times a second.
+inline constexpr const char* kThinned = "at_most_hz";
 
 /// Where a recorder that is started again goes on: FILE.part2.mcap, FILE.part3.mcap, …
 /// @param number  1: the recording's own name
@@ -51,6 +56,7 @@ class SampleReader {
   std::optional<RecordedSample> next_of_part();
   void look_for_next_part();
   bool goes_on_in(SampleReader& part) const;
+  void read_clocks(const McapMap& session);
   void check(const McapSchema& schema) const;
   void add(const McapChannel& channel);
   [[noreturn]] void refuse(const std::string& what) const;
@@ -59,12 +65,14 @@ class SampleReader {
   int part_;
   std::filesystem::path file_;
   McapReader reader_;
+  std::int64_t to_time_of_day_ns_ = 0;
   std::uint16_t first_channel_ = 0;  ///< in the numbers that next() gives
   std::uint16_t channel_count_ = 0;
   std::unique_ptr<SampleReader> later_;
   std::optional<RecordedSample> first_;  ///< read already
   std::map<std::uint16_t, std::string> schema_names_;
   std::map<std::uint16_t, const bus::TopicInfo*> topics_;  ///< by channel
+  std::set<std::uint16_t> thinned_;                        ///< channels
   std::map<std::string, McapMap> metadata_;
 };
 

@@ -6,9 +6,10 @@
 
 namespace palpate::recording {
 
-SessionReader::SessionReader(bus::Bus& bus) {
+SessionReader::SessionReader(bus::Bus& bus, const std::function<bool(std::string_view)>& wanted) {
   for (const bus::TopicInfo& topic : bus::all_topics()) {
-    readers_.push_back(bus.raw_reader(topic, bus::Keep::kBacklog));
+    const bool heard = !wanted || wanted(topic.name);
+    readers_.push_back(heard ? bus.raw_reader(topic, bus::Keep::kBacklog) : nullptr);
   }
 }
 
@@ -19,7 +20,7 @@ std::span<const TopicSample> SessionReader::take_all() {
     return samples_[used];
   };
   for (std::size_t i = 0; i < readers_.size(); ++i) {
-    while (readers_[i]->take(next())) samples_[used++].topic = &bus::all_topics()[i];
+    while (readers_[i] && readers_[i]->take(next())) samples_[used++].topic = &bus::all_topics()[i];
   }
   const std::span<TopicSample> taken(samples_.data(), used);
   std::ranges::stable_sort(taken, {}, &TopicSample::received_time_ns);
@@ -28,7 +29,9 @@ std::span<const TopicSample> SessionReader::take_all() {
 
 int SessionReader::matched_writers() const {
   int count = 0;
-  for (const auto& reader : readers_) count += reader->matched_writers();
+  for (const auto& reader : readers_) {
+    if (reader) count += reader->matched_writers();
+  }
   return count;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -14,10 +15,11 @@ struct TopicSample : bus::RawSample {
   const bus::TopicInfo* topic = nullptr;  ///< of bus::all_topics()
 };
 
-/// Hears every topic of a session.
+/// Hears the topics of a session.
 class SessionReader {
  public:
-  explicit SessionReader(bus::Bus& bus);
+  /// @param wanted  which topics; none given: every one
+  explicit SessionReader(bus::Bus& bus, const std::function<bool(std::string_view)>& wanted = {});
 
   /// All samples that have arrived and were not taken, in the order they arrived. The samples keep
   /// their memory for the next call; valid until then.
@@ -27,7 +29,8 @@ class SessionReader {
   int matched_writers() const;
 
  private:
-  std::vector<std::unique_ptr<bus::RawReader>> readers_;  ///< as bus::all_topics()
+  std::vector<std::unique_ptr<bus::RawReader>>
+      readers_;  ///< as bus::all_topics(); null: not wanted
   std::vector<TopicSample> samples_;
 };
 

@@ -15,6 +15,7 @@ void write_recording(const std::filesystem::path& file, bool close) {
   SampleFile writer(file, {});
   writer.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 1'000));
   writer.add(raw_sample(bus::kNodePositions, node_positions(2, 1e-3, 5), 2'000));
+  writer.end_chunk();
   writer.flush();
   if (close) writer.close();
 }
@@ -33,6 +34,23 @@ TEST_CASE("commands: inspect prints the table and warns of a torn file") {
   CHECK(run_inspect_command({folder / "torn.mcap", folder / "csv"}, out, err) == kExitDone);
   CHECK_THAT(err.str(), Catch::StartsWith("warning: "));
   CHECK(std::filesystem::exists(folder / "csv/node_positions_0.csv"));
+}
+
+TEST_CASE("commands: inspect repairs a torn file into another") {
+  // Oracle: the repaired file equals the whole one, by diff, and is not torn.
+  const ScratchFolder folder;
+  write_recording(folder / "whole.mcap", true);
+  write_recording(folder / "torn.mcap", false);
+  std::ostringstream out, err, nothing;
+  CHECK(run_inspect_command({folder / "torn.mcap", {}, false, folder / "again.mcap"}, out, err) ==
+        kExitDone);
+  CHECK_THAT(err.str(),
+             Catch::EndsWith("again.mcap: 2 samples; left out: 0 damaged pieces and a torn end\n"));
+  CHECK(run_diff_command({.a = folder / "whole.mcap", .b = folder / "again.mcap"}, out, nothing) ==
+        kExitDone);
+  CHECK(nothing.str().empty());
+  CHECK(run_inspect_command({folder / "torn.mcap", {}, false, folder / "again.mcap"}, out, err) ==
+        kExitBadInput);
 }
 
 TEST_CASE("commands: diff warns of a torn file, whichever of the two it is") {
@@ -76,6 +94,7 @@ TEST_CASE("commands: replay waits for a reader, plays, and says what it played")
     status.module = "haptics";
     status.cycles = 77;
     writer.add(raw_sample(bus::kModuleStatus, status, 1'000));
+    writer.end_chunk();
     writer.flush();
   }
   const auto options = bus::testing::own_options();

@@ -38,6 +38,7 @@ void write_session(const std::filesystem::path& file, bool close = true) {
   TopicSample broken = raw_sample(bus::kHapticForce, force, kStart + 80 * kMs);
   broken.payload.resize(30);
   writer.add(broken);
+  writer.end_chunk();
   writer.flush();
   if (close) writer.close();
 }
@@ -93,6 +94,30 @@ TEST_CASE("inspect: the table names what matters on one screen") {
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("recording", 0) != 0) CHECK(line.size() <= 120);
   }
+}
+
+TEST_CASE("inspect: says what recording took, and that gaps of a thinned topic are no loss") {
+  // Oracle: by hand: 3 MB in 20 s are 9 a minute, 0.5 s of 20 are 2.5 %.
+  CHECK(cost_text({{"wall_s", "20"}, {"processor_s", "0.5"}, {"samples_lost", "7"}}, 3'000'000) ==
+        "9.0 MB a minute, 2.5 % of a core, 7 samples lost");
+  CHECK(cost_text({}, 3'000'000) == "what it took is not known");
+  const ScratchFolder folder;
+  SampleFile writer(folder / "a.mcap", {});
+  writer.select(TopicSelection({"node_positions=10"}));
+  for (const std::uint64_t sequence : {1, 2, 3}) {
+    const auto time_ns = static_cast<std::int64_t>(sequence * 60 * kMs);
+    writer.add(raw_sample(bus::kNodePositions, node_positions(sequence, 1e-3, 0), time_ns));
+  }
+  writer.add_metadata({kCostMetadata, {{"wall_s", "20"}, {"processor_s", "0.5"}}});
+  writer.close();
+  const RecordingSummary summary = summarize(folder / "a.mcap");
+  REQUIRE(summary.topics.size() == 1);
+  CHECK(summary.topics[0].samples == 2);
+  CHECK(summary.topics[0].missing == 0);
+  CHECK(summary.topics[0].thinned);
+  std::ostringstream out;
+  print_summary(summary, out);
+  CHECK_THAT(out.str(), Catch::Contains("\nrecorder   ") && Catch::Contains("thinned"));
 }
 
 TEST_CASE("inspect: an empty recording has no topics and no scene") {

@@ -43,6 +43,10 @@ TEST_CASE("mcap bytes: the CRC is the one of zlib, gzip and MCAP") {
   const std::vector<std::uint8_t> bytes{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   CHECK(crc32(bytes) == 0xCBF43926u);
   CHECK(crc32({}) == 0);
+  for (std::size_t cut = 0; cut <= bytes.size(); ++cut) {
+    const std::span all(bytes);
+    CHECK(crc32(all.subspan(cut), crc32(all.first(cut))) == 0xCBF43926u);
+  }
 }
 
 }  // namespace palpate::recording

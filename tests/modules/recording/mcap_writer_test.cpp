@@ -1,5 +1,7 @@
 #include "modules/recording/mcap_writer.h"
 
+#include <zstd.h>
+
 #include <catch2/catch.hpp>
 
 #include "modules/recording/mcap_bytes.h"
@@ -18,33 +20,31 @@ std::vector<std::uint8_t> bytes_from(std::initializer_list<int> values) {
 // One schema "S" with data "d", one channel "t", one message with payload 7 8, laid out by hand
 // from the records' tables in the specification.
 const std::vector<std::uint8_t> kDataSection = bytes_from({
-    0x89, 'M',  'C', 'A', 'P', '0', 13,  10,                  // magic
-    0x01, 15,   0,   0,   0,   0,   0,   0,   0,              // header, 15 bytes
-    0,    0,    0,   0,                                       // profile ""
-    7,    0,    0,   0,   'p', 'a', 'l', 'p', 'a', 't', 'e',  // library
-    0x03, 18,   0,   0,   0,   0,   0,   0,   0,              // schema, 18 bytes
-    1,    0,                                                  // id
-    1,    0,    0,   0,   'S',                                // name
-    2,    0,    0,   0,   'i', 'd',                           // encoding
-    1,    0,    0,   0,   'd',                                // data
-    0x04, 30,   0,   0,   0,   0,   0,   0,   0,              // channel, 30 bytes
-    1,    0,                                                  // id
-    1,    0,                                                  // schema id
-    1,    0,    0,   0,   't',                                // topic
-    3,    0,    0,   0,   'c', 'd', 'r',                      // message encoding
-    10,   0,    0,   0,                                       // metadata: 10 bytes of entries
-    1,    0,    0,   0,   'k', 1,   0,   0,   0,   'v',       //
-    0x05, 24,   0,   0,   0,   0,   0,   0,   0,              // message, 24 bytes
-    1,    0,                                                  // channel id
-    5,    0,    0,   0,                                       // sequence
-    0x02, 0x01, 0,   0,   0,   0,   0,   0,                   // log time 258 ns
-    0,    1,    0,   0,   0,   0,   0,   0,                   // publish time 256 ns
-    7,    8,                                                  // payload
+    0x89, 'M', 'C', 'A', 'P', '0', 13,  10,                  // magic
+    0x01, 15,  0,   0,   0,   0,   0,   0,   0,              // header, 15 bytes
+    0,    0,   0,   0,                                       // profile ""
+    7,    0,   0,   0,   'p', 'a', 'l', 'p', 'a', 't', 'e',  // library
+    0x03, 18,  0,   0,   0,   0,   0,   0,   0,              // schema, 18 bytes
+    1,    0,                                                 // id
+    1,    0,   0,   0,   'S',                                // name
+    2,    0,   0,   0,   'i', 'd',                           // encoding
+    1,    0,   0,   0,   'd',                                // data
+    0x04, 30,  0,   0,   0,   0,   0,   0,   0,              // channel, 30 bytes
+    1,    0,                                                 // id
+    1,    0,                                                 // schema id
+    1,    0,   0,   0,   't',                                // topic
+    3,    0,   0,   0,   'c', 'd', 'r',                      // message encoding
+    10,   0,   0,   0,                                       // metadata: 10 bytes of entries
+    1,    0,   0,   0,   'k', 1,   0,   0,   0,   'v',       //
 });
 
-const std::vector<std::uint8_t> kClosing = bytes_from({
-    0x0F, 4, 0, 0, 0, 0, 0, 0, 0,  // data end
-    0, 0, 0, 0,                    // CRC not given
+const std::vector<std::uint8_t> kMessageRecord = bytes_from({
+    0x05, 24,   0, 0, 0, 0, 0, 0, 0,  // message, 24 bytes
+    1,    0,                          // channel id
+    5,    0,    0, 0,                 // sequence
+    0x02, 0x01, 0, 0, 0, 0, 0, 0,     // log time 258 ns
+    0,    1,    0, 0, 0, 0, 0, 0,     // publish time 256 ns
+    7,    8,                          // payload
 });
 
 void write_hand_laid_file(const std::filesystem::path& file) {
@@ -71,53 +71,81 @@ TEST_CASE("mcap writer: replaces a recording, and nothing else") {
   }
 }
 
-TEST_CASE("mcap writer: the data section has the bytes of the specification") {
-  // Oracle: bytes laid out by hand from the specification.
+TEST_CASE("mcap writer: a file has the bytes of the specification") {
+  // Oracle: bytes laid out by hand from the specification; zstd unpacks the chunk, CRCs by their
+  // definition.
   const ScratchFolder folder;
   write_hand_laid_file(folder / "hand.mcap");
   const auto bytes = bytes_of(folder / "hand.mcap");
+  const auto packed_size = static_cast<int>(bytes[kDataSection.size() + 9 + 16 + 8 + 4 + 8]);
+  const auto number_of = [](std::uint64_t value, int size) {
+    std::vector<std::uint8_t> number;
+    for (int i = 0; i < size; ++i) number.push_back(static_cast<std::uint8_t>(value >> 8 * i));
+    return number;
+  };
   auto expected = kDataSection;
-  expected.insert(expected.end(), kClosing.begin(), kClosing.end());
-  REQUIRE(bytes.size() > expected.size());
-  CHECK(std::vector(bytes.begin(), bytes.begin() + std::ptrdiff_t(expected.size())) == expected);
-}
-
-TEST_CASE("mcap writer: the summary section has the bytes of the specification") {
-  // Oracle: bytes laid out by hand from the specification; CRC by its definition.
-  const ScratchFolder folder;
-  write_hand_laid_file(folder / "hand.mcap");
-  const auto bytes = bytes_of(folder / "hand.mcap");
-  const std::uint8_t start = static_cast<std::uint8_t>(kDataSection.size() + kClosing.size());
-  std::vector<std::uint8_t> expected(kDataSection.begin() + 32, kDataSection.begin() + 98);
   const auto append = [&](const std::vector<std::uint8_t>& more) {
     expected.insert(expected.end(), more.begin(), more.end());
   };
+
+  const auto chunk_at = expected.size();
+  append(bytes_from({0x06, 44 + packed_size, 0, 0, 0, 0, 0, 0, 0}));
+  append(bytes_from({0x02, 0x01, 0, 0, 0, 0, 0, 0, 0x02, 0x01, 0, 0, 0, 0, 0, 0}));  // times
+  append(bytes_from({33, 0, 0, 0, 0, 0, 0, 0}));                                     // size
+  append(number_of(crc32(kMessageRecord), 4));
+  append(bytes_from({4, 0, 0, 0, 'z', 's', 't', 'd', packed_size, 0, 0, 0, 0, 0, 0, 0}));
+  REQUIRE(bytes.size() > expected.size() + static_cast<std::size_t>(packed_size));
+  const auto* packed = bytes.data() + expected.size();
+  std::vector<std::uint8_t> unpacked(kMessageRecord.size());
+  CHECK(ZSTD_decompress(unpacked.data(), unpacked.size(), packed, std::size_t(packed_size)) ==
+        unpacked.size());
+  CHECK(unpacked == kMessageRecord);
+  append({packed, packed + packed_size});
+  const auto index_at = expected.size();
+  append(bytes_from({0x07, 22, 0, 0, 0, 0, 0, 0, 0, 1, 0, 16, 0, 0, 0}));      // message index
+  append(bytes_from({0x02, 0x01, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));  // at byte 0
+  const std::uint32_t data_crc = crc32(expected);
+  append(bytes_from({0x0F, 4, 0, 0, 0, 0, 0, 0, 0}));  // data end
+  append(number_of(data_crc, 4));
+
+  const std::uint64_t start = expected.size();
+  append({kDataSection.begin() + 32, kDataSection.end()});  // schema and channel again
   append(bytes_from({
       0x0B, 56,   0, 0, 0, 0, 0, 0, 0,    // statistics, 56 bytes
       1,    0,    0, 0, 0, 0, 0, 0,       // messages
       1,    0,                            // schemas
       1,    0,    0, 0,                   // channels
       0,    0,    0, 0, 0, 0, 0, 0,       // attachments, metadata
-      0,    0,    0, 0,                   // chunks
+      1,    0,    0, 0,                   // chunks
       0x02, 0x01, 0, 0, 0, 0, 0, 0,       // first log time
       0x02, 0x01, 0, 0, 0, 0, 0, 0,       // last log time
       10,   0,    0, 0,                   // channel counts: 10 bytes
       1,    0,    1, 0, 0, 0, 0, 0, 0, 0  //
   }));
-  const int schema_at = start, channel_at = start + 27, statistics_at = start + 66;
-  for (const auto [opcode, at, length] :
-       {std::array{3, schema_at, 27}, {4, channel_at, 39}, {0x0B, statistics_at, 65}}) {
+  const auto chunk_index_at = expected.size();
+  append(bytes_from({0x08, 78, 0, 0, 0, 0, 0, 0, 0}));
+  append(bytes_from({0x02, 0x01, 0, 0, 0, 0, 0, 0, 0x02, 0x01, 0, 0, 0, 0, 0, 0}));  // times
+  append(number_of(chunk_at, 8));
+  append(number_of(index_at - chunk_at, 8));
+  append(bytes_from({10, 0, 0, 0, 1, 0}));  // message indexes: channel 1
+  append(number_of(index_at, 8));
+  append(bytes_from({31, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0, 0, 'z', 's', 't', 'd'}));
+  append(bytes_from({packed_size, 0, 0, 0, 0, 0, 0, 0, 33, 0, 0, 0, 0, 0, 0, 0}));
+  const auto offsets_at = expected.size();
+  for (const auto& [opcode, at, length] : {std::tuple{3, start, 27},
+                                           {4, start + 27, 39},
+                                           {0x0B, start + 66, 65},
+                                           {0x08, chunk_index_at, 87}}) {
     append(bytes_from({0x0E, 17, 0, 0, 0, 0, 0, 0, 0, opcode}));
-    append(bytes_from({at, 0, 0, 0, 0, 0, 0, 0, length, 0, 0, 0, 0, 0, 0, 0}));
+    append(number_of(at, 8));
+    append(bytes_from({length, 0, 0, 0, 0, 0, 0, 0}));
   }
-  const int offsets_at = start + 131;
   append(bytes_from({0x02, 20, 0, 0, 0, 0, 0, 0, 0}));
-  append(bytes_from({start, 0, 0, 0, 0, 0, 0, 0, offsets_at & 0xFF, offsets_at >> 8}));
-  append(bytes_from({0, 0, 0, 0, 0, 0}));
-  const std::uint32_t crc = crc32(expected);
-  for (int i = 0; i < 4; ++i) expected.push_back(static_cast<std::uint8_t>(crc >> (8 * i)));
-  expected.insert(expected.end(), kMcapMagic.begin(), kMcapMagic.end());
-  CHECK(std::vector(bytes.begin() + start, bytes.end()) == expected);
+  append(number_of(start, 8));
+  append(number_of(offsets_at, 8));
+  append(number_of(crc32(std::span(expected).subspan(start)), 4));
+  append({kMcapMagic.begin(), kMcapMagic.end()});
+  CHECK(bytes == expected);
 }
 
 TEST_CASE("mcap writer: what flush() has written is in the file before close()") {

@@ -6,6 +6,7 @@
 
 #include "modules/bus/memory_bus.h"
 #include "modules/core/error.h"
+#include "modules/messages/csv.h"
 #include "tests/modules/bus/loopback.h"
 #include "tests/modules/messages/random_messages.h"
 #include "tests/modules/recording/payloads.h"
@@ -75,6 +76,91 @@ TEST_CASE("player: a replay sends the recorded bytes with the recorded spacing")
     return count >= recorded.size();
   }));
   CHECK(heard == sent);
+}
+
+namespace {
+
+/// Two organs and a probe; sample i of each at i · 10 ms. The samples' volume and x tell i.
+void record_tenths(const std::filesystem::path& file, int count) {
+  SampleFile recording(file, {});
+  for (int i = 0; i < count; ++i) {
+    const std::int64_t time_ns = 1000 + 10 * i * kMs;
+    const auto number = static_cast<std::uint64_t>(i + 1);
+    for (std::uint32_t organ : {0u, 1u}) {
+      NodePositions positions = node_positions(number, 1e-3 * (i + 1), 0);
+      positions.organ = organ;
+      recording.add(raw_sample(bus::kNodePositions, positions, time_ns));
+    }
+    recording.add(raw_sample(bus::kProbeState, probe_state(number, 0, 0, Vec3::Zero()), time_ns));
+  }
+  recording.close();
+}
+
+/// Topic, sequence number and key of what a replay writes, in order.
+struct Played {
+  PlayReport report;
+  double took = 0;
+  std::vector<std::string> samples;
+};
+
+Played played(const std::filesystem::path& file, const PlayOptions& options) {
+  bus::MemoryBus bus;
+  SessionReader reader(bus);
+  SessionWriter writer(bus);
+  SampleReader recording(file);
+  Played result;
+  PlayOptions playing = options;
+  const auto begin = std::chrono::steady_clock::now();
+  result.report = play(recording, writer, kNeverStop, playing);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  result.took = took.count();
+  messages::AnyMessage message;
+  for (const TopicSample& sample : reader.take_all()) {
+    REQUIRE(sample.topic->type->decode(sample.payload, message) == nullptr);
+    result.samples.push_back(std::string(sample.topic->name) + " " +
+                             std::to_string(messages::header_of(sample.payload).sequence) + " " +
+                             messages::key_text(message));
+  }
+  std::ranges::sort(result.samples);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("player: from a time on, what held then goes first, then the rest") {
+  // Oracle: samples at 0, 10, 20, 30, 40 ms; from 25 ms on the third of each holds.
+  const ScratchFolder folder;
+  record_tenths(folder / "a.mcap", 5);
+  const Played from = played(folder / "a.mcap", {.start = 0.025, .wait_for_step = {}});
+  CHECK(from.samples ==
+        std::vector<std::string>{"node_positions 3 0", "node_positions 3 1", "node_positions 4 0",
+                                 "node_positions 4 1", "node_positions 5 0", "node_positions 5 1",
+                                 "probe_state 3 0", "probe_state 4 0", "probe_state 5 0"});
+  CHECK(from.report.duration == Approx(0.015));
+  CHECK_THROWS_WITH(played(folder / "a.mcap", {.start = 1, .wait_for_step = {}}),
+                    Catch::EndsWith("a.mcap: ends before the start asked for"));
+}
+
+TEST_CASE("player: the rate stretches the spacing") {
+  // Oracle: 40 ms of recording at a quarter of its speed cannot take less than 160 ms.
+  const ScratchFolder folder;
+  record_tenths(folder / "a.mcap", 5);
+  const Played slow = played(folder / "a.mcap", {.rate = 0.25, .wait_for_step = {}});
+  CHECK(slow.took >= 0.16);
+  CHECK(slow.samples.size() == 15);
+  CHECK(slow.report.duration == Approx(0.04));
+}
+
+TEST_CASE("player: in steps, each waits for its picture to be let go") {
+  // Oracle: the third picture is not let go: three node_positions are out and nothing behind them.
+  const ScratchFolder folder;
+  record_tenths(folder / "a.mcap", 5);
+  int asked = 0;
+  const Played stepped =
+      played(folder / "a.mcap", {.rate = 1e-6, .wait_for_step = [&] { return ++asked < 3; }});
+  CHECK(stepped.report.stopped);
+  CHECK(stepped.samples == std::vector<std::string>{"node_positions 1 0", "node_positions 1 1",
+                                                    "node_positions 2 0", "probe_state 1 0"});
 }
 
 TEST_CASE("player: stops when asked to") {
@@ -150,6 +236,7 @@ TEST_CASE("player: after a reset only the last stretch counts, torn and invalid 
     auto broken = raw_sample(bus::kProbeState, probe_state(1, 0, 0, {1, 0, 0}), 600);
     broken.payload.resize(40);
     file.add(broken);
+    file.end_chunk();
     file.flush();
   }
   std::vector<std::string> warnings;

@@ -26,7 +26,7 @@ class RecorderProcess {
     id_ = fork();
     if (id_ == 0) {
       execl(program.c_str(), program.c_str(), file.c_str(), "--session", options.session.c_str(),
-            "--domain", domain.c_str(), nullptr);
+            "--domain", domain.c_str(), "--topics", "all", nullptr);
       _exit(127);
     }
   }

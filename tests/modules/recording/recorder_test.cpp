@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/recording/sample_reader.h"
+#include "modules/scene/scene_reader.h"
 #include "tests/modules/bus/loopback.h"
 #include "tests/modules/messages/random_messages.h"
 #include "tests/modules/recording/payloads.h"
@@ -97,10 +98,10 @@ TEST_CASE("recorder: the file says which session it is of and how its clock rela
   CHECK(reader.metadata(kSceneMetadata).empty());
 }
 
-TEST_CASE("recorder: message records carry receive time, source time and sequence") {
-  // Oracle: the values given.
+TEST_CASE("recorder: message records carry the time of day of receipt and source, and sequence") {
+  // Oracle: the values given; read back, they are of the monotonic clock again.
   const ScratchFolder folder;
-  SampleFile file(folder / "a.mcap", {});
+  SampleFile file(folder / "a.mcap", {}, {500, 70'000});
   ProbeState state = probe_state(41, 5, 0, Vec3::Zero());
   state.header.source_time_ns = 900;
   file.add(raw_sample(bus::kProbeState, state, 1000));
@@ -112,8 +113,10 @@ TEST_CASE("recorder: message records carry receive time, source time and sequenc
   }
   REQUIRE(message);
   CHECK(message->sequence == 41);
-  CHECK(message->log_time_ns == 1000);
-  CHECK(message->publish_time_ns == 900);
+  CHECK(message->log_time_ns == 70'500);
+  CHECK(message->publish_time_ns == 70'400);
+  SampleReader samples(folder / "a.mcap");
+  CHECK(samples.next()->received_time_ns == 1000);
 }
 
 TEST_CASE("recorder: the scene is noted once, and again when another is loaded") {
@@ -129,6 +132,51 @@ TEST_CASE("recorder: the scene is noted once, and again when another is loaded")
   }
   CHECK(file.statistics().metadata_count == 3);  // with the session's
   CHECK(file.statistics().message_count == 3);
+}
+
+TEST_CASE("recorder: the scene and the meshes it names lie in the file") {
+  // Oracle: the resolved text, and the mesh's own bytes.
+  const ScratchFolder folder;
+  const std::filesystem::path file = PALPATE_SOURCE_DIR "/scenes/liver_probe.yaml";
+  SceneDescription scene;
+  scene.header = {1, 0, 1};
+  scene.digest = "0123456789abcdef";
+  scene.resolved_text = scene::resolved_text(scene::load_scene(file));
+  SampleFile recording(folder / "a.mcap", {});
+  recording.add(raw_sample(bus::kScene, scene, 1));
+  recording.close();
+  McapReader reader(folder / "a.mcap");
+  std::map<std::string, std::string> attached;
+  while (const auto record = reader.next()) {
+    if (const auto* attachment = std::get_if<McapAttachment>(&*record)) {
+      attached[attachment->name] = attachment->data;
+    }
+  }
+  const auto mesh = bytes_of(PALPATE_SOURCE_DIR "/scenes/meshes/liver.ply");
+  REQUIRE(attached.size() == 2);
+  CHECK(attached["scene.yaml"] == scene.resolved_text);
+  CHECK(attached["liver.ply"] == std::string(mesh.begin(), mesh.end()));
+}
+
+TEST_CASE("recorder: what was not asked for is left out, what was lost is counted all the same") {
+  // Oracle: 250 positions in a second, numbers 51 to 60 missing, at most 20 a second: at 5 times in
+  // each of 20 periods; the summary does not take what was left out for missing.
+  const ScratchFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  file.select(TopicSelection({"node_positions=20"}));
+  for (std::uint64_t i = 1; i <= 250; ++i) {
+    const auto time_ns = static_cast<std::int64_t>(4'000'000 * (i - 1));
+    if (i > 50 && i <= 60) continue;
+    file.add(raw_sample(bus::kNodePositions, node_positions(i, 1e-3, 0), time_ns));
+    file.add(raw_sample(bus::kHapticForce, HapticForce{}, time_ns));
+  }
+  file.close();
+  CHECK(file.lost() == 10);
+  CHECK(file.statistics().message_count == 20);
+  SampleReader reader(folder / "a.mcap");
+  int count = 0;
+  for (; const auto sample = reader.next(); ++count) CHECK(sample->thinned);
+  CHECK(count == 20);
 }
 
 TEST_CASE("recorder: a full disk is reported") {

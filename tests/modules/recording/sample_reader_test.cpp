@@ -137,15 +137,17 @@ TEST_CASE("sample reader: comments of an IDL file may change between versions") 
 }
 
 TEST_CASE("sample reader: a torn file says where it ends") {
-  // Oracle: the sizes of the files, cut in the middle of the last message.
+  // Oracle: the sizes of the files, cut in the middle of the last chunk.
   const ScratchFolder folder;
   const auto file = folder / "torn.mcap";
   std::uint64_t whole = 0;
   {
     SampleFile writer(file, {});
     writer.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 1));
+    writer.end_chunk();
     whole = writer.bytes_written();
     writer.add(raw_sample(bus::kNodePositions, node_positions(2, 1e-3, 5), 2));
+    writer.end_chunk();
     writer.flush();
   }
   std::filesystem::resize_file(file, whole + 20);
