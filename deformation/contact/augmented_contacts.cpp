@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace palpate::deformation {
 namespace {
@@ -10,15 +11,12 @@ namespace {
 /// leave is soon taken up, and conjugate gradients are not slowed. At 100 they did not find the
 /// contacts of a fine mesh.
 constexpr double kStiffness = 10;
-/// Friction that changes by less than this part of ρ needs no further round.
+/// Friction that changes by less than this part of ρ is no change.
 constexpr double kFrictionTolerance = 0.1;
-
-/// Of the tissue relative to the probe [m/s].
-Vec3 relative_velocity(const ContactRow& row, const std::vector<Vec3>& velocities) {
-  Vec3 velocity = -row.probe_velocity;
-  for (int k = 0; k < 3; ++k) velocity += row.weights[k] * velocities[row.nodes[k]];
-  return velocity;
-}
+/// A step ends where the energy falls by less than this part of how it fell at first; pieces are
+/// few, so that more steps than these are never seen.
+constexpr double kLevel = 1e-4;
+constexpr int kMostPieces = 20;
 
 /// The part of a vector across a unit direction.
 Vec3 across(const Vec3& vector, const Vec3& direction) {
@@ -27,6 +25,31 @@ Vec3 across(const Vec3& vector, const Vec3& direction) {
 
 }  // namespace
 
+AugmentedContacts::Impulse AugmentedContacts::impulse_at(const ContactRow& row,
+                                                         const Spring& spring,
+                                                         const Vec3& relative) {
+  Impulse impulse;
+  const double approach = row.normal.dot(relative) - spring.allowed_approach;
+  impulse.normal = std::max(0.0, spring.last_pressing + spring.stiffness * approach);
+  if (!(spring.bound > 0)) return impulse;
+  const Vec3 wanted = spring.last_friction - spring.stiffness * across(relative, row.normal);
+  const double norm = wanted.norm();
+  const double share = norm > spring.bound ? spring.bound / norm : 1;
+  impulse.friction = share * wanted;
+  impulse.sliding = share * spring.stiffness;
+  return impulse;
+}
+
+void AugmentedContacts::press(ContactRow& row, Spring& spring) {
+  const double approach = row.normal.dot(spring.relative) - spring.allowed_approach;
+  spring.bound = row.friction * std::max(0.0, spring.last_pressing + spring.stiffness * approach);
+  const Impulse now = impulse_at(row, spring, spring.relative);
+  row.normal_impulse = now.normal;
+  row.tangential_impulse = now.friction;
+  spring.presses = now.normal > 0;
+  spring.friction = now.sliding;
+}
+
 void AugmentedContacts::begin(std::span<const Mat3> inverse_mass_blocks, std::span<ContactRow> rows,
                               double h, const std::vector<Vec3>& velocities) {
   springs_.assign(rows.size(), {});
@@ -34,63 +57,84 @@ void AugmentedContacts::begin(std::span<const Mat3> inverse_mass_blocks, std::sp
     ContactRow& row = rows[c];
     Spring& spring = springs_[c];
     double inverse_mass = 0;
+    spring.relative = -row.probe_velocity;
     for (int k = 0; k < 3; ++k) {
       inverse_mass += row.weights[k] * row.weights[k] *
                       row.normal.dot(inverse_mass_blocks[row.nodes[k]] * row.normal);
+      spring.relative += row.weights[k] * velocities[row.nodes[k]];
     }
-    if (inverse_mass > 0) spring.stiffness = kStiffness / inverse_mass;
-    spring.allowed_approach = std::max(row.gap / h, -kMaxSeparationSpeed);
-    if (spring.stiffness == 0) row.normal_impulse = 0;
-    const double last = spring.last_pressing = row.normal_impulse;
-    spring.last_friction = across(row.tangential_impulse, row.normal);
-    spring.friction = press(row, velocities, spring);
-    if (last <= 0) continue;
-    // As it will be linearised, pulling if need be: the rounds find out.
-    spring.presses = true;
-    const Vec3 relative = relative_velocity(row, velocities);
-    row.normal_impulse =
-        last + spring.stiffness * (row.normal.dot(relative) - spring.allowed_approach);
-    spring.friction = friction_update(row, relative, last, spring);
+    spring.allowed_approach = palpate::deformation::allowed_approach(row, h);
+    if (inverse_mass > 0) {
+      spring.stiffness = kStiffness / inverse_mass;
+      spring.last_pressing = row.normal_impulse;
+      spring.last_friction = across(row.tangential_impulse, row.normal);
+    }
+    press(row, spring);
   }
 }
 
-double AugmentedContacts::press(ContactRow& row, const std::vector<Vec3>& velocities,
-                                Spring& spring) const {
-  const Vec3 relative = relative_velocity(row, velocities);
-  const double approach = row.normal.dot(relative) - spring.allowed_approach;
-  row.normal_impulse = std::max(0.0, spring.last_pressing + spring.stiffness * approach);
-  spring.presses = row.normal_impulse > 0;
-  return friction_update(row, relative, row.normal_impulse, spring);
-}
-
-double AugmentedContacts::friction_update(ContactRow& row, const Vec3& relative, double pressing,
-                                          const Spring& spring) {
-  const Vec3 wanted = spring.last_friction - spring.stiffness * across(relative, row.normal);
-  const double limit = row.friction * pressing, norm = wanted.norm();
-  const double share = norm > limit ? limit / norm : 1;
-  row.tangential_impulse = share * wanted;
-  return row.friction > 0 ? share * spring.stiffness : 0;
-}
-
-bool AugmentedContacts::update(std::span<ContactRow> rows, const std::vector<Vec3>& velocities) {
-  bool changed = false;
-  for (std::size_t c = 0; c < rows.size(); ++c) {
-    Spring& spring = springs_[c];
-    const bool pressed = spring.presses;
-    const double friction = press(rows[c], velocities, spring);
-    changed |= spring.presses != pressed ||
-               std::abs(friction - spring.friction) > kFrictionTolerance * spring.stiffness;
-    spring.friction = friction;
-  }
-  return changed;
-}
-
-void AugmentedContacts::go_on(std::span<ContactRow> rows, const std::vector<Vec3>& velocities) {
+void AugmentedContacts::go_on(std::span<ContactRow> rows) {
   for (std::size_t c = 0; c < rows.size(); ++c) {
     springs_[c].last_pressing = rows[c].normal_impulse;
     springs_[c].last_friction = rows[c].tangential_impulse;
+    press(rows[c], springs_[c]);
   }
-  update(rows, velocities);
+}
+
+void AugmentedContacts::set_direction(std::span<const ContactRow> rows,
+                                      const std::vector<Vec4f>& p) {
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    Vec3 direction = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      direction += rows[c].weights[k] * p[rows[c].nodes[k]].head<3>().cast<double>();
+    }
+    springs_[c].direction = direction;
+  }
+}
+
+/// Newton on the slope of the energy along p, which rises piece by piece, between what is known to
+/// be too short and too long.
+double AugmentedContacts::step_length(std::span<const ContactRow> rows, double descent,
+                                      double curvature) const {
+  double shortest = 0, longest = std::numeric_limits<double>::infinity(), length = 0;
+  for (int piece = 0; piece < kMostPieces; ++piece) {
+    double slope = length * curvature - descent, rise = curvature;
+    for (std::size_t c = 0; c < rows.size(); ++c) {
+      const Spring& spring = springs_[c];
+      const Vec3 &n = rows[c].normal, &p = spring.direction;
+      const Impulse at = impulse_at(rows[c], spring, spring.relative + length * p);
+      const double along = n.dot(p);
+      slope += (at.normal - rows[c].normal_impulse) * along -
+               (at.friction - rows[c].tangential_impulse).dot(p);
+      if (at.normal > 0) rise += spring.stiffness * along * along;
+      rise += at.sliding * across(p, n).squaredNorm();
+    }
+    if (std::abs(slope) <= kLevel * descent) break;
+    (slope < 0 ? shortest : longest) = length;
+    length -= slope / rise;
+    if (!(length > shortest && length < longest)) length = (shortest + longest) / 2;
+  }
+  return length;
+}
+
+bool AugmentedContacts::advance(std::span<ContactRow> rows, double length,
+                                std::vector<Vec4f>& product) {
+  bool changed = false;
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    ContactRow& row = rows[c];
+    Spring& spring = springs_[c];
+    const bool pressed = spring.presses;
+    const double friction = spring.friction;
+    const Vec3 before = row.tangential_impulse - row.normal_impulse * row.normal;
+    spring.relative += length * spring.direction;
+    press(row, spring);
+    changed |= spring.presses != pressed ||
+               std::abs(spring.friction - friction) > kFrictionTolerance * spring.stiffness;
+    if (!pressed && !spring.presses) continue;
+    const Vec3 lost = before - row.tangential_impulse + row.normal_impulse * row.normal;
+    for (int k = 0; k < 3; ++k) product[row.nodes[k]] += wide(row.weights[k] / length * lost);
+  }
+  return changed;
 }
 
 void AugmentedContacts::add_impulses(std::span<const ContactRow> rows,
@@ -98,23 +142,6 @@ void AugmentedContacts::add_impulses(std::span<const ContactRow> rows,
   for (const ContactRow& row : rows) {
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
     for (int k = 0; k < 3; ++k) r[row.nodes[k]] += wide(row.weights[k] * impulse);
-  }
-}
-
-void AugmentedContacts::apply(std::span<const ContactRow> rows, const std::vector<Vec4f>& p,
-                              std::vector<Vec4f>& out) const {
-  for (std::size_t c = 0; c < rows.size(); ++c) {
-    if (!springs_[c].presses) continue;
-    const ContactRow& row = rows[c];
-    Vec4f velocity = Vec4f::Zero();
-    for (int k = 0; k < 3; ++k) {
-      velocity += static_cast<float>(row.weights[k]) * p[row.nodes[k]];
-    }
-    const Vec4f normal = wide(row.normal);
-    const auto along = static_cast<float>(springs_[c].stiffness - springs_[c].friction);
-    const Vec4f answer =
-        along * normal.dot(velocity) * normal + static_cast<float>(springs_[c].friction) * velocity;
-    for (int k = 0; k < 3; ++k) out[row.nodes[k]] += static_cast<float>(row.weights[k]) * answer;
   }
 }
 

@@ -6,9 +6,7 @@
 namespace palpate::deformation {
 namespace {
 
-/// Rounds of conjugate gradients, at most; the contacts are revised between them.
-constexpr int kMaxRounds = 6;
-/// How often contacts that are still penetrated are held by more, all rounds again, at most.
+/// How often contacts that are still penetrated are held by more, all iterations again, at most.
 constexpr int kMostGoingOn = 4;
 
 }  // namespace
@@ -84,37 +82,45 @@ void LinearlyImplicitEuler::begin_with_free_motion() {
 }
 
 void LinearlyImplicitEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
-  velocities_ = state.velocities;
+  iterations_used_ = 0;
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    velocities_[i] = state.velocities[i] + change_[i].head<3>().cast<double>();
+  }
   contacts_.begin(inverse_diagonal_, rows, h, velocities_);
-  find_contacts(rows, state);
+  descend(rows, state);
   const auto is_deep = [&](const ContactRow& row) {
     return excess_depth(body_, row, h, velocities_) > kUnsolvedDepth;
   };
   for (int more = 0; more < kMostGoingOn && std::ranges::any_of(rows, is_deep); ++more) {
-    contacts_.go_on(rows, velocities_);
-    find_contacts(rows, state);
+    contacts_.go_on(rows);
+    descend(rows, state);
   }
 }
 
-void LinearlyImplicitEuler::find_contacts(std::span<ContactRow> rows, const OrganState& state) {
-  iterations_used_ = 0;
+/// Conjugate gradients of an energy that is quadratic in pieces: as far along each direction as it
+/// falls, and the next direction by Polak and Ribière.
+void LinearlyImplicitEuler::descend(std::span<ContactRow> rows, const OrganState& state) {
   const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
-  // Short rounds until the contacts are found, then the rest of the iterations.
-  const int share = (max_iterations_ + kMaxRounds - 1) / kMaxRounds;
-  bool found = rows.empty();
-  for (int round = 0; round < kMaxRounds && iterations_used_ < max_iterations_; ++round) {
-    take_preconditioner(rows);
-    take_residual(rows);
-    const int left = max_iterations_ - iterations_used_;
-    System system{*this, rows};
-    const auto report =
-        conjugate_gradients(system, found ? left : std::min(share, left), negligible);
-    iterations_used_ += report.iterations;
-    for (std::size_t i = 0; i < change_.size(); ++i) {
-      velocities_[i] = state.velocities[i] + change_[i].head<3>().cast<double>();
-    }
-    found = !contacts_.update(rows, velocities_);
-    if (found && report.converged) break;
+  take_preconditioner(rows);
+  take_residual(rows);
+  std::ranges::fill(direction_, Vec4f::Zero());
+  std::ranges::fill(product_, Vec4f::Zero());
+  double descent = go(0).descent, kept = 0;
+  for (int i = 0; i < max_iterations_ && descent > negligible; ++i) {
+    ++iterations_used_;
+    const double along = turn(kept);
+    elements_->apply(direction_, product_);
+    const double curvature = dot(direction_, product_);
+    if (!(curvature > 0)) break;
+    contacts_.set_direction(rows, direction_);
+    const double length = contacts_.step_length(rows, along, curvature);
+    if (contacts_.advance(rows, length, product_)) take_preconditioner(rows);
+    const Gone gone = go(length);
+    kept = std::max(0.0, -length * gone.change / descent);
+    descent = gone.descent;
+  }
+  for (std::size_t i = 0; i < change_.size(); ++i) {
+    velocities_[i] = state.velocities[i] + change_[i].head<3>().cast<double>();
   }
 }
 
@@ -144,45 +150,38 @@ void LinearlyImplicitEuler::take_residual(std::span<const ContactRow> rows) {
   contacts_.add_impulses(rows, residual_);
 }
 
-double LinearlyImplicitEuler::System::begin() {
-  std::ranges::fill(step.direction_, Vec4f::Zero());
-  const double descent = descend(0);
-  step.direction_ = step.preconditioned_;
-  return descent;
-}
-
-double LinearlyImplicitEuler::System::curvature() {
-  step.elements_->apply(step.direction_, step.product_);
-  step.contacts_.apply(rows, step.direction_, step.product_);
-  return dot(step.direction_, step.product_);
-}
-
-/// All in one pass over the nodes; r·z is summed as dot() does.
-double LinearlyImplicitEuler::System::descend(double length) {
+/// All in one pass over the nodes, summed as dot() does.
+LinearlyImplicitEuler::Gone LinearlyImplicitEuler::go(double length) {
   const auto along = static_cast<float>(length);
-  double descent = 0;
-  const std::size_t count = step.change_.size();
+  Gone gone;
+  const std::size_t count = change_.size();
   for (std::size_t first = 0; first < count; first += kDotBlock) {
-    Vec4f block = Vec4f::Zero();
+    Vec4f descent = Vec4f::Zero(), change = Vec4f::Zero();
     for (std::size_t i = first; i < std::min(first + kDotBlock, count); ++i) {
-      step.change_[i] += along * step.direction_[i];
-      const Vec4f r = step.residual_[i] - along * step.product_[i];
-      const auto& P = step.preconditioner_[i];
+      change_[i] += along * direction_[i];
+      const Vec4f r = residual_[i] - along * product_[i];
+      const auto& P = preconditioner_[i];
       const Vec4f z = r[0] * P[0] + r[1] * P[1] + r[2] * P[2];
-      step.residual_[i] = r;
-      step.preconditioned_[i] = z;
-      block += r.cwiseProduct(z);
+      residual_[i] = r;
+      preconditioned_[i] = z;
+      descent += r.cwiseProduct(z);
+      change += product_[i].cwiseProduct(z);
     }
-    descent += block.sum();
+    gone.descent += descent.sum();
+    gone.change += change.sum();
   }
-  return descent;
+  return gone;
 }
 
-void LinearlyImplicitEuler::System::turn(double kept) {
+double LinearlyImplicitEuler::turn(double kept) {
   const auto part = static_cast<float>(kept);
-  for (std::size_t i = 0; i < step.direction_.size(); ++i) {
-    step.direction_[i] = step.preconditioned_[i] + part * step.direction_[i];
+  for (std::size_t i = 0; i < direction_.size(); ++i) {
+    direction_[i] = preconditioned_[i] + part * direction_[i];
   }
+  const double along = dot(direction_, residual_);
+  if (along > 0) return along;
+  direction_ = preconditioned_;
+  return dot(direction_, residual_);
 }
 
 /// Truncated iterations leave a little of the total momentum undone. An organ that nothing holds

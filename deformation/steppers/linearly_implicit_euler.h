@@ -1,10 +1,12 @@
 // Linearly implicit Euler: of backward Euler, one Newton iteration from the inertial prediction
 // x̃ = x + h v,
 //   A Δv = h f(x̃) + h M (gravity − drag v) − Bᵀ (impulses),   A = (1 + h·drag) M + h² K(x̃)
-// by rounds of preconditioned conjugate gradients, the contacts inside (augmented_contacts.h), and
-// again where tissue would end deeper in a probe than it may by kUnsolvedDepth. What
-// the iterations leave of the residual acts on in the next step: equilibria are those of f, however
-// few iterations are made.
+// by preconditioned conjugate gradients, the contacts inside (augmented_contacts.h): as a convex
+// energy that is quadratic in pieces, with as long a step each time as it falls. So no contact is
+// overshot, and the impulses are those of the velocities found, however few iterations are made.
+// And again where tissue would end deeper in a probe than it may by kUnsolvedDepth. What the
+// iterations leave of the residual acts on in the next step: equilibria are those of f.
+//   E. Polak, G. Ribière, Rev. Fr. Inform. Rech. Opér. 3 (16), 1969.
 //   D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH 1998.
 //
 // There is no global volume constraint: tissue keeps its volume by what it is made of, and
@@ -17,7 +19,6 @@
 
 #include "deformation/contact/augmented_contacts.h"
 #include "deformation/elements/elastic_force_elements.h"
-#include "deformation/linear_algebra/conjugate_gradients.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -42,22 +43,18 @@ class LinearlyImplicitEuler : public OrganDynamics {
   int iterations_used() const { return iterations_used_; }  ///< of the last step
 
  private:
-  /// A, with the contacts that press, for conjugate_gradients().
-  struct System {
-    LinearlyImplicitEuler& step;
-    std::span<const ContactRow> rows;
-
-    double begin();
-    double curvature();
-    double descend(double length);
-    void turn(double kept);
-  };
-
   void linearise(double h, const OrganState& state);
   void begin_with_free_motion();
   /// Δv and the contacts' impulses together.
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
-  void find_contacts(std::span<ContactRow> rows, const OrganState& state);
+  void descend(std::span<ContactRow> rows, const OrganState& state);
+  struct Gone {
+    double descent = 0, change = 0;  ///< r·z; z·(the product)
+  };
+  /// Δv += length p, r −= length · product, z = P r.
+  Gone go(double length);
+  /// p = z + kept p, or z where that leads up. @returns r·p
+  double turn(double kept);
   void take_preconditioner(std::span<const ContactRow> rows);
   void take_residual(std::span<const ContactRow> rows);
   void set_preconditioner(std::size_t node, const Mat3& inverse);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "modules/geometry/closest_points.h"
 #include "tests/deformation/organs.h"
 #include "tests/deformation/steppers/tetrahedral_solids.h"
 
@@ -35,7 +36,81 @@ std::vector<ContactRow> plate(const OrganModel& model, const OrganState& state, 
   return rows;
 }
 
+/// Rows of all triangles near a ball that goes at `velocity`, from the impulses they had.
+/// @param impulses  by triangle; gets which row is whose
+std::vector<ContactRow> ball_rows(const OrganModel& model, const OrganState& state,
+                                  const Vec3& centre, double radius, const Vec3& velocity,
+                                  const std::vector<double>& impulses,
+                                  std::vector<std::size_t>& triangles) {
+  std::vector<ContactRow> rows;
+  triangles.clear();
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const auto& nodes = model.triangles[t];
+    const auto at = geometry::closest_on_triangle(
+        centre, {state.positions[nodes[0]], state.positions[nodes[1]], state.positions[nodes[2]]});
+    const Vec3 apart = centre - at.point;
+    if (apart.norm() > radius + 1e-3) continue;
+    ContactRow& row = rows.emplace_back();
+    row.nodes = nodes;
+    row.weights = at.weights;
+    row.normal = apart.normalized();
+    row.gap = apart.norm() - radius;
+    row.probe_velocity = velocity;
+    row.normal_impulse = impulses[t];
+    triangles.push_back(t);
+  }
+  return rows;
+}
+
+Vec3 pressed_with(std::span<const ContactRow> rows) {
+  Vec3 sum = Vec3::Zero();
+  for (const ContactRow& row : rows) sum += row.normal_impulse * row.normal;
+  return sum;
+}
+
 }  // namespace
+
+TEST_CASE("linearly implicit Euler: a ball that slides is pushed as by steps solved to the end") {
+  // Oracle: the same steps from the same states with twenty times the iterations. Triangles come
+  // and go under the ball: contacts found too late, or overshot, were once 6 % of the force here.
+  for (const auto& kind : kModels) {
+    auto organ = solid_organ(kind, poisson_of(kind));
+    organ.fixed.push_back(scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, 1e-6)});
+    organ.tissue.drag = 40;
+    const auto model = cube_model(organ, Vec3::Zero(), 6);
+    const auto dynamics = make_dynamics(organ, model, 0.01);
+    organ.iterations = 20 * scene::format_of(kind).iterations;
+    const auto to_the_end = make_dynamics(organ, model, 0.01);
+    double top = -1;
+    for (const Vec3& x : model.rest_positions) top = std::max(top, x.z());
+    constexpr double kRadius = 10e-3, kDepth = 5e-3, kSpeed = 0.02, kStart = 22e-3;
+    constexpr int kArrival = 25;
+    auto state = rest_state(model);
+    std::vector<double> impulses(model.triangles.size(), 0);
+    std::vector<std::size_t> triangles;
+    double worst = 0;
+    for (int k = 0; k < kArrival + 60; ++k) {
+      const bool arrives = k < kArrival;
+      const Vec3 velocity = arrives ? Vec3(0, 0, -kDepth / (0.01 * kArrival)) : Vec3(kSpeed, 0, 0);
+      const double way = 0.01 * (arrives ? 0 : k - kArrival) * kSpeed;
+      const double depth = arrives ? kDepth * k / kArrival : kDepth;
+      const Vec3 centre(kStart + way, 31e-3, top + kRadius - depth);
+      auto rows = ball_rows(model, state, centre, kRadius, velocity, impulses, triangles);
+      auto right_rows = rows;
+      auto right = state;
+      to_the_end->step(0.01, right_rows, right);
+      dynamics->step(0.01, rows, state);
+      std::ranges::fill(impulses, 0);
+      for (std::size_t r = 0; r < rows.size(); ++r) impulses[triangles[r]] = rows[r].normal_impulse;
+      if (arrives) continue;
+      const Vec3 force = pressed_with(rows), wanted = pressed_with(right_rows);
+      CHECK(wanted.norm() > 1e-3);
+      worst = std::max(worst, (force - wanted).norm() / wanted.norm());
+    }
+    INFO(kind);
+    CHECK(worst < 0.03);
+  }
+}
 
 TEST_CASE("linearly implicit Euler: at rest it stays at rest") {
   // Oracle: invariant; rounding of 0.1 N on nodes of a gram is below 1e-12 m in 20 steps. Where
@@ -155,8 +230,7 @@ TEST_CASE("linearly implicit Euler: a block pressed between plates has the force
       }
       for (const ContactRow& row : rows) {
         const double z = state.positions[row.nodes[0]].z();
-        CHECK((row.normal.z() > 0 ? 0.06 - depth - z : z) >
-              (scene::is_quadratic(kind) ? -2e-5 : -1e-5));
+        CHECK((row.normal.z() > 0 ? 0.06 - depth - z : z) > -1e-5);
       }
     }
     const bool linear = kind == "corotational";
