@@ -1,5 +1,6 @@
 // Latency of node positions from one process to another, beside the same number of bytes through
-// plain UDP on loopback:  palpate-bench-topic-latency [SECONDS [RATE_HZ]]
+// plain UDP on loopback, and with keys (everything encrypted):  palpate-bench-topic-latency
+// [SECONDS [RATE_HZ]]
 //
 // The reading process starts the writing ones (itself with other arguments). Latency is the
 // monotonic clock after taking the sample minus that before writing it, so translation, checks and
@@ -23,7 +24,9 @@
 #include <vector>
 
 #include "modules/bus/dds_bus.h"
+#include "modules/bus/keys.h"
 #include "modules/core/error.h"
+#include "modules/core/temporary_folder.h"
 #include "modules/runtime/program.h"
 
 namespace {
@@ -71,14 +74,15 @@ void send_at_rate(const Load& load, const Send& send) {
 
 // --- the topic ---
 
-palpate::bus::BusOptions bus_options(const std::string& session) {
+palpate::bus::BusOptions bus_options(const std::string& session, const char* role) {
   palpate::bus::BusOptions options;
   options.session = session;
+  options.participant_name = role;
   return options;
 }
 
 void write_topic(const std::string& session, const Load& load) {
-  palpate::bus::DdsBus bus(bus_options(session));
+  palpate::bus::DdsBus bus(bus_options(session, "deformation"));
   auto writer = bus.writer(palpate::bus::kNodePositions);
   while (writer.matched_readers() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   NodePositions message;
@@ -91,7 +95,7 @@ void write_topic(const std::string& session, const Load& load) {
 }
 
 Latencies read_topic(const std::string& session, const Load& load) {
-  palpate::bus::DdsBus bus(bus_options(session));
+  palpate::bus::DdsBus bus(bus_options(session, "collision"));
   auto reader = bus.reader(palpate::bus::kNodePositions);
   NodePositions message;
   Latencies latencies;
@@ -238,14 +242,24 @@ void print(const char* path, const Load& load, const Latencies& latencies) {
               load.samples);
 }
 
-void measure(const Load& load) {
+Latencies measure_topic(const std::string& session, const Load& load) {
+  const WriterProcess writer("topic", session, load);
+  return read_topic(session, load);
+}
+
+void print_ratio(const Latencies& a, const Latencies& b) {
+  std::printf("%11s  ratio          %9.2f %9.2f\n", "", a.quantile(0.5) / b.quantile(0.5),
+              a.quantile(0.999) / b.quantile(0.999));
+}
+
+void measure(const Load& load, const std::filesystem::path& keys) {
   const std::string session =
       std::to_string(getpid()).append("_").append(std::to_string(load.nodes));
-  Latencies topic, udp;
-  {
-    const WriterProcess writer("topic", session, load);
-    topic = read_topic(session, load);
-  }
+  const Latencies topic = measure_topic(session, load);
+  setenv("PALPATE_KEYS", keys.c_str(), 1);  // the writing process inherits it
+  const Latencies secured = measure_topic(session, load);
+  unsetenv("PALPATE_KEYS");
+  Latencies udp;
   {
     const LoopbackSocket socket;
     const WriterProcess writer("udp", std::to_string(socket.port()), load);
@@ -253,8 +267,9 @@ void measure(const Load& load) {
   }
   print("node_positions", load, topic);
   print("plain UDP", load, udp);
-  std::printf("%11s  ratio          %9.2f %9.2f\n", "", topic.quantile(0.5) / udp.quantile(0.5),
-              topic.quantile(0.999) / udp.quantile(0.999));
+  print_ratio(topic, udp);
+  print("with keys", load, secured);
+  print_ratio(secured, topic);
 }
 
 void run(double seconds, double rate_hz) {
@@ -263,8 +278,11 @@ void run(double seconds, double rate_hz) {
   std::printf(
       "    payload  path              median     p99.9   missed (lost, or replaced before "
       "taken)\n");
-  measure({1'100, samples, rate_hz});   // 13 KB: twice an organ of 550 nodes in floats
-  measure({39'000, samples, rate_hz});  // 468 KB: twice one of 19 500
+  const palpate::TemporaryFolder folder;
+  const auto keys = folder.path() / "keys";
+  palpate::bus::make_keys(keys, std::chrono::hours(24));
+  measure({1'100, samples, rate_hz}, keys);   // 13 KB: twice an organ of 550 nodes in floats
+  measure({39'000, samples, rate_hz}, keys);  // 468 KB: twice one of 19 500
 }
 
 /// The writing process: PATH TARGET NODES SAMPLES RATE_HZ.

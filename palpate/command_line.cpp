@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "modules/bus/keys.h"
 #include "modules/bus/session_token.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
@@ -92,6 +93,8 @@ void add_run_options(Options& command, RunOptions& options) {
   command.add("--only", options.only, "Start only these modules, joining a running session")
       .excludes(lockstep)
       .excludes(in_process);
+  command.add_input("--secure", options.secure,
+                    "Folder of keys (palpate keys): who has none of them neither reads nor writes");
   command.flag("--close", options.close, "Close the window when the run ends; else it stays");
   command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer");
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
@@ -99,9 +102,16 @@ void add_run_options(Options& command, RunOptions& options) {
                    "Leave processes that die or hang as they are; else they are started again");
 }
 
+/// By the environment: each process of the session inherits it.
+void use_keys(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
+  ::setenv("PALPATE_KEYS", std::filesystem::absolute(folder).c_str(), 1);
+}
+
 void add_run(Program& program, RunOptions& options) {
   Options command =
       program.command("run", "Run a scene: start, watch and stop its processes", [&options] {
+        use_keys(options.secure);
         options.headless |= no_display();
         options.scene = scene_file(options.scene);
         return run_command(options, std::cout, std::cerr);
@@ -116,6 +126,7 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
   Options command = program.command(
       "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion",
       [&recording, &playing, &options] {
+        use_keys(options.secure);
         options.headless |= no_display();
         options.scene = scene_file(options.scene);
         return replay_command(recording, playing, options, std::cout, std::cerr);
@@ -176,6 +187,22 @@ void add_new(Program& program, NewOptions& options) {
   command.add_input("MESH", options.mesh, "Any surface format assimp reads").required();
   command.add_output("-o,--output", options.output, "Scene to write; else the mesh's name, here");
   command.add("--unit", options.unit, "Unit of the mesh: m, dm, cm, mm, um, in; else guessed");
+}
+
+struct KeyOptions {
+  std::filesystem::path folder;
+  double days = 30;
+};
+
+void add_keys(Program& program, KeyOptions& options) {
+  Options command = program.command("keys", "Make the keys of a session (run --secure)", [&] {
+    constexpr double kSecondsPerDay = 86'400;
+    bus::make_keys(options.folder,
+                   std::chrono::seconds(std::int64_t(kSecondsPerDay * options.days)));
+    return kExitDone;
+  });
+  command.add_output("DIR", options.folder, "A new folder").required();
+  command.add("--days", options.days, "Until they expire").range(0.01, 3650.0).shows_default();
 }
 
 void add_token(Program& program, bus::BusOptions& session) {
@@ -245,6 +272,7 @@ int palpate_command(int argc, char** argv) {
   recording::DiffOptions diff;
   geometry::MeshCommandOptions mesh;
   bus::BusOptions session;
+  KeyOptions keys;
   add_run(program, run);
   add_replay(program, recording, playing, replay);
   add_inspect(program, inspect);
@@ -254,6 +282,7 @@ int palpate_command(int argc, char** argv) {
   add_new(program, fresh);
   add_list(program, kind);
   add_token(program, session);
+  add_keys(program, keys);
   for (const Study& study : studies()) add_study(program, study);
   program.command_with_words("completion", "Words for the shell: source <(palpate completion)",
                              [&program](const auto& words) { return completion(program, words); });

@@ -14,6 +14,7 @@ struct RunOptions {
   std::filesystem::path scene;
   std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
   bus::BusOptions bus;                     ///< session: a random name unless given
+  std::filesystem::path secure = {};       ///< folder of keys (palpate keys); empty: none
   double duration = 0;    ///< of the session [s]; 0: the scene's, and if 0, until stopped
   bool headless = false;  ///< no window
   bool visualizer = true;

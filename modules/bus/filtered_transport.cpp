@@ -18,13 +18,13 @@ namespace rtps = eprosima::fastrtps::rtps;
 
 struct Descriptor : transport::ChainingTransportDescriptor {
   Descriptor(std::shared_ptr<transport::TransportDescriptorInterface> under,
-             std::uint64_t session_token, std::shared_ptr<PacketTally> packets)
+             const SampleRules& sample_rules, std::shared_ptr<PacketTally> packets)
       : ChainingTransportDescriptor(std::move(under)),
-        token(session_token),
+        rules(sample_rules),
         tally(std::move(packets)) {}
   transport::TransportInterface* create_transport() const override;
 
-  std::uint64_t token;
+  SampleRules rules;
   std::shared_ptr<PacketTally> tally;
 };
 
@@ -46,7 +46,7 @@ class FilteredTransport : public transport::ChainingTransport {
                const rtps::Locator_t& remote) override {
     std::vector<std::uint8_t>
         kept;  // takes memory only where a packet loses something in its middle
-    FilteredPacket filtered = filter_packet({packet, bytes}, descriptor_.token, kept);
+    FilteredPacket filtered = filter_packet({packet, bytes}, descriptor_.rules, kept);
     if (!filtered.packet.empty() && !known_sender(filtered.packet, remote)) {
       filtered = {{}, PacketFault::kIdentity};
     }
@@ -79,9 +79,9 @@ transport::TransportInterface* Descriptor::create_transport() const {
 }  // namespace
 
 std::shared_ptr<transport::TransportDescriptorInterface> filtered(
-    std::shared_ptr<transport::TransportDescriptorInterface> under, std::uint64_t token,
+    std::shared_ptr<transport::TransportDescriptorInterface> under, const SampleRules& rules,
     std::shared_ptr<PacketTally> tally) {
-  return std::make_shared<Descriptor>(std::move(under), token, std::move(tally));
+  return std::make_shared<Descriptor>(std::move(under), rules, std::move(tally));
 }
 
 }  // namespace palpate::bus

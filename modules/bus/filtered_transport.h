@@ -26,9 +26,9 @@ struct PacketTally {
 };
 
 /// Describes a filter over the transport that `under` describes.
-/// @param token  of the samples that may pass
+/// @param rules  for what may pass
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> filtered(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> under,
-    std::uint64_t token, std::shared_ptr<PacketTally> tally);
+    const SampleRules& rules, std::shared_ptr<PacketTally> tally);
 
 }  // namespace palpate::bus

@@ -33,6 +33,9 @@ enum Kind : std::uint8_t {
   kHeartbeatFrag = 0x13,
   kData = 0x15,
   kDataFrag = 0x16,
+  kSecureBody = 0x30,  // DDS Security 1.1, section 7.3.6
+  kSecurePrefix = 0x31,
+  kSecurePostfix = 0x32,
 };
 
 enum Flag : std::uint8_t {
@@ -45,8 +48,8 @@ enum Flag : std::uint8_t {
 struct Submessage {
   std::uint8_t kind = 0, flags = 0;
   Bytes content;
-  Bytes owner;          ///< prefix of the packet's participant
-  std::uint64_t token;  ///< of the session
+  Bytes owner;  ///< prefix of the packet's participant
+  const SampleRules& rules;
   bool has(Flag flag) const { return (flags & flag) != 0; }
   Cursor cursor() const { return {content, has(kLittleEndian)}; }
 };
@@ -110,7 +113,8 @@ bool carries_parameters(std::uint32_t writer) {
 PacketFault check_payload(const Submessage& message, std::uint32_t writer, Bytes payload) {
   if (!message.has(kPayload) && !message.has(kKey)) return PacketFault::kNone;
   if (payload.size() < 4) return PacketFault::kLength;  // encapsulation
-  if (!built_in(writer) && message.has(kPayload) && messages::token_of(payload) != message.token) {
+  if (!built_in(writer) && message.has(kPayload) &&
+      messages::token_of(payload) != message.rules.token) {
     return PacketFault::kToken;
   }
   if (!carries_parameters(writer)) return PacketFault::kNone;
@@ -160,7 +164,8 @@ PacketFault check_data_frag(const Submessage& message) {
     const PacketFault fault = check_parameters(cursor, Owner());
     if (fault != PacketFault::kNone) return fault;
   }
-  if (first == 1 && messages::token_of(cursor.left()) != message.token) return PacketFault::kToken;
+  if (first == 1 && messages::token_of(cursor.left()) != message.rules.token)
+    return PacketFault::kToken;
   if (first == 0 || count == 0 || size == 0 || sample > kMaxSampleBytes ||
       (first + count - 2) * size >= sample) {
     return PacketFault::kFragment;
@@ -224,7 +229,28 @@ PacketFault at_least(const Submessage& message, std::size_t bytes) {
   return message.content.size() < bytes ? PacketFault::kLength : PacketFault::kNone;
 }
 
+// In front: transformation and key, session and initialisation vector; behind: authentication
+// codes.
+PacketFault check_secure(const Submessage& message) {
+  constexpr std::size_t kLength = 4, kAround = 20;
+  if (!message.rules.secured) return PacketFault::kKind;
+  return at_least(message, message.kind == kSecureBody ? kLength : kAround);
+}
+
+// Whether it is from a writer of a topic, or to one.
+bool is_of_topic(const Submessage& message) {
+  const bool data = message.kind == kData || message.kind == kDataFrag;
+  const bool other = message.kind == kGap || message.kind == kHeartbeat ||
+                     message.kind == kAckNack || message.kind == kNackFrag ||
+                     message.kind == kHeartbeatFrag;
+  if (!data && !other) return false;
+  Cursor cursor = message.cursor();
+  cursor.skip(data ? 8 : 4);
+  return !built_in(cursor.entity());
+}
+
 PacketFault check(const Submessage& message) {
+  if (message.rules.secured && is_of_topic(message)) return PacketFault::kPlain;
   switch (message.kind) {
     case kPad:
       return PacketFault::kNone;
@@ -249,6 +275,10 @@ PacketFault check(const Submessage& message) {
       return check_data(message);
     case kDataFrag:
       return check_data_frag(message);
+    case kSecureBody:
+    case kSecurePrefix:
+    case kSecurePostfix:
+      return check_secure(message);
     default:
       return PacketFault::kKind;
   }
@@ -256,10 +286,7 @@ PacketFault check(const Submessage& message) {
 
 // No sample: that a key of a topic is not written any more.
 bool ends_key(const Submessage& message) {
-  if (message.kind != kData || message.has(kPayload)) return false;
-  Cursor cursor = message.cursor();
-  cursor.skip(8);
-  return !built_in(cursor.entity());
+  return message.kind == kData && !message.has(kPayload) && is_of_topic(message);
 }
 
 // The bytes that a sub-message with this header takes; none if it ends beyond the packet.
@@ -289,11 +316,13 @@ const char* text_of(PacketFault fault) {
                               "fragments that do not fit their sample",
                               "a broken list of parameters",
                               "words in another participant's name",
-                              "a sample without this session's token"};
+                              "a sample without this session's token",
+                              "words on a topic that are not encrypted"};
   return kTexts.at(static_cast<std::size_t>(fault));
 }
 
-FilteredPacket filter_packet(Bytes packet, std::uint64_t token, std::vector<std::uint8_t>& kept) {
+FilteredPacket filter_packet(Bytes packet, const SampleRules& rules,
+                             std::vector<std::uint8_t>& kept) {
   if (!is_rtps(packet)) return {{}, PacketFault::kHeader};
   PacketFault last = PacketFault::kNone;
   kept.clear();
@@ -304,7 +333,7 @@ FilteredPacket filter_packet(Bytes packet, std::uint64_t token, std::vector<std:
     const bool vendor = rest[0] >= kFirstVendorKind;
     const Submessage message{rest[0], rest[1],
                              rest.subspan(kSubmessageHeaderBytes, *size - kSubmessageHeaderBytes),
-                             packet.subspan(kPrefixAt, kPrefixBytes), token};
+                             packet.subspan(kPrefixAt, kPrefixBytes), rules};
     const PacketFault fault = vendor ? PacketFault::kNone : check(message);
     if (fault != PacketFault::kNone) last = fault;
     if (fault != PacketFault::kNone && fault != PacketFault::kGap) return {{}, fault};

@@ -20,6 +20,7 @@ enum class PacketFault {
   kParameters,  ///< a parameter list without its end, or with a wrong length
   kIdentity,    ///< discovery of another participant than the packet's own, or its name taken
   kToken,       ///< a sample of another session
+  kPlain,       ///< of a topic, and not encrypted
 };
 const char* text_of(PacketFault fault);  ///< one line, without a full stop
 
@@ -27,6 +28,12 @@ const char* text_of(PacketFault fault);  ///< one line, without a full stop
 inline constexpr std::int64_t kMaxGap = 1 << 20;
 /// The largest message, a topology of an organ at its limits, and room to spare [bytes].
 inline constexpr std::size_t kMaxSampleBytes = std::size_t{64} << 20;
+
+/// What samples of topics must be like.
+struct SampleRules {
+  std::uint64_t token = 0;  ///< they bear it (messages::token_of)
+  bool secured = false;     ///< they come encrypted, or not at all
+};
 
 struct FilteredPacket {
   std::span<const std::uint8_t> packet;    ///< empty if nothing of it may pass
@@ -38,9 +45,8 @@ struct FilteredPacket {
 /// ignore, and what ends a key of a topic, for nothing of ours does. A fault refuses the whole
 /// packet, but a GAP that is too wide: it alone is left out.
 /// @param packet  of any content and size
-/// @param token   that samples of topics must bear (messages::token_of)
 /// @param kept    memory for what is kept of a packet that loses something in its middle
-FilteredPacket filter_packet(std::span<const std::uint8_t> packet, std::uint64_t token,
+FilteredPacket filter_packet(std::span<const std::uint8_t> packet, const SampleRules& rules,
                              std::vector<std::uint8_t>& kept);
 
 }  // namespace palpate::bus

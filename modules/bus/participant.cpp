@@ -13,6 +13,8 @@
 
 #include "modules/bus/addresses.h"
 #include "modules/bus/filtered_transport.h"
+#include "modules/bus/keys.h"
+#include "modules/bus/packet_filter.h"
 #include "modules/bus/payload_type.h"
 #include "modules/bus/qos.h"
 #include "modules/bus/session_token.h"
@@ -42,8 +44,8 @@ void check(const BusOptions& options) {
 }
 
 template <class Entity>
-Entity* demand_created(Entity* entity, const char* what) {
-  if (entity == nullptr) throw std::runtime_error(std::string("DDS refused a ") + what);
+Entity* demand_created(Entity* entity, const std::string& what) {
+  if (entity == nullptr) throw std::runtime_error("DDS refused a " + what);
   return entity;
 }
 
@@ -53,12 +55,21 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
   check(options);
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
   dds::DomainParticipantQos qos;
+  if (const char* const folder = std::getenv("PALPATE_KEYS"); folder != nullptr) {
+    const char* const role = std::getenv("PALPATE_ROLE");
+    role_ = role == nullptr ? options.participant_name : role;
+    apply_keys(folder, role_, qos);
+  }
   packets_ = apply_transport(
       addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS")),
-      options.domain, token_, qos);
+      options.domain, {token_, !role_.empty()}, qos);
   qos.name(options.participant_name);
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(options.domain), qos);
+  if (participant_ == nullptr && !role_.empty()) {
+    throw std::runtime_error("DDS cannot start with the keys of role " + role_ +
+                             ": have they expired, or are they of two sessions?");
+  }
   if (participant_ == nullptr) {
     throw std::runtime_error("DDS cannot start in domain " + std::to_string(options.domain) +
                              ": is the loopback interface up?");
@@ -109,16 +120,22 @@ dds::Topic* Participant::topic(const TopicInfo& topic) {
   return created;
 }
 
+std::string Participant::what(const char* endpoint, const TopicInfo& topic) const {
+  std::string text = std::string(endpoint) + " of " + std::string(topic.name);
+  if (!role_.empty()) text += ": role " + role_ + " may have none";
+  return text;
+}
+
 dds::DataWriter* Participant::add_writer(const TopicInfo& info) {
   dds::DataWriterQos qos;
   apply_profile({info.delivery, Keep::kNewest, every_sample_}, qos);
-  return demand_created(publisher_->create_datawriter(topic(info), qos), "writer");
+  return demand_created(publisher_->create_datawriter(topic(info), qos), what("writer", info));
 }
 
 dds::DataReader* Participant::add_reader(const TopicInfo& info, Keep keep) {
   dds::DataReaderQos qos;
   apply_profile({info.delivery, keep, every_sample_}, qos);
-  return demand_created(subscriber_->create_datareader(topic(info), qos), "reader");
+  return demand_created(subscriber_->create_datareader(topic(info), qos), what("reader", info));
 }
 
 void Participant::remove(dds::DataWriter* writer) { publisher_->delete_datawriter(writer); }

@@ -25,6 +25,7 @@ struct PacketTally;
 /// A participant with one publisher and one subscriber in the session's partition.
 class Participant {
  public:
+  /// With PALPATE_KEYS in the environment it plays the role of its name, or PALPATE_ROLE (keys.h).
   /// @throws InputError if the session name, the domain or an address (addresses.h) is not
   /// acceptable
   /// @throws std::runtime_error if DDS cannot start
@@ -46,10 +47,12 @@ class Participant {
 
  private:
   eprosima::fastdds::dds::Topic* topic(const TopicInfo& topic);
+  std::string what(const char* endpoint, const TopicInfo& topic) const;  ///< for who is told of it
   void close();
 
   bool every_sample_;
   std::uint64_t token_ = 0;
+  std::string role_;  ///< empty: without keys
   std::shared_ptr<PacketTally> packets_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;

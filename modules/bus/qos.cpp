@@ -100,7 +100,8 @@ void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolCo
 }  // namespace
 
 std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
-                                             std::uint64_t token, dds::DomainParticipantQos& qos) {
+                                             const SampleRules& rules,
+                                             dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses.own;
   udp->sendBufferSize = kSocketBufferBytes;
@@ -109,7 +110,7 @@ std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int dom
   udp->maxInitialPeersRange = kMaxParticipants;
   auto tally = std::make_shared<PacketTally>();
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(filtered(udp, token, tally));
+  qos.transport().user_transports.push_back(filtered(udp, rules, tally));
   apply_discovery(addresses, domain, qos.wire_protocol());
   qos.allocation().participants = {0, PacketSenders::kMaxParticipants, 1};
   return tally;

@@ -15,16 +15,17 @@ class DataReaderQos;
 namespace palpate::bus {
 
 struct PacketTally;
+struct SampleRules;
 
 /// Keys (organs, probes, modules) a topic may carry at a time.
 inline constexpr int kMaxKeys = 256;
 
 /// UDP on our own addresses only, through the packet filter, without multicast or shared memory;
 /// quick discovery, a lease of a day.
-/// @param token  of the samples that may pass
+/// @param rules  for what may pass
 /// @returns what the filter will have done
 std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
-                                             std::uint64_t token,
+                                             const SampleRules& rules,
                                              eprosima::fastdds::dds::DomainParticipantQos& qos);
 
 /// stream: best effort, volatile; state: reliable, transient local. Both: newest sample per key (a

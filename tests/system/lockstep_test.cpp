@@ -12,6 +12,7 @@
 #include <random>
 
 #include "modules/bus/dds_bus.h"
+#include "modules/bus/keys.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/runtime/session.h"
@@ -101,6 +102,18 @@ TEST_CASE(
           0);
   CHECK(stops > 3);
   CHECK(bytes(four) == expected);
+}
+
+TEST_CASE("lockstep: with keys, the processes leave the same bytes") {
+  // Oracle: the same session in one process, byte for byte.
+  const BallScene scene(kPress);
+  const auto keys = scene.folder() / "keys";
+  bus::make_keys(keys, std::chrono::hours(1));
+  const auto one = scene.folder() / "one.mcap", four = scene.folder() / "four.mcap";
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.5", "--record", one.string()}) == 0);
+  REQUIRE(run(scene, {"--lockstep", "--duration", "0.5", "--record", four.string(), "--secure",
+                      keys.string()}) == 0);
+  CHECK(bytes(four) == bytes(one));
 }
 
 TEST_CASE("lockstep: a solid that follows the touch changes its mesh alike in four processes") {

@@ -14,6 +14,7 @@
 
 #include "idl/ContactsPubSubTypes.h"
 #include "idl/ProbeStatePubSubTypes.h"
+#include "modules/bus/packet_filter.h"
 #include "modules/bus/qos.h"
 #include "tests/modules/bus/loopback.h"
 
@@ -46,7 +47,7 @@ class ForeignWriter {
   ForeignWriter(const BusOptions& options, std::string_view topic)
       : corrupted_(new CorruptedSupport<Support>), support_(corrupted_) {
     dds::DomainParticipantQos qos;
-    apply_transport({{"127.0.0.1"}, {}}, options.domain, options.token.value(), qos);
+    apply_transport({{"127.0.0.1"}, {}}, options.domain, {options.token.value(), false}, qos);
     auto* factory = dds::DomainParticipantFactory::get_instance();
     participant_ = factory->create_participant(static_cast<std::uint32_t>(options.domain), qos);
     participant_->register_type(support_);

@@ -39,7 +39,7 @@ class Everywhere {
  public:
   Everywhere(int domain, const TopicInfo& topic) : type_(new PayloadType(*topic.type, kTheirs)) {
     fast::DomainParticipantQos qos;
-    apply_transport({{"127.0.0.1"}, {}}, domain, kTheirs, qos);
+    apply_transport({{"127.0.0.1"}, {}}, domain, {kTheirs, false}, qos);
     participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
         static_cast<std::uint32_t>(domain), qos);
     participant_->register_type(type_);

@@ -32,13 +32,15 @@ struct Verdict {
   PacketFault fault = PacketFault::kNone;
 };
 
-Verdict filtered(const Bytes& packet) {
+Verdict filtered(const Bytes& packet, bool secured = false) {
   Bytes kept;
-  const FilteredPacket result = filter_packet(packet, kFilterToken, kept);
+  const FilteredPacket result = filter_packet(packet, {kFilterToken, secured}, kept);
   return {Bytes(result.packet.begin(), result.packet.end()), result.fault};
 }
 
-PacketFault fault_of(const Bytes& message) { return filtered(joined({header(), message})).fault; }
+PacketFault fault_of(const Bytes& message, bool secured = false) {
+  return filtered(joined({header(), message}), secured).fault;
+}
 
 /// One sound sub-message of each kind.
 std::vector<Bytes> sound_messages() {
@@ -154,6 +156,27 @@ TEST_CASE("packet filter: samples of topics bear the token, in their first fragm
   CHECK(fault_of(joined({timestamp(), data(kUserWriter, 1, foreign)})) == PacketFault::kToken);
 }
 
+TEST_CASE("packet filter: with keys, words on topics come encrypted or not at all", "[bus]") {
+  // Oracle: DDS Security 1.1, section 7.3.6: sizes of prefix and postfix; discovery stays plain.
+  for (const Bytes& words :
+       {data(kUserWriter, 1, sample()), data_frag(1, 1, 1, 1000, 2500, sample()), gap(1, 5),
+        heartbeat(1, 2), acknack(1, 1)}) {
+    CHECK(fault_of(words, true) == PacketFault::kPlain);
+    CHECK(fault_of(words, false) == PacketFault::kNone);
+  }
+  CHECK(fault_of(announcement(kSomebody), true) == PacketFault::kNone);
+  const auto secret = [](std::uint8_t kind, std::size_t bytes) {
+    return submessage(kind, 1, Content().raw(Bytes(bytes)));
+  };
+  const Bytes sound = joined({header(), secret(0x31, 20), secret(0x30, 100), secret(0x32, 20)});
+  CHECK(filtered(sound, true).packet == sound);
+  CHECK(filtered(sound, false).fault == PacketFault::kKind);
+  CHECK(fault_of(secret(0x31, 19), true) == PacketFault::kLength);
+  CHECK(fault_of(secret(0x30, 3), true) == PacketFault::kLength);
+  CHECK(fault_of(secret(0x32, 19), true) == PacketFault::kLength);
+  CHECK(fault_of(secret(0x33, 100), true) == PacketFault::kKind);  // whole packets: nobody of ours
+}
+
 TEST_CASE("packet filter: the end of a key is left out, and is no fault", "[bus]") {
   // Oracle: the packet without it. It would take the place of the key's newest sample.
   const auto ends_key = [](std::uint32_t writer) {
@@ -231,7 +254,7 @@ TEST_CASE("packet filter: whatever passes passes again unchanged", "[bus]") {
 TEST_CASE("packet filter: every fault has a text of its own", "[bus]") {
   // Oracle: no two equal.
   std::vector<std::string> texts;
-  for (int fault = 0; fault <= int(PacketFault::kToken); ++fault) {
+  for (int fault = 0; fault <= int(PacketFault::kPlain); ++fault) {
     texts.emplace_back(text_of(PacketFault(fault)));
   }
   std::sort(texts.begin(), texts.end());
