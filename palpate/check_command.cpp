@@ -75,8 +75,14 @@ std::string organ_text(const OrganCheck& organ, double period) {
 }
 
 std::string probe_text(const ProbeCheck& probe) {
-  const collision::Approach& approach = probe.approach;
+  const collision::Approach& approach = probe.motion.approach;
   std::string text = fmt::format("probe {}: {}, {}", probe.name, probe.shape, probe.device);
+  if (const auto& recording = probe.motion.recording) {
+    text +=
+        fmt::format(" of {} poses, {:.6g} s, {:.3g} x {:.3g} x {:.3g} mm, fastest {:.3g} m/s",
+                    recording->poses, recording->duration, 1e3 * recording->extent.x(),
+                    1e3 * recording->extent.y(), 1e3 * recording->extent.z(), recording->fastest);
+  }
   if (approach.begins_inside) return text + "; begins inside an organ\n";
   if (approach.touches_at) text += fmt::format("; touches first at {:.2f} s", *approach.touches_at);
   if (approach.fastest > 0) text += fmt::format("; up to {:.3g} m/s", approach.fastest);
@@ -121,9 +127,16 @@ Json::Value json_of(const ProbeCheck& probe) {
   value["name"] = probe.name;
   value["shape"] = probe.shape;
   value["device"] = probe.device;
-  value["begins_inside"] = probe.approach.begins_inside;
-  if (probe.approach.touches_at) value["touches_at_s"] = *probe.approach.touches_at;
-  value["fastest_m_per_s"] = probe.approach.fastest;
+  value["begins_inside"] = probe.motion.approach.begins_inside;
+  if (probe.motion.approach.touches_at) value["touches_at_s"] = *probe.motion.approach.touches_at;
+  value["fastest_m_per_s"] = probe.motion.approach.fastest;
+  if (const auto& recording = probe.motion.recording) {
+    Json::Value& told = value["recording"];
+    told["poses"] = Json::UInt64(recording->poses);
+    told["duration_s"] = recording->duration;
+    for (const double side : recording->extent) told["extent_m"].append(side);
+    told["fastest_m_per_s"] = recording->fastest;
+  }
   return value;
 }
 
@@ -143,13 +156,13 @@ void print_json(const SceneCheck& check, std::ostream& out) {
 
 }  // namespace
 
-int check_command(const CheckOptions& options, std::ostream& out) {
+int check_command(const CheckOptions& options, std::ostream& out, std::ostream& log) {
   const scene::Scene scene = scene::load_scene_with(scene_file(options.scene), options.settings);
   if (options.resolved) {
     out << scene::resolved_text(scene);
     return kExitDone;
   }
-  const SceneCheck check = check_scene(scene, options.measure_for);
+  const SceneCheck check = check_scene(scene, options.measure_for, progress_on(log));
   options.json ? print_json(check, out) : print_text(check, out);
   return kExitDone;
 }

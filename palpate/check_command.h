@@ -17,8 +17,9 @@ struct CheckOptions {
 };
 
 /// Prints the verdict first: can it run, does it keep up here, and what is doubtful.
+/// @param log  gets the progress of reading a long recording
 /// @return an exit code of core/error.h
 /// @throws InputError for a scene, mesh or recording that cannot be used
-int check_command(const CheckOptions& options, std::ostream& out);
+int check_command(const CheckOptions& options, std::ostream& out, std::ostream& log);
 
 }  // namespace palpate::launcher

@@ -163,7 +163,7 @@ void add_diff(Program& program, recording::DiffOptions& options) {
 
 void add_check(Program& program, CheckOptions& options) {
   Options command = program.command("check", "Print what a scene holds and what it costs here",
-                                    [&] { return check_command(options, std::cout); });
+                                    [&] { return check_command(options, std::cout, std::cerr); });
   command.add("SCENE", options.scene, kSceneHelp).required();
   add_settings(command, options.settings);
   command.add("--measure-s", options.measure_for, "Seconds to measure the cost of a step for")

@@ -67,7 +67,7 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
       throw InputError(recording.string() + ": moves probe " + std::to_string(trajectory.probe) +
                        ", the scene has only " + std::to_string(scene.probes.size()));
     }
-    scene.probes[trajectory.probe].device = scene::TrajectoryDevice{trajectory.file, {}, false};
+    scene.probes[trajectory.probe].device = scene::TrajectoryDevice{.file = trajectory.file};
   }
   return scene;
 }

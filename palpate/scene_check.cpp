@@ -144,7 +144,8 @@ class TimedSession {
 
 }  // namespace
 
-SceneCheck check_scene(const scene::Scene& scene, double measure_for) {
+SceneCheck check_scene(const scene::Scene& scene, double measure_for,
+                       const trajectories::Progress& progress) {
   SceneCheck check;
   check.scene = scene;
   check.period = 1 / scene.rates.deformation;
@@ -154,13 +155,12 @@ SceneCheck check_scene(const scene::Scene& scene, double measure_for) {
     shapes.push_back(scene::load_organ(organ));
     skins.push_back(shapes.back().surface);
   }
-  check.doubts = doubts_about(scene, skins);
+  SceneDoubts doubts = doubts_about(scene, skins, progress);
+  check.doubts = std::move(doubts.lines);
   for (std::size_t i = 0; i < scene.probes.size(); ++i) {
     const scene::Probe& probe = scene.probes[i];
-    std::vector<std::string> told;  // among the doubts
     check.probes.push_back({probe.name, scene::word_of_option(probe.shape),
-                            scene::word_of_option(probe.device),
-                            approach_of(scene, i, skins, told)});
+                            scene::word_of_option(probe.device), doubts.motions[i]});
   }
   runtime::WorkerTeam team(scene.deformation_threads);
   TimedSession session(scene, shapes, team);

@@ -33,7 +33,7 @@ struct OrganCheck {
 struct ProbeCheck {
   std::string name;
   std::string shape, device;  ///< words of the scene
-  collision::Approach approach;
+  ProbeMotion motion;
 };
 
 struct SceneCheck {
@@ -50,6 +50,7 @@ struct SceneCheck {
 
 /// @param measure_for  about how long the cost of a period is measured [s]
 /// @throws InputError for a scene, mesh or recording that cannot be used
-SceneCheck check_scene(const scene::Scene& scene, double measure_for);
+SceneCheck check_scene(const scene::Scene& scene, double measure_for,
+                       const trajectories::Progress& progress = {});
 
 }  // namespace palpate::launcher

@@ -5,7 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <memory>
+#include <ostream>
 
 #include "haptics/devices/device.h"
 #include "modules/core/error.h"
@@ -13,6 +16,7 @@
 #include "modules/scene/assets.h"
 #include "modules/scene/probe_shape.h"
 #include "modules/scene/region.h"
+#include "modules/trajectories/trajectory_file.h"
 
 namespace palpate::launcher {
 namespace {
@@ -71,13 +75,14 @@ double radius_of(const scene::ProbeShape& shape) {
 
 class Doubts {
  public:
-  Doubts(const scene::Scene& scene, const std::vector<geometry::TriangleSurface>& skins)
-      : scene_(scene), skins_(skins) {}
+  Doubts(const scene::Scene& scene, const std::vector<geometry::TriangleSurface>& skins,
+         const trajectories::Progress& progress)
+      : scene_(scene), skins_(skins), progress_(progress) {}
 
-  std::vector<std::string> all() && {
+  SceneDoubts all() && {
     for (std::size_t i = 0; i < skins_.size(); ++i) organ(scene_.organs[i], skins_[i]);
     for (std::size_t i = 0; i < scene_.probes.size(); ++i) probe(i);
-    return std::move(lines_);
+    return {std::move(lines_), std::move(motions_)};
   }
 
  private:
@@ -138,7 +143,8 @@ class Doubts {
           length_text(radius_of(probe.shape)));
     }
     followed(owner, probe);
-    const collision::Approach approach = approach_of(scene_, index, skins_, lines_);
+    motions_.push_back(motion_of(scene_, index, skins_, lines_, progress_));
+    const collision::Approach& approach = motions_.back().approach;
     if (approach.begins_inside) {
       say("{} begins inside an organ: the nearest wall will push it out; begin outside", owner);
     }
@@ -151,17 +157,18 @@ class Doubts {
     const bool scripted = std::holds_alternative<scene::ScriptedDevice>(probe.device);
     if (!recorded && !scripted) return;
     if (approach.extent > kHandReach) {
-      say("{} moves over {}: are its positions in millimetres? They must be metres", owner,
-          length_text(approach.extent));
+      say("{} moves over {}: are its positions in millimetres? {}", owner,
+          length_text(approach.extent),
+          recorded ? "Then say length_unit: mm" : "They must be metres");
     }
     if (approach.fastest > kHandSpeed) {
       say("{} moves at up to {:.3g} m/s, faster than a hand: are positions in millimetres, or "
-          "times too short?",
-          owner, approach.fastest);
+          "times too short?{}",
+          owner, approach.fastest, recorded ? " See keys length_unit and time_unit" : "");
     } else if (recorded && approach.extent > 0 && approach.duration >= kLongestLook &&
                approach.extent / approach.duration < kSlowestHand) {
-      say("{} moves over {} in the first {:g} s: are its times in milliseconds? They must be "
-          "seconds",
+      say("{} moves over {} in the first {:g} s: are its times in milliseconds? Then say "
+          "time_unit: ms",
           owner, length_text(approach.extent), approach.duration);
     }
     if (!approach.touches_at && !approach.begins_inside) {
@@ -178,7 +185,9 @@ class Doubts {
 
   const scene::Scene& scene_;
   const std::vector<geometry::TriangleSurface>& skins_;
+  const trajectories::Progress& progress_;
   std::vector<std::string> lines_;
+  std::vector<ProbeMotion> motions_;
 };
 
 double duration_of(const scene::Scene& scene) {
@@ -187,23 +196,43 @@ double duration_of(const scene::Scene& scene) {
 
 }  // namespace
 
-collision::Approach approach_of(const scene::Scene& scene, std::size_t index,
-                                const std::vector<geometry::TriangleSurface>& skins,
-                                std::vector<std::string>& warnings) {
+ProbeMotion motion_of(const scene::Scene& scene, std::size_t index,
+                      const std::vector<geometry::TriangleSurface>& skins,
+                      std::vector<std::string>& warnings, const trajectories::Progress& progress) {
   const scene::Probe& probe = scene.probes[index];
-  const auto device = haptics::make_device(probe.device, scene.haptics, warnings);
-  return collision::approach_of(
+  ProbeMotion motion;
+  std::unique_ptr<haptics::Device> device;
+  if (const auto* recorded = std::get_if<scene::TrajectoryDevice>(&probe.device)) {
+    auto poses = trajectories::read_trajectory(*recorded, warnings, progress);
+    motion.recording = trajectories::facts_of(poses);
+    device = haptics::make_player(*recorded, std::move(poses));
+  } else {
+    device = haptics::make_device(probe.device, scene.haptics, warnings);
+  }
+  motion.approach = collision::approach_of(
       scene::form_of(probe.shape, scene::load_probe_mesh(probe)), skins,
       [&](double time) { return device->read(time).pose; }, duration_of(scene));
+  return motion;
 }
 
 void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size) {
   check_size(owner, mesh, size, kSmallestOrgan, kLargestOrgan);
 }
 
-std::vector<std::string> doubts_about(const scene::Scene& scene,
-                                      const std::vector<geometry::TriangleSurface>& skins) {
-  return Doubts(scene, skins).all();
+SceneDoubts doubts_about(const scene::Scene& scene,
+                         const std::vector<geometry::TriangleSurface>& skins,
+                         const trajectories::Progress& progress) {
+  return Doubts(scene, skins, progress).all();
+}
+
+trajectories::Progress progress_on(std::ostream& log) {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kLineEvery{2};
+  return [&log, next = Clock::now() + kLineEvery](double part, std::size_t poses) mutable {
+    if (Clock::now() < next) return;
+    next = Clock::now() + kLineEvery;
+    log << fmt::format("recording: {} poses, {:.0f} % of the file", poses, 100 * part) << std::endl;
+  };
 }
 
 std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene) {

@@ -2,28 +2,47 @@
 // touches, nothing that holds the organ.
 #pragma once
 
+#include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "collision/approach.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/scene/scene.h"
+#include "modules/trajectories/motion_facts.h"
+#include "modules/trajectories/progress.h"
 
 namespace palpate::launcher {
 
-/// How a probe of the scene comes to its organs as they are at rest.
+/// What can be said of a probe's motion before a run.
+struct ProbeMotion {
+  collision::Approach approach;                        ///< to organs as they are at rest
+  std::optional<trajectories::MotionFacts> recording;  ///< of a recorded one, all of it
+};
+
 /// @param skins     of the scene's organs, in W
 /// @param warnings  gets what is wrong with a recording but can be borne
+/// @param progress  told while a long recording is read
 /// @throws InputError as haptics::make_device() and scene::load_probe_mesh() do
-collision::Approach approach_of(const scene::Scene& scene, std::size_t probe,
-                                const std::vector<geometry::TriangleSurface>& skins,
-                                std::vector<std::string>& warnings);
+ProbeMotion motion_of(const scene::Scene& scene, std::size_t probe,
+                      const std::vector<geometry::TriangleSurface>& skins,
+                      std::vector<std::string>& warnings,
+                      const trajectories::Progress& progress = {});
 
-/// A line each, that says what to do.
+struct SceneDoubts {
+  std::vector<std::string> lines;    ///< each says what to do
+  std::vector<ProbeMotion> motions;  ///< of each probe
+};
+
 /// @param skins  of the scene's organs, in W
 /// @throws InputError for an organ or instrument of a size that none has, naming the likely unit
-std::vector<std::string> doubts_about(const scene::Scene& scene,
-                                      const std::vector<geometry::TriangleSurface>& skins);
+SceneDoubts doubts_about(const scene::Scene& scene,
+                         const std::vector<geometry::TriangleSurface>& skins,
+                         const trajectories::Progress& progress = {});
+
+/// Prints how far a long recording is read, at most every two seconds.
+trajectories::Progress progress_on(std::ostream& log);
 
 /// @param owner  what messages call it  @param size  its longest side, read in mesh.unit [m]
 /// @throws InputError for a size that no organ has, naming the likely unit

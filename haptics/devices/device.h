@@ -10,6 +10,7 @@
 #include "modules/core/touch.h"
 #include "modules/core/types.h"
 #include "modules/scene/scene.h"
+#include "modules/trajectories/timed_pose.h"
 
 namespace palpate::haptics {
 
@@ -58,5 +59,10 @@ class OutsideDevice : public Device {
 /// @throws InputError "file.csv:17: …" if a recording cannot be used
 std::unique_ptr<Device> make_device(const scene::Device& device, const scene::Haptics& haptics,
                                     std::vector<std::string>& warnings);
+
+/// The same of a recording that has been read.
+/// @param samples  in the recording's frame; at least two, times rising
+std::unique_ptr<Device> make_player(const scene::TrajectoryDevice& config,
+                                    std::vector<trajectories::TimedPose> samples);
 
 }  // namespace palpate::haptics

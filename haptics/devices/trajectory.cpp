@@ -41,65 +41,69 @@ double return_duration(const Pose& last, const Pose& first) {
 
 }  // namespace
 
-Trajectory::Trajectory(const std::vector<TimedPose>& samples, bool loop) : loop_(loop) {
-  PALPATE_DEMAND(samples.size() >= 2);
-  knots_.reserve(samples.size() + 1);
-  for (const TimedPose& sample : samples) {
-    knots_.push_back({.time = sample.time - samples.front().time, .pose = sample.pose});
-  }
-  last_sample_time_ = knots_.back().time;
-  if (loop_) {
-    const double duration = return_duration(knots_.back().pose, knots_.front().pose);
-    knots_.push_back({.time = last_sample_time_ + duration, .pose = knots_.front().pose});
-  }
-  set_slopes();
+struct Trajectory::Interval {
+  double length;
+  Vec3 velocity, turn;
+};
+
+struct Trajectory::Slopes {
+  Vec3 velocity = Vec3::Zero();               ///< in the frame of the poses [m/s]
+  Vec3 angular_velocity_body = Vec3::Zero();  ///< in the body's frame [rad/s]
+};
+
+Trajectory::Trajectory(std::vector<TimedPose> samples, bool loop)
+    : samples_(std::move(samples)), loop_(loop) {
+  PALPATE_DEMAND(samples_.size() >= 2);
+  const double first = samples_.front().time;
+  for (TimedPose& sample : samples_) sample.time -= first;
+  end_ = duration();
+  if (loop_) end_ += return_duration(samples_.back().pose, samples_.front().pose);
 }
 
-void Trajectory::set_slopes() {
-  struct Interval {
-    double length;
-    Vec3 velocity, turn;
-  };
-  const auto interval = [this](std::size_t i) {
-    const Knot &a = knots_[i], &b = knots_[i + 1];
-    const double length = b.time - a.time;
-    return Interval{length, (b.pose.position - a.pose.position) / length,
-                    turn_rate(a.pose.rotation, b.pose.rotation, length)};
-  };
-  const auto join = [](Knot& knot, const Interval& before, const Interval& after) {
-    knot.velocity = monotone_slope(before.length, after.length, before.velocity, after.velocity);
-    knot.angular_velocity_body =
-        monotone_slope(before.length, after.length, before.turn, after.turn);
-  };
-  for (std::size_t i = 1; i + 1 < knots_.size(); ++i) join(knots_[i], interval(i - 1), interval(i));
-  if (!loop_) return;  // the pose is held, at rest, before and after
-  join(knots_.front(), interval(knots_.size() - 2), interval(0));
-  knots_.back().velocity = knots_.front().velocity;
-  knots_.back().angular_velocity_body = knots_.front().angular_velocity_body;
+TimedPose Trajectory::knot(std::size_t i) const {
+  return i < samples_.size() ? samples_[i] : TimedPose{end_, samples_.front().pose};
+}
+
+Trajectory::Interval Trajectory::interval(std::size_t i) const {
+  const TimedPose a = knot(i), b = knot(i + 1);
+  const double length = b.time - a.time;
+  return {length, (b.pose.position - a.pose.position) / length,
+          turn_rate(a.pose.rotation, b.pose.rotation, length)};
+}
+
+Trajectory::Slopes Trajectory::slopes_at(std::size_t knot) const {
+  const std::size_t last = knot_count() - 1;
+  const bool at_an_end = knot == 0 || knot == last;
+  if (at_an_end && !loop_) return {};  // the pose is held, at rest, before and after
+  const Interval before = interval(at_an_end ? last - 1 : knot - 1);
+  const Interval after = interval(at_an_end ? 0 : knot);
+  return {monotone_slope(before.length, after.length, before.velocity, after.velocity),
+          monotone_slope(before.length, after.length, before.turn, after.turn)};
 }
 
 DeviceSample Trajectory::at(double time) const {
-  const double end = knots_.back().time;
-  if (loop_) time -= end * std::floor(time / end);
-  time = std::clamp(time, 0.0, end);
-  const auto next = std::upper_bound(knots_.begin() + 1, knots_.end() - 1, time,
-                                     [](double t, const Knot& knot) { return t < knot.time; });
-  const Knot &a = *(next - 1), &b = *next;
+  if (loop_) time -= end_ * std::floor(time / end_);
+  time = std::clamp(time, 0.0, end_);
+  const auto next = std::upper_bound(samples_.begin() + 1, samples_.end() - (loop_ ? 0 : 1), time,
+                                     [](double t, const TimedPose& s) { return t < s.time; });
+  const auto after = static_cast<std::size_t>(next - samples_.begin());
+  const TimedPose a = knot(after - 1), b = knot(after);
+  const Slopes slope_a = slopes_at(after - 1), slope_b = slopes_at(after);
   const double h = b.time - a.time;
   const double s = (time - a.time) / h, r = 1 - s;
 
   DeviceSample sample;
   const Vec3 step = b.pose.position - a.pose.position;
-  sample.pose.position =
-      a.pose.position + s * s * (3 - 2 * s) * step + h * s * r * (r * a.velocity - s * b.velocity);
-  sample.twist.linear =
-      6 * s * r / h * step + r * (1 - 3 * s) * a.velocity + s * (3 * s - 2) * b.velocity;
+  sample.pose.position = a.pose.position + s * s * (3 - 2 * s) * step +
+                         h * s * r * (r * slope_a.velocity - s * slope_b.velocity);
+  sample.twist.linear = 6 * s * r / h * step + r * (1 - 3 * s) * slope_a.velocity +
+                        s * (3 * s - 2) * slope_b.velocity;
 
   // q = q_a exp(β₁w₁) exp(β₂w₂) exp(β₃w₃) with the cumulative cubic Bernstein functions
   // β₁ = 1 − r³, β₂ = s²(3 − 2s), β₃ = s³. Its rate in the body's frame is the sum of the three
   // β̇ᵢwᵢ, each turned into the frame behind the factors on its right.
-  const Vec3 w1 = h / 3 * a.angular_velocity_body;
-  const Vec3 w3 = h / 3 * b.angular_velocity_body;
+  const Vec3 w1 = h / 3 * slope_a.angular_velocity_body;
+  const Vec3 w3 = h / 3 * slope_b.angular_velocity_body;
   const Vec3 w2 = vector_from_rotation(rotation_from_vector(-w1) * a.pose.rotation.conjugate() *
                                        b.pose.rotation * rotation_from_vector(-w3));
   const Quat first = rotation_from_vector((1 - r * r * r) * w1);

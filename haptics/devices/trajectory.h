@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "haptics/devices/device.h"
-#include "haptics/devices/trajectory_file.h"
+#include "modules/trajectories/timed_pose.h"
 
 namespace palpate::haptics {
+
+using trajectories::TimedPose;
 
 class Trajectory {
  public:
@@ -22,29 +24,31 @@ class Trajectory {
   /// @param loop     false: before the first and after the last sample the pose is held, at rest.
   ///                 true: after the last sample the pose returns to the first along the same kind
   ///                 of curve, within return_time(), and starts again
-  Trajectory(const std::vector<TimedPose>& samples, bool loop);
+  Trajectory(std::vector<TimedPose> samples, bool loop);
 
   /// `time` [s] counts from the first sample; any finite value. Never allocates or throws.
   DeviceSample at(double time) const;
 
-  double duration() const { return last_sample_time_; }  ///< first to last sample [s]
+  double duration() const { return samples_.back().time; }  ///< first to last sample [s]
 
   /// Duration of the way back of a loop [s]: 0.5 s, or longer so that its mean speeds stay within
   /// 0.05 m/s and 1 rad/s. 0 if not looped.
-  double return_time() const { return knots_.back().time - last_sample_time_; }
+  double return_time() const { return end_ - duration(); }
 
  private:
-  struct Knot {
-    double time = 0;
-    Pose pose;
-    Vec3 velocity = Vec3::Zero();               ///< in the frame of the poses [m/s]
-    Vec3 angular_velocity_body = Vec3::Zero();  ///< in the body's frame [rad/s]
-  };
-  void set_slopes();
+  struct Interval;
+  struct Slopes;
+  /// A sample; after the last, of a loop, the first again.
+  TimedPose knot(std::size_t i) const;
+  std::size_t knot_count() const { return samples_.size() + (loop_ ? 1 : 0); }
+  Interval interval(std::size_t i) const;
+  /// From the samples beside it, as often as they are asked for: kept, they would take as much
+  /// memory as the samples, of which there may be millions.
+  Slopes slopes_at(std::size_t knot) const;
 
-  std::vector<Knot> knots_;
-  double last_sample_time_ = 0;
+  std::vector<TimedPose> samples_;  ///< the first at time 0
   bool loop_;
+  double end_ = 0;  ///< time of the last knot [s]
 };
 
 }  // namespace palpate::haptics

@@ -14,10 +14,40 @@ struct Words<EmulatedDevice::Kind> {
   static constexpr std::array texts{"touch", "omega"};
 };
 
+template <>
+struct Words<TrajectoryDevice::TimeUnit> {
+  static constexpr std::array texts{"s", "ms", "us", "ns"};
+};
+template <>
+struct Words<TrajectoryDevice::QuaternionOrder> {
+  static constexpr std::array texts{"xyzw", "wxyz"};
+};
+
 template <class V>
 void describe(V& v, TrajectoryDevice& device) {
   v.field("file", device.file,
-          plain("CSV with columns t,x,y,z,qx,qy,qz,qw[,fx,fy,fz] in s, m, N").needed());
+          plain("a table (CSV, text) with a header, or a ROS 1 bag (.bag)").needed());
+  v.field("columns", device.columns,
+          plain("of a table, as its header names them or numbers from 1: time, x, y, z and the "
+                "four of the quaternion, or the first four alone")
+              .otherwise("t, x, y, z, qx, qy, qz, qw, in any order, among others"));
+  v.field("time_unit", device.time_unit, plain("of a table's times"));
+  About unit = plain("of positions: m, dm, cm, mm, um or in");
+  unit.is_length_unit = true;
+  v.field("length_unit", device.length_unit, unit);
+  v.field("quaternion", device.quaternion, plain("order of the quaternion's four columns"));
+  v.field("topic", device.topic,
+          plain("of a bag: geometry_msgs/PoseStamped, PoseWithCovarianceStamped, TransformStamped "
+                "or PointStamped")
+              .otherwise("the only one of these"));
+  v.require(device.columns.empty() || device.columns.size() == 4 || device.columns.size() == 8,
+            "columns must name 4 (time, x, y, z) or 8 (and the quaternion)");
+  using Default = TrajectoryDevice;
+  const bool of_table = !device.columns.empty() || device.time_unit != Default{}.time_unit ||
+                        device.quaternion != Default{}.quaternion;
+  v.require(!device.is_bag() || !of_table,
+            "columns, time_unit and quaternion are of tables; a bag's messages need none");
+  v.require(device.is_bag() || !device.topic, "topic is of bags (.bag)");
   describe_pose(v, device.offset, "where the recording's origin is in W",
                 "unit quaternion, of the recording's frame");
   v.field("loop", device.loop, plain("start again at the end; else hold the last pose"));

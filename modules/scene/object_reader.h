@@ -52,6 +52,12 @@ class ObjectReader {
     optional.reset();
     if (find(key)) field(key, optional.emplace(), about);
   }
+  void field(const char* key, std::vector<std::string>& list, const About& about) {
+    const auto value = find(key);
+    if (!value) return;
+    list.clear();
+    for (const YamlValue& entry : entries_of(*value)) list.push_back(text_from(entry, about));
+  }
   template <class T>
   void field(const char* key, std::vector<T>& list, const About& about) {
     if (const auto value = find(key)) read_list(*value, list, about);

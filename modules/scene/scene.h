@@ -96,11 +96,22 @@ struct Organ {
   std::vector<Region> fixed;                       ///< `fixed`
 };
 
-/// A recorded pose over time, CSV columns t, x, y, z, qx, qy, qz, qw [, fx, fy, fz] (s, m, N).
+/// A recorded pose over time: a table, or a topic of a ROS bag (modules/trajectories).
 struct TrajectoryDevice {
-  std::filesystem::path file;  ///< `file`
-  Pose offset;                 ///< `position_m`, `rotation_xyzw`: X_WR of the recording's frame R
-  bool loop = false;           ///< `loop`: start again at the end, else hold the last pose
+  enum class TimeUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
+  enum class QuaternionOrder { kXyzw, kWxyz };
+
+  std::filesystem::path file = {};  ///< `file`
+  std::vector<std::string> columns =
+      {};  ///< `columns`: names or numbers from 1; empty: by the header
+  TimeUnit time_unit = TimeUnit::kSeconds;              ///< `time_unit`, of a table
+  std::string length_unit = "m";                        ///< `length_unit`
+  QuaternionOrder quaternion = QuaternionOrder::kXyzw;  ///< `quaternion`, of a table's columns
+  std::optional<std::string> topic = {};  ///< `topic` of a bag; none: its only one with poses
+  Pose offset = {};   ///< `position_m`, `rotation_xyzw`: X_WR of the recording's frame R
+  bool loop = false;  ///< `loop`: start again at the end, else hold the last pose
+
+  bool is_bag() const { return file.extension() == ".bag"; }
 };
 /// Minimum-jerk moves between points.
 struct ScriptedDevice {

@@ -34,6 +34,11 @@ class ValueLister {
     if (value) return field(key, *value, about);
     add(key, {});
   }
+  void field(const char* key, std::vector<std::string>& list, const About&) {
+    SceneValue::List entries;
+    for (const auto& entry : list) entries.push_back({entry});
+    add(key, {std::move(entries)});
+  }
   template <class T>
   void field(const char* key, std::vector<T>& list, const About&) {
     SceneValue::List entries;

@@ -53,6 +53,9 @@ class SchemaTable {
     T value{};
     field(key, value, about);
   }
+  void field(const char* key, std::vector<std::string>&, const About& about) {
+    row(key, "list of texts", about, "");
+  }
   template <class T>
   void field(const char* key, std::vector<T>&, const About& about) {
     row(key, "list", about, "[]");

@@ -42,6 +42,11 @@ class YamlWriter {
   void field(const char* key, std::optional<T>& value, const About& about) {
     if (value) field(key, *value, about);
   }
+  void field(const char* key, std::vector<std::string>& list, const About&) {
+    std::string text;
+    for (const auto& entry : list) text += (text.empty() ? "" : ", ") + quoted_text(entry);
+    if (!list.empty()) line(key, "[" + text + "]");
+  }
   template <class T>
   void field(const char* key, std::vector<T>& list, const About&) {
     if (list.empty()) return line(key, "[]");

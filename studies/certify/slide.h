@@ -1,7 +1,7 @@
 // Steps of the force while the probe slides over the whole organ, row by row.
 #pragma once
 
-#include "haptics/devices/trajectory_file.h"
+#include "haptics/devices/trajectory.h"
 #include "studies/certify/line.h"
 #include "studies/certify/loop.h"
 

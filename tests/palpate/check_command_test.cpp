@@ -24,7 +24,7 @@ namespace {
 /// What `palpate check` prints of the scene.
 std::string check(const BallScene& scene, double measure_for = 0.05) {
   std::ostringstream out;
-  CHECK(launcher::check_command({.scene = scene.file(), .measure_for = measure_for}, out) ==
+  CHECK(launcher::check_command({.scene = scene.file(), .measure_for = measure_for}, out, out) ==
         kExitDone);
   return out.str();
 }
@@ -35,7 +35,7 @@ TEST_CASE("check: --resolved prints the scene with every default, which can be r
   // Oracle: the scene reader.
   const BallScene scene;
   std::ostringstream out;
-  CHECK(launcher::check_command({.scene = scene.file(), .resolved = true}, out) == kExitDone);
+  CHECK(launcher::check_command({.scene = scene.file(), .resolved = true}, out, out) == kExitDone);
   const auto loaded = scene::load_scene(scene.file());
   CHECK(scene::scene_digest(scene::parse_scene(out.str(), scene.file())) ==
         scene::scene_digest(loaded));
@@ -53,8 +53,8 @@ TEST_CASE("check: --json says the same as the text") {
   // Oracle: counts of the ball, read by the JSON library.
   const BallScene scene;
   std::ostringstream out;
-  CHECK(launcher::check_command({.scene = scene.file(), .measure_for = 0.05, .json = true}, out) ==
-        kExitDone);
+  CHECK(launcher::check_command({.scene = scene.file(), .measure_for = 0.05, .json = true}, out,
+                                out) == kExitDone);
   Json::Value value;
   std::istringstream text(out.str());
   REQUIRE(Json::parseFromStream(Json::CharReaderBuilder(), text, &value, nullptr));
@@ -71,7 +71,7 @@ TEST_CASE("check: --set is checked like the file") {
   std::ostringstream out;
   launcher::CheckOptions options{.scene = scene.file(), .measure_for = 0.05, .json = true};
   options.settings = {"organs[0].tissue.density_kg_per_m3=500"};
-  CHECK(launcher::check_command(options, out) == kExitDone);
+  CHECK(launcher::check_command(options, out, out) == kExitDone);
   Json::Value value;
   std::istringstream text(out.str());
   REQUIRE(Json::parseFromStream(Json::CharReaderBuilder(), text, &value, nullptr));
@@ -141,7 +141,7 @@ TEST_CASE("check: a bad scene is refused with its place") {
   // Oracle: the message.
   const BallScene scene("topic: {start_m: [0, 0, 0.09]}", "wrong_key: 1\n");
   std::ostringstream out;
-  CHECK_THROWS_WITH(launcher::check_command({.scene = scene.file(), .measure_for = 0.05}, out),
+  CHECK_THROWS_WITH(launcher::check_command({.scene = scene.file(), .measure_for = 0.05}, out, out),
                     Contains(scene.file().string() + ":12:") && Contains("wrong_key"));
   CHECK(out.str().empty());
 }
@@ -153,10 +153,11 @@ TEST_CASE("check: a recording that cannot be used is refused by file and line, g
   const auto file = scene.folder() / "moves.csv";
   std::ostringstream out;
   std::ofstream(file) << "t,x,y,z\n0,0,0,0\n";
-  CHECK_THROWS_WITH(launcher::check_command({.scene = scene.file(), .measure_for = 0.05}, out),
+  CHECK_THROWS_WITH(launcher::check_command({.scene = scene.file(), .measure_for = 0.05}, out, out),
                     Contains("moves.csv:1: "));
   std::ofstream(file) << "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.09,0,0,0,1\nnone,0,0,0.09,0,0,0,1\n"
                          "0.01,0,0,0.09,0,0,0,1\n";
-  CHECK(launcher::check_command({.scene = scene.file(), .measure_for = 0.05}, out) == kExitDone);
+  CHECK(launcher::check_command({.scene = scene.file(), .measure_for = 0.05}, out, out) ==
+        kExitDone);
   CHECK_THAT(out.str(), Contains("warning: ") && Contains("moves.csv:3: "));
 }

@@ -41,9 +41,9 @@ TEST_CASE("new: a scene from a mesh can be run, and leaves no doubt") {
     CHECK(scene.organs[0].mesh.unit == word);
     CHECK_THAT(out.str(), Contains("120 x 120 x 120 mm"));
     const auto skins = load_skins(scene);
-    CHECK(doubts_about(scene, skins).empty());
+    CHECK(doubts_about(scene, skins).lines.empty());
     std::vector<std::string> warnings;
-    const collision::Approach approach = approach_of(scene, 0, skins, warnings);
+    const collision::Approach approach = launcher::motion_of(scene, 0, skins, warnings).approach;
     CHECK(approach.touches_at);
     CHECK(scene.organs[0].tissue.wall_thickness == Approx(0.16 * 0.06).epsilon(0.05));
   }

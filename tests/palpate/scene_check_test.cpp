@@ -31,7 +31,7 @@ TEST_CASE("scene check: counts are Euler's, volume and mass the mesh's, the touc
   REQUIRE(check.probes.size() == 1);
   CHECK(check.probes[0].shape == "sphere");
   CHECK(check.probes[0].device == "scripted");
-  CHECK(check.probes[0].approach.touches_at);
+  CHECK(check.probes[0].motion.approach.touches_at);
   CHECK(check.cost > 0);
   CHECK(check.real_time_factor() <= 1);
   CHECK_FALSE(check.troubles.any());

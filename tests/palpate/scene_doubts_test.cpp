@@ -26,7 +26,7 @@ const std::string kDownOnBall = scripted("[0, 0, 0.09]", "{to_m: [0, 0, 0.05], d
 std::vector<std::string> doubts(const BallScene& scene,
                                 const std::vector<std::string>& settings = {}) {
   const auto loaded = scene::load_scene_with(scene.file(), settings);
-  return doubts_about(loaded, load_skins(loaded));
+  return doubts_about(loaded, load_skins(loaded)).lines;
 }
 
 /// The one doubt there is.
@@ -46,7 +46,7 @@ TEST_CASE("doubts: a press of a ball on its foot leaves none, and touches when i
   CHECK(doubts(scene).empty());
   const auto loaded = scene::load_scene(scene.file());
   std::vector<std::string> warnings;
-  const collision::Approach approach = approach_of(loaded, 0, load_skins(loaded), warnings);
+  const collision::Approach approach = motion_of(loaded, 0, load_skins(loaded), warnings).approach;
   REQUIRE(approach.touches_at);
   // s(u) = 10u³ − 15u⁴ + 6u⁵ = 0.75 at u = 0.6409; facets of 5 mm are up to 0.06 mm inside.
   CHECK(*approach.touches_at == Approx(2 * 0.6409).margin(0.02));
@@ -84,7 +84,7 @@ TEST_CASE("doubts: a probe that a following mesh does not follow is named") {
   const auto said = [](const std::vector<std::string>& settings) {
     const auto scene =
         scene::load_scene_with(data_folder() / "scenes" / "liver_touch.yaml", settings);
-    return std::ranges::count_if(doubts_about(scene, load_skins(scene)),
+    return std::ranges::count_if(doubts_about(scene, load_skins(scene)).lines,
                                  [](const std::string& line) {
                                    return line.find(
                                               "is a plane, under which organ 'liver' does "
@@ -121,11 +121,11 @@ TEST_CASE("doubts: a recording in millimetres, and one in milliseconds, are reco
   write(1000, 1);
   const auto far = doubts(scene);
   CHECK(std::any_of(far.begin(), far.end(), [](const std::string& line) {
-    return line.find("millimetres") != std::string::npos;
+    return line.find("length_unit: mm") != std::string::npos;
   }));
   write(1, 1000);
   const auto slow = doubts(scene, {"duration_s=0"});
   CHECK(std::any_of(slow.begin(), slow.end(), [](const std::string& line) {
-    return line.find("milliseconds") != std::string::npos;
+    return line.find("time_unit: ms") != std::string::npos;
   }));
 }

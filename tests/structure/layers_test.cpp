@@ -27,8 +27,8 @@ std::string line_for(const Include& include, const std::string& why) {
 std::map<std::string, Names> allowed_layers() {
   const Names scene{"core", "geometry", "scene"};
   const Names runtime = scene + Names{"messages", "bus", "runtime"};
-  const Names stages =
-      runtime + Names{"recording", "deformation", "collision", "haptics", "session"};
+  const Names stages = runtime + Names{"recording", "trajectories", "deformation",
+                                       "collision", "haptics",      "session"};
   return {{"core", {}},
           {"geometry", {"core"}},
           {"scene", {"core", "geometry"}},
@@ -38,7 +38,8 @@ std::map<std::string, Names> allowed_layers() {
           {"recording", runtime},
           {"deformation", scene + Names{"collision"}},
           {"collision", scene},
-          {"haptics", scene},
+          {"trajectories", scene},
+          {"haptics", scene + Names{"trajectories"}},
           {"visualizer", runtime},
           {"meshes", {"core", "geometry"}},
           {"session", stages},

@@ -43,7 +43,7 @@ TEST_CASE("make_device: a recording is placed in the world by its offset, twist 
   std::vector<std::string> warnings;
   const auto device = make_device(config, {}, warnings);
   REQUIRE(warnings.size() == 4);  // the bad row, and three steps of 1 s are gaps
-  CHECK(warnings[0].find("line.csv:3: row skipped") != std::string::npos);
+  CHECK(warnings[0].find("line.csv:3: left out") != std::string::npos);
 
   const haptics::DeviceSample sample = device->read(1.5);
   CHECK((sample.pose.position - Vec3(0, 0.15, 1)).norm() < 1e-15);

@@ -6,6 +6,7 @@
 
 #include "haptics/devices/trajectory.h"
 #include "modules/core/rotation_vector.h"
+#include "modules/trajectories/trajectory_file.h"
 
 using namespace palpate;
 using namespace palpate::haptics;
@@ -45,7 +46,8 @@ TEST_CASE("recorded trajectories: load, pass through every sample, stay near rec
     return;
   }
   std::vector<std::string> warnings;
-  const std::vector<TimedPose> samples = read_trajectory(recording(name), warnings);
+  const std::vector<TimedPose> samples =
+      trajectories::read_trajectory({.file = recording(name)}, warnings);
   CHECK(samples.size() == rows);
   CHECK(warnings.size() == gaps);
   for (const std::string& warning : warnings) std::cout << warning << '\n';

@@ -65,7 +65,7 @@ TEST_CASE("object reader: every required key is missed") {
         "scene.yaml:62: key 'probes[4].device.topic.start_m' is missing");
   CHECK(refusal("        start_m: [0, 0, 0.2]\n", "") ==
         "scene.yaml:40: key 'probes[0].device.scripted.start_m' is missing");
-  CHECK(refusal("        file: press.csv\n", "") ==
+  CHECK(refusal("        file: press.csv,\n", "") ==
         "scene.yaml:49: key 'probes[1].device.trajectory.file' is missing");
   CHECK(refusal("center_m: [0.01, 0.02, 0.03], ", "") ==
         "scene.yaml:29: key 'organs[0].fixed[0].sphere.center_m' is missing");

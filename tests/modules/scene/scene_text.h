@@ -116,11 +116,11 @@ probes:
   - name: rod
     shape: {capsule: {radius_m: 0.003, length_m: 0.2}}
     device:
-      trajectory:
-        file: press.csv
-        position_m: [0.4, 0.5, 0.6]
-        rotation_xyzw: [0, 1, 0, 0]
-        loop: true
+      trajectory: {
+        file: press.csv,
+        position_m: [0.4, 0.5, 0.6], columns: [time, px, py, pos z, q0, 6, q2, q3], time_unit: ms, length_unit: cm, quaternion: wxyz,
+        rotation_xyzw: [0, 1, 0, 0],
+        loop: true}
   - name: hand
     shape: {box: {size_m: [0.01, 0.02, 0.03]}}
     device: {topic: {start_m: [0, 0, 0.3], rotation_xyzw: [0, 0, 1, 0]}}

@@ -26,6 +26,32 @@ std::pair<double, double> range_in(const std::string& text) {
 
 }  // namespace
 
+TEST_CASE("schema: keys of a recording go with its kind of file") {
+  // Oracle: the rules of the trajectory's table.
+  const SceneFolder folder;
+  folder.write("press.bag", "");
+  const auto said = [&](const std::string& keys) {
+    std::string text = kMinimalScene;
+    const auto device = text.find("device:");
+    REQUIRE(device != std::string::npos);
+    text.resize(device);
+    return folder.refusal(text + "device: {trajectory: {" + keys + "}}\n");
+  };
+  CHECK(said("file: press.csv, columns: [t, x, y, z], time_unit: us, length_unit: in") ==
+        "accepted");
+  CHECK(said("file: press.bag, topic: /tool, length_unit: mm") == "accepted");
+  CHECK_THAT(said("file: press.csv, columns: [t, x, y]"),
+             Catch::EndsWith("columns must name 4 (time, x, y, z) or 8 (and the quaternion)"));
+  CHECK_THAT(said("file: press.csv, topic: /tool"), Catch::EndsWith("topic is of bags (.bag)"));
+  for (const char* key : {"time_unit: ms", "quaternion: wxyz", "columns: [t, x, y, z]"}) {
+    CHECK_THAT(said(std::string("file: press.bag, ") + key),
+               Catch::EndsWith("are of tables; a bag's messages need none"));
+  }
+  CHECK_THAT(said("file: press.csv, time_unit: min"), Catch::Contains("s, ms, us, ns"));
+  CHECK_THAT(said("file: press.csv, length_unit: furlong"), Catch::Contains("allowed: m, dm, cm"));
+  CHECK_THAT(said("file: press.csv, quaternion: zyxw"), Catch::Contains("xyzw, wxyz"));
+}
+
 TEST_CASE("schema: inner springs need virtual nodes to hang on") {
   // Oracle: the rule of the springs' table.
   const std::string rule =
