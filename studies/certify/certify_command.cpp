@@ -2,12 +2,19 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <chrono>
+#include <map>
 #include <ostream>
+#include <thread>
+#include <utility>
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/runtime/program.h"
+#include "modules/scene/scene_reader.h"
 #include "studies/certify/certificate.h"
 #include "studies/certify/disturbance.h"
+#include "studies/certify/group_store.h"
 #include "studies/certify/hands.h"
 #include "studies/certify/law.h"
 #include "studies/certify/press.h"
@@ -17,6 +24,7 @@
 #include "studies/certify/still_force.h"
 #include "studies/certify/tables.h"
 #include "studies/certify/timing.h"
+#include "studies/report/claims.h"
 #include "studies/report/measures.h"
 #include "studies/report/plot_script.h"
 #include "studies/report/progress.h"
@@ -28,35 +36,55 @@ constexpr double kPressed = 0.3;  // of the force at rest, that the real process
 constexpr double kFeltWithin = 60, kPress = 0.5, kHoldFor = 5.1;  // [s]
 constexpr double kWallShare = 0.5;  // of the formula's stiffness: well within
 
+constexpr std::chrono::milliseconds kLookAgain{500};
+
 class Certifying {
  public:
-  Certifying(const CertifyOptions& options, Subject subject, KeepGoing keep_going,
-             std::ostream& out, std::ostream& log)
+  Certifying(const CertifyOptions& options, Subject subject, report::Claims& claims,
+             KeepGoing keep_going, std::ostream& out, std::ostream& log)
       : options_(options),
         subject_(std::move(subject)),
+        store_(shared_folder(options), told(options, subject_)),
+        claims_(claims),
         keep_going_(std::move(keep_going)),
         out_(out),
         log_(log) {}
 
+  /// Where shards leave what they measured.
+  static std::filesystem::path shared_folder(const CertifyOptions& options) {
+    return options.out / "points";
+  }
+
   void measure() {
-    organ_alone();
-    walls();
-    pressed();
-    slid();
+    // What the organ holds is needed by the others: a shard waits for whoever measures it.
+    const auto alone = group("organ alone", [&] { organ_alone(); });
+    while (measure_groups({alone}).elsewhere > 0) {
+      keep_going_();
+      std::this_thread::sleep_for(kLookAgain);
+    }
+    std::vector<report::Point> points{group("walls", [&] { walls(); }),
+                                      group("pressed", [&] { pressed(); }),
+                                      group("slid", [&] { slid(); })};
     for (const Disturbance& d : disturbances(options_.quick)) {
-      begin("link: " + d.name());
-      add(disturbance_lines(subject_, d, push_, keep_going_, troubles_));
+      points.push_back(group("link " + d.name(), [this, d] {
+        begin("link: " + d.name());
+        add(disturbance_lines(subject_, d, push_, keep_going_, now_.troubles));
+      }));
     }
     if (!options_.lockstep) {
-      real_processes();
-      beside_others();
+      points.push_back(group("real processes", [&] { real_processes(); }));
+      points.push_back(group("beside others", [&] { beside_others(); }));
     }
+    measure_groups(points);
     contacts();
     certificate_.complete = true;
   }
 
+  const report::Share& share() const { return share_; }
+
   /// @return whether all passed
   bool write() {
+    certificate_.lines.insert(certificate_.lines.end(), now_.lines.begin(), now_.lines.end());
     write_json(certificate_, subject_, options_.out);
     try {
       report::draw_figures(data_file("plots/plot_certify.py"), options_.out);
@@ -74,17 +102,66 @@ class Certifying {
   }
 
  private:
+  /// What its results depend on.
+  static std::string told(const CertifyOptions& options, const Subject& subject) {
+    std::string text = fmt::format("{} {} depth {} speed {} {} quick {}", runtime::version_text(),
+                                   scene::scene_digest(subject.scene), options.depth, options.speed,
+                                   options.lockstep, options.quick);
+    for (const auto& organ : subject.assets.organs) {
+      for (const Vec3& node : organ.surface.nodes) {
+        for (const double x : node) text += fmt::format(" {}", x);
+      }
+    }
+    return fmt::format("{:016x}", std::hash<std::string>{}(text));
+  }
+
+  /// Lines that belong together, as one point. They are of the certificate once they are read.
+  report::Point group(const std::string& name, std::function<void()> measure) {
+    const auto read = [this, name] {
+      const auto here = measured_.find(name);
+      GroupResult result;
+      const bool is_here = here != measured_.end();
+      if (is_here) result = here->second;
+      if (!is_here && !store_.read(name, result)) return false;
+      take(result, is_here);
+      return true;
+    };
+    return {store_.key(name), read, [this, name, measure = std::move(measure)] {
+              now_ = {};
+              measure();
+              if (options_.shard) store_.write(name, now_);
+              measured_[name] = std::exchange(now_, {});
+            }};
+  }
+
+  void take(const GroupResult& result, bool printed) {
+    if (result.push > 0) push_ = result.push;
+    troubles_ += result.troubles;
+    for (const Line& line : result.lines) {
+      if (!printed) out_ << text_of(line) << std::endl;
+      certificate_.lines.push_back(line);
+    }
+  }
+
+  report::Share measure_groups(const std::vector<report::Point>& points) {
+    const report::Share share = report::measure_points(points, claims_);
+    share_.measured += share.measured;
+    share_.stored += share.stored;
+    share_.elsewhere = share.elsewhere;
+    return share;
+  }
+
   void organ_alone() {
     begin("law");
-    const auto law = measure_law(subject_, keep_going_, troubles_);
+    const auto law = measure_law(subject_, keep_going_, now_.troubles);
     write_law(law, options_.out);
     add(law_lines(law));
     begin("force");
     const auto forces =
-        measure_still_force(loop_on_organ(subject_, &troubles_), subject_, keep_going_);
+        measure_still_force(loop_on_organ(subject_, &now_.troubles), subject_, keep_going_);
     write_still_force(forces, options_.out);
     add({still_force_line(forces)});
-    push_ = forces.empty() ? 0 : std::max(0.0, forces.back().organ);
+    now_.push = forces.empty() ? 0 : std::max(0.0, forces.back().organ);
   }
 
   void walls() {
@@ -102,7 +179,7 @@ class Certifying {
 
   void pressed() {
     begin("press");
-    const Loop loop = loop_on_organ(subject_, &troubles_);
+    const Loop loop = loop_on_organ(subject_, &now_.troubles);
     const auto press = press_and_release(loop, subject_, keep_going_);
     write_ticks(press, options_.out / "press.csv");
     add({energy_line("energy", "of a press and release, on the organ", press, subject_),
@@ -119,7 +196,7 @@ class Certifying {
     begin("sliding");
     const auto path = slide_path(subject_, options_.quick ? 1 : 0);
     std::vector<SlideTick> ticks;
-    if (!path.empty()) ticks = slide(loop_on_organ(subject_, &troubles_), path, keep_going_);
+    if (!path.empty()) ticks = slide(loop_on_organ(subject_, &now_.troubles), path, keep_going_);
     write_slide(ticks, options_.out);
     add({slide_line(ticks)});
   }
@@ -127,7 +204,7 @@ class Certifying {
   void contacts() {
     const auto line = [&](const char* name, std::uint64_t count) {
       add({at_most("contacts", {name, static_cast<double>(count), 0, "", "none may be", ""})});
-    };
+    };  // write() takes what stands in now_
     line("searches truncated", troubles_.truncated);
     line("searches with the probe inside without contact", troubles_.lost);
     line("steps not solved", troubles_.unsolved);
@@ -138,7 +215,7 @@ class Certifying {
     certificate_.machine = report::machine_name();
     Processes processes(subject_, options_.bus, options_.out, keep_going_);
     measure_alone(processes);
-    troubles_ += processes.contact_troubles();
+    now_.troubles += processes.contact_troubles();
   }
 
   void measure_alone(Processes& processes) {
@@ -169,7 +246,7 @@ class Certifying {
     bus.session += "_beside";
     Processes processes(subject_, bus, options_.out, keep_going_, Beside::kPicturesAndHog);
     measure_beside(processes, group);
-    troubles_ += processes.contact_troubles();
+    now_.troubles += processes.contact_troubles();
   }
 
   void measure_beside(Processes& processes, const std::string& group) {
@@ -218,7 +295,7 @@ class Certifying {
   void add(const std::vector<Line>& lines) {
     for (const Line& line : lines) {
       out_ << text_of(line) << std::endl;
-      certificate_.lines.push_back(line);
+      now_.lines.push_back(line);
     }
   }
   long count(Verdict verdict) const {
@@ -228,10 +305,15 @@ class Certifying {
 
   const CertifyOptions& options_;
   Subject subject_;
+  GroupStore store_;
+  report::Claims& claims_;
   KeepGoing keep_going_;
   std::ostream& out_;
   std::ostream& log_;
   Certificate certificate_;
+  GroupResult now_;                              ///< of the group that is measured
+  std::map<std::string, GroupResult> measured_;  ///< here
+  report::Share share_;
   ContactTroubles troubles_;  ///< of all sessions, the real processes' too
   double push_ = 0;           ///< what the organ holds at the depth of presses [N]
 };
@@ -240,19 +322,28 @@ class Certifying {
 
 int run_certify(const CertifyOptions& options, const std::function<bool()>& stop, std::ostream& out,
                 std::ostream& log) {
+  if (options.shard && !options.lockstep) {
+    throw InputError("--shard needs --lockstep: times are of one machine");
+  }
+  report::Claims claims(Certifying::shared_folder(options) / "claims", options.shard);
   const KeepGoing keep_going = [&] {
     if (stop()) throw report::Stopped{};
+    claims.keep();
   };
   Subject subject = load_subject(options.scene, keep_going);
   subject.depth = options.depth;
   subject.speed = options.speed;
   report::make_out_folder(options.out);
-  Certifying certifying(options, std::move(subject), keep_going, out, log);
+  Certifying certifying(options, std::move(subject), claims, keep_going, out, log);
   try {
     certifying.measure();
   } catch (const report::Stopped&) {
-    certifying.write();
+    if (!options.shard) certifying.write();
     return report::kExitStopped;
+  }
+  if (options.shard) {
+    out << report::text_of(certifying.share(), *options.shard);
+    return kExitDone;
   }
   return certifying.write() ? kExitDone : kExitFailed;
 }

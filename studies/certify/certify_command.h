@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 
 #include "modules/bus/bus.h"
+#include "studies/report/claims.h"
 
 namespace palpate::certify {
 
@@ -16,6 +18,7 @@ struct CertifyOptions {
   double speed = 0.04;    ///< of presses in the mean, of slides [m/s]
   bool lockstep = false;  ///< without the real processes: the same numbers every time
   bool quick = false;
+  std::optional<report::Shard> shard = {};  ///< measures groups that no other run does; lockstep
   bus::BusOptions bus;  ///< of the real processes; session: a name that nobody else has
 };
 

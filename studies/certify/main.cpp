@@ -23,10 +23,13 @@ int main(int argc, char** argv) {
   program.flag("--lockstep", options.lockstep,
                "Only what runs in one process: the same numbers every time");
   program.flag("--quick", options.quick, "Fewer disturbances, one row of slides: a minute or so");
+  std::string shard;
+  program.add("--shard", shard, std::string(report::kShardHelp) + "; with --lockstep");
   options.bus.session = launcher::random_session_name();
   runtime::add_bus_options(program, options.bus);
   return program.run(argc, argv, [&] {
     const runtime::StopSignal signal;
+    options.shard = report::shard_from(shard);
     return certify::run_certify(
         options, [&] { return signal.requested(); }, std::cout, std::cerr);
   });

@@ -97,13 +97,19 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
   if (options.again) std::filesystem::remove_all(options.out / "points");
   const PointStore store(options.out / "points");
   const runtime::StopSignal stop;
+  report::Claims claims(options.out / "points" / "claims", options.shard);
   const KeepGoing keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};
+    claims.keep();
   };
   try {
     const auto result = sweep(
-        of, options.extent, models, store,
+        of, options.extent, models, store, claims,
         [&](const Outlook& outlook) { log << line_of(outlook) << std::endl; }, keep_going);
+    if (options.shard) {
+      out << report::text_of(result.share, *options.shard);
+      return kExitDone;
+    }
     write_tables(result, options.out);
     print(result, out);
     print_noise(of, out);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct ChartOptions {
   Extent extent = Extent::kUsual;
   std::filesystem::path bullet_program;  ///< palpate-bench-bullet, if it was built
   bool peers = true;
-  bool again = false;  ///< measures anew what has been measured
+  bool again = false;                       ///< measures anew what has been measured
+  std::optional<report::Shard> shard = {};  ///< measures what no other does, writes no tables
 };
 
 /// What only_cases may hold.

@@ -28,9 +28,13 @@ int main(int argc, char** argv) {
               "Only these models: " + listed(chart::model_hierarchy()));
   const auto coarse = program.flag("--quick", quick, "Coarse meshes, one step: under 2 minutes");
   program.flag("--full", full, "Fine meshes, four steps: hours").excludes(coarse);
-  program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
+  const auto again =
+      program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
+  std::string shard;
+  program.add("--shard", shard, report::kShardHelp).excludes(again);
   program.flag_off("--no-peers", options.peers, "Without Bullet");
   return program.run(argc, argv, [&] {
+    options.shard = report::shard_from(shard);
     if (quick) options.extent = chart::Extent::kQuick;
     if (full) options.extent = chart::Extent::kFull;
     return chart::run_chart(options, std::cout, std::cerr);

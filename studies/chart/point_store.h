@@ -17,6 +17,10 @@ class PointStore {
   /// @returns false if it has not been measured, or by another version of this program
   bool read(const Case& of, const std::string& key, Measurement& out) const;
   void write(const Case& of, const std::string& key, const Measurement& measurement) const;
+  /// A word for the point, in all runs that would measure the same.
+  std::string point_key(const Case& of, const std::string& key) const {
+    return file_of(of, key).stem().string();
+  }
 
  private:
   std::filesystem::path file_of(const Case& of, const std::string& key) const;

@@ -78,23 +78,28 @@ struct Job {
   Measurement* result = nullptr;
 };
 
-void run(std::vector<Job>& jobs, const PointStore& store,
-         const std::function<void(const Outlook&)>& begin) {
+report::Share run(std::vector<Job>& jobs, const PointStore& store, report::Claims& claims,
+                  const std::function<void(const Outlook&)>& begin) {
   double left = 0;
   for (const Job& job : jobs) {
     if (!store.read(job.of, job.key, *job.result)) left += job.weight;
   }
   Pace pace;
+  std::vector<report::Point> points;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (!jobs[i].result->samples.empty()) continue;
-    begin(
-        {jobs[i].name, static_cast<int>(i), static_cast<int>(jobs.size()), pace.seconds_for(left)});
-    pace.begin();
-    *jobs[i].result = jobs[i].measure();
-    store.write(jobs[i].of, jobs[i].key, *jobs[i].result);
-    pace.finish(jobs[i].weight);
-    left -= jobs[i].weight;
+    const Job& job = jobs[i];
+    points.push_back({store.point_key(job.of, job.key),
+                      [&] { return store.read(job.of, job.key, *job.result); },
+                      [&, i] {
+                        begin({job.name, static_cast<int>(i), static_cast<int>(jobs.size()),
+                               pace.seconds_for(left)});
+                        pace.begin();
+                        store.write(job.of, job.key, job.measure());
+                        pace.finish(job.weight);
+                        left -= job.weight;
+                      }});
   }
+  return report::measure_points(points, claims);
 }
 
 }  // namespace
@@ -133,7 +138,8 @@ std::vector<Setting> settings_of(const Case& of, Extent extent) {
 
 SweepResult sweep(const std::vector<Case>& of, Extent extent,
                   const std::vector<std::string>& models, const PointStore& store,
-                  const std::function<void(const Outlook&)>& begin, const KeepGoing& keep_going) {
+                  report::Claims& claims, const std::function<void(const Outlook&)>& begin,
+                  const KeepGoing& keep_going) {
   SweepResult result;
   for (const Case& each : of) {
     for (const Setting& setting : settings_of(each, extent)) {
@@ -159,7 +165,8 @@ SweepResult sweep(const std::vector<Case>& of, Extent extent,
                     [&] { return measure(point.of, point.setting, keep_going); },
                     &point.measurement});
   }
-  run(jobs, store, begin);
+  result.share = run(jobs, store, claims, begin);
+  if (claims.shard()) return result;
   for (Point& point : result.points) {
     for (const ReferenceSolution& reference : result.references) {
       if (std::string(reference.of.name) == point.of.name) {

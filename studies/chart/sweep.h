@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "studies/chart/point_store.h"
+#include "studies/report/claims.h"
 
 namespace palpate::chart {
 
@@ -31,6 +32,7 @@ struct ReferenceSolution {
 struct SweepResult {
   std::vector<Point> points;
   std::vector<ReferenceSolution> references;
+  report::Share share;
 };
 
 /// What is about to be measured.
@@ -41,10 +43,13 @@ struct Outlook {
 };
 
 /// Measures what is not in the store yet, reference solutions first.
+/// @param claims  of a shard: what other runs measure is left out, and what is measured is not
+///                referred to references, which may not be there yet
 /// @param begin  told of each job before it is done
 /// @throws what a measurement throws; finished points stay in the store
 SweepResult sweep(const std::vector<Case>& of, Extent extent,
                   const std::vector<std::string>& models, const PointStore& store,
-                  const std::function<void(const Outlook&)>& begin, const KeepGoing& keep_going);
+                  report::Claims& claims, const std::function<void(const Outlook&)>& begin,
+                  const KeepGoing& keep_going);
 
 }  // namespace palpate::chart

@@ -18,6 +18,10 @@ class BlockStore {
   /// @returns false if the block is not there, or is of another version of this program
   bool read(std::uint64_t first, std::size_t count, std::vector<Outcome>& out) const;
   void write(std::uint64_t first, const std::vector<Outcome>& outcomes) const;
+  /// A word for the block, in all runs that would run the same.
+  std::string key(std::uint64_t first, std::size_t count) const {
+    return file_of(first, count).stem().string();
+  }
 
  private:
   std::filesystem::path file_of(std::uint64_t first, std::size_t count) const;

@@ -51,29 +51,39 @@ int run_one(const FuzzOptions& options, const ShapeStore& shapes, std::ostream& 
   return kExitFailed;
 }
 
-/// Blocks in order; finished ones are read.
-void run_all(const FuzzOptions& options, const ShapeStore& shapes, report::Progress& progress,
-             Tally& tally, std::ostream& log) {
+/// Blocks in order; finished ones are read, and those that another shard runs left out.
+report::Share run_all(const FuzzOptions& options, const ShapeStore& shapes,
+                      report::Progress& progress, Tally& tally, std::ostream& log) {
   const auto folder = options.out / "blocks";
   if (options.again) std::filesystem::remove_all(folder);
   const BlockStore store(folder, options.seed);
+  report::Claims claims(folder / "claims", options.shard);
   std::map<std::string, std::size_t> kept;
+  std::vector<report::Point> points;
   for (std::uint64_t first = 0; first < options.scenes; first += kBlock) {
     const std::size_t count = std::min(kBlock, options.scenes - first);
-    std::vector<Outcome> outcomes;
-    if (!store.read(first, count, outcomes)) {
-      outcomes.clear();
+    const auto read = [&, first, count] {
+      std::vector<Outcome> outcomes;
+      if (!store.read(first, count, outcomes)) return false;
+      for (std::size_t i = 0; i < count; ++i) tally.add(first + i, outcomes[i]);
+      return true;
+    };
+    const auto run = [&, first, count] {
+      std::vector<Outcome> outcomes;
       for (std::uint64_t k = first; k < first + count; ++k) {
         progress.at(double(k), double(options.scenes), "scenes");
+        claims.keep();
         outcomes.push_back(run_and_compare(random_scene(options.seed, k), shapes));
         const std::string kind = outcomes.back().kind();
         if (outcomes.back().ending != Ending::kFailed || ++kept[kind] > kKeptOfAKind) continue;
         keep(options, shapes, k, kind, log);
+        claims.keep();
       }
       store.write(first, outcomes);
-    }
-    for (std::size_t i = 0; i < count; ++i) tally.add(first + i, outcomes[i]);
+    };
+    points.push_back({store.key(first, count), read, run});
   }
+  return report::measure_points(points, claims);
 }
 
 }  // namespace
@@ -85,14 +95,16 @@ int run_fuzz(const FuzzOptions& options, std::ostream& out, std::ostream& log) {
   report::Progress progress(log, [&] { return stop.requested(); });
   progress.begin(fmt::format("fuzz, seed {}", options.seed));
   Tally tally;
+  report::Share share;
   try {
-    run_all(options, shapes, progress, tally, log);
+    share = run_all(options, shapes, progress, tally, log);
   } catch (const report::Stopped&) {
     tally.print(out);
     log << "stopped; finished blocks are not run again" << std::endl;
     return report::kExitStopped;
   }
   tally.print(out);
+  if (options.shard) out << report::text_of(share, *options.shard);
   return tally.failed() == 0 ? kExitDone : kExitFailed;
 }
 

@@ -6,13 +6,16 @@
 #include <iosfwd>
 #include <optional>
 
+#include "studies/report/claims.h"
+
 namespace palpate::fuzz {
 
 struct FuzzOptions {
   std::filesystem::path out = "out/fuzz";
   std::uint64_t scenes = 1000, seed = 1;
-  std::optional<std::uint64_t> only;  ///< this scene alone, in detail
-  bool again = false;                 ///< runs anew what has been run
+  std::optional<std::uint64_t> only;        ///< this scene alone, in detail
+  bool again = false;                       ///< runs anew what has been run
+  std::optional<report::Shard> shard = {};  ///< runs blocks that no other does
 };
 
 /// The whole command. Each failing scene is minimised and left in out/scene_k; blocks of finished

@@ -11,7 +11,13 @@ int main(int argc, char** argv) {
   program.add("-o,--out", options.out, "Folder for outcomes and failing scenes").shows_default();
   program.add("--scenes", options.scenes, "How many").range(1, 10'000'000).shows_default();
   program.add("--seed", options.seed, "Of the scenes").shows_default();
-  program.add("--scene", options.only, "Only this one, in detail");
-  program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
-  return program.run(argc, argv, [&] { return fuzz::run_fuzz(options, std::cout, std::cerr); });
+  const auto only = program.add("--scene", options.only, "Only this one, in detail");
+  const auto again =
+      program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
+  std::string shard;
+  program.add("--shard", shard, report::kShardHelp).excludes(again).excludes(only);
+  return program.run(argc, argv, [&] {
+    options.shard = report::shard_from(shard);
+    return fuzz::run_fuzz(options, std::cout, std::cerr);
+  });
 }

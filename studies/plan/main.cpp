@@ -22,5 +22,13 @@ int main(int argc, char** argv) {
       .range(1, 100)
       .shows_default();
   program.flag("--json", options.json, "Print JSON");
-  return program.run(argc, argv, [&] { return plan::run_plan(options, std::cout, std::cerr); });
+  program.add("--points", options.points, "Folder that shards share; what they left is used");
+  std::string shard;
+  program.add("--shard", shard,
+              "I/N, one of N runs on the same --points: judges candidates that no other run does, "
+              "writes no scene; afterwards a run without it does");
+  return program.run(argc, argv, [&] {
+    options.shard = report::shard_from(shard);
+    return plan::run_plan(options, std::cout, std::cerr);
+  });
 }

@@ -1,16 +1,18 @@
 #include "studies/plan/plan_command.h"
 
-#include <json/json.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <ostream>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "modules/core/error.h"
+#include "modules/runtime/program.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
@@ -18,7 +20,10 @@
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
 #include "studies/plan/plan.h"
+#include "studies/plan/plan_report.h"
 #include "studies/plan/probe_paths.h"
+#include "studies/plan/verdict_store.h"
+#include "studies/report/claims.h"
 #include "studies/report/measures.h"
 #include "studies/report/progress.h"
 
@@ -79,97 +84,6 @@ void check_touched(const scene::Scene& scene, const Course& reference, double se
   throw untouched(scene, seconds);
 }
 
-/// "12.3 ± 2.1%", or of what has no bar "12.3%".
-std::string percent(double part, double bar) {
-  if (!std::isfinite(part)) return "diverged";
-  return bar > 0 ? fmt::format("{:.1f} ± {:.1f}%", 100 * part, 100 * bar)
-                 : fmt::format("{:.1f}%", 100 * part);
-}
-
-std::string text_of(const Feel& feel) {
-  return fmt::format("{:.0f}% too {}, uneven by {:.0f}%, in motion {:.0f}%, sideways {:.0f}%",
-                     100 * std::abs(feel.stiffness), feel.stiffness > 0 ? "hard" : "soft",
-                     100 * feel.uneven, 100 * feel.moving, 100 * feel.sideways);
-}
-
-/// What was measured of one organ, the cheapest first.
-struct OrganPlan {
-  std::string name;
-  std::vector<Verdict> verdicts;
-  const Verdict* chosen = nullptr;
-};
-
-/// Of a candidate that meets all needs.
-std::string why_not(const Verdict& verdict, const Verdict* chosen) {
-  if (chosen == nullptr) return "with the others too much for the cores";
-  const double ratio = verdict.total_load / chosen->total_load;
-  return ratio <= 1 + kLoadNoise ? "as good: its load is the choice's, but for noise"
-                                 : fmt::format("{:.2f} times the load of the choice", ratio);
-}
-
-void print(const OrganPlan& plan, bool solid, std::ostream& out) {
-  out << fmt::format("{:<58} {:>7} {:>7} {:>14} {:>11} {:>9}  {}\n", "candidate", "nodes", "load",
-                     "force", "surface[mm]", "volume", "why not");
-  for (const Verdict& v : plan.verdicts) {
-    std::string why = &v == plan.chosen ? "CHOSEN" : fmt::format("{}", fmt::join(v.failures, "; "));
-    if (why.empty()) why = why_not(v, plan.chosen);
-    out << fmt::format("{:<58} {:>7} {:>6.1f}% {:>14} {:>11.3g} {:>9.1e}  {}\n", v.candidate.name(),
-                       v.node_count, 100 * v.total_load,
-                       percent(v.errors.force, v.errors.force_bar), 1e3 * v.errors.surface,
-                       v.errors.volume, why);
-    if (solid && std::isfinite(v.errors.force)) {
-      out << "    " << text_of(v.errors.feel) << '\n';
-    }
-  }
-}
-
-void print_margins(const scene::Needs& needs, const Verdict& v, std::ostream& out) {
-  out << "\nchosen: " << v.candidate.name() << "\nmargins:";
-  const auto margin = [&](const char* what, const std::optional<double>& need, double value,
-                          double bar) {
-    if (!need) return;
-    out << fmt::format(" {} {:.2g}{} of {:.2g} allowed;", what, value,
-                       bar > 0 ? fmt::format(" ± {:.1g}", bar) : "", *need);
-  };
-  margin("force error", needs.force_error, v.errors.force, v.errors.force_bar);
-  margin("surface error [m]", needs.surface_error, v.errors.surface, v.errors.surface_bar);
-  margin("volume error", needs.volume_error, v.errors.volume, 0);
-  out << fmt::format(" load {:.2f} of {:.2f} cores\n", v.total_load,
-                     kLargestLoad * static_cast<double>(needs.cores));
-}
-
-/// @param written  the scene file; empty: none
-void print_json(const std::vector<OrganPlan>& plans, const std::filesystem::path& written,
-                std::ostream& out) {
-  Json::Value value;
-  value["machine"] = report::machine_name();
-  value["candidates"] = Json::arrayValue;
-  for (const OrganPlan& plan : plans) {
-    for (const Verdict& v : plan.verdicts) {
-      Json::Value row;
-      row["organ"] = plan.name;
-      row["name"] = v.candidate.name();
-      row["nodes"] = Json::UInt64(v.node_count);
-      row["load_cores"] = v.total_load;
-      row["force_error"] = v.errors.force;
-      row["force_error_bar"] = v.errors.force_bar;
-      row["surface_error_m"] = v.errors.surface;
-      row["surface_error_bar_m"] = v.errors.surface_bar;
-      row["volume_error"] = v.errors.volume;
-      row["feel"]["too_hard"] = v.errors.feel.stiffness;
-      row["feel"]["uneven"] = v.errors.feel.uneven;
-      row["feel"]["in_motion"] = v.errors.feel.moving;
-      row["feel"]["sideways"] = v.errors.feel.sideways;
-      row["chosen"] = &v == plan.chosen;
-      row["misses"] = Json::arrayValue;
-      for (const auto& failure : v.failures) row["misses"].append(failure);
-      value["candidates"].append(row);
-    }
-  }
-  if (!written.empty()) value["written"] = written.string();
-  out << Json::writeString(Json::StreamWriterBuilder(), value) << '\n';
-}
-
 void write_scene(const scene::Scene& scene, const std::filesystem::path& file) {
   const auto part = file.string() + ".part";
   std::ofstream stream(part);
@@ -177,32 +91,6 @@ void write_scene(const scene::Scene& scene, const std::filesystem::path& file) {
   stream.flush();
   if (!stream) throw std::runtime_error(part + ": cannot be written");
   std::filesystem::rename(part, file);
-}
-
-/// @param written  the scene file; empty: none
-void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
-                const std::filesystem::path& written, std::ostream& out) {
-  for (const OrganPlan& plan : plans) {
-    if (plans.size() > 1) out << "\norgan '" << plan.name << "'\n";
-    print(plan, is_solid(scene), out);
-  }
-  out << "load: of one core; force: RMS difference from the "
-      << (is_solid(scene) ? "truth, along it, over its RMS, and how far that may be off; on "
-                          : "reference over its RMS; on ")
-      << report::machine_name() << '\n';
-  if (written.empty()) {
-    out << "\nnothing meets the needs. What would:\n";
-    for (const OrganPlan& plan : plans) {
-      for (const auto& way : ways_out(scene.needs, plan.verdicts)) out << "  " << way << '\n';
-    }
-    return;
-  }
-  for (const OrganPlan& plan : plans) {
-    print_margins(scene.needs, *plan.chosen, out);
-    if (is_solid(scene))
-      out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
-  }
-  out << "written: " << written.string() << '\n';
 }
 
 /// What candidates of one organ are judged by.
@@ -247,14 +135,19 @@ void run_references(const scene::Scene& scene, const PlanOptions& options, std::
       << std::endl;
 }
 
+/// Where probes touch a solid.
+void find_places(const scene::Scene& scene, const PlanOptions& options, Standard& standard) {
+  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
+  if (paths.touching(options.touches).empty()) throw untouched(scene, options.seconds);
+  standard.touched = paths.regions();
+  standard.radius = paths.smallest_radius();
+}
+
 /// Equilibria of quadratic elements at some of the poses in which probes touch.
 void find_truths(const scene::Scene& scene, const PlanOptions& options, std::ostream& log,
                  const std::function<void()>& keep_going, Standard& standard) {
   const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
   const auto times = paths.touching(options.touches);
-  if (times.empty()) throw untouched(scene, options.seconds);
-  standard.touched = paths.regions();
-  standard.radius = paths.smallest_radius();
   log << fmt::format("truth: equilibria of quadratic elements at {} instants", times.size())
       << std::endl;
   const auto body = truth::body_of(scene.organs[0]);
@@ -288,22 +181,55 @@ void find_truths(const scene::Scene& scene, const PlanOptions& options, std::ost
   }
 }
 
+/// What all organs' measurements share.
+struct Sharing {
+  report::Claims claims;
+  VerdictStore store;
+  report::Share share = {};
+  std::set<std::string> machines = {};  ///< that loads were measured on
+};
+
 /// @param scene  of one organ
 std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& options,
-                                 std::ostream& log, const std::function<void()>& keep_going) {
+                                 Sharing& sharing, std::ostream& log,
+                                 const std::function<void()>& keep_going) {
   Standard standard;
   standard.marks = marks_on(scene::load_organ(scene.organs[0]).surface);
-  (is_solid(scene) ? find_truths : run_references)(scene, options, log, keep_going, standard);
-  std::vector<Verdict> verdicts;
+  if (is_solid(scene)) find_places(scene, options, standard);
   const auto candidates = candidates_of(scene, standard.touched, standard.radius);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
+  const std::string& organ = scene.organs[0].name;
+  bool is_known = false;
+  std::map<std::size_t, StoredVerdict> measured;
+  const auto measure = [&](std::size_t i) {
+    if (!std::exchange(is_known, true)) {
+      (is_solid(scene) ? find_truths : run_references)(scene, options, log, keep_going, standard);
+    }
     log << fmt::format("{} of {}: {}", i + 1, candidates.size(), candidates[i].name()) << std::endl;
     const auto candidate_scene = scene_with(scene, candidates[i]);
     const auto shape = scene::load_organ(candidate_scene.organs[0]);
     const Course course = run_course(candidate_scene, shape, standard.marks, options.seconds,
                                      standard.held, keep_going);
-    verdicts.push_back(judge(scene.needs, candidates[i], course, standard.errors_of(course)));
+    measured[i] = {judge(scene.needs, candidates[i], course, standard.errors_of(course)),
+                   report::machine_name()};
+    if (options.shard) sharing.store.write(organ, measured[i]);
+  };
+  std::vector<Verdict> verdicts;
+  std::vector<report::Point> points;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const auto read = [&, i] {
+      StoredVerdict stored;
+      if (measured.contains(i)) {
+        stored = measured.at(i);
+      } else if (!sharing.store.read(organ, candidates[i], stored)) {
+        return false;
+      }
+      sharing.machines.insert(stored.machine);
+      verdicts.push_back(stored.verdict);
+      return true;
+    };
+    points.push_back({sharing.store.key(organ, candidates[i]), read, [&, i] { measure(i); }});
   }
+  sharing.share += report::measure_points(points, sharing.claims);
   std::stable_sort(verdicts.begin(), verdicts.end(),
                    [](const Verdict& a, const Verdict& b) { return a.total_load < b.total_load; });
   return verdicts;
@@ -330,14 +256,32 @@ bool choose(const scene::Needs& needs, std::vector<OrganPlan>& plans) {
   return plans[0].chosen != nullptr;
 }
 
+/// What verdicts depend on.
+std::string told(const scene::Scene& scene, const PlanOptions& options) {
+  std::string text = fmt::format("{} {} for {} s, {} touches", runtime::version_text(),
+                                 scene::scene_digest(scene), options.seconds, options.touches);
+  for (const auto& organ : scene.organs) {
+    for (const Vec3& node : scene::load_skin(organ).nodes) {
+      text += fmt::format(" {} {} {}", node.x(), node.y(), node.z());
+    }
+  }
+  return fmt::format("{:016x}", std::hash<std::string>{}(text));
+}
+
 }  // namespace
 
 int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
   const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
   check_plannable(scene);
+  if (options.shard && options.points.empty()) {
+    throw InputError("--shard needs --points, the folder that all shards share");
+  }
+  Sharing sharing{{options.points / "claims", options.shard},
+                  {options.points, told(scene, options)}};
   const runtime::StopSignal stop;
   const auto keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};
+    sharing.claims.keep();
   };
   try {
     std::vector<OrganPlan> plans;
@@ -345,7 +289,11 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       scene::Scene alone = scene;
       alone.organs = {organ};
       if (scene.organs.size() > 1) log << "organ '" << organ.name << "'" << std::endl;
-      plans.push_back({organ.name, measure_all(alone, options, log, keep_going), nullptr});
+      plans.push_back({organ.name, measure_all(alone, options, sharing, log, keep_going), nullptr});
+    }
+    if (options.shard) {
+      out << report::text_of(sharing.share, *options.shard);
+      return kExitDone;
     }
     const bool is_met = choose(scene.needs, plans);
     std::filesystem::path file;
@@ -360,7 +308,8 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       }
       write_scene(planned, file);
     }
-    options.json ? print_json(plans, file, out) : print_text(scene, plans, file, out);
+    options.json ? print_json(plans, sharing.machines, file, out)
+                 : print_text(scene, plans, sharing.machines, file, out);
     return is_met ? kExitDone : kExitFailed;
   } catch (const report::Stopped&) {
     log << "stopped; nothing was written" << std::endl;

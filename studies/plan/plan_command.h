@@ -2,8 +2,11 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "studies/report/claims.h"
 
 namespace palpate::plan {
 
@@ -11,9 +14,11 @@ struct PlanOptions {
   std::filesystem::path scene;
   std::filesystem::path out;  ///< scene file to write; empty: NAME.planned.yaml beside the scene
   double seconds = 6;         ///< of the scene, from its start
-  std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
-  bool json = false;                       ///< the verdicts as JSON
-  std::size_t touches = 6;                 ///< instants at which a solid's truth is computed
+  std::vector<std::string> settings = {};   ///< "key=value" each, instead of what the scene says
+  bool json = false;                        ///< the verdicts as JSON
+  std::size_t touches = 6;                  ///< instants at which a solid's truth is computed
+  std::filesystem::path points = {};        ///< folder of verdicts that shards left; empty: none
+  std::optional<report::Shard> shard = {};  ///< judges candidates that no other run does
 };
 
 /// The whole command: measures, prints choice and runners-up with what they lost by, writes the

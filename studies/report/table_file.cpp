@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "studies/report/claims.h"
+
 namespace palpate::report {
 namespace {
 
@@ -18,7 +20,7 @@ std::string quoted(const std::string& cell) {
 }  // namespace
 
 TableFile::TableFile(std::filesystem::path file, const std::vector<std::string>& columns)
-    : file_(std::move(file)), part_(file_), stream_((part_ += ".part")) {
+    : file_(std::move(file)), part_(file_), stream_((part_ += "." + process_word() + ".part")) {
   write_row(columns);
   if (!stream_) throw std::runtime_error("cannot write " + part_.string());
 }

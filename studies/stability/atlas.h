@@ -67,6 +67,10 @@ class ColumnStore {
   ///          version of this program
   bool read(const Map& map, const std::string& series, double x, Column& out) const;
   void write(const Map& map, const Column& column) const;
+  /// A word for the column, in all runs that would measure the same.
+  std::string key(const Map& map, const std::string& series, double x) const {
+    return file_of(map, series, x).stem().string();
+  }
 
  private:
   std::filesystem::path file_of(const Map& map, const std::string& series, double x) const;

@@ -76,22 +76,21 @@ std::vector<std::uint32_t> outer_faces(const deformation::TaylorHoodElements& so
   return faces;
 }
 
-/// Force and divergence in a file of their own, measured if it is not there.
-LockingPoint kept(const std::filesystem::path& file, const std::function<LockingPoint()>& measure) {
+/// Force and divergence, in a file of their own. @returns false if it is not there
+bool read_point(const std::filesystem::path& file, double& force, bool& has_diverged) {
   std::ifstream stream(file);
-  LockingPoint point;
   char comma = 0;
-  if (std::string title; std::getline(stream, title) && stream >> point.force >> comma) {
-    int diverged = 0;
-    stream >> diverged;
-    point.diverged = diverged != 0;
-    return point;
-  }
-  point = measure();
+  int diverged = 0;
+  std::string title;
+  if (!std::getline(stream, title) || !(stream >> force >> comma >> diverged)) return false;
+  has_diverged = diverged != 0;
+  return true;
+}
+
+void write_point(const std::filesystem::path& file, double force, bool diverged) {
   report::TableFile table(file, {"force_n", "diverged"});
-  table.write_row({point.force, double(point.diverged)});
+  table.write_row({force, double(diverged)});
   table.finish();
-  return point;
 }
 
 }  // namespace
@@ -139,31 +138,50 @@ std::vector<double> locking_ratios(bool quick) {
   return {0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499, 0.4999};
 }
 
-std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
+std::vector<report::Point> locking_points(const std::vector<double>& ratios,
                                           const std::filesystem::path& folder,
-                                          const KeepGoing& keep_going) {
-  std::vector<LockingPoint> points;
+                                          const KeepGoing& keep_going,
+                                          std::vector<LockingPoint>& results) {
+  const auto key = [](const std::string& what, double ratio) {
+    return fmt::format("locking-{}-{:g}-v{}", what, ratio, kLockingVersion);
+  };
+  results.clear();
   for (const scene::ModelFormat& format : scene::model_formats()) {
     if (format.mesh != scene::MeshKind::kLinearTetrahedra) continue;
-    const std::string model = format.word;
     for (const double ratio : ratios) {
-      const auto file = [&](const char* what) {
-        return folder / fmt::format("locking-{}-{:g}-v{}.csv", what, ratio, kLockingVersion);
-      };
-      const double reference = kept(file("reference"), [&] {
-                                 LockingPoint known;
-                                 known.force = locking_reference(ratio, keep_going);
-                                 return known;
-                               }).force;
-      LockingPoint point =
-          kept(file(model.c_str()), [&] { return locking_point(model, ratio, keep_going); });
-      point.model = model;
+      LockingPoint& point = results.emplace_back();
+      point.model = format.word;
       point.poisson_ratio = ratio;
       point.computed_poisson_ratio =
-          deformation::computed_poisson_ratio(ball_scene(model, ratio).organs[0]);
-      point.reference_force = reference;
-      points.push_back(point);
+          deformation::computed_poisson_ratio(ball_scene(point.model, ratio).organs[0]);
     }
+  }
+  std::vector<report::Point> points;
+  for (const double ratio : ratios) {
+    const auto file = folder / (key("reference", ratio) + ".csv");
+    points.push_back({key("reference", ratio),
+                      [=, &results] {
+                        double force = 0;
+                        bool ignored = false;
+                        if (!read_point(file, force, ignored)) return false;
+                        for (LockingPoint& point : results) {
+                          if (point.poisson_ratio == ratio) point.reference_force = force;
+                        }
+                        return true;
+                      },
+                      [=] { write_point(file, locking_reference(ratio, keep_going), false); }});
+  }
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const std::string model = results[i].model;
+    const double ratio = results[i].poisson_ratio;
+    const auto file = folder / (key(model, ratio) + ".csv");
+    points.push_back(
+        {key(model, ratio),
+         [=, &results] { return read_point(file, results[i].force, results[i].diverged); },
+         [=] {
+           const auto measured = locking_point(model, ratio, keep_going);
+           write_point(file, measured.force, measured.diverged);
+         }});
   }
   return points;
 }

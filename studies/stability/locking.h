@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modules/scene/scene.h"
+#include "studies/report/claims.h"
 #include "studies/stability/runs.h"
 
 namespace palpate::stability {
@@ -37,11 +38,13 @@ LockingPoint locking_point(const std::string& model, double poisson_ratio,
 /// Poisson's ratios of the map.
 std::vector<double> locking_ratios(bool quick);
 
-/// All linear tetrahedra at each of `ratios`.
-/// @param folder  keeps a file per point, which a later call does not measure again
-std::vector<LockingPoint> measure_locking(const std::vector<double>& ratios,
+/// All linear tetrahedra at each of `ratios`, and what they are compared with.
+/// @param folder   keeps a file per point
+/// @param results  filled as the points are read; must outlive them
+std::vector<report::Point> locking_points(const std::vector<double>& ratios,
                                           const std::filesystem::path& folder,
-                                          const KeepGoing& keep_going);
+                                          const KeepGoing& keep_going,
+                                          std::vector<LockingPoint>& results);
 
 void write_locking(const std::vector<LockingPoint>& points, const std::filesystem::path& file);
 

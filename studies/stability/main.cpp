@@ -12,7 +12,12 @@ int main(int argc, char** argv) {
   program.add("--only", options.only_maps, "Only these maps").one_of(stability::map_names());
   program.add("--series", options.only_series, "Only these models or loops");
   program.flag("--quick", options.quick, "Fewer models and values: under 90 s");
-  program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
-  return program.run(argc, argv,
-                     [&] { return stability::run_stability(options, std::cout, std::cerr); });
+  const auto again =
+      program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
+  std::string shard;
+  program.add("--shard", shard, report::kShardHelp).excludes(again);
+  return program.run(argc, argv, [&] {
+    options.shard = report::shard_from(shard);
+    return stability::run_stability(options, std::cout, std::cerr);
+  });
 }

@@ -10,6 +10,7 @@
 #include "modules/core/error.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/schema.h"
+#include "studies/report/claims.h"
 #include "studies/report/measures.h"
 #include "studies/report/plot_script.h"
 #include "studies/report/progress.h"
@@ -59,23 +60,28 @@ std::vector<Map> wanted_maps(const StabilityOptions& options) {
   return wanted;
 }
 
-std::vector<Column> measure(const std::vector<Map>& all, const ColumnStore& store,
-                            std::ostream& log, const KeepGoing& keep_going) {
-  std::vector<Column> columns;
+/// A point for each column.
+std::vector<report::Point> points_of(const std::vector<Map>& all, const ColumnStore& store,
+                                     std::ostream& log, const KeepGoing& keep_going,
+                                     std::vector<Column>& columns) {
+  std::vector<report::Point> points;
+  std::size_t count = 0;
+  for (const Map& map : all) count += map.series.size() * map.xs.size();
+  columns.resize(count);
   for (const Map& map : all) {
     for (const std::string& series : map.series) {
-      log << fmt::format("{}: {}", map.name, series) << std::endl;
       for (const double x : map.xs) {
-        Column column;
-        if (!store.read(map, series, x, column)) {
-          column = measure_column(map, series, x, keep_going);
-          store.write(map, column);
-        }
-        columns.push_back(std::move(column));
+        Column& column = columns[points.size()];
+        points.push_back(
+            {store.key(map, series, x), [&, x] { return store.read(map, series, x, column); },
+             [&, x] {
+               log << fmt::format("{}: {}, x = {:.4g}", map.name, series, x) << std::endl;
+               store.write(map, measure_column(map, series, x, keep_going));
+             }});
       }
     }
   }
-  return columns;
+  return points;
 }
 
 const char* name_of(Edge edge) {
@@ -217,22 +223,33 @@ std::vector<std::string> map_names() {
 int run_stability(const StabilityOptions& options, std::ostream& out, std::ostream& log) {
   const auto wanted = wanted_maps(options);
   report::make_out_folder(options.out);
-  const auto points = options.out / "points";
-  if (options.again) std::filesystem::remove_all(points);
-  const ColumnStore store(points);
+  const auto folder = options.out / "points";
+  if (options.again) std::filesystem::remove_all(folder);
+  const ColumnStore store(folder);
+  report::Claims claims(folder / "claims", options.shard);
   const runtime::StopSignal stop;
   const KeepGoing keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};
+    claims.keep();
   };
   try {
-    const auto columns = measure(wanted, store, log, keep_going);
+    std::vector<Column> columns;
+    auto points = points_of(wanted, store, log, keep_going, columns);
+    std::vector<LockingPoint> locking;
+    if (wants(options, kLocking)) {
+      const auto more = locking_points(locking_ratios(options.quick), folder, keep_going, locking);
+      points.insert(points.end(), more.begin(), more.end());
+    }
+    const report::Share share = report::measure_points(points, claims);
+    if (options.shard) {
+      out << report::text_of(share, *options.shard);
+      return kExitDone;
+    }
     write_tries(columns, options.out / "atlas.csv");
     write_frontiers(columns, options.out / "frontiers.csv");
     print(columns, out);
     print_surprises(columns, out);
     if (wants(options, kLocking)) {
-      log << kLocking << std::endl;
-      const auto locking = measure_locking(locking_ratios(options.quick), points, keep_going);
       write_locking(locking, options.out / "locking.csv");
       print_locking(locking, out);
     }
@@ -242,7 +259,7 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
         << "; points/ is what a next run starts from\n";
     return kExitDone;
   } catch (const report::Stopped&) {
-    log << "stopped; finished points stay in " << points.string() << " and are not measured again"
+    log << "stopped; finished points stay in " << folder.string() << " and are not measured again"
         << std::endl;
     return report::kExitStopped;
   }

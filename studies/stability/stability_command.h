@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "studies/report/claims.h"
 
 namespace palpate::stability {
 
@@ -13,7 +16,8 @@ struct StabilityOptions {
   std::vector<std::string> only_maps;    ///< empty: all of map_names()
   std::vector<std::string> only_series;  ///< models or loops; empty: all of each map
   bool quick = false;
-  bool again = false;  ///< measures anew what has been measured
+  bool again = false;                       ///< measures anew what has been measured
+  std::optional<report::Shard> shard = {};  ///< measures what no other does, writes no tables
 };
 
 /// Of maps.h, and "locking".

@@ -45,6 +45,30 @@ TEST_CASE("certify command: in lockstep it writes the same bytes each time") {
   CHECK(std::filesystem::exists(scene.folder() / "one/certificate.html"));
 }
 
+TEST_CASE("certify command: shards in one folder make the certificate of one machine") {
+  // Oracle: the same bytes without shards; a plain run afterwards measures nothing.
+  const BallScene scene(kFingerFromAbove);
+  std::ostringstream out, log, told, nothing;
+  const auto go_on = [] { return false; };
+  auto options = options_for(scene, "alone");
+  const int code = run_certify(options, go_on, out, log);
+  options = options_for(scene, "shared");
+  for (const std::size_t index : {2u, 1u}) {
+    options.shard = report::Shard{index, 2};
+    CHECK(run_certify(options, go_on, told, log) == kExitDone);
+    CHECK_FALSE(std::filesystem::exists(scene.folder() / "shared/certificate.json"));
+  }
+  CHECK_THAT(told.str(), Catch::Contains("shard 1/2: 0 points measured here"));
+  options.shard.reset();
+  CHECK(run_certify(options, go_on, out, nothing) == code);
+  CHECK(nothing.str().find("law …") == std::string::npos);
+  CHECK(text_in(scene.folder() / "shared/certificate.json") ==
+        text_in(scene.folder() / "alone/certificate.json"));
+  options.shard = report::Shard{1, 2};
+  options.lockstep = false;
+  CHECK_THROWS_WITH(run_certify(options, go_on, out, log), Catch::Contains("needs --lockstep"));
+}
+
 TEST_CASE("certify command: stopped, it leaves what is done, marked incomplete") {
   // Oracle: the promise of docs/certify.md.
   const BallScene scene(kFingerFromAbove);

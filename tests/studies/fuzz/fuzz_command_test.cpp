@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "studies/fuzz/block_store.h"
 #include "tests/studies/chart/folders.h"
 
 namespace palpate::fuzz {
@@ -23,6 +24,31 @@ TEST_CASE("fuzz command: fifty random scenes run without an unguarded failure, a
   INFO(log.str());
   run_fuzz(options, again, log);
   CHECK(again.str() == out.str());
+}
+
+TEST_CASE("fuzz command: shards in one folder add up to the tally of one machine") {
+  // Oracle: a run without shards. The first block is its own: what is stored is not run again.
+  const chart::testing::WorkFolder alone, shared;
+  FuzzOptions options;
+  options.out = alone.path;
+  options.scenes = 102;
+  std::ostringstream expected, merged, log;
+  run_fuzz(options, expected, log);
+  options.out = shared.path;
+  const BlockStore store(shared.path / "blocks", options.seed);
+  std::vector<Outcome> first_block;
+  REQUIRE(BlockStore(alone.path / "blocks", options.seed).read(0, kBlock, first_block));
+  store.write(0, first_block);
+  std::ostringstream told;
+  for (const std::size_t index : {2u, 1u}) {
+    options.shard = report::Shard{index, 2};
+    run_fuzz(options, told, log);
+  }
+  CHECK_THAT(told.str(), Catch::Contains("shard 2/2: 1 points measured here, 1 stored before, 0") &&
+                             Catch::Contains("shard 1/2: 0 points measured here, 2 stored before"));
+  options.shard.reset();
+  run_fuzz(options, merged, log);
+  CHECK(merged.str() == expected.str());
 }
 
 }  // namespace

@@ -2,9 +2,11 @@
 
 #include <json/json.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "modules/core/data_folder.h"
@@ -39,6 +41,40 @@ organs:
           - {to_m: [0, 0, 0.052], duration_s: 0.5}
 )" << needs;
   return folder / "scene.yaml";
+}
+
+TEST_CASE("plan command: shards judge each candidate once, and a run afterwards judges none") {
+  // Oracle: a plan without shards; errors have no clock and are the same bits, loads have one.
+  const chart::testing::WorkFolder folder;
+  PlanOptions options;
+  options.seconds = 0.3;
+  options.json = true;
+  options.scene = write_scene(folder.path, "needs: {surface_error_m: 0.1, step_hz: 50}\n", "", 120);
+  std::ostringstream alone, merged, log, nothing, told;
+  CHECK(run_plan(options, alone, log) == kExitDone);
+  options.shard = report::Shard{1, 2};
+  CHECK_THROWS_WITH(run_plan(options, told, log), Catch::Contains("--shard needs --points"));
+  options.points = folder.path / "points";
+  for (const std::size_t index : {2u, 1u}) {
+    options.shard = report::Shard{index, 2};
+    CHECK(run_plan(options, told, log) == kExitDone);
+  }
+  CHECK_THAT(told.str(), Catch::Contains("shard 1/2: 0 points measured here"));
+  options.shard.reset();
+  CHECK(run_plan(options, merged, nothing) == kExitDone);
+  CHECK(nothing.str().empty());
+  const auto errors_in = [](const std::string& text) {
+    Json::Value json;
+    std::istringstream(text) >> json;
+    std::map<std::string, std::array<double, 2>> errors;
+    for (const auto& row : json["candidates"]) {
+      errors[row["name"].asString()] = {row["surface_error_m"].asDouble(),
+                                        row["volume_error"].asDouble()};
+    }
+    return errors;
+  };
+  CHECK(errors_in(alone.str()).size() > 2);
+  CHECK(errors_in(merged.str()) == errors_in(alone.str()));
 }
 
 TEST_CASE("plan command: it writes a scene that can be read, or says what would be needed") {

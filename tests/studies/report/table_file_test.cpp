@@ -33,7 +33,8 @@ TEST_CASE("table file: without finish nothing is left, and what was there stays"
 
 TEST_CASE("table file: where nothing can be written it says so") {
   // Oracle: the message.
-  CHECK_THROWS_WITH(TableFile("/nowhere/a.csv", {"x"}), "cannot write /nowhere/a.csv.part");
+  CHECK_THROWS_WITH(TableFile("/nowhere/a.csv", {"x"}),
+                    Catch::StartsWith("cannot write /nowhere/a.csv.") && Catch::EndsWith(".part"));
 }
 
 }  // namespace

@@ -45,6 +45,32 @@ TEST_CASE("stability command: tables and maps appear, and a second run finds the
             std::filesystem::directory_iterator(folder.path / "points")->path()) == measured);
 }
 
+TEST_CASE("stability command: shards in one folder make the tables of one machine, byte for byte") {
+  // Oracle: a run without shards. No clock is in the atlas.
+  const chart::testing::WorkFolder alone, shared;
+  StabilityOptions options = quick_in(alone.path);
+  options.only_maps = {"step_stiffness"};
+  options.only_series = {"implicit_volume", "mass_spring"};
+  std::ostringstream out, log;
+  REQUIRE(run_stability(options, out, log) == kExitDone);
+  options.out = shared.path;
+  for (const std::size_t index : {2u, 1u}) {
+    options.shard = report::Shard{index, 2};
+    std::ostringstream told;
+    REQUIRE(run_stability(options, told, log) == kExitDone);
+    CHECK_THAT(told.str(), Catch::StartsWith("shard " + std::to_string(index) + "/2: "));
+    CHECK_FALSE(std::filesystem::exists(shared.path / "atlas.csv"));
+  }
+  options.shard.reset();
+  std::ostringstream merged, nothing;
+  REQUIRE(run_stability(options, merged, nothing) == kExitDone);
+  CHECK(nothing.str().empty());  // nothing was left to measure
+  for (const char* table : {"atlas.csv", "frontiers.csv"}) {
+    CHECK(text_of(shared.path / table) == text_of(alone.path / table));
+    CHECK_FALSE(text_of(shared.path / table).empty());
+  }
+}
+
 TEST_CASE("stability command: unknown maps and series are refused with what there is") {
   // Oracle: the messages.
   const chart::testing::WorkFolder folder;

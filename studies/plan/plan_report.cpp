@@ -1,0 +1,132 @@
+#include "studies/plan/plan_report.h"
+
+#include <json/json.h>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <cmath>
+#include <ostream>
+
+namespace palpate::plan {
+namespace {
+
+bool of_solid(const scene::Scene& scene) {
+  return scene.needs.contents == scene::Needs::Contents::kSolid;
+}
+
+std::string machines_text(const std::set<std::string>& machines) {
+  return fmt::format("{}", fmt::join(machines, "; "));
+}
+
+/// "12.3 ± 2.1%", or of what has no bar "12.3%".
+std::string percent(double part, double bar) {
+  if (!std::isfinite(part)) return "diverged";
+  return bar > 0 ? fmt::format("{:.1f} ± {:.1f}%", 100 * part, 100 * bar)
+                 : fmt::format("{:.1f}%", 100 * part);
+}
+
+std::string text_of(const Feel& feel) {
+  return fmt::format("{:.0f}% too {}, uneven by {:.0f}%, in motion {:.0f}%, sideways {:.0f}%",
+                     100 * std::abs(feel.stiffness), feel.stiffness > 0 ? "hard" : "soft",
+                     100 * feel.uneven, 100 * feel.moving, 100 * feel.sideways);
+}
+
+/// Of a candidate that meets all needs.
+std::string why_not(const Verdict& verdict, const Verdict* chosen) {
+  if (chosen == nullptr) return "with the others too much for the cores";
+  const double ratio = verdict.total_load / chosen->total_load;
+  return ratio <= 1 + kLoadNoise ? "as good: its load is the choice's, but for noise"
+                                 : fmt::format("{:.2f} times the load of the choice", ratio);
+}
+
+void print(const OrganPlan& plan, bool solid, std::ostream& out) {
+  out << fmt::format("{:<58} {:>7} {:>7} {:>14} {:>11} {:>9}  {}\n", "candidate", "nodes", "load",
+                     "force", "surface[mm]", "volume", "why not");
+  for (const Verdict& v : plan.verdicts) {
+    std::string why = &v == plan.chosen ? "CHOSEN" : fmt::format("{}", fmt::join(v.failures, "; "));
+    if (why.empty()) why = why_not(v, plan.chosen);
+    out << fmt::format("{:<58} {:>7} {:>6.1f}% {:>14} {:>11.3g} {:>9.1e}  {}\n", v.candidate.name(),
+                       v.node_count, 100 * v.total_load,
+                       percent(v.errors.force, v.errors.force_bar), 1e3 * v.errors.surface,
+                       v.errors.volume, why);
+    if (solid && std::isfinite(v.errors.force)) {
+      out << "    " << text_of(v.errors.feel) << '\n';
+    }
+  }
+}
+
+void print_margins(const scene::Needs& needs, const Verdict& v, std::ostream& out) {
+  out << "\nchosen: " << v.candidate.name() << "\nmargins:";
+  const auto margin = [&](const char* what, const std::optional<double>& need, double value,
+                          double bar) {
+    if (!need) return;
+    out << fmt::format(" {} {:.2g}{} of {:.2g} allowed;", what, value,
+                       bar > 0 ? fmt::format(" ± {:.1g}", bar) : "", *need);
+  };
+  margin("force error", needs.force_error, v.errors.force, v.errors.force_bar);
+  margin("surface error [m]", needs.surface_error, v.errors.surface, v.errors.surface_bar);
+  margin("volume error", needs.volume_error, v.errors.volume, 0);
+  out << fmt::format(" load {:.2f} of {:.2f} cores\n", v.total_load,
+                     kLargestLoad * static_cast<double>(needs.cores));
+}
+
+}  // namespace
+
+void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>& machines,
+                const std::filesystem::path& written, std::ostream& out) {
+  Json::Value value;
+  value["machine"] = machines_text(machines);
+  value["candidates"] = Json::arrayValue;
+  for (const OrganPlan& plan : plans) {
+    for (const Verdict& v : plan.verdicts) {
+      Json::Value row;
+      row["organ"] = plan.name;
+      row["name"] = v.candidate.name();
+      row["nodes"] = Json::UInt64(v.node_count);
+      row["load_cores"] = v.total_load;
+      row["force_error"] = v.errors.force;
+      row["force_error_bar"] = v.errors.force_bar;
+      row["surface_error_m"] = v.errors.surface;
+      row["surface_error_bar_m"] = v.errors.surface_bar;
+      row["volume_error"] = v.errors.volume;
+      row["feel"]["too_hard"] = v.errors.feel.stiffness;
+      row["feel"]["uneven"] = v.errors.feel.uneven;
+      row["feel"]["in_motion"] = v.errors.feel.moving;
+      row["feel"]["sideways"] = v.errors.feel.sideways;
+      row["chosen"] = &v == plan.chosen;
+      row["misses"] = Json::arrayValue;
+      for (const auto& failure : v.failures) row["misses"].append(failure);
+      value["candidates"].append(row);
+    }
+  }
+  if (!written.empty()) value["written"] = written.string();
+  out << Json::writeString(Json::StreamWriterBuilder(), value) << '\n';
+}
+
+void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
+                const std::set<std::string>& machines, const std::filesystem::path& written,
+                std::ostream& out) {
+  for (const OrganPlan& plan : plans) {
+    if (plans.size() > 1) out << "\norgan '" << plan.name << "'\n";
+    print(plan, of_solid(scene), out);
+  }
+  out << "load: of one core; force: RMS difference from the "
+      << (of_solid(scene) ? "truth, along it, over its RMS, and how far that may be off; on "
+                          : "reference over its RMS; on ")
+      << machines_text(machines) << '\n';
+  if (written.empty()) {
+    out << "\nnothing meets the needs. What would:\n";
+    for (const OrganPlan& plan : plans) {
+      for (const auto& way : ways_out(scene.needs, plan.verdicts)) out << "  " << way << '\n';
+    }
+    return;
+  }
+  for (const OrganPlan& plan : plans) {
+    print_margins(scene.needs, *plan.chosen, out);
+    if (of_solid(scene))
+      out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
+  }
+  out << "written: " << written.string() << '\n';
+}
+
+}  // namespace palpate::plan

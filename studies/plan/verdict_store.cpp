@@ -1,0 +1,86 @@
+#include "studies/plan/verdict_store.h"
+
+#include <json/json.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <fstream>
+#include <stdexcept>
+
+#include "studies/report/claims.h"
+
+namespace palpate::plan {
+namespace {
+
+/// Visits every number of a verdict with its name.
+template <class Visit>
+void visit_numbers(Verdict& v, const Visit& visit) {
+  Errors& e = v.errors;
+  visit("force", e.force);
+  visit("surface", e.surface);
+  visit("volume", e.volume);
+  visit("force_bar", e.force_bar);
+  visit("surface_bar", e.surface_bar);
+  visit("stiffness", e.feel.stiffness);
+  visit("uneven", e.feel.uneven);
+  visit("moving", e.feel.moving);
+  visit("sideways", e.feel.sideways);
+  visit("deformation_load", v.deformation_load);
+  visit("total_load", v.total_load);
+}
+
+}  // namespace
+
+VerdictStore::VerdictStore(std::filesystem::path folder, std::string of)
+    : folder_(std::move(folder)), of_(std::move(of)) {}
+
+std::string VerdictStore::key(const std::string& organ, const Candidate& candidate) const {
+  return fmt::format("plan-{:016x}",
+                     std::hash<std::string>{}(of_ + "\n" + organ + "\n" + candidate.name()));
+}
+
+bool VerdictStore::read(const std::string& organ, const Candidate& candidate,
+                        StoredVerdict& out) const {
+  if (folder_.empty()) return false;
+  std::ifstream stream(folder_ / (key(organ, candidate) + ".json"));
+  if (!stream) return false;
+  Json::CharReaderBuilder builder;
+  builder["allowSpecialFloats"] = true;
+  Json::Value json;
+  std::string errors;
+  if (!Json::parseFromStream(builder, stream, &json, &errors) || json["of"] != of_) return false;
+  out = {};
+  out.verdict.candidate = candidate;
+  visit_numbers(out.verdict,
+                [&](const char* name, double& value) { value = json[name].asDouble(); });
+  out.verdict.node_count = json["nodes"].asUInt64();
+  for (const Json::Value& failure : json["misses"]) {
+    out.verdict.failures.push_back(failure.asString());
+  }
+  out.machine = json["machine"].asString();
+  return true;
+}
+
+void VerdictStore::write(const std::string& organ, const StoredVerdict& stored) const {
+  Verdict verdict = stored.verdict;
+  Json::Value json;
+  json["of"] = of_;
+  json["organ"] = organ;
+  json["candidate"] = verdict.candidate.name();
+  visit_numbers(verdict, [&](const char* name, double& value) { json[name] = value; });
+  json["nodes"] = Json::UInt64(verdict.node_count);
+  json["misses"] = Json::arrayValue;
+  for (const std::string& failure : verdict.failures) json["misses"].append(failure);
+  json["machine"] = stored.machine;
+  Json::StreamWriterBuilder builder;  // 17 digits: the same bits
+  builder["useSpecialFloats"] = true;
+  const auto file = folder_ / (key(organ, verdict.candidate) + ".json");
+  const auto part = file.string() + "." + report::process_word() + ".part";
+  std::ofstream stream(part);
+  if (!(stream << Json::writeString(builder, json) << std::flush)) {
+    throw std::runtime_error("cannot write " + part);
+  }
+  stream.close();
+  std::filesystem::rename(part, file);
+}
+
+}  // namespace palpate::plan
