@@ -12,6 +12,21 @@ namespace {
 
 /// Without a need: as in `palpate new`.
 constexpr double kUsualForceError = 0.1;
+
+bool is_quadratic(const geometry::OrganShape& shape) { return !shape.edge_nodes.empty(); }
+
+double growth_of(const scene::Refinement& refine, const geometry::OrganShape& coarse) {
+  using scene::Refinement;
+  return refine.growth.value_or(is_quadratic(coarse) ? Refinement::kQuadraticGrowth
+                                                     : Refinement::kGrowth);
+}
+
+std::size_t most_nodes(const scene::Refinement& refine, const geometry::OrganShape& coarse) {
+  using scene::Refinement;
+  return refine.nodes.value_or(is_quadratic(coarse) ? Refinement::kQuadraticNodes
+                                                    : Refinement::kNodes);
+}
+
 /// Contacts are a search old, and the search had positions of an advance before it.
 constexpr std::size_t kMostEarlier = 8;
 
@@ -23,8 +38,12 @@ FollowingOrgan::FollowingOrgan(const scene::Scene& scene, scene::Organ organ,
       gravity_(scene.gravity),
       period_(1 / scene.rates.deformation),
       runner_(runner),
-      mesh_(coarse, organ_.solid.refine.growth, organ_.solid.refine.nodes) {
-  const double over_radius = edge_over_radius(scene.needs.force_error.value_or(kUsualForceError));
+      mesh_(coarse, growth_of(organ_.solid.refine, coarse),
+            most_nodes(organ_.solid.refine, coarse)) {
+  const double error = scene.needs.force_error.value_or(kUsualForceError);
+  const bool quadratic = is_quadratic(coarse);
+  const double over_radius =
+      quadratic ? quadratic_edge_over_radius(error) : edge_over_radius(error);
   for (const scene::Probe& probe : scene.probes) {
     touches_.emplace_back(scene::form_of(probe.shape), organ_.solid.refine.edge_length,
                           over_radius);

@@ -61,10 +61,9 @@ void SimulatedOrgan::reset() {
 }
 
 void SimulatedOrgan::change_mesh(std::unique_ptr<const OrganModel> model,
-                                 std::unique_ptr<OrganDynamics> dynamics,
-                                 const MeshChange& change) {
-  state_ = change.carried(state_);
-  last_good_ = change.carried(last_good_);
+                                 std::unique_ptr<OrganDynamics> dynamics, const Carry& carry) {
+  state_ = carry(state_);
+  last_good_ = carry(last_good_);
   auto detector = std::make_unique<DivergenceDetector>(*model, knows_energy_);
   detector->take_over(*detector_, state_);
   detector_ = std::move(detector);

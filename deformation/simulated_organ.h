@@ -18,7 +18,6 @@
 #include "deformation/contact/starting_impulses.h"
 #include "deformation/guard/advance_report.h"
 #include "deformation/guard/divergence_detector.h"
-#include "deformation/model/mesh_change.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/target_volume.h"
 #include "deformation/steppers/organ_dynamics.h"
@@ -63,10 +62,11 @@ class SimulatedOrgan {
   void reset();                                                     ///< at rest, at time 0
   void ask_for_volume(double ratio) { target_volume_.ask(ratio); }  ///< target_volume.h
 
+  using Carry = std::function<OrganState(const OrganState&)>;
   /// Goes on as the same organ on another mesh; guards do, too.
-  /// @param change  from the model it has to `model`
+  /// @param carry  a state from the model it has to `model`
   void change_mesh(std::unique_ptr<const OrganModel> model, std::unique_ptr<OrganDynamics> dynamics,
-                   const MeshChange& change);
+                   const Carry& carry);
 
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);

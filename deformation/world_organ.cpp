@@ -3,6 +3,8 @@
 #include <sstream>
 #include <utility>
 
+#include "deformation/elements/quadratic_mesh_change.h"
+#include "deformation/model/mesh_change.h"
 #include "modules/core/error.h"
 #include "modules/scene/models.h"
 
@@ -63,10 +65,19 @@ void WorldOrgan::know_model() {
 
 void WorldOrgan::take(OrganMesh mesh) {
   auto dynamics = following->dynamics_of(*mesh.model);
-  const OrganModel& next = *mesh.model;
-  const MeshChange change(simulated.model(), parents, next, mesh.refined.parents);
-  simulated.change_mesh(std::move(mesh.model), std::move(dynamics), change);
-  parents = std::move(mesh.refined.parents);
+  const OrganModel &before = simulated.model(), &next = *mesh.model;
+  RefinedShape& refined = mesh.refined;
+  const auto goes_on = [&](const auto& change) {
+    simulated.change_mesh(std::move(mesh.model), std::move(dynamics),
+                          [&](const OrganState& state) { return change.carried(state); });
+  };
+  if (next.mesh().edge_nodes.empty()) {
+    goes_on(MeshChange(before, parents, next, refined.parents));
+  } else {
+    goes_on(QuadraticMeshChange(before, halvings, next, refined.halvings));
+  }
+  parents = std::move(refined.parents);
+  halvings = std::move(refined.halvings);
   is_coarser = mesh.refined.is_coarser;
   generation = mesh.generation;
   know_model();
@@ -84,7 +95,15 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
                       const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding) {
   const scene::Organ organ = stepped_organ(scene, index);
   const double period = 1 / scene.rates.deformation;
-  auto model = std::make_unique<const OrganModel>(build_organ_model(organ, scene.gravity, shape));
+  std::unique_ptr<FollowingOrgan> following;
+  RefinedShape refined;
+  OrganModel built = build_organ_model(organ, scene.gravity, shape);
+  if (organ.solid.refine.follow) {
+    following = std::make_unique<FollowingOrgan>(scene, organ, shape, runner);
+    refined = following->begin(1).refined;
+    hold_as_coarse(refined.parents, built);
+  }
+  auto model = std::make_unique<const OrganModel>(std::move(built));
   auto dynamics = make_dynamics(organ, *model, period, runner);
   if (dynamics->largest_step() < kLeastStep) {
     std::ostringstream message;
@@ -104,10 +123,9 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
   if (!kept.is_solid()) {
     made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
   }
-  if (organ.solid.refine.follow) {
-    made.following = std::make_unique<FollowingOrgan>(scene, organ, shape, runner);
-    made.parents = made.following->begin(made.generation).refined.parents;
-  }
+  made.following = std::move(following);
+  made.parents = std::move(refined.parents);
+  made.halvings = std::move(refined.halvings);
   made.know_model();
   return made;
 }

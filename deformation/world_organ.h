@@ -37,7 +37,8 @@ struct WorldOrgan {
   std::unique_ptr<FollowingOrgan> following = nullptr;  ///< none: it keeps its mesh
   /// Of its mesh, where it follows: the middles' ends.
   std::vector<geometry::HalvedMesh::Parents> parents = {};
-  bool is_coarser = false;  ///< its mesh, than it should be under a probe
+  std::vector<std::uint8_t> halvings = {};  ///< of its tetrahedra, where it follows
+  bool is_coarser = false;                  ///< its mesh, than it should be under a probe
 
   /// C A⁻¹ Cᵀ of rows on this organ over a period [m/N], symmetric, one row and column each.
   /// @param period  [s], above 0

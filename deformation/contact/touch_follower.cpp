@@ -50,6 +50,10 @@ double force_error_of_edge(double edge_over_radius) {
   return kErrorAtRadius * std::pow(edge_over_radius, kErrorOrder);
 }
 
+double quadratic_edge_over_radius(double force_error) {
+  return std::clamp(std::pow(force_error / 0.027, 1 / 2.65), 0.7, 1.0);
+}
+
 TouchFollower::TouchFollower(const geometry::ProbeForm& form, std::optional<double> edge,
                              double edge_over_radius) {
   if (const auto* core = std::get_if<geometry::RoundedSegment>(&form)) {

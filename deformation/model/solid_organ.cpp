@@ -1,11 +1,8 @@
 #include "deformation/model/organ_model.h"
+#include "deformation/model/solid_masses.h"
 
 namespace palpate::deformation {
 namespace {
-
-/// Hinton's shares of a straight quadratic tetrahedron: diagonals 1/70 and 4/105 of the consistent
-/// mass, scaled to a sum of 1.
-constexpr double kCornerShare = 1.0 / 36, kMiddleShare = 4.0 / 27;
 
 double volume_of(const geometry::Tetrahedron& t, const std::vector<Vec3>& nodes) {
   return geometry::tetrahedron_volume(nodes[t[0]], nodes[t[1]], nodes[t[2]], nodes[t[3]]);
@@ -13,13 +10,13 @@ double volume_of(const geometry::Tetrahedron& t, const std::vector<Vec3>& nodes)
 
 void add_masses(const TetMesh& solid, Body& body) {
   for (std::size_t e = 0; e < solid.tetrahedra.size(); ++e) {
-    const double mass = solid.density * volume_of(solid.tetrahedra[e], body.rest_positions);
+    const double mass = tetrahedron_mass(solid, e, body.rest_positions);
     const bool quadratic = !solid.edge_nodes.empty();
     for (const auto node : solid.tetrahedra[e]) {
-      body.masses[node] += (quadratic ? kCornerShare : 0.25) * mass;
+      body.masses[node] += (quadratic ? kQuadraticCornerShare : 0.25) * mass;
     }
     if (!quadratic) continue;
-    for (const auto node : solid.edge_nodes[e]) body.masses[node] += kMiddleShare * mass;
+    for (const auto node : solid.edge_nodes[e]) body.masses[node] += kQuadraticMiddleShare * mass;
   }
 }
 

@@ -1,6 +1,7 @@
 #include "modules/geometry/bisection.h"
 
 #include <algorithm>
+#include <bit>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -42,14 +43,15 @@ void BisectionTree::plant() {
   for (const Vec3& place : coarse_.nodes) nodes_.push_back({place, {kNone, kNone}});
   for (std::size_t t = 0; t < coarse_.tetrahedra.size(); ++t) {
     leaves_.push_back(static_cast<std::uint32_t>(t));
-    add(coarse_.tetrahedra[t], coarse_outer_[t]);
+    add(coarse_.tetrahedra[t], coarse_outer_[t], 0);
   }
 }
 
-void BisectionTree::add(const Tetrahedron& corners, std::uint8_t outer) {
+void BisectionTree::add(const Tetrahedron& corners, std::uint8_t outer, std::uint8_t halvings) {
   Tet tet;
   tet.corners = corners;
   tet.outer = outer;
+  tet.halvings = halvings;
   for (std::size_t e = 0; e < kTetrahedronEdges.size(); ++e) {
     const auto& [i, j] = kTetrahedronEdges[e];
     tet.edges[e] =
@@ -106,7 +108,8 @@ void BisectionTree::halve(std::uint32_t number) {
     Tetrahedron corners = tet.corners;
     corners[static_cast<std::size_t>(given)] = middle;
     // Opposite the end that is kept lies the new face between both halves.
-    add(corners, static_cast<std::uint8_t>(tet.outer & ~(1 << kept)));
+    add(corners, static_cast<std::uint8_t>(tet.outer & ~(1 << kept)),
+        static_cast<std::uint8_t>(tet.halvings + 1));
   }
 }
 
@@ -174,6 +177,14 @@ bool BisectionTree::choose(const SizeField& size, std::size_t most_nodes) {
   return true;
 }
 
+std::size_t BisectionTree::boundary_count() const {
+  std::size_t count = 0;
+  for (const std::uint32_t leaf : leaves_) {
+    count += static_cast<std::size_t>(std::popcount(tetrahedra_[leaf].outer));
+  }
+  return count;
+}
+
 HalvedMesh BisectionTree::mesh() const {
   HalvedMesh result;
   TetMesh& mesh = result.mesh;
@@ -205,6 +216,7 @@ HalvedMesh BisectionTree::mesh() const {
       result.boundary.push_back(triangle);
     }
     mesh.tetrahedra.push_back(corners);
+    result.halvings.push_back(tetrahedra_[leaf].halvings);
   }
   for (const std::uint32_t node : chosen) {
     HalvedMesh::Parents parents = nodes_[node].parents;

@@ -34,6 +34,9 @@ struct HalvedMesh {
   TetMesh mesh;                            ///< nodes of the coarse mesh first
   std::vector<Parents> parents;            ///< whose middle a node is, rising; kNone: coarse
   std::vector<BoundaryTriangle> boundary;  ///< as boundary_triangles()
+  /// How often each tetrahedron was halved. They are in the order of the trees: what one of another
+  /// mesh of the same halves was divided into is a row of them that has its volume.
+  std::vector<std::uint8_t> halvings;
 };
 
 /// The tree of halves of one mesh, as far as it was looked at: another choice of sizes near the
@@ -48,6 +51,10 @@ class BisectionTree {
   bool choose(const SizeField& size, std::size_t most_nodes);
   /// The mesh of the leaves chosen last; at first the coarse one.
   HalvedMesh mesh() const;
+  /// Of that mesh.
+  std::size_t node_count() const { return nodes_chosen_; }
+  std::size_t tetrahedron_count() const { return leaves_.size(); }
+  std::size_t boundary_count() const;  ///< of triangles
 
   const TetMesh& coarse() const { return coarse_; }
   std::size_t tetrahedra_kept() const { return tetrahedra_.size(); }
@@ -72,11 +79,12 @@ class BisectionTree {
     std::array<std::uint32_t, 6> edges{};  ///< as kTetrahedronEdges
     std::uint8_t longest = 0;              ///< of those
     std::uint8_t outer = 0;                ///< bit k: the face opposite corner k is on the boundary
+    std::uint8_t halvings = 0;             ///< between the coarse one and this
     std::uint32_t halves = kNone;          ///< the first of both, once made
   };
 
   void plant();
-  void add(const Tetrahedron& corners, std::uint8_t outer);
+  void add(const Tetrahedron& corners, std::uint8_t outer, std::uint8_t halvings);
   std::uint32_t edge_between(std::uint32_t a, std::uint32_t b);
   bool comes_first(const Edge& a, const Edge& b) const;
   std::uint8_t longest_of(const Tet& tet) const;

@@ -74,12 +74,13 @@ geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
   const Refinement& refine = organ.solid.refine;
   if (refine.near.empty()) return mesh;
   const double edge = refine.edge_length.value_or(Refinement::kRegionEdge);
+  const double growth = refine.growth.value_or(Refinement::kGrowth);
   const auto longest_edge = [&](const Vec3& x) {
     double least = std::numeric_limits<double>::infinity();
     for (const Region& region : refine.near) {
       least = std::min(least, distance(region, organ.pose.to_world(x)));
     }
-    return edge + refine.growth * least;
+    return edge + growth * least;
   };
   try {
     return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);
@@ -113,11 +114,12 @@ geometry::OrganShape load_organ(const Organ& organ) {
     shape = geometry::OrganShape(load(organ.mesh, owner));
     if (format.is_solid()) shape = filled(shape.surface, organ, owner);
   }
-  if (format.is_quadratic()) shape = geometry::with_edge_nodes(shape);
-  check_size(shape, owner);
   for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {
     for (Vec3& node : *nodes) node = organ.pose.to_world(node);
   }
+  // In W, where meshes of its halves have the same middles to the bit.
+  if (format.is_quadratic()) shape = geometry::with_edge_nodes(shape);
+  check_size(shape, owner);
   return shape;
 }
 

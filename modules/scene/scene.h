@@ -51,11 +51,15 @@ struct Refinement {
   /// `edge_m`, longest edge there [1e-4 … 1]; none: kRegionEdge in regions, under a probe what its
   /// radius and needs.force_error want
   std::optional<double> edge_length;
-  double growth = 0.5;       ///< `growth`: longer by this per metre of distance [0.05 … 100]
-  bool follow = false;       ///< `follow`: where probes touch, as they go
-  std::size_t nodes = 2500;  ///< `nodes` of an organ that follows, at most [100 … 50000]
+  /// `growth`: longer by this per metre of distance [0.05 … 100]; none: kGrowth, of quadratic
+  /// tetrahedra that follow kQuadraticGrowth
+  std::optional<double> growth = {};
+  bool follow = false;  ///< `follow`: where probes touch, as they go
+  /// `nodes` of an organ that follows, at most [100 … 50000]; none: kNodes, kQuadraticNodes
+  std::optional<std::size_t> nodes = {};
 
-  static constexpr double kRegionEdge = 4e-3;
+  static constexpr double kRegionEdge = 4e-3, kGrowth = 0.5, kQuadraticGrowth = 1;
+  static constexpr std::size_t kNodes = 2500, kQuadraticNodes = 5000;
   bool any() const { return follow || !near.empty(); }
 };
 

@@ -79,9 +79,11 @@ void describe(V& v, Refinement& refine) {
           ranged("m", 1e-4, 1, "longest edge there; half a probe's radius is a start")
               .otherwise("0.004 in regions; under a probe by its radius and needs.force_error"));
   v.field("growth", refine.growth,
-          ranged("", 0.05, 100, "how much longer edges may be per metre of distance"));
+          ranged("", 0.05, 100, "how much longer edges may be per metre of distance")
+              .otherwise("0.5; quadratic tetrahedra that follow 1"));
   v.field("nodes", refine.nodes,
-          ranged("", 100, 50000, "most of an organ that follows; edges are longer where needed"));
+          ranged("", 100, 50000, "most of an organ that follows; edges are longer where needed")
+              .otherwise("2500; of quadratic tetrahedra 5000"));
 }
 
 template <class V>

@@ -109,7 +109,7 @@ std::string Candidate::name() const {
   if (!refine.near.empty()) {
     text += fmt::format(", {:.3g} mm + {:.2g} d",
                         1e3 * refine.edge_length.value_or(scene::Refinement::kRegionEdge),
-                        refine.growth);
+                        refine.growth.value_or(scene::Refinement::kGrowth));
   }
   return text;
 }

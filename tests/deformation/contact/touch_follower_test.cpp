@@ -86,6 +86,10 @@ TEST_CASE("touch follower: edges by the error of force that is allowed") {
   CHECK(edge_over_radius(0.045) == Approx(1.0 / 3).epsilon(0.05));
   CHECK(edge_over_radius(1) == 1);
   CHECK(edge_over_radius(1e-3) == 0.25);
+  // Quadratic ones, the same table: 2.7 % at R; 1 % at 0.7 R, the least that was measured.
+  CHECK(quadratic_edge_over_radius(0.1) == 1);
+  CHECK(quadratic_edge_over_radius(0.0105) == Approx(0.7).epsilon(0.05));
+  CHECK(quadratic_edge_over_radius(1e-3) == 0.7);
 }
 
 }  // namespace

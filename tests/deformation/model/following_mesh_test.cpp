@@ -20,27 +20,32 @@ bool same_shape(const RefinedShape& a, const RefinedShape& b) {
   return a.shape.surface.nodes == b.shape.surface.nodes &&
          a.shape.inner_nodes == b.shape.inner_nodes &&
          a.shape.surface.triangles == b.shape.surface.triangles &&
-         a.shape.tetrahedra == b.shape.tetrahedra && a.parents == b.parents;
+         a.shape.tetrahedra == b.shape.tetrahedra && a.shape.edge_nodes == b.shape.edge_nodes &&
+         a.parents == b.parents && a.halvings == b.halvings;
 }
 
 TEST_CASE("following mesh: the same places give the same mesh, bit for bit, by any way there") {
   // Oracle: a mesh made anew. One tip and several, edges that fit the budget and that do not.
+  const bool quadratic = GENERATE(false, true);
+  const geometry::OrganShape coarse =
+      quadratic ? geometry::with_edge_nodes(coarse_cube()) : coarse_cube();
+  const std::size_t little = quadratic ? 3500 : 600;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(0, 0.06);
-  for (const std::size_t most : {20000u, 600u}) {
+  for (const std::size_t most : {std::size_t{20000}, little}) {
     int coarser = 0;
-    FollowingMesh used(coarse_cube(), 0.6, most);
+    FollowingMesh used(coarse, 0.6, most);
     for (int change = 0; change < 40; ++change) {
       std::vector<TouchedPlace> places;
       for (int i = 0; i <= change % 3; ++i) {
         places.push_back(tip_at({place(random), place(random), 0.06}));
       }
       const RefinedShape found = used.fine_at(places);
-      CHECK(same_shape(found, FollowingMesh(coarse_cube(), 0.6, most).fine_at(places)));
+      CHECK(same_shape(found, FollowingMesh(coarse, 0.6, most).fine_at(places)));
       CHECK(found.shape.node_count() <= most);
       coarser += found.is_coarser ? 1 : 0;
     }
-    CHECK((coarser > 20) == (most == 600));
+    CHECK((coarser > 20) == (most == little));
     CHECK((coarser == 0) == (most == 20000));
   }
 }
@@ -48,13 +53,16 @@ TEST_CASE("following mesh: the same places give the same mesh, bit for bit, by a
 TEST_CASE(
     "following mesh: nothing touched, it is the coarse mesh, and so it is with a full budget") {
   // Oracle: the coarse shape itself.
-  const geometry::OrganShape coarse = coarse_cube();
+  const bool quadratic = GENERATE(false, true);
+  const geometry::OrganShape coarse =
+      quadratic ? geometry::with_edge_nodes(coarse_cube()) : coarse_cube();
   FollowingMesh mesh(coarse, 0.5, 10000);
   mesh.fine_at(std::vector{tip_at({0.03, 0.03, 0.06})});
   const RefinedShape at_rest = mesh.fine_at({});
   CHECK(at_rest.shape.surface.nodes == coarse.surface.nodes);
   CHECK(at_rest.shape.surface.triangles == coarse.surface.triangles);
   CHECK(at_rest.shape.tetrahedra == coarse.tetrahedra);
+  CHECK(at_rest.shape.edge_nodes == coarse.edge_nodes);
   CHECK_FALSE(at_rest.is_coarser);
   FollowingMesh full(coarse, 0.5, 100);
   const RefinedShape kept = full.fine_at(std::vector{tip_at({0.03, 0.03, 0.06})});
@@ -65,7 +73,9 @@ TEST_CASE(
 TEST_CASE(
     "following mesh: edges are as long as the places allow, no node is its parents' elsewhere") {
   // Oracle: definition.
-  FollowingMesh mesh(coarse_cube(), 0.6, 20000);
+  const bool quadratic = GENERATE(false, true);
+  FollowingMesh mesh(quadratic ? geometry::with_edge_nodes(coarse_cube()) : coarse_cube(), 0.6,
+                     20000);
   const std::vector places{tip_at({0.02, 0.02, 0.06}), tip_at({0.05, 0.03, 0.06})};
   const RefinedShape found = mesh.fine_at(places);
   const auto allowed = [&](const Vec3& x) {

@@ -1,0 +1,63 @@
+// The state of quadratic tetrahedra carried from one mesh of halves to another.
+//
+// Positions: a node of both meshes keeps its own; a new one lies where the quadratic function of
+// the tetrahedron that it is in had its place: the same shape as before. All ten nodes of a
+// tetrahedron are nodes of its halves, so none is ever without a value.
+//
+// Velocities: the same values, and then each tetrahedron that is halved, or made of halves, takes
+// over its own momentum. Lumped masses of quadratic tetrahedra are not those of their halves (four
+// nodes have 1/36, six 4/27 of it), so the mean of what was found is set to what it was, and, if it
+// would gain kinetic energy, the difference from the mean is made smaller. A node takes the mean of
+// what its tetrahedra give it, by mass. So momentum stays what it was (what comes to a fixed node
+// is taken by what holds it), an even motion stays one, and kinetic energy never grows: squares of
+// means are no more than means of squares.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "deformation/model/organ_model.h"
+
+namespace palpate::deformation {
+
+class QuadraticMeshChange {
+ public:
+  /// @param from, to  quadratic; outlive this
+  /// @param from_halvings, to_halvings  of their tetrahedra, see geometry::HalvedMesh
+  QuadraticMeshChange(const OrganModel& from, std::span<const std::uint8_t> from_halvings,
+                      const OrganModel& to, std::span<const std::uint8_t> to_halvings);
+
+  OrganState carried(const OrganState& state) const;
+
+ private:
+  /// Of a tetrahedron's mass.
+  struct Share {
+    std::uint32_t node = 0;
+    double mass = 0;  ///< [kg]
+  };
+  /// What is one tetrahedron on one mesh and several on the other.
+  struct Part {
+    std::vector<Share> before, after;
+  };
+  struct Coming {
+    std::uint32_t node = 0;              ///< of `to`
+    std::array<std::uint32_t, 10> in{};  ///< nodes of `from`
+    std::array<double, 10> shape{};      ///< their functions there
+  };
+
+  void find_parts(std::span<const std::uint8_t> from_halvings,
+                  std::span<const std::uint8_t> to_halvings);
+  void find_coming(std::size_t in, std::size_t first, std::size_t end, std::vector<bool>& found);
+  void hand_over(const Part& part, const std::vector<Vec3>& before, const std::vector<Vec3>& found,
+                 std::vector<Vec3>& velocities) const;
+
+  const OrganModel& from_;
+  const OrganModel& to_;
+  std::vector<std::uint32_t> kept_;  ///< of each node of `to` the same one of `from`
+  std::vector<Coming> coming_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace palpate::deformation
