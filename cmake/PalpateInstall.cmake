@@ -30,6 +30,8 @@ foreach(component IN ITEMS programs dev python)
   install(FILES ${made}/changelog.gz packaging/debian/copyright
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
 endforeach()
+install(FILES packaging/systemd/palpate@.service DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/systemd
+        COMPONENT programs)
 install(FILES packaging/debian/lintian-overrides DESTINATION share/lintian/overrides
         RENAME palpate COMPONENT programs)
 

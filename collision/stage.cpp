@@ -8,6 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
+#include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
 
 namespace palpate::collision {
@@ -163,10 +164,10 @@ class OrganInputs {
 /// The probes' ways from search to search.
 class ProbeInputs {
  public:
-  ProbeInputs(bus::Bus& bus, std::size_t probes)
+  ProbeInputs(bus::Bus& bus, const scene::Scene& scene)
       : states_(bus.reader(bus::kProbeState)),
-        probes_(probes),
-        heard_(probes, runtime::kInputStaleAfter) {}
+        probes_(scene.probes.size()),
+        heard_(scene.probes.size(), runtime::input_stale_after(scene)) {}
 
   void take() {
     while (states_.take(newest_)) {
@@ -263,7 +264,7 @@ struct CollisionStage::Impl {
   Impl(const scene::Scene& scene, std::vector<geometry::ProbeForm> forms, bus::Bus& bus)
       : rates(scene.rates),
         organs(bus, std::move(forms), scene.organs.size()),
-        probes(bus, scene.probes.size()),
+        probes(bus, scene),
         writer(bus.writer(bus::kContacts)) {}
 
   /// Contacts of a probe on its way since the last search; none if it is silent. A probe that was

@@ -17,8 +17,8 @@ std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
 std::vector<geometry::ProbeForm> load_probes(const scene::Scene& scene);
 
 /// Each cycle: take the newest organs and probe poses, search each probe's way since the last
-/// search, publish its contacts, none included. A probe not heard of for kInputStaleAfter touches
-/// nothing. Ready once the surfaces of all organs are known.
+/// search, publish its contacts, none included. A probe not heard of for
+/// runtime::input_stale_after() touches nothing. Ready once the surfaces of all organs are known.
 class CollisionStage : public runtime::Stage {
  public:
   /// @param scene   outlives the stage

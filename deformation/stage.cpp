@@ -9,6 +9,7 @@
 #include "deformation/organ_messages.h"
 #include "modules/core/units.h"
 #include "modules/runtime/silence_watch.h"
+#include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
 
 namespace palpate::deformation {
@@ -50,11 +51,12 @@ class ToldMeshes {
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
 class ProbeInputs {
  public:
-  ProbeInputs(bus::Bus& bus, std::size_t probes)
+  /// @param stale_after  of a pose, and of contacts [s]
+  ProbeInputs(bus::Bus& bus, std::size_t probes, double stale_after)
       : states_(bus.reader(bus::kProbeState)),
         contacts_(bus.reader(bus::kContacts)),
-        states_heard_(probes, runtime::kInputStaleAfter),
-        contacts_heard_(probes, runtime::kInputStaleAfter),
+        states_heard_(probes, stale_after),
+        contacts_heard_(probes, stale_after),
         sampled_ns_(probes, 0) {}
 
   void bring(std::int64_t now_ns, const ToldMeshes& told, DeformationWorld& world) {
@@ -242,7 +244,7 @@ struct DeformationStage::Impl {
   Impl(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
        ChunkRunner* runner, Guarding guarding)
       : world(scene, std::move(shapes), runner, guarding),
-        inputs(bus, world.probe_count()),
+        inputs(bus, world.probe_count(), runtime::input_stale_after(scene)),
         outputs(bus, world.organ_count(), world.probe_count()),
         period(1 / scene.rates.deformation) {
     outputs.publish_surfaces(world);

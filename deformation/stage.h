@@ -13,9 +13,9 @@ std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene);
 
 /// Says the organs' surfaces when built and after a reset. Each cycle: take the newest probes and
 /// contacts, advance all organs by what the cycle may take on, publish them and, per probe, the
-/// local law of the touched tissue. Probes or contacts not heard of for kInputStaleAfter touch
-/// nothing. While the session does not run, the organs stand still and give no law: a force that
-/// nobody computed anew must grow stale.
+/// local law of the touched tissue. Probes or contacts not heard of for
+/// runtime::input_stale_after() touch nothing. While the session does not run, the organs stand
+/// still and give no law: a force that nobody computed anew must grow stale.
 class DeformationStage : public runtime::Stage {
  public:
   /// @param shapes  one per organ of the scene

@@ -95,6 +95,11 @@ void add_run_options(Options& command, RunOptions& options) {
       .excludes(in_process);
   command.add_input("--secure", options.secure,
                     "Folder of keys (palpate keys): who has none of them neither reads nor writes");
+  command
+      .add_input("--hosts", options.hosts,
+                 "File that says which host runs which modules, the same on all; with --host")
+      .excludes(in_process);
+  command.add("--host", options.host, "Which of the hosts of --hosts this one is");
   command.flag("--close", options.close, "Close the window when the run ends; else it stays");
   command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer");
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");

@@ -77,7 +77,7 @@ class LockstepRun {
         digest_(scene::scene_digest(scene_)),
         duration_(duration_of(options, scene_)),
         modules_(module_commands(options, program_folder()), log),
-        names_(modules_.reporting_modules()),
+        names_(options.everywhere.empty() ? modules_.reporting_modules() : options.everywhere),
         bus_(every_sample(options.bus)),
         session_(bus_, digest_),
         conductor_(bus_),
@@ -210,6 +210,25 @@ class LockstepRun {
   std::map<std::string, std::string> failures_;
 };
 
+/// This host's part of a lockstep that another one conducts.
+int follow_lockstep(const RunOptions& options, std::ostream& log) {
+  const runtime::StopSignal stop;
+  ModuleGroup modules(module_commands(options, program_folder()), log);
+  runtime::PeriodicLoop loop(kConductorRate);
+  int exit_code = kExitDone;
+  while (modules.any_running() && !stop.requested()) {
+    loop.wait_for_period();
+    for (const auto& ended : modules.poll()) {
+      if (!ended.failed) continue;
+      exit_code = ended.bad_input ? kExitBadInput : kExitFailed;
+      log << fmt::format("palpate: {} ended: {}; a lockstep session cannot go on without it\n",
+                         ended.module, ended.how);
+    }
+  }
+  modules.stop();
+  return exit_code;
+}
+
 session::InProcessOptions options_of(ChunkRunner& runner) {
   session::InProcessOptions options;
   options.runner = &runner;
@@ -219,8 +238,10 @@ session::InProcessOptions options_of(ChunkRunner& runner) {
 }  // namespace
 
 /// Two lockstep runs of one session would take each other's samples for their own, and no stranger
-/// can follow one: each has a name that nobody else has.
+/// can follow one: each has a name that nobody else has. Over hosts all say the same one.
 int run_lockstep(const RunOptions& options, std::ostream& out, std::ostream& log) {
+  if (!options.conducts) return follow_lockstep(options, log);
+  if (!options.everywhere.empty()) return LockstepRun(options, out, log).perform();
   RunOptions own = options;
   own.bus.session += "-" + random_session_name();
   return LockstepRun(own, out, log).perform();

@@ -87,12 +87,16 @@ class Run {
 
   /// False if the session cannot start.
   bool wait_until_ready() {
-    const auto expected = modules_.reporting_modules();
+    auto expected = modules_.reporting_modules();
+    if (options_.conducts && !options_.everywhere.empty()) expected = options_.everywhere;
+    std::erase(expected, "recorder");
     const std::int64_t begin_ns = runtime::monotonic_now_ns();
     const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : kDiscoveryNs);
     std::int64_t line_ns = begin_ns + kWaitingLineEveryNs;
     while (next_cycle()) {
-      const auto waiting = monitor_.not_ready(expected);
+      auto waiting = monitor_.not_ready(expected);
+      const bool started = session_.phase() != runtime::SessionPhase::kWaiting;
+      if (!options_.conducts && !started) waiting.emplace_back("the host that starts the session");
       if (waiting.empty() && loop_.woke_ns() >= earliest_ns) return true;
       if (exit_code_ != kExitDone) return false;
       if (waiting.empty() || loop_.woke_ns() < line_ns) continue;
@@ -231,7 +235,9 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
   }
 }
 
-int run_command(const RunOptions& options, std::ostream& out, std::ostream& log) {
+int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
+  RunOptions options = asked;
+  if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const runtime::StopSignal stop;  // or a signal would leave the folder
     const TemporaryFolder folder;    // each process reads the scene
@@ -250,7 +256,8 @@ int run_command(const RunOptions& options, std::ostream& out, std::ostream& log)
   if (options.in_process) return run_in_process(options, out, log);
   if (options.lockstep) return run_lockstep(options, out, log);
   std::optional<SessionClaim> claim;
-  if (options.only.empty()) claim.emplace(options.bus.session, options.bus.domain);
+  if (options.only.empty() || !options.hosts.empty())
+    claim.emplace(options.bus.session, options.bus.domain);
   return Run(options, out, log).perform();
 }
 

@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <stdlib.h>
+
 #include <algorithm>
 #include <array>
 #include <random>
@@ -10,6 +12,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/topic_selection.h"
+#include "palpate/hosts_file.h"
 
 namespace palpate::launcher {
 namespace {
@@ -19,6 +22,7 @@ constexpr std::array<std::string_view, 4> kModules{"deformation", "collision", "
 
 void check_names(const std::vector<std::string>& only) {
   for (const auto& name : only) {
+    if (name == "recorder") continue;  // of a hosts file
     if (std::find(kModules.begin(), kModules.end(), name) == kModules.end()) {
       throw InputError("--only: there is no module '" + name +
                        "'; there are deformation, collision, haptics, visualizer");
@@ -43,11 +47,8 @@ bool wanted(const RunOptions& options, std::string_view module) {
 void add_lockstep(const RunOptions& options, ModuleCommand& command) {
   if (!options.lockstep) return;
   std::string participants;
-  if (!options.record.empty()) participants = "recorder";
-  for (const auto module : kModules) {
-    if (wanted(options, module))
-      participants += (participants.empty() ? "" : ",") + std::string(module);
-  }
+  for (const auto& module : participants_of(options))
+    participants += (participants.empty() ? "" : ",") + module;
   command.arguments.insert(command.arguments.end(), {"--lockstep", participants});
 }
 
@@ -73,6 +74,40 @@ ModuleCommand module_command(const RunOptions& options, std::string_view module,
 }
 
 }  // namespace
+
+std::vector<std::string> participants_of(const RunOptions& options) {
+  if (!options.everywhere.empty()) return options.everywhere;
+  std::vector<std::string> all;
+  if (!options.record.empty()) all.emplace_back("recorder");
+  for (const auto module : kModules) {
+    if (wanted(options, module)) all.emplace_back(module);
+  }
+  return all;
+}
+
+void apply_hosts(RunOptions& options) {
+  if (options.hosts.empty()) {
+    if (!options.host.empty()) throw InputError("--host " + options.host + ": needs --hosts FILE");
+    return;
+  }
+  if (options.host.empty()) throw InputError("--hosts: which of them is this? Give --host NAME");
+  if (!options.only.empty()) throw InputError("--only: --hosts says already what runs where");
+  const HostsFile hosts = load_hosts(options.hosts);
+  const HostEntry& own = hosts.host(options.host);
+  const bool recorder = std::ranges::find(own.modules, "recorder") != own.modules.end();
+  if (recorder && options.record.empty())
+    throw InputError("--hosts: host " + own.name + " has the recorder: give it --record FILE");
+  if (options.lockstep && !recorder && !options.record.empty()) {
+    throw InputError(
+        "--record: in lockstep all must know of it: list recorder among the modules of " +
+        own.name + " in " + options.hosts.string());
+  }
+  options.only = own.modules;
+  options.everywhere = hosts.all_modules();
+  options.conducts = hosts.conducts(own.name);
+  ::setenv("PALPATE_INTERFACES", own.address.c_str(), 1);
+  ::setenv("PALPATE_PEERS", hosts.peers_of(own.name).c_str(), 1);
+}
 
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder) {

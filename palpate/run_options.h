@@ -20,12 +20,16 @@ struct RunOptions {
   bool visualizer = true;
   bool close = false;  ///< the window, too, when the run ends; else it stays
   bool realtime = true;
-  bool restart = true;                     ///< modules that die or hang
-  bool lockstep = false;                   ///< without a wall clock, as fast as the machine allows
-  bool in_process = false;                 ///< the same in one process
-  double ready_deadline = 60;              ///< lockstep: longest wait for a process [s]
-  std::vector<std::string> only;           ///< modules to start; empty: all
-  std::filesystem::path record;            ///< recording to write; empty: none
+  bool restart = true;            ///< modules that die or hang
+  bool lockstep = false;          ///< without a wall clock, as fast as the machine allows
+  bool in_process = false;        ///< the same in one process
+  double ready_deadline = 60;     ///< lockstep: longest wait for a process [s]
+  std::vector<std::string> only;  ///< modules to start; empty: all
+  std::filesystem::path hosts;    ///< which host runs what (hosts_file.h); empty: this one all
+  std::string host;               ///< which of them this one is
+  std::vector<std::string> everywhere = {};  ///< modules of all hosts; set with `hosts`
+  bool conducts = true;          ///< starts the session and ends it; else another host does
+  std::filesystem::path record;  ///< recording to write; empty: none
   std::vector<std::string> record_topics;  ///< as recording::TopicSelection; empty: the usual
   std::filesystem::path frames;            ///< folder for pictures; empty: none
   double frame_interval = 1;               ///< simulated, between two pictures [s]
@@ -40,12 +44,21 @@ struct ModuleCommand {
   bool reports_status = true;  ///< publishes module_status: the session waits until it is ready
 };
 
+/// Fills in what `hosts` says: modules and participants, and for this process and its children
+/// PALPATE_INTERFACES and PALPATE_PEERS. Without `hosts`: nothing.
+/// @throws InputError as load_hosts() does; for --hosts without --host or beside --only; where a
+/// recorder that the file names is given no file, or one that it does not name is in a lockstep
+void apply_hosts(RunOptions& options);
+
 /// What to start, in order: the recorder first, so that it hears everything. A visualizer that
 /// could show its pictures to nobody (no window and no folder for frames) is left out.
 /// @param program_folder  where the modules' programs are
 /// @throws InputError for a module name that does not exist
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder);
+
+/// The modules that take part, on all hosts, the recorder among them.
+std::vector<std::string> participants_of(const RunOptions& options);
 
 /// The command of a module that was started before, `earlier` times; a recorder's names another
 /// file, FILE.partN.mcap, and replaces nothing.

@@ -57,6 +57,11 @@ std::vector<std::string> list_of(const char* comma_separated, const Check& check
 
 }  // namespace
 
+bool Addresses::over_hosts() const {
+  return std::any_of(own.begin(), own.end(),
+                     [](const std::string& address) { return !address.starts_with("127."); });
+}
+
 Addresses addresses_from(const char* interfaces, const char* peers) {
   Addresses addresses{list_of(interfaces, check_is_of_this_host), list_of(peers, check_is_address)};
   if (addresses.own.empty()) addresses.own.emplace_back("127.0.0.1");

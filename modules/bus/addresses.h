@@ -10,6 +10,9 @@ namespace palpate::bus {
 struct Addresses {
   std::vector<std::string> own;    ///< of this host's interfaces, at least one
   std::vector<std::string> peers;  ///< of other hosts
+
+  /// Whether another host can be heard at all: not if all are loopback.
+  bool over_hosts() const;
 };
 
 /// From the environment of a process: PALPATE_INTERFACES, loopback if null or empty, and

@@ -38,7 +38,7 @@ bool Reader<Message>::take(Message& message) {
     if (const char* field = messages::decode(sample->payload, message)) {
       input_->reject(*sample, field);
     } else {
-      input_->accept(sample->writer, message.header);
+      input_->accept(*sample, message.header);
       return true;
     }
   }

@@ -107,6 +107,10 @@ class Bus {
   /// Packets from outside that were not let in; none on a bus that has no outside.
   virtual Refusals packets_refused() const { return {}; }
 
+  /// Which other host's clock is not known, in a sentence; empty if none is missed. What comes from
+  /// there is held back. The text holds as long as the bus.
+  virtual const char* clock_trouble() const { return ""; }
+
   /// What stamps messages, in ns; CLOCK_MONOTONIC unless set.
   void set_clock(std::function<std::int64_t()> now_ns) { clock_ = std::move(now_ns); }
   std::int64_t now_ns() const;

@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 
+#include "modules/bus/clock_exchange.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
+#include "modules/messages/message_types.h"
 
 namespace palpate::bus {
 namespace {
@@ -26,13 +29,13 @@ WriterId writer_of(const dds::SampleInfo& info) {
 }
 
 template <class Clock>
-std::int64_t now_ns() {
+std::int64_t ns_of() {
   return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
 }
 
 // DDS stamps arrivals with the wall clock; everything else here runs on the monotonic one.
 std::int64_t monotonic(const eprosima::fastrtps::rtps::Time_t& wall) {
-  return wall.to_ns() + now_ns<std::chrono::steady_clock>() - now_ns<std::chrono::system_clock>();
+  return wall.to_ns() + ns_of<std::chrono::steady_clock>() - ns_of<std::chrono::system_clock>();
 }
 
 class DdsWriter : public RawWriter {
@@ -63,11 +66,40 @@ class DdsWriter : public RawWriter {
 
 class DdsReader : public RawReader {
  public:
-  DdsReader(Participant& participant, const TopicInfo& topic, Keep keep)
-      : participant_(participant), reader_(participant.add_reader(topic, keep)) {}
+  /// @param clocks  on which what is read is put on this host's; nullptr: it stays as it came
+  DdsReader(Participant& participant, const TopicInfo& topic, Keep keep, HostClocks* clocks)
+      : participant_(participant),
+        topic_(topic),
+        clocks_(clocks),
+        reader_(participant.add_reader(topic, keep)) {}
   ~DdsReader() override { participant_.remove(reader_); }
 
   bool take(RawSample& sample) override {
+    if (clocks_ == nullptr) return take_as_it_came(sample);
+    if (take_waiting(sample)) return true;
+    while (take_as_it_came(sample)) {
+      if (put_on_this_clock(sample)) return true;
+      clocks_->missed(sample.writer, sample.received_time_ns);
+      if (topic_.delivery == Delivery::kState) keep_waiting(sample);
+    }
+    return false;
+  }
+  bool wait(double timeout) override {
+    // What waits for a clock wakes nobody: who waits looks again.
+    if (!waiting_.empty()) timeout = std::min(timeout, kLookAgain);
+    return reader_->wait_for_unread_message(Duration_t(static_cast<long double>(timeout)));
+  }
+  int matched_writers() const override {
+    dds::SubscriptionMatchedStatus status;
+    reader_->get_subscription_matched_status(status);
+    return status.current_count;
+  }
+
+ private:
+  static constexpr std::size_t kMostWaiting = 64;
+  static constexpr double kLookAgain = 0.01;  ///< [s]
+
+  bool take_as_it_came(RawSample& sample) {
     dds::SampleInfo info;
     sample_.into = &sample.payload;
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
@@ -79,24 +111,51 @@ class DdsReader : public RawReader {
     }
     return false;
   }
-  bool wait(double timeout) override {
-    return reader_->wait_for_unread_message(Duration_t(static_cast<long double>(timeout)));
-  }
-  int matched_writers() const override {
-    dds::SubscriptionMatchedStatus status;
-    reader_->get_subscription_matched_status(status);
-    return status.current_count;
+
+  bool put_on_this_clock(RawSample& sample) const {
+    const HostClocks::Reading clock = clocks_->of(sample.writer, sample.received_time_ns);
+    // Drivers stamp by any clock; haptics follows it (haptics/devices/driver_clock.h).
+    if (!clock.known) return topic_.name == kProbeInput.name;
+    sample.clock_error = clock.error;
+    if (clock.shift_ns != 0) messages::shift_times(*topic_.type, clock.shift_ns, sample.payload);
+    return true;
   }
 
- private:
+  void keep_waiting(const RawSample& sample) {
+    if (waiting_.size() == kMostWaiting) waiting_.pop_front();
+    waiting_.push_back(sample);
+  }
+
+  bool take_waiting(RawSample& sample) {
+    for (auto each = waiting_.begin(); each != waiting_.end(); ++each) {
+      if (!put_on_this_clock(*each)) continue;
+      std::swap(sample, *each);
+      waiting_.erase(each);
+      return true;
+    }
+    return false;
+  }
+
   Participant& participant_;
+  TopicInfo topic_;
+  HostClocks* clocks_;
   dds::DataReader* reader_;
   PayloadType::Sample sample_;
+  std::deque<RawSample> waiting_;
 };
 
 }  // namespace
 
-DdsBus::DdsBus(const BusOptions& options) : participant_(new Participant(options)) {}
+DdsBus::DdsBus(const BusOptions& options) : participant_(new Participant(options)) {
+  // In lockstep times are simulated ones, the same everywhere.
+  if (!participant_->over_hosts() || options.every_sample) return;
+  const TopicInfo topic = info_of(kClock);
+  clocks_ = std::make_unique<HostClocks>(
+      [this](const GuidPrefix& participant) { return participant_->host_of(participant); });
+  exchanger_ = std::make_unique<ClockExchanger>(
+      std::make_unique<DdsWriter>(*participant_, topic),
+      std::make_unique<DdsReader>(*participant_, topic, Keep::kBacklog, nullptr), *clocks_);
+}
 DdsBus::~DdsBus() = default;
 
 std::unique_ptr<RawWriter> DdsBus::raw_writer(const TopicInfo& topic) {
@@ -104,9 +163,13 @@ std::unique_ptr<RawWriter> DdsBus::raw_writer(const TopicInfo& topic) {
 }
 
 std::unique_ptr<RawReader> DdsBus::raw_reader(const TopicInfo& topic, Keep keep) {
-  return std::make_unique<DdsReader>(*participant_, topic, keep);
+  return std::make_unique<DdsReader>(*participant_, topic, keep, clocks_.get());
 }
 
 Refusals DdsBus::packets_refused() const { return participant_->packets_refused(); }
+
+const char* DdsBus::clock_trouble() const {
+  return clocks_ == nullptr ? "" : clocks_->trouble(now_ns());
+}
 
 }  // namespace palpate::bus

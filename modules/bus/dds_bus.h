@@ -5,10 +5,13 @@
 
 namespace palpate::bus {
 
+class ClockExchanger;
+class HostClocks;
 class Participant;
 
-/// One DDS participant. Its threads inherit the scheduling of the thread that constructs it: set
-/// real-time priority before.
+/// One DDS participant. Over hosts, times in what is read are on this host's clock: of what others
+/// say, states wait until their clock is known, streams are left out. Its threads inherit the
+/// scheduling of the thread that constructs it: set real-time priority before.
 class DdsBus : public Bus {
  public:
   /// @throws InputError for a domain outside 0 to 200, or a session that is not 1 to 64 letters,
@@ -21,9 +24,12 @@ class DdsBus : public Bus {
   std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) override;
   std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) override;
   Refusals packets_refused() const override;
+  const char* clock_trouble() const override;
 
  private:
   std::unique_ptr<Participant> participant_;
+  std::unique_ptr<HostClocks> clocks_;  ///< none on one host, and in lockstep
+  std::unique_ptr<ClockExchanger> exchanger_;
 };
 
 }  // namespace palpate::bus

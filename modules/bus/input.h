@@ -21,6 +21,7 @@ struct ReaderStatistics {
   /// Its wire name (idl/), "payload" for a sample that could not be read; nullptr if none.
   const char* last_rejected_field = nullptr;
   std::int64_t newest_source_time_ns = 0;  ///< 0 before the first
+  double clock_error = 0;                  ///< of that time, see RawSample [s]
 };
 
 /// Without a horizon, samples pass as they arrived: in order for each key. With one, they are
@@ -50,7 +51,7 @@ class Input {
   // For Reader:
   /// The next sample, valid until the next call; nullptr if none.
   const RawSample* next();
-  void accept(const WriterId& writer, const Header& header);
+  void accept(const RawSample& sample, const Header& header);
   void reject(const RawSample& sample, const char* field);
 
  private:

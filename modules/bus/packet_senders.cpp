@@ -14,6 +14,13 @@ bool PacketSenders::admit(const GuidPrefix& participant, const PacketSender& sen
   return true;
 }
 
+std::optional<PacketSender> PacketSenders::sender_of(const GuidPrefix& participant) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = known_.find(participant);
+  if (known == known_.end()) return std::nullopt;
+  return known->second.sender;
+}
+
 bool PacketSenders::admit_newcomer(const GuidPrefix& participant, const PacketSender& sender,
                                    std::int64_t now_ns) {
   const auto before = participants_.find(sender);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 
 namespace palpate::bus {
 
@@ -29,6 +30,9 @@ class PacketSenders {
   /// the oldest makes room when kMaxParticipants are known; if none is, newcomers are refused.
   bool admit(const GuidPrefix& participant, const PacketSender& sender, std::int64_t now_ns);
 
+  /// Where a participant speaks from; nothing if it is not known.
+  std::optional<PacketSender> sender_of(const GuidPrefix& participant) const;
+
   static constexpr std::int64_t kSilence = 1'000'000'000;     ///< four announcements [ns]
   static constexpr std::int64_t kForgotten = 10'000'000'000;  ///< [ns]
   static constexpr std::size_t kMaxParticipants = 256;
@@ -42,7 +46,7 @@ class PacketSenders {
                       std::int64_t now_ns);
   bool make_room(std::int64_t now_ns);
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<GuidPrefix, Known> known_;
   std::map<PacketSender, GuidPrefix> participants_;  ///< the inverse
 };

@@ -8,6 +8,9 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 
+#include <arpa/inet.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -54,15 +57,14 @@ Entity* demand_created(Entity* entity, const std::string& what) {
 Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
   check(options);
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
+  addresses_ = addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS"));
   dds::DomainParticipantQos qos;
   if (const char* const folder = std::getenv("PALPATE_KEYS"); folder != nullptr) {
     const char* const role = std::getenv("PALPATE_ROLE");
     role_ = role == nullptr ? options.participant_name : role;
     apply_keys(folder, role_, qos);
   }
-  packets_ = apply_transport(
-      addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS")),
-      options.domain, {token_, !role_.empty()}, qos);
+  packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos);
   qos.name(options.participant_name);
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(options.domain), qos);
@@ -101,6 +103,17 @@ bool Participant::admit(std::span<std::uint8_t> payload) {
   }
   packets_->refuse(PacketFault::kToken);
   return false;
+}
+
+std::string Participant::host_of(const GuidPrefix& participant) const {
+  const auto sender = packets_->senders.sender_of(participant);
+  if (!sender) return "";  // no packet of it came in: it is this process
+  char text[INET_ADDRSTRLEN] = "";
+  inet_ntop(AF_INET, &sender->address, text, sizeof text);
+  const std::string host = text;
+  const bool own =
+      host.starts_with("127.") || std::ranges::find(addresses_.own, host) != addresses_.own.end();
+  return own ? "" : host;
 }
 
 void Participant::close() {

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
+#include "modules/bus/addresses.h"
 #include "modules/bus/bus.h"
+#include "modules/bus/packet_senders.h"
 
 namespace eprosima::fastdds::dds {
 class DataReader;
@@ -45,6 +47,10 @@ class Participant {
   /// Takes the token off a payload that came; false, and counted, if it is not this session's.
   bool admit(std::span<std::uint8_t> payload);
 
+  bool over_hosts() const { return addresses_.over_hosts(); }
+  /// Where a participant that was heard speaks from, as "10.0.0.6"; empty for this host.
+  std::string host_of(const GuidPrefix& participant) const;
+
  private:
   eprosima::fastdds::dds::Topic* topic(const TopicInfo& topic);
   std::string what(const char* endpoint, const TopicInfo& topic) const;  ///< for who is told of it
@@ -53,6 +59,7 @@ class Participant {
   bool every_sample_;
   std::uint64_t token_ = 0;
   std::string role_;  ///< empty: without keys
+  Addresses addresses_;
   std::shared_ptr<PacketTally> packets_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;

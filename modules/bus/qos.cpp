@@ -110,7 +110,7 @@ std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int dom
   udp->maxInitialPeersRange = kMaxParticipants;
   auto tally = std::make_shared<PacketTally>();
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(filtered(udp, rules, tally));
+  qos.transport().user_transports.push_back(filtered(udp, rules, tally, addresses));
   apply_discovery(addresses, domain, qos.wire_protocol());
   qos.allocation().participants = {0, PacketSenders::kMaxParticipants, 1};
   return tally;

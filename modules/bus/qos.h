@@ -21,7 +21,7 @@ struct SampleRules;
 inline constexpr int kMaxKeys = 256;
 
 /// UDP on our own addresses only, through the packet filter, without multicast or shared memory;
-/// quick discovery, a lease of a day.
+/// quick discovery, a lease of a day. To other hosts in chunks that fit their packets.
 /// @param rules  for what may pass
 /// @returns what the filter will have done
 std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,

@@ -22,6 +22,9 @@ enum class Keep {
 struct RawSample {
   WriterId writer{};                  ///< unique among all that ever were
   std::int64_t received_time_ns = 0;  ///< by the monotonic clock, or the memory bus's own [ns]
+  /// How well the writer's clock is known, on whose times the payload's were put; 0 of this host
+  /// [s]
+  double clock_error = 0;
   std::vector<std::uint8_t> payload;
 };
 

@@ -28,22 +28,32 @@ Role driver(std::string_view name) {
           {kHapticForce.name, kProbeState.name, kScene.name, kSessionControl.name}};
 }
 
+/// Over hosts everybody asks the others' clocks, and answers.
+std::vector<Role> with_clocks(std::vector<Role> roles) {
+  for (Role& role : roles) {
+    role.writes.push_back(kClock.name);
+    if (std::ranges::find(role.reads, kClock.name) == role.reads.end())
+      role.reads.push_back(kClock.name);
+  }
+  return roles;
+}
+
 }  // namespace
 
 std::span<const Role> roles() {
-  static const std::vector<Role> all{
-      {"palpate", {kScene.name, kSessionControl.name}, everything()},
-      process("deformation", {kSurface.name, kNodePositions.name, kContactModel.name},
-              {kProbeState.name, kContacts.name}),
-      process("collision", {kContacts.name},
-              {kSurface.name, kNodePositions.name, kProbeState.name}),
-      process("haptics", {kProbeState.name, kHapticForce.name},
-              {kProbeInput.name, kContactModel.name}),
-      {"visualizer", {kProbeInput.name, kSessionControl.name, kModuleStatus.name}, everything()},
-      {"recorder", {kModuleStatus.name}, everything()},
-      driver("driver"),
-      driver("emulated_device"),
-      {"viewer", {}, everything()}};
+  static const std::vector<Role> all = with_clocks(
+      {{"palpate", {kScene.name, kSessionControl.name}, everything()},
+       process("deformation", {kSurface.name, kNodePositions.name, kContactModel.name},
+               {kProbeState.name, kContacts.name}),
+       process("collision", {kContacts.name},
+               {kSurface.name, kNodePositions.name, kProbeState.name}),
+       process("haptics", {kProbeState.name, kHapticForce.name},
+               {kProbeInput.name, kContactModel.name}),
+       {"visualizer", {kProbeInput.name, kSessionControl.name, kModuleStatus.name}, everything()},
+       {"recorder", {kModuleStatus.name}, everything()},
+       driver("driver"),
+       driver("emulated_device"),
+       {"viewer", {}, everything()}});
   return all;
 }
 

@@ -30,11 +30,12 @@ inline constexpr TopicOf<ContactModel> kContactModel{"contact_model", Delivery::
 inline constexpr TopicOf<HapticForce> kHapticForce{"haptic_force", Delivery::kStream};
 inline constexpr TopicOf<ModuleStatus> kModuleStatus{"module_status", Delivery::kState};
 inline constexpr TopicOf<SessionControl> kSessionControl{"session_control", Delivery::kState};
+inline constexpr TopicOf<ClockExchange> kClock{"clock", Delivery::kStream};
 
 /// All of them.
 inline constexpr auto kTopics =
     std::tuple(kScene, kSurface, kNodePositions, kProbeState, kProbeInput, kContacts, kContactModel,
-               kHapticForce, kModuleStatus, kSessionControl);
+               kHapticForce, kModuleStatus, kSessionControl, kClock);
 
 /// A topic without its C++ type.
 struct TopicInfo {

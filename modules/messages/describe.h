@@ -280,6 +280,7 @@ template <class V, Is<ModuleStatus::Input> I>
 void describe(V& v, I& input) {
   v.field("inputs.topic", input.topic, Rule::kName);
   v.field("inputs.age_s", input.age, Rule::kAge);
+  v.field("inputs.age_error_s", input.age_error, Rule::kAtLeastZero);
   v.field("inputs.received", input.received, Rule::kPlain);
   v.field("inputs.dropped", input.dropped, Rule::kPlain);
   v.field("inputs.rejected", input.rejected, Rule::kPlain);
@@ -323,6 +324,20 @@ void describe(V& v, M& m) {
   v.field("reset_count", m.reset_count, Rule::kPlain);
   v.field("start_time_ns", m.start_time_ns, Rule::kPlain);
   v.field("until_ns", m.until_ns, Rule::kPlain);
+}
+
+template <class V, Is<ClockExchange::Echo> E>
+void describe(V& v, E& echo) {
+  v.field("echoes.process", echo.process, Rule::kPlain);
+  v.field("echoes.sent_ns", echo.sent_ns, Rule::kPlain);
+  v.field("echoes.received_ns", echo.received_ns, Rule::kPlain);
+}
+
+template <class V, Is<ClockExchange> M>
+void describe(V& v, M& m) {
+  v.header(m.header);
+  v.field("process", m.process, Rule::kPlain);
+  v.list("echoes", m.echoes, kMaxClockEchoes, "echo_count");
 }
 
 }  // namespace palpate::messages

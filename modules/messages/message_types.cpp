@@ -11,7 +11,7 @@
 namespace palpate::messages {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 32, kTokenAt = 24;
+constexpr std::size_t kHeaderBytes = 32, kSourceTimeAt = 16, kTokenAt = 24;
 
 template <class Message>
 MessageType::Key key_kind() {
@@ -35,6 +35,14 @@ T number(Payload payload, std::size_t place) {
   std::memcpy(bytes.data(), payload.data() + kEncapsulationBytes + place, sizeof(T));
   if (is_big_endian(payload)) std::ranges::reverse(bytes);
   return std::bit_cast<T>(bytes);
+}
+
+void put(std::int64_t value, std::vector<std::uint8_t>& payload, std::size_t place) {
+  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof value>>(value);
+  const bool big_endian = (payload[1] & 1u) == 0;
+  if (big_endian) std::ranges::reverse(bytes);
+  std::ranges::copy(bytes,
+                    payload.begin() + static_cast<std::ptrdiff_t>(kEncapsulationBytes + place));
 }
 
 void append_big_endian(KeyBytes& key, std::uint32_t value) {
@@ -86,7 +94,7 @@ KeyBytes key_of(const MessageType& type, Payload payload) {
 Header header_of(Payload payload) {
   if (payload.size() < kEncapsulationBytes + kHeaderBytes) return {};
   return {number<std::uint64_t>(payload, 0), number<std::int64_t>(payload, 8),
-          number<std::int64_t>(payload, 16), number<std::uint64_t>(payload, kTokenAt)};
+          number<std::int64_t>(payload, kSourceTimeAt), number<std::uint64_t>(payload, kTokenAt)};
 }
 
 std::optional<std::uint64_t> token_of(Payload payload) {
@@ -99,6 +107,18 @@ void set_token(std::span<std::uint8_t> payload, std::uint64_t token) {
   auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof token>>(token);
   if (is_big_endian(payload)) std::ranges::reverse(bytes);
   std::ranges::copy(bytes, payload.begin() + kEncapsulationBytes + kTokenAt);
+}
+
+void shift_times(const MessageType& type, std::int64_t shift_ns,
+                 std::vector<std::uint8_t>& payload) {
+  if (payload.size() < kEncapsulationBytes + kHeaderBytes) return;
+  const std::int64_t source_ns = number<std::int64_t>(payload, kSourceTimeAt);
+  put(std::max<std::int64_t>(1, source_ns + shift_ns), payload, kSourceTimeAt);
+  if (&type != &type_of<SessionControl>()) return;
+  SessionControl control;
+  if (read_payload(payload, control) != nullptr) return;
+  control.start_time_ns += shift_ns;
+  write_payload(control, payload);
 }
 
 }  // namespace palpate::messages

@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 9;
+inline constexpr std::uint32_t kProtocolVersion = 10;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
@@ -22,6 +22,7 @@ inline constexpr std::size_t kMaxFacesPerProbe = 1024;
 inline constexpr std::size_t kMaxFaceNodes = kMaxNodes;  ///< of all faces of a probe
 inline constexpr std::size_t kMaxLawCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;
 inline constexpr std::size_t kMaxInputs = 16;
+inline constexpr std::size_t kMaxClockEchoes = 64;
 
 /// First field of every message.
 struct Header {
@@ -126,7 +127,8 @@ struct ContactTroubles {
 struct ModuleStatus {
   struct Input {
     std::string topic;
-    double age = 0;  ///< of the newest sample; infinity before the first [s]
+    double age = 0;        ///< of the newest sample; infinity before the first [s]
+    double age_error = 0;  ///< how well its writer's clock is known; 0 of this host's [s]
     std::uint64_t received = 0;
     std::uint64_t dropped = 0;   ///< gaps in the writers' sequence numbers
     std::uint64_t rejected = 0;  ///< samples refused by the codec
@@ -176,6 +178,19 @@ struct SessionControl {
   std::int64_t until_ns = 0;
 };
 
+/// Several hosts: every process says when it speaks, and when it heard what the others said. With
+/// its own clock, each then knows how far the others' are from it (modules/bus/clock_offset.h).
+struct ClockExchange {
+  struct Echo {
+    std::uint32_t process = 0;     ///< who was heard
+    std::int64_t sent_ns = 0;      ///< its source time [ns]
+    std::int64_t received_ns = 0;  ///< when that came, on the writer's clock [ns]
+  };
+  Header header;
+  std::uint32_t process = 0;  ///< who speaks: a number of its own
+  std::vector<Echo> echoes;   ///< of other hosts' processes, at most kMaxClockEchoes
+};
+
 }  // namespace palpate
 
 // All of them.
@@ -188,4 +203,5 @@ struct SessionControl {
   X(HapticForce)            \
   X(ModuleStatus)           \
   X(SceneDescription)       \
-  X(SessionControl)
+  X(SessionControl)         \
+  X(ClockExchange)

@@ -41,7 +41,7 @@ void RecorderStage::write_all() {
   for (const auto& input : inputs_) {
     while (const bus::RawSample* raw = input->next()) {
       const Header header = messages::header_of(raw->payload);
-      input->accept(raw->writer, header);
+      input->accept(*raw, header);
       TopicSample sample;
       sample.topic = bus::find_topic(input->topic().name);
       sample.received_time_ns = std::max<std::int64_t>(0, header.source_time_ns);

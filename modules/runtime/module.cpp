@@ -87,6 +87,8 @@ void Module::report_state() {
     status_.set_state(ModuleState::kPaused);
   } else if (*guard_ != '\0') {
     status_.set_state(ModuleState::kDegraded, guard_);
+  } else if (*bus_.clock_trouble() != '\0') {
+    status_.set_state(ModuleState::kDegraded, bus_.clock_trouble());
   } else if (status_.status().state != ModuleState::kDegraded ||
              now_ns() - guard_since_ns_ > kGuardShownNs) {
     status_.set_state(ModuleState::kRunning);

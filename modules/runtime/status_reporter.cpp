@@ -74,6 +74,7 @@ void StatusReporter::fill_inputs(std::int64_t now_ns) {
     const std::int64_t age_ns = std::max<std::int64_t>(0, now_ns - from.newest_source_time_ns);
     to->age = from.newest_source_time_ns == 0 ? std::numeric_limits<double>::infinity()
                                               : seconds_from_ns(age_ns);
+    to->age_error = from.clock_error;
     to->received = from.received;
     to->dropped = from.dropped;
     to->rejected = from.rejected;
@@ -85,7 +86,7 @@ ModuleStatus::Input* StatusReporter::entry(std::string_view topic) {
     if (known.topic == topic) return &known;
   }
   if (status_.inputs.size() == kMaxInputs) return nullptr;
-  status_.inputs.push_back({std::string(topic), 0, 0, 0, 0});
+  status_.inputs.push_back({std::string(topic), 0, 0, 0, 0, 0});
   return &status_.inputs.back();
 }
 

@@ -4,6 +4,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/runtime/stage.h"
 
 namespace palpate::runtime {
 namespace {
@@ -52,6 +53,10 @@ double rate_of(std::string_view module, const scene::Scene& scene) {
   if (module == "visualizer") return scene.rates.visualizer;
   PALPATE_DEMAND(module == "recorder");
   return kRecorderRate;
+}
+
+double input_stale_after(const scene::Scene& scene) {
+  return std::max(kInputStaleAfter, scene.haptics.stale_after);
 }
 
 InputRule::InputRule(const scene::Scene& scene, std::string module)

@@ -244,7 +244,9 @@ void describe(V& v, Haptics& haptics) {
   v.field("device_damping_n_s_per_m", haptics.device_damping,
           ranged("N·s/m", 0, 50, "physical damping of the device"));
   v.field("stale_after_s", haptics.stale_after,
-          ranged("s", 0.005, 1, "a contact model older than this fades"));
+          ranged("s", 0.005, 1,
+                 "a contact model older than this fades; from 0.05 s up, probes and contacts "
+                 "older than it touch nothing"));
   v.field("fade_time_s", haptics.fade_time, ranged("s", 0.005, 1, "from full force to none"));
 }
 

@@ -36,7 +36,7 @@ SessionTally stomach_tally() {
   haptics.worst_lateness = 2.5e-3;
   haptics.realtime_priority = true;
   haptics.packets_refused = 23;
-  haptics.inputs.push_back({"contact_model", 0.002, 3000, 17, 1});
+  haptics.inputs.push_back({"contact_model", 0.002, 0, 3000, 17, 1});
   tally.receive(haptics);
   ModuleStatus deformation;
   deformation.module = "deformation";

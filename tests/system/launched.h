@@ -51,6 +51,11 @@ class Running {
   }
   launcher::ChildProcess& child() { return *child_; }
   const std::string& said() const { return said_; }
+  /// The same, with what came meanwhile.
+  const std::string& listened() {
+    listen();
+    return said_;
+  }
 
  private:
   void listen() {

@@ -37,7 +37,7 @@ SceneView busy_view() {
     status.overruns = 12345;
     status.real_time_factor = 0.98;
     status.last_error = "contact model older than stale_after_s: force fades to zero";
-    status.inputs = {{"contacts", 0.1234, 0, 0, 0}};
+    status.inputs = {{"contacts", 0.1234, 0, 0, 0, 0}};
     view.receive(status, 10 * kSecond);
   }
   ProbeState probe;

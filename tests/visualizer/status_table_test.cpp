@@ -16,7 +16,7 @@ ModuleStatus running(const std::string& module) {
   status.state = ModuleState::kRunning;
   status.rate_hz = 249.6;
   status.overruns = 17;
-  status.inputs = {{"probe_state", 0.5, 0, 0, 0}, {"contacts", 0.0042, 0, 0, 0}};
+  status.inputs = {{"probe_state", 0.5, 0, 0, 0, 0}, {"contacts", 0.0042, 0, 0, 0, 0}};
   return status;
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("status table: a process without inputs or samples has no age", "[visu
   // Oracle: the stated rule: infinity before the first sample.
   SceneView view(visualizer::testing::two_probe_scene());
   auto status = running("haptics");
-  status.inputs = {{"probe_input", std::numeric_limits<double>::infinity(), 0, 0, 0}};
+  status.inputs = {{"probe_input", std::numeric_limits<double>::infinity(), 0, 0, 0, 0}};
   view.receive(status, kSecond);
   CHECK(contains(texts_of(view, kSecond), "-"));
 }

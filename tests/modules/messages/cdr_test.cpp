@@ -222,4 +222,42 @@ TEST_CASE("cdr: the token is written in a payload's own byte order, and nothing 
   CHECK(cut == std::vector<std::uint8_t>(35, 7));
 }
 
+TEST_CASE("cdr: times are put on another clock, in either byte order, and nothing else",
+          "[messages]") {
+  // Oracle: the message with other times, written as a whole by the generated code. A big-endian
+  // command comes out little-endian: it is read and written anew.
+  constexpr std::int64_t kAhead = 100'000'000'000'000;
+  Random random(18);
+  auto force = random_message<HapticForce>(random);
+  force.header.source_time_ns = 5'000;
+  const auto before = testing::generated(payload_of(force), force);
+  force.header.source_time_ns = 5'000 + kAhead;
+  const auto after = testing::generated(payload_of(force), force);
+  for (const auto order : {testing::kLittleEndian, testing::kBigEndian}) {
+    auto payload = testing::serialized(before, order);
+    shift_times(type_of<HapticForce>(), kAhead, payload);
+    CHECK(payload == testing::serialized(after, order));
+    shift_times(type_of<HapticForce>(), -2 * kAhead, payload);
+    CHECK(header_of(payload).source_time_ns == 1);  // 0 would say that there is none
+  }
+
+  SessionControl control;
+  control.header = {1, 2, 3'000, 4};
+  control.start_time_ns = -70;
+  control.until_ns = 9;
+  auto payload =
+      testing::serialized(testing::generated(payload_of(control), control), testing::kBigEndian);
+  shift_times(type_of<SessionControl>(), kAhead, payload);
+  SessionControl shifted;
+  REQUIRE(decode(payload, shifted) == nullptr);
+  CHECK(shifted.header.source_time_ns == 3'000 + kAhead);
+  CHECK(shifted.start_time_ns == kAhead - 70);
+  CHECK(shifted.until_ns == 9);
+  CHECK(shifted.header.session_token == 4);
+
+  std::vector<std::uint8_t> cut(20, 7);
+  shift_times(type_of<HapticForce>(), 1, cut);
+  CHECK(cut == std::vector<std::uint8_t>(20, 7));
+}
+
 }  // namespace palpate::messages

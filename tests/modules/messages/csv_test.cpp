@@ -113,11 +113,11 @@ TEST_CASE("csv: values stand under their names") {
   CHECK(csv_columns(status).starts_with("state,process_id,rate_hz,nominal_rate_hz,cycles,"));
   CHECK(values_of(status) == "degraded,-4,250,0,0,0,0,0,0,0,0,0,0,0,\"late, very\"");
 
-  const ModuleStatus::Input input{"contacts", 0.5, 1, 2, 3};
+  const ModuleStatus::Input input{"contacts", 0.5, 0.25, 1, 2, 3};
   std::ostringstream row;
   write_csv_values(row, input);
-  CHECK(csv_columns(input) == "topic,age_s,received,dropped,rejected");
-  CHECK(row.str() == "contacts,0.5,1,2,3");
+  CHECK(csv_columns(input) == "topic,age_s,age_error_s,received,dropped,rejected");
+  CHECK(row.str() == "contacts,0.5,0.25,1,2,3");
 }
 
 TEST_CASE("csv: parts of a vector are named before its unit") {

@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "idl/ClockExchangePubSubTypes.h"
 #include "idl/ContactModelPubSubTypes.h"
 #include "idl/ContactsPubSubTypes.h"
 #include "idl/HapticForcePubSubTypes.h"
@@ -186,6 +187,7 @@ inline void check_same(const idl::HapticForce& w, const HapticForce& m) {
 inline void check_same(const idl::InputStatus& w, const ModuleStatus::Input& m) {
   REQUIRE(w.topic() == m.topic);
   REQUIRE(w.age_s() == m.age);
+  REQUIRE(w.age_error_s() == m.age_error);
   REQUIRE(w.received() == m.received);
   REQUIRE(w.dropped() == m.dropped);
   REQUIRE(w.rejected() == m.rejected);
@@ -227,6 +229,19 @@ inline void check_same(const idl::SessionControl& w, const SessionControl& m) {
   REQUIRE(w.reset_count() == m.reset_count);
   REQUIRE(w.start_time_ns() == m.start_time_ns);
   REQUIRE(w.until_ns() == m.until_ns);
+}
+
+inline void check_same(const idl::ClockEcho& w, const ClockExchange::Echo& m) {
+  REQUIRE(w.process() == m.process);
+  REQUIRE(w.sent_ns() == m.sent_ns);
+  REQUIRE(w.received_ns() == m.received_ns);
+}
+
+inline void check_same(const idl::ClockExchange& w, const ClockExchange& m) {
+  check_header(w, m);
+  REQUIRE(w.process() == m.process);
+  REQUIRE(w.echoes().size() == m.echoes.size());
+  for (std::size_t i = 0; i < m.echoes.size(); ++i) check_same(w.echoes()[i], m.echoes[i]);
 }
 
 /// Our key's bytes are what the generated code copies or hashes.

@@ -73,6 +73,7 @@ std::string idl_type() {
   if constexpr (std::is_same_v<T, Contact>) return "Contact";
   if constexpr (std::is_same_v<T, LawRow>) return "LawRow";
   if constexpr (std::is_same_v<T, ModuleStatus::Input>) return "InputStatus";
+  if constexpr (std::is_same_v<T, ClockExchange::Echo>) return "ClockEcho";
 }
 
 /// What the page says of a rule, and what the comment in idl/ must say of it.

@@ -58,7 +58,7 @@ TEST_CASE("independent reader: decodes recordings through their indexes, by thei
   status.header = {1, 0, 1};
   status.module = "haptics";
   status.state = ModuleState::kRunning;
-  status.inputs = {{"contact_model", 0.125, 10, 1, 0}};
+  status.inputs = {{"contact_model", 0.125, 0, 10, 1, 0}};
   file.add(raw_sample(bus::kModuleStatus, status, 3'000));
   file.close();
 
@@ -72,7 +72,9 @@ TEST_CASE("independent reader: decodes recordings through their indexes, by thei
   CHECK_THAT(output, Contains("message probe_state 7 1700000000000002000 "));
   CHECK_THAT(output, Contains("\"probe\":2,\"position_m\":[0.25,-1,8],"));
   CHECK_THAT(output, Contains("\"module_name\":\"haptics\",\"state\":2,"));
-  CHECK_THAT(output, Contains("{\"topic\":\"contact_model\",\"age_s\":0.125,\"received\":10,"));
+  CHECK_THAT(
+      output,
+      Contains("{\"topic\":\"contact_model\",\"age_s\":0.125,\"age_error_s\":0,\"received\":10,"));
   CHECK_THAT(output, Contains("statistics 3\n"));
   CHECK_THAT(output, Catch::EndsWith("whole\n"));
 }

@@ -30,7 +30,7 @@ void write_session(const std::filesystem::path& file, bool close = true) {
     ModuleStatus status;
     status.header = {1, 0, 1};
     status.module = module;
-    status.inputs = {{"probe_state", 0.5, 10, 1, 0}, {"contacts", 0.25, 20, 0, 2}};
+    status.inputs = {{"probe_state", 0.5, 0, 10, 1, 0}, {"contacts", 0.25, 0, 20, 0, 2}};
     writer.add(raw_sample(bus::kModuleStatus, status, kStart + 70 * kMs, ++id));
   }
   HapticForce force;
@@ -158,10 +158,11 @@ TEST_CASE("inspect: writes one CSV file per topic and key") {
         "0.05625,0.056,0.00025,14,0,0.001,0.001,100,0,0,0,1\n"
         "0.06025,0.06,0.00025,15,0,0.001,0.001,100,0,0,0,1\n");
   const std::string inputs = text_in(folder / "csv/module_inputs_haptics.csv");
-  CHECK_THAT(inputs, Catch::StartsWith("time_s,sim_time_s,latency_s,sequence,topic,age_s,received,"
-                                       "dropped,rejected\n0.07,0,"));
-  CHECK_THAT(inputs, Catch::Contains(",probe_state,0.5,10,1,0\n"));
-  CHECK_THAT(inputs, Catch::EndsWith(",contacts,0.25,20,0,2\n"));
+  CHECK_THAT(inputs, Catch::StartsWith(
+                         "time_s,sim_time_s,latency_s,sequence,topic,age_s,age_error_s,received,"
+                         "dropped,rejected\n0.07,0,"));
+  CHECK_THAT(inputs, Catch::Contains(",probe_state,0.5,0,10,1,0\n"));
+  CHECK_THAT(inputs, Catch::EndsWith(",contacts,0.25,0,20,0,2\n"));
   CHECK(std::filesystem::exists(folder / "csv/scene.csv"));
   CHECK(std::filesystem::exists(folder / "csv/module_status_haptics.csv"));
   CHECK_FALSE(std::filesystem::exists(folder / "csv/haptic_force_0.csv"));  // none was valid

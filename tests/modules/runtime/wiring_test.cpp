@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/topics.h"
+#include "modules/runtime/stage.h"
 
 using namespace palpate;
 using namespace palpate::runtime;
@@ -74,4 +75,14 @@ TEST_CASE("wiring: a topic's readers are counted among those who take part") {
   CHECK(reader_count("probe_state", {"haptics", "collision", "deformation", "recorder"}) == 3);
   CHECK(reader_count("contact_model", {"haptics", "visualizer"}) == 1);
   CHECK(reader_count("module_status", {"visualizer", "recorder"}) == 0);
+}
+
+TEST_CASE("wiring: a scene that lets laws grow old lets probes and contacts, and none is hurried") {
+  // Oracle: the rule. A limit below 50 ms would be shorter than the period of slow collision.
+  scene::Scene scene = two_probes_one_organ();
+  CHECK(input_stale_after(scene) == kInputStaleAfter);
+  scene.haptics.stale_after = 0.3;
+  CHECK(input_stale_after(scene) == 0.3);
+  scene.haptics.stale_after = 0.005;
+  CHECK(input_stale_after(scene) == kInputStaleAfter);
 }
