@@ -2,9 +2,12 @@
 // where it touches are worth, linear and quadratic ones, error against processor time. All meshes
 // are halvings of one, so all have the same surface. The truth is quadratic elements (P2/P1) at
 // rest, on two of them.
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 #include <random>
 
@@ -16,8 +19,10 @@
 #include "modules/runtime/program.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/models.h"
+#include "studies/chart/case_parts.h"
 #include "studies/chart/equilibria.h"
 #include "studies/report/measures.h"
+#include "studies/report/table_file.h"
 #include "studies/rigs/poked_organ.h"
 #include "studies/rigs/pressed_organ.h"
 
@@ -36,6 +41,7 @@ struct Options {
   int sites = 10;
   int seed = 1;
   double radius_mm = 8;
+  std::string out;
 };
 
 /// Edges of the touched part, as parts of the sphere's radius, and how they grow. No edge: as it
@@ -53,6 +59,7 @@ struct Candidate {
   Mesh mesh;
 };
 constexpr std::array kCandidates{
+    Candidate{"springs, as shipped", "implicit_volume", {0, 0, 0}},
     Candidate{"linear, as shipped", "nodal_pressure", {0, 0, 0}},
     Candidate{"linear, R/2, 0.5", "nodal_pressure", {0.5, 0.5, 1}},
     Candidate{"linear, R/3, 0.5", "nodal_pressure", {1.0 / 3, 0.5, 1}},
@@ -109,15 +116,18 @@ class Bench {
 
   Answer press(const Site& site, const Candidate& candidate,
                const std::function<void()>& keep_going) const {
-    geometry::OrganShape shape = geometry::shape_of(halved(site, candidate.mesh));
+    const bool springs = !scene::is_solid(candidate.model);
+    geometry::OrganShape shape =
+        springs ? geometry::OrganShape(surface_) : geometry::shape_of(halved(site, candidate.mesh));
     if (scene::is_quadratic(candidate.model)) shape = geometry::with_edge_nodes(shape);
     scene::Scene scene;
-    scene.organs.push_back(organ_);
+    // Springs as calibrated for solids (docs/calibration.md), by the ball of the same volume.
+    const double volume = geometry::enclosed_volume(surface_.nodes, surface_.triangles);
+    scene.organs.push_back(chart::solid_organ({candidate.model},
+                                              std::cbrt(3 * volume / (4 * std::numbers::pi)),
+                                              chart::kVirtualNodes, kYoungsModulus, kDensity));
     scene::Organ& organ = scene.organs[0];
-    organ.model = candidate.model;
-    organ.tissue = {};
-    organ.tissue.youngs_modulus = kYoungsModulus;
-    organ.tissue.density = kDensity;
+    organ.fixed = organ_.fixed;
     organ.tissue.drag = kDrag;
     scene.rates.deformation = kRate;
     scene.probes.push_back({"tip", scene::SphereShape{radius_}, 0.0, scene::ScriptedDevice{}});
@@ -204,6 +214,12 @@ double not_exceeded_by_95(std::vector<double> values) {
   return values[(95 * values.size() + 99) / 100 - 1];
 }
 
+std::string middle_half(std::vector<double> values) {
+  std::ranges::sort(values);
+  if (!(values.back() > 0)) return "none";
+  return fmt::format("{:.2f} to {:.2f}", values[values.size() / 4], values[3 * values.size() / 4]);
+}
+
 int run(const Options& options) {
   const Bench bench(options);
   const auto keep_going = [] {};
@@ -212,6 +228,12 @@ int run(const Options& options) {
   std::fflush(stdout);
   std::array<std::vector<double>, kCandidates.size()> errors, costs, nodes, effectivities;
   std::vector<double> bars;
+  std::optional<report::TableFile> table;
+  if (!options.out.empty()) {
+    table.emplace(options.out, std::vector<std::string>{
+                                   "organ", "place", "mesh", "nodes", "tetrahedra", "cost_s_per_s",
+                                   "depth_m", "force_n", "true_force_n", "estimated_error"});
+  }
   int number = 0;
   for (const Site& site : bench.random_sites(options.sites, options.seed)) {
     std::printf("(%.4f %.4f %.4f) m:", site.touched.x(), site.touched.y(), site.touched.z());
@@ -240,6 +262,14 @@ int run(const Options& options) {
         errors[m].push_back(std::abs(error));
         effectivities[m].push_back(found.estimated_error[i] / std::abs(error));
         std::printf(" %+6.1f (%.1f) %%", 100 * error, 100 * found.estimated_error[i]);
+        if (table) {
+          table->write_row(std::vector<std::string>{
+              options.organ, std::to_string(number), kCandidates[m].name,
+              std::to_string(found.nodes), std::to_string(found.tetrahedra),
+              fmt::format("{:.4g}", found.cost), fmt::format("{:g}", kDepths[i]),
+              fmt::format("{:.8g}", found.force[i]), fmt::format("{:.8g}", truth->force[i]),
+              fmt::format("{:.4g}", found.estimated_error[i])});
+        }
       }
       costs[m].push_back(found.cost);
       nodes[m].push_back(static_cast<double>(found.nodes));
@@ -248,18 +278,16 @@ int run(const Options& options) {
     }
   }
   if (errors[0].empty() || bars.empty()) return kExitFailed;
+  if (table) table->finish();
   std::printf("\ntruth: a finer mesh differs by %.1f %% in the median, %.1f %% at most\n",
               100 * report::median(bars), 100 * std::ranges::max(bars));
   std::printf("%-21s %6s %10s %10s %10s %10s  %s\n", "mesh", "nodes", "median", "95 of 100",
               "at most", "s/s", "estimate over error, middle half");
   for (std::size_t m = 0; m < kCandidates.size(); ++m) {
-    std::ranges::sort(effectivities[m]);
-    const std::size_t count = effectivities[m].size();
-    std::printf("%-21s %6.0f %8.1f %% %8.1f %% %8.1f %% %10.2f  %.2f to %.2f\n",
-                kCandidates[m].name, report::median(nodes[m]), 100 * report::median(errors[m]),
+    std::printf("%-21s %6.0f %8.1f %% %8.1f %% %8.1f %% %10.2f  %s\n", kCandidates[m].name,
+                report::median(nodes[m]), 100 * report::median(errors[m]),
                 100 * not_exceeded_by_95(errors[m]), 100 * std::ranges::max(errors[m]),
-                report::median(costs[m]), effectivities[m][count / 4],
-                effectivities[m][3 * count / 4]);
+                report::median(costs[m]), middle_half(effectivities[m]).c_str());
   }
   return kExitDone;
 }
@@ -276,5 +304,6 @@ int main(int argc, char** argv) {
   program.add("--sites", options.sites, "How many places").range(1, 1000).shows_default();
   program.add("--seed", options.seed, "Of the places").range(0, 1e6).shows_default();
   program.add("--radius-mm", options.radius_mm, "Of the sphere").range(1, 20).shows_default();
+  program.add("--out", options.out, "Table of all forces, for scripts/plots/plot_touch.py");
   return program.run(argc, argv, [&] { return run(options); });
 }
