@@ -30,7 +30,11 @@ class OrganInputs {
 
   /// nullptr until the surfaces of all organs are known.
   ContactFinder* finder() { return finder_ ? &*finder_ : nullptr; }
-  std::uint64_t sequence() const { return sequence_; }  ///< of the newest node positions
+  /// By organ: of the surface that is searched.
+  void tell_generations(std::vector<std::uint32_t>& generations) const {
+    generations.clear();
+    for (const OrganInput& organ : organs_) generations.push_back(organ.generation);
+  }
   /// Of node positions, as they come [s]; 0 before the second.
   double interval() const { return interval_; }
   /// Are the newest boxes of an organ so many that they cannot be its blocks'?
@@ -142,7 +146,6 @@ class OrganInputs {
     read_boxes(newest_.block_boxes, boxes_);
     organ.boxes_misfit = !boxes_.empty() && boxes_.size() != organ.block_count;
     finder_->take_organ(newest_.organ, newest_.positions, boxes_);
-    sequence_ = newest_.header.sequence;
     if (newest_.organ != 0) return;
     if (came_ns_ != 0) interval_ = seconds_from_ns(newest_.header.source_time_ns - came_ns_);
     came_ns_ = newest_.header.source_time_ns;
@@ -156,7 +159,6 @@ class OrganInputs {
   SurfaceTopology surface_;
   NodePositions newest_;
   std::vector<geometry::BlockBox> boxes_;
-  std::uint64_t sequence_ = 0;
   std::int64_t came_ns_ = 0;
   double interval_ = 0;
 };
@@ -337,7 +339,7 @@ runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
   for (std::uint32_t probe = 0; probe < impl_->probes.count(); ++probe) {
     impl_->search(now, probe, acted);
     impl_->contacts.header = now.header();
-    impl_->contacts.node_positions_sequence = impl_->organs.sequence();
+    impl_->organs.tell_generations(impl_->contacts.generations);
     impl_->writer.write(impl_->contacts);
   }
   acted.boxes_misfit = impl_->organs.boxes_misfit();

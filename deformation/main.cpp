@@ -1,21 +1,34 @@
 #include "deformation/stage.h"
+#include "modules/core/error.h"
 #include "modules/runtime/run_stage.h"
+#include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
+  std::size_t process = 1;
   const runtime::ModuleProgram program{
-      "deformation", "Simulates the organs of a scene in real time.", {}};
-  return runtime::run_module(argc, argv, program, [](const runtime::ModuleOptions& options) {
+      "deformation", "Simulates the organs of a scene in real time.", [&](runtime::Options& more) {
+        more.add("--process", process, "Whose organs: key 'process' of the scene's organs")
+            .range(1, scene::kMaxProcesses)
+            .shows_default();
+      }};
+  return runtime::run_module(argc, argv, program, [&](const runtime::ModuleOptions& options) {
     const scene::Scene scene = scene::load_scene(options.scene);
+    const std::size_t processes = scene::process_count(scene);
+    if (process > processes) {
+      throw InputError("--process " + std::to_string(process) + ": the scene has " +
+                       std::to_string(processes) + " of deformation");
+    }
     // Before real-time priority is asked for: helpers must not keep others from a core.
     runtime::WorkerTeam team(scene.deformation_threads);
-    auto shapes = deformation::load_organs(scene);
-    runtime::run_stage(options, scene, "deformation", runtime::Priority::kPreferred,
-                       [&](bus::Bus& bus) {
+    auto shapes = deformation::load_organs(scene, process);
+    runtime::run_stage(options, scene, runtime::name_of({"deformation", process}),
+                       runtime::Priority::kPreferred, [&](bus::Bus& bus) {
                          return std::make_unique<deformation::DeformationStage>(
-                             scene, std::move(shapes), bus, &team);
+                             scene, std::move(shapes), bus, process, &team);
                        });
   });
 }

@@ -1,65 +1,34 @@
 #include "deformation/stage.h"
 
 #include <algorithm>
-#include <deque>
 #include <optional>
 
 #include "deformation/following_organ.h"
 #include "deformation/guard_text.h"
 #include "deformation/organ_messages.h"
+#include "deformation/own_organs.h"
 #include "modules/core/units.h"
 #include "modules/runtime/silence_watch.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/processes.h"
 
 namespace palpate::deformation {
 namespace {
-
-/// Which meshes node positions were of, by sequence number: contacts name that they were found on.
-class ToldMeshes {
- public:
-  explicit ToldMeshes(std::size_t organs) : generations_(organs, 1) {
-    told_.push_back({0, generations_});
-  }
-
-  /// @param sequence  of an organ's node positions
-  void note(std::uint64_t sequence, std::size_t organ, std::uint32_t generation) {
-    if (generations_[organ] == generation) return;
-    generations_[organ] = generation;
-    told_.push_back({sequence, generations_});
-    if (told_.size() > kMostTold) told_.pop_front();
-  }
-
-  /// The generation of each organ; none where that is no longer known.
-  std::span<const std::uint32_t> at(std::uint64_t sequence) const {
-    for (auto told = told_.rbegin(); told != told_.rend(); ++told) {
-      if (told->sequence <= sequence) return told->generations;
-    }
-    return {};
-  }
-
- private:
-  static constexpr std::size_t kMostTold = 32;
-  struct Told {
-    std::uint64_t sequence = 0;  ///< the first of these
-    std::vector<std::uint32_t> generations;
-  };
-  std::deque<Told> told_;
-  std::vector<std::uint32_t> generations_;  ///< the newest
-};
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
 class ProbeInputs {
  public:
   /// @param stale_after  of a pose, and of contacts [s]
-  ProbeInputs(bus::Bus& bus, std::size_t probes, double stale_after)
-      : states_(bus.reader(bus::kProbeState)),
+  ProbeInputs(bus::Bus& bus, std::size_t probes, const OwnOrgans& organs, double stale_after)
+      : organs_(organs),
+        states_(bus.reader(bus::kProbeState)),
         contacts_(bus.reader(bus::kContacts)),
         states_heard_(probes, stale_after),
         contacts_heard_(probes, stale_after),
         sampled_ns_(probes, 0) {}
 
-  void bring(std::int64_t now_ns, const ToldMeshes& told, DeformationWorld& world) {
+  void bring(std::int64_t now_ns, DeformationWorld& world) {
     while (states_.take(state_)) {
       states_heard_.heard(state_.probe, state_.header.source_time_ns);
       if (state_.probe < sampled_ns_.size())
@@ -68,7 +37,8 @@ class ProbeInputs {
     }
     while (contacts_.take(newest_)) {
       contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
-      world.set_contacts(newest_, told.at(newest_.node_positions_sequence));
+      organs_.keep_own(newest_, newest_.generations);
+      world.set_contacts(newest_, newest_.generations);
     }
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
       if (!states_heard_.silent(probe, now_ns) && !contacts_heard_.silent(probe, now_ns)) continue;
@@ -86,6 +56,7 @@ class ProbeInputs {
   }
 
  private:
+  const OwnOrgans& organs_;
   bus::Reader<ProbeState> states_;
   bus::Reader<Contacts> contacts_;
   runtime::SilenceWatch states_heard_, contacts_heard_;
@@ -144,12 +115,14 @@ class ForceErrors {
 /// What leaves the process.
 class Outputs {
  public:
-  Outputs(bus::Bus& bus, std::size_t organs, std::size_t probes)
-      : told_(organs),
-        surfaces_(bus.writer(bus::kSurface)),
-        positions_(bus.writer(bus::kNodePositions)),
-        models_(bus.writer(bus::kContactModel)),
-        force_errors_(probes) {}
+  Outputs(bus::Bus& bus, const OwnOrgans& organs, std::size_t probes, std::size_t process)
+      : organs_(organs), models_(bus.writer(bus::kContactModel)), force_errors_(probes) {
+    for (std::size_t organ = 0; organ < organs.count(); ++organ) {
+      surfaces_.push_back(bus.writer(bus::kSurface));
+      positions_.push_back(bus.writer(bus::kNodePositions));
+    }
+    model_.process = static_cast<std::uint32_t>(process);
+  }
 
   void publish_surfaces(const DeformationWorld& world) {
     blocks_.clear();
@@ -158,7 +131,7 @@ class Outputs {
       SurfaceTopology surface = surface_message(world, organ);
       blocks_.emplace_back(surface.triangles, surface.triangle_blocks);
       next_blocks_[organ].generation = surface.generation;
-      surfaces_.write(surface);
+      tell(organ, surface);
     }
   }
 
@@ -170,7 +143,7 @@ class Outputs {
       SurfaceTopology surface = surface_message(world, organ, *next);
       next_blocks_[organ] = {next->generation,
                              geometry::SurfaceBlocks(surface.triangles, surface.triangle_blocks)};
-      surfaces_.write(surface);
+      tell(organ, surface);
     }
   }
 
@@ -180,13 +153,11 @@ class Outputs {
       if (next_blocks_[organ].generation == world.generation(organ)) take_next_blocks(organ);
       write_node_positions(world, organ, node_positions_);
       write_block_boxes(blocks_[organ], node_positions_);
+      node_positions_.organ = organs_.in_scene(organ);
       node_positions_.header = header;
-      positions_.write(node_positions_);
-      told_.note(node_positions_.header.sequence, organ, node_positions_.generation);
+      positions_[organ].write(node_positions_);
     }
   }
-
-  const ToldMeshes& told() const { return told_; }
 
   /// @returns whether the stiffness of one was bounded
   bool publish_laws(double sim_time, const DeformationWorld& world, const ProbeInputs& inputs,
@@ -196,7 +167,8 @@ class Outputs {
     force_errors_.look(world);
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
-      model_ = contact_model_message(world, probe, &bounded);
+      static_cast<LocalLaw&>(model_) = world.local_law(probe, &bounded);
+      model_.probe = static_cast<std::uint32_t>(probe);
       any_bounded |= bounded;
       model_.header = header;
       // The law's age counts from the cycle's beginning, where its probes were.
@@ -213,15 +185,20 @@ class Outputs {
     std::uint32_t generation = 0;
     std::optional<geometry::SurfaceBlocks> blocks;  ///< none: the organ has them
   };
+  void tell(std::size_t organ, SurfaceTopology& surface) {
+    surface.organ = organs_.in_scene(organ);
+    surfaces_[organ].write(surface);
+  }
   void take_next_blocks(std::size_t organ) {
     if (!next_blocks_[organ].blocks) return;
     blocks_[organ] = std::move(*next_blocks_[organ].blocks);
     next_blocks_[organ].blocks.reset();
   }
 
-  ToldMeshes told_;
-  bus::Writer<SurfaceTopology> surfaces_;
-  bus::Writer<NodePositions> positions_;
+  const OwnOrgans& organs_;
+  // By organ: what each writer counts does not depend on who else is in its process.
+  std::vector<bus::Writer<SurfaceTopology>> surfaces_;
+  std::vector<bus::Writer<NodePositions>> positions_;
   bus::Writer<ContactModel> models_;
   ForceErrors force_errors_;
   std::vector<geometry::SurfaceBlocks> blocks_;  ///< by organ
@@ -242,10 +219,11 @@ const char* acting_guard(const char* of_world, double real_time_factor, bool sil
 
 struct DeformationStage::Impl {
   Impl(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
-       ChunkRunner* runner, Guarding guarding)
-      : world(scene, std::move(shapes), runner, guarding),
-        inputs(bus, world.probe_count(), runtime::input_stale_after(scene)),
-        outputs(bus, world.organ_count(), world.probe_count()),
+       std::size_t process, ChunkRunner* runner, Guarding guarding)
+      : organs(scene, process),
+        world(scene::part_of(scene, process), std::move(shapes), runner, guarding),
+        inputs(bus, world.probe_count(), organs, runtime::input_stale_after(scene)),
+        outputs(bus, organs, world.probe_count(), process),
         period(1 / scene.rates.deformation) {
     outputs.publish_surfaces(world);
   }
@@ -270,6 +248,7 @@ struct DeformationStage::Impl {
     return health;
   }
 
+  OwnOrgans organs;
   DeformationWorld world;
   ProbeInputs inputs;
   Outputs outputs;
@@ -282,22 +261,24 @@ struct DeformationStage::Impl {
   ContactTroubles troubles;
 };
 
-std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene) {
+std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene, std::size_t process) {
   std::vector<geometry::OrganShape> shapes;
-  for (const auto& organ : scene.organs) shapes.push_back(scene::load_organ(organ));
+  for (const std::size_t organ : scene::organs_of(scene, process)) {
+    shapes.push_back(scene::load_organ(scene.organs[organ]));
+  }
   return shapes;
 }
 
 DeformationStage::DeformationStage(const scene::Scene& scene,
                                    std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
-                                   ChunkRunner* runner, Guarding guarding)
-    : impl_(std::make_unique<Impl>(scene, std::move(shapes), bus, runner, guarding)) {}
+                                   std::size_t process, ChunkRunner* runner, Guarding guarding)
+    : impl_(std::make_unique<Impl>(scene, std::move(shapes), bus, process, runner, guarding)) {}
 
 DeformationStage::~DeformationStage() = default;
 
 runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   if (now.reset) impl_->reset();
-  impl_->inputs.bring(now.now_ns, impl_->outputs.told(), impl_->world);
+  impl_->inputs.bring(now.now_ns, impl_->world);
   runtime::Health health;
   if (now.running) {
     health = impl_->advance(now);

@@ -1,4 +1,5 @@
 // Deformation as a stage: probes and contacts in, organs and the tissue's local law out.
+// A session has one such stage for each process that the scene gives organs to.
 #pragma once
 
 #include "deformation/world.h"
@@ -7,27 +8,29 @@
 
 namespace palpate::deformation {
 
-/// The rest shapes of a scene's organs.
+/// The rest shapes of the organs of a process.
 /// @throws InputError for a mesh that cannot be used
-std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene);
+std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene, std::size_t process);
 
 /// Says the organs' surfaces when built and after a reset. Each cycle: take the newest probes and
-/// contacts, advance all organs by what the cycle may take on, publish them and, per probe, the
+/// contacts, advance its organs by what the cycle may take on, publish them and, per probe, the
 /// local law of the touched tissue. Probes or contacts not heard of for
 /// runtime::input_stale_after() touch nothing. While the session does not run, the organs stand
 /// still and give no law: a force that nobody computed anew must grow stale.
 class DeformationStage : public runtime::Stage {
  public:
-  /// @param shapes  one per organ of the scene
+  /// @param shapes   one per organ of the process
+  /// @param process  whose organs these are, from 1
   /// @param runner  outlives the stage; none: the calling thread alone. The bits are the same
   /// @throws InputError as DeformationWorld does
   DeformationStage(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
-                   bus::Bus& bus, ChunkRunner* runner = nullptr, Guarding guarding = Guarding::kOn);
+                   bus::Bus& bus, std::size_t process = 1, ChunkRunner* runner = nullptr,
+                   Guarding guarding = Guarding::kOn);
   ~DeformationStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
 
-  const DeformationWorld& world() const;
-  void ask_for_volume(std::size_t organ, double ratio);  ///< as DeformationWorld does
+  const DeformationWorld& world() const;                 ///< of its own organs
+  void ask_for_volume(std::size_t organ, double ratio);  ///< of its own, as DeformationWorld does
   /// Of the last cycle that ran.
   const AdvanceReport& report() const;
 

@@ -2,6 +2,7 @@
 
 #include "haptics/haptic_renderer.h"
 #include "modules/core/units.h"
+#include "modules/scene/processes.h"
 
 namespace palpate::haptics {
 namespace {
@@ -34,12 +35,13 @@ std::vector<RenderedProbe> make_probes(const scene::Scene& scene,
                                        std::vector<std::string>& warnings) {
   std::vector<RenderedProbe> probes;
   for (const auto& described : scene.probes) {
-    probes.push_back({nullptr,
-                      nullptr,
-                      HapticRenderer(scene.haptics, 1.0 / scene.rates.haptics),
-                      ProbeTexts(described.name),
-                      {},
-                      {}});
+    probes.push_back(
+        {nullptr,
+         nullptr,
+         HapticRenderer(scene.haptics, 1.0 / scene.rates.haptics, scene::process_count(scene)),
+         ProbeTexts(described.name),
+         {},
+         {}});
     probes.back().set_device(make_device(described.device, scene.haptics, warnings));
     probes.back().state.probe = probes.back().force.probe =
         static_cast<std::uint32_t>(probes.size() - 1);
@@ -75,6 +77,7 @@ const char* acting_guard(const RenderedProbe& probe) {
 struct HapticsStage::Impl {
   Impl(const scene::Scene& scene, bus::Bus& bus, std::vector<std::string>& warnings)
       : probes(make_probes(scene, warnings)),
+        processes(scene::process_count(scene)),
         inputs(bus.reader(bus::kProbeInput)),
         laws(bus.reader(bus::kContactModel)),
         states(bus.writer(bus::kProbeState)),
@@ -89,8 +92,9 @@ struct HapticsStage::Impl {
     }
     note_rejected();
     while (laws.take(law)) {
-      if (law.probe >= probes.size()) continue;
-      probes[law.probe].renderer.update_law(law, seconds_from_ns(law.header.source_time_ns));
+      if (law.probe >= probes.size() || law.process == 0 || law.process > processes) continue;
+      probes[law.probe].renderer.update_law(law, seconds_from_ns(law.header.source_time_ns),
+                                            law.process - 1);
     }
   }
 
@@ -104,6 +108,7 @@ struct HapticsStage::Impl {
   }
 
   std::vector<RenderedProbe> probes;
+  std::size_t processes;  ///< of deformation
   bus::Reader<ProbeState> inputs;
   bus::Reader<ContactModel> laws;
   bus::Writer<ProbeState> states;

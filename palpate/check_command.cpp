@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "modules/core/error.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
@@ -18,6 +19,7 @@ namespace {
 
 std::string verdict(const SceneCheck& check) {
   const double share = 100 * check.cost / check.period;
+  const std::size_t processes = scene::process_count(check.scene);
   std::string text = fmt::format("{}: can be run", check.scene.file.string());
   if (!check.doubts.empty()) {
     text +=
@@ -26,8 +28,9 @@ std::string verdict(const SceneCheck& check) {
   text += check.cost <= check.period ? "; in real time here" : "; slower than real time here";
   text += fmt::format(
       ": deformation takes {:.3f} ms of each {:.3f} ms, lightly touched ({:.0f} % of one core), "
-      "real-time factor {:.2f}\n",
-      1e3 * check.cost, 1e3 * check.period, share, check.real_time_factor());
+      "real-time factor {:.2f}{}\n",
+      1e3 * check.cost, 1e3 * check.period, share, check.real_time_factor(),
+      processes == 1 ? "" : fmt::format("; here in one process, in a run {} share it", processes));
   if (check.cost > check.period) {
     text += "  as fast as the machine allows, and right: palpate run --lockstep\n";
   }

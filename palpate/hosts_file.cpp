@@ -47,10 +47,10 @@ std::string address_of(const YamlValue& value) {
 
 std::string module_of(const YamlValue& value) {
   std::string name = word_of(value);
-  const auto& known = runtime::kModules;
-  if (std::ranges::find(known, name) != known.end()) return name;
+  if (runtime::module_named(name)) return name;
   std::string names;
-  for (const auto module : known) names += (names.empty() ? "" : ", ") + std::string(module);
+  for (const auto module : runtime::kModules)
+    names += (names.empty() ? "" : ", ") + std::string(module);
   value.refuse("must be one of: " + names);
 }
 

@@ -17,6 +17,7 @@
 #include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/module_group.h"
 #include "palpate/session/in_process.h"
@@ -76,7 +77,7 @@ class LockstepRun {
         scene_(scene::load_scene(options.scene)),
         digest_(scene::scene_digest(scene_)),
         duration_(duration_of(options, scene_)),
-        modules_(module_commands(options, program_folder()), log),
+        modules_(module_commands(options, program_folder(), scene::process_count(scene_)), log),
         names_(options.everywhere.empty() ? modules_.reporting_modules() : options.everywhere),
         bus_(every_sample(options.bus)),
         session_(bus_, digest_),

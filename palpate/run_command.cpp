@@ -16,6 +16,7 @@
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/stop_signal.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/hang_watch.h"
@@ -49,7 +50,7 @@ class Run {
         log_(log),
         scene_(scene::load_scene(options.scene)),
         digest_(scene::scene_digest(scene_)),
-        modules_(module_commands(options, program_folder()), log,
+        modules_(module_commands(options, program_folder(), scene::process_count(scene_)), log,
                  options.restart ? Restarting::kWithPauses : Restarting::kNever),
         bus_(options.bus),
         session_(bus_, digest_),

@@ -5,27 +5,34 @@
 #include <stdlib.h>
 
 #include <algorithm>
-#include <array>
 #include <random>
 #include <string_view>
 
 #include "modules/core/error.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/topic_selection.h"
+#include "modules/runtime/wiring.h"
 #include "palpate/hosts_file.h"
 
 namespace palpate::launcher {
 namespace {
 
-constexpr std::array<std::string_view, 4> kModules{"deformation", "collision", "haptics",
-                                                   "visualizer"};
+/// All that a session may have, in the order in which they are started.
+std::vector<std::string> modules_of(std::size_t processes) {
+  std::vector<std::string> names;
+  for (std::size_t process = 1; process <= processes; ++process) {
+    names.push_back(runtime::name_of({"deformation", process}));
+  }
+  for (const char* name : {"collision", "haptics", "visualizer"}) names.emplace_back(name);
+  return names;
+}
 
-void check_names(const std::vector<std::string>& only) {
+void check_names(const std::vector<std::string>& only, const std::vector<std::string>& modules) {
   for (const auto& name : only) {
     if (name == "recorder") continue;  // of a hosts file
-    if (std::find(kModules.begin(), kModules.end(), name) == kModules.end()) {
-      throw InputError("--only: there is no module '" + name +
-                       "'; there are deformation, collision, haptics, visualizer");
+    if (std::find(modules.begin(), modules.end(), name) == modules.end()) {
+      throw InputError(fmt::format("--only: there is no module '{}'; there are {}", name,
+                                   fmt::join(modules, ", ")));
     }
   }
 }
@@ -44,23 +51,29 @@ bool wanted(const RunOptions& options, std::string_view module) {
 }
 
 /// Everybody learns who takes part.
-void add_lockstep(const RunOptions& options, ModuleCommand& command) {
+void add_lockstep(const RunOptions& options, const std::vector<std::string>& modules,
+                  ModuleCommand& command) {
   if (!options.lockstep) return;
   std::string participants;
-  for (const auto& module : participants_of(options))
+  for (const std::string& module : participants_of(options, modules)) {
     participants += (participants.empty() ? "" : ",") + module;
+  }
   command.arguments.insert(command.arguments.end(), {"--lockstep", participants});
 }
 
-ModuleCommand module_command(const RunOptions& options, std::string_view module,
-                             const std::filesystem::path& folder) {
+ModuleCommand module_command(const RunOptions& options, const std::vector<std::string>& modules,
+                             const std::string& module, const std::filesystem::path& folder) {
   ModuleCommand command;
   command.module = module;
-  command.program = folder / ("palpate-" + command.module);
+  const runtime::ModuleName name = *runtime::module_named(module);
+  command.program = folder / ("palpate-" + std::string(name.job));
   command.arguments = {std::filesystem::absolute(options.scene).string()};
   for (auto& argument : session_arguments(options.bus)) command.arguments.push_back(argument);
   if (!options.realtime) command.arguments.push_back("--no-realtime");
-  add_lockstep(options, command);
+  add_lockstep(options, modules, command);
+  if (name.process > 1) {
+    command.arguments.insert(command.arguments.end(), {"--process", std::to_string(name.process)});
+  }
   if (module == "visualizer") {
     if (options.headless) command.arguments.push_back("--headless");
     if (!options.lockstep && options.only.empty()) command.arguments.push_back("--ends-run");
@@ -75,12 +88,13 @@ ModuleCommand module_command(const RunOptions& options, std::string_view module,
 
 }  // namespace
 
-std::vector<std::string> participants_of(const RunOptions& options) {
+std::vector<std::string> participants_of(const RunOptions& options,
+                                         const std::vector<std::string>& modules) {
   if (!options.everywhere.empty()) return options.everywhere;
   std::vector<std::string> all;
   if (!options.record.empty()) all.emplace_back("recorder");
-  for (const auto module : kModules) {
-    if (wanted(options, module)) all.emplace_back(module);
+  for (const std::string& module : modules) {
+    if (wanted(options, module)) all.push_back(module);
   }
   return all;
 }
@@ -110,8 +124,10 @@ void apply_hosts(RunOptions& options) {
 }
 
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
-                                           const std::filesystem::path& program_folder) {
-  check_names(options.only);
+                                           const std::filesystem::path& program_folder,
+                                           std::size_t processes) {
+  const std::vector<std::string> modules = modules_of(processes);
+  check_names(options.only, modules);
   static_cast<void>(recording::TopicSelection(options.record_topics));  // throws what is wrong
   std::vector<ModuleCommand> commands;
   if (!options.record.empty()) {
@@ -127,13 +143,14 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
       recorder.reports_status = true;
       recorder.arguments.insert(recorder.arguments.end(),
                                 {"--scene", std::filesystem::absolute(options.scene).string()});
-      add_lockstep(options, recorder);
+      add_lockstep(options, modules, recorder);
     }
     commands.push_back(std::move(recorder));
   }
-  for (const auto module : kModules) {
-    if (wanted(options, module))
-      commands.push_back(module_command(options, module, program_folder));
+  for (const std::string& module : modules) {
+    if (wanted(options, module)) {
+      commands.push_back(module_command(options, modules, module, program_folder));
+    }
   }
   return commands;
 }

@@ -53,12 +53,16 @@ void apply_hosts(RunOptions& options);
 /// What to start, in order: the recorder first, so that it hears everything. A visualizer that
 /// could show its pictures to nobody (no window and no folder for frames) is left out.
 /// @param program_folder  where the modules' programs are
+/// @param processes  of deformation
 /// @throws InputError for a module name that does not exist
 std::vector<ModuleCommand> module_commands(const RunOptions& options,
-                                           const std::filesystem::path& program_folder);
+                                           const std::filesystem::path& program_folder,
+                                           std::size_t processes = 1);
 
 /// The modules that take part, on all hosts, the recorder among them.
-std::vector<std::string> participants_of(const RunOptions& options);
+/// @param modules  of the scene
+std::vector<std::string> participants_of(const RunOptions& options,
+                                         const std::vector<std::string>& modules);
 
 /// The command of a module that was started before, `earlier` times; a recorder's names another
 /// file, FILE.partN.mcap, and replaces nothing.

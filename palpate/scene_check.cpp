@@ -17,6 +17,7 @@
 #include "modules/scene/assets.h"
 #include "modules/scene/key_list.h"
 #include "modules/scene/models.h"
+#include "modules/scene/processes.h"
 #include "palpate/session/in_process.h"
 #include "palpate/session/timed_stage.h"
 
@@ -163,7 +164,7 @@ SceneCheck check_scene(const scene::Scene& scene, double measure_for,
                             scene::word_of_option(probe.device), doubts.motions[i]});
   }
   runtime::WorkerTeam team(scene.deformation_threads);
-  TimedSession session(scene, shapes, team);
+  TimedSession session(scene::in_one_process(scene), shapes, team);
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     doubt_springs(scene.organs[i], check.doubts);
     check.organs.push_back(check_of(scene.organs[i], shapes[i], session.world(), i, check.period));

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "modules/core/units.h"
+#include "modules/runtime/wiring.h"
 
 namespace palpate::launcher {
 namespace {
@@ -80,7 +82,11 @@ void SessionTally::receive(const HapticForce& force) {
 }
 
 void SessionTally::receive(const ContactModel& law) {
-  if (law.probe < probes_.size()) probes_[law.probe].force_error = law.force_error;
+  if (law.probe >= probes_.size()) return;
+  ProbeTally& probe = probes_[law.probe];
+  if (law.process != probe.error_of_process && law.force_error <= probe.force_error) return;
+  probe.force_error = law.force_error;
+  probe.error_of_process = law.process;
 }
 
 ContactTroubles SessionTally::contact_troubles() const {
@@ -96,8 +102,14 @@ const ModuleTally* SessionTally::module(const std::string& name) const {
 }
 
 double SessionTally::real_time_factor() const {
-  const ModuleTally* deformation = module("deformation");
-  return deformation == nullptr ? 0 : deformation->newest.real_time_factor;
+  std::optional<double> least;
+  for (const auto& [name, module] : modules_) {
+    const auto named = runtime::module_named(name);
+    if (!named || named->job != "deformation") continue;
+    least =
+        std::min(least.value_or(module.newest.real_time_factor), module.newest.real_time_factor);
+  }
+  return least.value_or(0);
 }
 
 }  // namespace palpate::launcher

@@ -20,11 +20,12 @@ struct OrganTally {
 
 struct ProbeTally {
   std::string name;
-  double force = 0;              ///< newest magnitude [N]
-  double greatest_force = 0;     ///< since the start [N]
-  std::uint32_t limits = 0;      ///< ForceLimit bits that ever acted since the start
-  double force_error = 0;        ///< newest estimate of the mesh's part, see ContactModel
-  double error_of_greatest = 0;  ///< the same when the force was greatest
+  double force = 0;           ///< newest magnitude [N]
+  double greatest_force = 0;  ///< since the start [N]
+  std::uint32_t limits = 0;   ///< ForceLimit bits that ever acted since the start
+  double force_error = 0;     ///< newest estimate of the mesh's part, see ContactModel: the largest
+  std::uint32_t error_of_process = 1;  ///< whose law has it
+  double error_of_greatest = 0;        ///< the same when the force was greatest
 };
 
 struct ModuleTally {
@@ -65,7 +66,8 @@ class SessionTally {
   /// nullptr if nothing was heard of it.
   const ModuleTally* module(const std::string& name) const;
   double sim_time() const { return sim_time_; }  ///< of the newest node positions [s]
-  double real_time_factor() const;               ///< deformation's; 0 before the first
+  /// Of the slowest deformation process; 0 before the first.
+  double real_time_factor() const;
 
  private:
   bool started_ = false, standing_ = false;

@@ -8,6 +8,7 @@
 #include "modules/recording/recorder_stage.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/wiring.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_error.h"
 #include "python/busy.h"
 #include "python/message_arrays.h"
@@ -250,9 +251,13 @@ py::dict Session::newest(const std::string& topic, std::size_t key) {
 std::vector<std::string> Session::guards() {
   const InUse use(in_use_, "the session");
   std::vector<std::string> acting;
-  for (const char* module : {"haptics", "collision", "deformation"}) {
+  std::vector<std::string> modules{"haptics", "collision"};
+  for (std::size_t process = 1; process <= scene::process_count(open().scene()); ++process) {
+    modules.push_back(runtime::name_of({"deformation", process}));
+  }
+  for (const std::string& module : modules) {
     const std::string guard = open().health(module).guard;
-    if (!guard.empty()) acting.push_back(std::string(module) + ": " + guard);
+    if (!guard.empty()) acting.push_back(module + ": " + guard);
   }
   return acting;
 }

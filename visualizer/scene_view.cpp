@@ -154,7 +154,10 @@ bool SceneView::receive(Contacts contacts) {
 
 bool SceneView::receive(const ContactModel& law) {
   if (law.probe >= probes_.size()) return ignore();
-  probes_[law.probe].force_error = law.force_error;
+  ProbeView& probe = probes_[law.probe];
+  if (law.process != probe.error_of_process && law.force_error <= probe.force_error) return true;
+  probe.force_error = law.force_error;
+  probe.error_of_process = law.process;
   return true;
 }
 
@@ -213,10 +216,11 @@ bool SceneView::ended() const {
 }
 
 double SceneView::real_time_factor() const {
+  double least = std::numeric_limits<double>::infinity();
   for (const auto& [name, module] : modules_) {
-    if (name.starts_with("deformation")) return module.status.real_time_factor;
+    if (name.starts_with("deformation")) least = std::min(least, module.status.real_time_factor);
   }
-  return 0;
+  return std::isfinite(least) ? least : 0;
 }
 
 double SceneView::positions_age(std::int64_t now_ns) const {

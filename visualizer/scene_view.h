@@ -47,7 +47,8 @@ struct ProbeView {
   Contacts contacts;
   bool has_force = false;
   HapticForce force;
-  double force_error = 0;                      ///< see ContactModel
+  double force_error = 0;                      ///< see ContactModel; of several laws the largest
+  std::uint32_t error_of_process = 1;          ///< whose law has it
   History force_magnitude;                     ///< [N]
   double greatest_force = 0, greatest_at = 0;  ///< of all that came [N], and when [s]
   double touched_for = 0;                      ///< simulated time with a force [s]

@@ -20,6 +20,7 @@
 #include "modules/bus/packet_filter.h"
 #include "modules/bus/payload_type.h"
 #include "modules/bus/qos.h"
+#include "modules/bus/roles.h"
 #include "modules/bus/session_token.h"
 #include "modules/core/error.h"
 
@@ -62,6 +63,7 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
   if (const char* const folder = std::getenv("PALPATE_KEYS"); folder != nullptr) {
     const char* const role = std::getenv("PALPATE_ROLE");
     role_ = role == nullptr ? options.participant_name : role;
+    if (const Role* known = find_role(role_)) role_ = known->name;
     apply_keys(folder, role_, qos);
   }
   packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos);

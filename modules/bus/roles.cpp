@@ -59,7 +59,11 @@ std::span<const Role> roles() {
 
 const Role* find_role(std::string_view name) {
   const auto role = std::ranges::find(roles(), name, &Role::name);
-  return role == roles().end() ? nullptr : &*role;
+  if (role != roles().end()) return &*role;
+  const auto sign = name.rfind('_');
+  const bool numbered = sign != std::string_view::npos && sign + 1 < name.size() &&
+                        name.find_first_not_of("0123456789", sign + 1) == std::string_view::npos;
+  return numbered ? find_role(name.substr(0, sign)) : nullptr;
 }
 
 }  // namespace palpate::bus

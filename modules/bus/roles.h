@@ -17,7 +17,7 @@ struct Role {
 /// Each process of a session, "palpate" (the launcher, and programs that name no other), "driver"
 /// (of a device), and "viewer" (hears all, says nothing).
 std::span<const Role> roles();
-/// nullptr if there is none of that name.
+/// "deformation_2", one of several processes of a job, plays that job's. nullptr if there is none.
 const Role* find_role(std::string_view name);
 
 }  // namespace palpate::bus

@@ -164,7 +164,7 @@ void describe(V& v, M& m) {
   v.key("probe", m.probe);
   v.field("probe_position_m", m.probe_pose.position, Rule::kPlain);
   v.field("probe_rotation_xyzw", m.probe_pose.rotation, Rule::kUnit);
-  v.field("node_positions_sequence", m.node_positions_sequence, Rule::kPlain);
+  v.numbers("generations", m.generations, Bounds{1, 0, kMaxOrgans, "organ_count"});
   v.field("truncated", m.truncated, Rule::kPlain);
   v.list("faces", m.faces, kMaxFacesPerProbe, "face_count");
   v.numbers("face_nodes", m.face_nodes, Bounds{1, 0, kMaxFaceNodes, "face_node_count"});
@@ -191,6 +191,7 @@ template <class V, Is<ContactModel> M>
 void describe(V& v, M& m) {
   v.header(m.header);
   v.key("probe", m.probe);
+  v.key("process", m.process);
   v.field("anchor_position_m", m.anchor.position, Rule::kPlain);
   v.field("anchor_rotation_xyzw", m.anchor.rotation, Rule::kUnit);
   v.field("anchor_age_s", m.anchor_age, Rule::kAtLeastZero);

@@ -12,10 +12,17 @@ namespace palpate::messages {
 class KeyOf {
  public:
   MessageType::Key kind = MessageType::Key::kNone;
-  std::string text;  ///< a number in decimals; "" without a key
+  /// A number in decimals; of two numbers the first, then, unless it is 1, "/" and the second;
+  /// "" without a key.
+  std::string text;
 
   void header(const Header&) {}
   void key(const char*, std::uint32_t number) {
+    if (kind == MessageType::Key::kNumber) {
+      kind = MessageType::Key::kTwoNumbers;
+      if (number != 1) text += "/" + std::to_string(number);
+      return;
+    }
     kind = MessageType::Key::kNumber;
     text = std::to_string(number);
   }

@@ -84,6 +84,12 @@ KeyBytes key_of(const MessageType& type, Payload payload) {
   const auto value = number<std::uint32_t>(payload, kHeaderBytes);
   append_big_endian(key, value);
   if (type.key == MessageType::Key::kNumber) return key;
+  if (type.key == MessageType::Key::kTwoNumbers) {
+    constexpr std::size_t kSecond = kHeaderBytes + sizeof(std::uint32_t);
+    if (payload.size() < kEncapsulationBytes + kSecond + sizeof(std::uint32_t)) return unreadable();
+    append_big_endian(key, number<std::uint32_t>(payload, kSecond));
+    return key;
+  }
   // A text: its length, with the zero byte that ends it, and its bytes.
   if (value > kMaxNameBytes + 1 || payload.size() - kFirst < value) return unreadable();
   std::memcpy(key.bytes.data() + key.size, payload.data() + kFirst, value);

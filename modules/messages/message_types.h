@@ -27,7 +27,7 @@ using AnyMessage = OneOf<void PALPATE_MESSAGES(PALPATE_NEXT)>::type;
 using Payload = std::span<const std::uint8_t>;
 
 struct MessageType {
-  enum class Key { kNone, kNumber, kText };
+  enum class Key { kNone, kNumber, kTwoNumbers, kText };
 
   std::string_view name;       ///< "ProbeState"
   std::string_view wire_name;  ///< "palpate::idl::ProbeState"
@@ -42,7 +42,7 @@ const MessageType& type_of();
 /// A fresh message of each kind.
 std::vector<AnyMessage> one_of_each();
 
-/// A message's key as DDS sees it: the key field in big-endian CDR, at most a name of 64 bytes.
+/// A message's key as DDS sees it: the key fields in big-endian CDR, at most a name of 64 bytes.
 /// Messages without key all have the same, an empty one. No allocation.
 struct KeyBytes {
   std::array<std::uint8_t, 72> bytes{};

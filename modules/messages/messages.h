@@ -18,6 +18,7 @@ inline constexpr std::uint32_t kProtocolVersion = 10;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
+inline constexpr std::size_t kMaxOrgans = 256;  ///< of a scene
 inline constexpr std::size_t kMaxFacesPerProbe = 1024;
 inline constexpr std::size_t kMaxFaceNodes = kMaxNodes;  ///< of all faces of a probe
 inline constexpr std::size_t kMaxLawCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;
@@ -45,13 +46,14 @@ struct ProbeState {
 /// Contacts of one probe (key).
 struct Contacts : ContactSet {
   Header header;
-  std::uint64_t node_positions_sequence = 0;  ///< the surface they were found on
+  std::vector<std::uint32_t> generations;  ///< by organ, of the surface they were found on
 };
 
-/// The tissue's local law for one probe.
+/// The tissue's local law for one probe: of the organs of one process. The forces of all add.
 struct ContactModel : LocalLaw {
   Header header;
-  std::uint32_t probe = 0;  ///< (key)
+  std::uint32_t probe = 0;    ///< (key)
+  std::uint32_t process = 1;  ///< of deformation (key)
   /// How much too large the force is because of the organ's mesh, estimated a few times a second: a
   /// part of it, 0 … 1, 1: as much or more; 0 where nothing is estimated.
   double force_error = 0;

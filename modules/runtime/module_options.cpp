@@ -5,6 +5,7 @@
 
 #include "modules/core/error.h"
 #include "modules/runtime/wiring.h"
+#include "modules/scene/processes.h"
 
 namespace palpate::runtime {
 namespace {
@@ -29,11 +30,15 @@ void add_bus_options(Options& options, bus::BusOptions& bus) {
 }
 
 void add_lockstep_option(Options& options, std::vector<std::string>& participants) {
+  std::vector<std::string> names(kModules.begin(), kModules.end());
+  for (std::size_t process = 2; process <= scene::kMaxProcesses; ++process) {
+    names.push_back(name_of({"deformation", process}));
+  }
   options
       .add("--lockstep", participants,
            "Modules of a lockstep session, this one included: cycles wait for their inputs, "
            "no clock is read (palpate run --lockstep)")
-      .one_of({kModules.begin(), kModules.end()});
+      .one_of(names);
 }
 
 int run_module(int argc, char** argv, const ModuleProgram& program,

@@ -1,5 +1,7 @@
 #include "modules/runtime/run_stage.h"
 
+#include <spdlog/spdlog.h>
+
 #include <optional>
 
 #include "modules/core/units.h"
@@ -44,6 +46,7 @@ void run_in_real_time(Module& module, Stage& stage) {
 
 void run_stage(const ModuleOptions& options, const scene::Scene& scene, const std::string& name,
                Priority priority, const MakeStage& make) {
+  spdlog::set_pattern("[" + name + "] %l: %v");  // of several processes of a program, which one
   if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
   Module module(options, scene, name, rate_of(name, scene), priority);
   const auto stage = make(module.bus());

@@ -1,10 +1,12 @@
 #include "modules/runtime/wiring.h"
 
 #include <algorithm>
+#include <charconv>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/runtime/stage.h"
+#include "modules/scene/processes.h"
 
 namespace palpate::runtime {
 namespace {
@@ -18,17 +20,43 @@ constexpr std::array kWires{
     Wire{"probe_input", "", Keys::kProbes, false, {"haptics"}},
     Wire{"contacts", "collision", Keys::kProbes, true, {"deformation", "visualizer"}},
     Wire{"node_positions", "deformation", Keys::kOrgans, true, {"collision", "visualizer"}},
-    Wire{"contact_model", "deformation", Keys::kProbes, true, {"haptics"}},
+    Wire{"contact_model", "deformation", Keys::kProbesOfProcesses, true, {"haptics", "visualizer"}},
     Wire{"haptic_force", "haptics", Keys::kProbes, true, {"visualizer"}},
 };
 
+std::string_view job_of(std::string_view module) {
+  const auto named = module_named(module);
+  PALPATE_DEMAND(named.has_value());
+  return named->job;
+}
+
 std::size_t rank_of(std::string_view module) {
-  const auto found = std::find(kModules.begin(), kModules.end(), module);
+  const auto found = std::find(kModules.begin(), kModules.end(), job_of(module));
   PALPATE_DEMAND(found != kModules.end());
   return static_cast<std::size_t>(found - kModules.begin());
 }
 
 }  // namespace
+
+std::optional<ModuleName> module_named(std::string_view name) {
+  const auto is_job = [](std::string_view word) {
+    return std::find(kModules.begin(), kModules.end(), word) != kModules.end();
+  };
+  if (is_job(name)) return ModuleName{name, 1};
+  constexpr std::string_view kShared = "deformation_";
+  if (!name.starts_with(kShared)) return std::nullopt;
+  const std::string_view digits = name.substr(kShared.size());
+  std::size_t process = 0;
+  const auto [end, error] = std::from_chars(digits.begin(), digits.end(), process);
+  if (error != std::errc() || end != digits.end() || digits.starts_with('0')) return std::nullopt;
+  if (process < 2 || process > scene::kMaxProcesses) return std::nullopt;
+  return ModuleName{name.substr(0, kShared.size() - 1), process};
+}
+
+std::string name_of(const ModuleName& module) {
+  std::string name(module.job);
+  return module.process == 1 ? name : name + "_" + std::to_string(module.process);
+}
 
 std::span<const Wire> session_wires() { return kWires; }
 
@@ -46,7 +74,8 @@ std::int64_t CycleGrid::last_at(std::int64_t time_ns) const {
   return time_ns < 0 ? kNever : time_ns / period_ns_ * period_ns_;
 }
 
-double rate_of(std::string_view module, const scene::Scene& scene) {
+double rate_of(std::string_view name, const scene::Scene& scene) {
+  const std::string_view module = job_of(name);
   if (module == "haptics") return scene.rates.haptics;
   if (module == "collision") return scene.rates.collision;
   if (module == "deformation") return scene.rates.deformation;
@@ -59,13 +88,11 @@ double input_stale_after(const scene::Scene& scene) {
   return std::max(kInputStaleAfter, scene.haptics.stale_after);
 }
 
-InputRule::InputRule(const scene::Scene& scene, std::string module)
-    : scene_(scene), module_(std::move(module)) {
-  rank_of(module_);  // is one
-}
+InputRule::InputRule(const scene::Scene& scene, std::string_view module)
+    : scene_(scene), rank_(rank_of(module)) {}
 
 bool InputRule::writes_first(const Wire& wire) const {
-  return wire.writer.empty() || rank_of(wire.writer) < rank_of(module_);
+  return wire.writer.empty() || rank_of(wire.writer) < rank_;
 }
 
 std::int64_t InputRule::horizon(std::string_view topic, std::int64_t time_ns) const {
@@ -88,6 +115,8 @@ std::size_t InputRule::keys(std::string_view topic) const {
       return scene_.probes.size();
     case Keys::kOrgans:
       return scene_.organs.size();
+    case Keys::kProbesOfProcesses:
+      return scene_.probes.size() * scene::process_count(scene_);
     case Keys::kOne:
       return 1;
   }
@@ -98,7 +127,8 @@ int reader_count(std::string_view topic, const std::vector<std::string>& partici
   const Wire* wire = find_wire(topic);
   if (wire == nullptr) return 0;
   return static_cast<int>(
-      std::count_if(participants.begin(), participants.end(), [&](const std::string& module) {
+      std::count_if(participants.begin(), participants.end(), [&](const std::string& name) {
+        const std::string_view module = job_of(name);
         return module == "recorder" ||
                std::find(wire->readers.begin(), wire->readers.end(), module) != wire->readers.end();
       }));

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,12 +18,22 @@ namespace palpate::runtime {
 inline constexpr std::array<std::string_view, 5> kModules{"haptics", "collision", "deformation",
                                                           "visualizer", "recorder"};
 
+/// A module that several processes share is named after its job, and from the second one on after
+/// its number, too: "deformation", "deformation_2".
+struct ModuleName {
+  std::string_view job;     ///< one of kModules
+  std::size_t process = 1;  ///< from 1
+};
+/// None if there is no such module in any scene.
+std::optional<ModuleName> module_named(std::string_view name);
+std::string name_of(const ModuleName& module);
+
 /// Cycles per second of the recorder.
 inline constexpr double kRecorderRate = 100;
 
 /// One topic: who writes it, per what its keys are counted, who reads it.
 struct Wire {
-  enum class Keys { kOne, kProbes, kOrgans };
+  enum class Keys { kOne, kProbes, kOrgans, kProbesOfProcesses };
   std::string_view topic;
   std::string_view writer;  ///< a module; empty: the launcher, an outside program, or everybody
   Keys keys = Keys::kOne;
@@ -63,7 +74,7 @@ double input_stale_after(const scene::Scene& scene);
 /// Which samples a module's cycle must have.
 class InputRule {
  public:
-  InputRule(const scene::Scene& scene, std::string module);
+  InputRule(const scene::Scene& scene, std::string_view module);
 
   /// Samples of `topic` with later source times are not for the cycle at `time_ns` [ns].
   std::int64_t horizon(std::string_view topic, std::int64_t time_ns) const;
@@ -75,7 +86,7 @@ class InputRule {
  private:
   bool writes_first(const Wire& wire) const;
   const scene::Scene& scene_;
-  std::string module_;
+  std::size_t rank_;  ///< in kModules
 };
 
 /// How many of `participants` read a topic.

@@ -116,8 +116,13 @@ void ObjectReader::refuse_name(const char* key, std::size_t index, std::size_t s
 
 YamlValue ObjectReader::value_at(const std::string& path) const {
   const auto dot = path.find('.');
-  const auto value = find(path.substr(0, dot));
+  const std::string name = path.substr(0, dot);
+  const auto bracket = name.find('[');
+  auto value = find(name.substr(0, bracket));
   if (!value) return object_;
+  if (bracket != std::string::npos) {
+    value = entries_of(*value).at(std::stoul(name.substr(bracket + 1)));
+  }
   if (dot == std::string::npos) return *value;
   ObjectReader below(*this);
   below.object_ = *value;

@@ -104,7 +104,7 @@ class ObjectReader {
   }
 
   std::optional<YamlValue> find(const std::string& key) const;
-  /// Of "a.b"; where a default is meant, of what would hold it.
+  /// Of "a.b" or "a[2].b"; where a default is meant, of what would hold it.
   YamlValue value_at(const std::string& path) const;
   void check_keys(const KeyList& allowed) const;
   void check_options(const KeyList& allowed) const;

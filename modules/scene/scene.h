@@ -98,6 +98,7 @@ struct Organ {
   Integrator integrator = Integrator::kAutomatic;  ///< `integrator`
   Filling filling;                                 ///< `filling`
   std::vector<Region> fixed;                       ///< `fixed`
+  std::size_t process = 1;  ///< `process` of deformation that owns it [1 … 16]
 };
 
 /// A recorded pose over time: a table, or a topic of a ROS bag (modules/trajectories).

@@ -18,6 +18,7 @@
 #include "modules/scene/about.h"
 #include "modules/scene/device_schema.h"
 #include "modules/scene/models.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::scene {
@@ -155,6 +156,8 @@ void describe(V& v, Organ& organ) {
           plain("of implicit_volume and mass_spring; automatic = what costs less here"));
   v.field("filling", organ.filling, plain("the volume asked for, over the rest volume"));
   v.field("fixed", organ.fixed, plain("regions of W whose nodes do not move"));
+  v.field("process", organ.process,
+          ranged("", 1, kMaxProcesses, "deformation process that simulates it, counted from 1"));
   v.fits("a key that the model does not read must be left out, see the table of models",
          misfit_of_model(organ));
 }
@@ -297,6 +300,8 @@ void describe(V& v, Scene& scene) {
   v.unique_names("probes", scene.probes);
   v.field("contacts", scene.contacts, plain("what organs touch beside probes"));
   v.fits("contacts need models of springs, stepped by symplectic_euler", misfit_of_contacts(scene));
+  v.fits("the organs' processes are 1, 2, … without a gap; organs that touch each other share one",
+         misfit_of_processes(scene));
   v.field("gravity_m_per_s2", scene.gravity,
           ranged("m/s²", -100, 100, "acceleration; the rest shape is free of it"));
   v.field("duration_s", scene.duration, ranged("s", 0, 1e6, "of a run; 0 = until stopped"));

@@ -7,7 +7,9 @@
 #include "deformation/organ_messages.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::session {
@@ -18,9 +20,13 @@ namespace {
 template <class Message>
 class Newest {
  public:
+  /// @param keeps  which messages; none: all
   Newest(bus::Bus& bus, const bus::TopicOf<Message>& topic, std::uint32_t Message::*key,
-         std::size_t keys)
-      : reader_(bus.reader(topic)), key_(key), arrived_(std::make_shared<Message>()) {
+         std::size_t keys, bool (*keeps)(const Message&) = nullptr)
+      : reader_(bus.reader(topic)),
+        key_(key),
+        keeps_(keeps),
+        arrived_(std::make_shared<Message>()) {
     for (std::size_t i = 0; i < keys; ++i) {
       newest_.push_back(std::make_shared<Message>());
       (*newest_.back()).*key = static_cast<std::uint32_t>(i);
@@ -30,7 +36,7 @@ class Newest {
   void listen() {
     while (reader_.take(*arrived_)) {
       const std::uint32_t key = (*arrived_).*key_;
-      if (key >= newest_.size()) continue;
+      if (key >= newest_.size() || (keeps_ != nullptr && !keeps_(*arrived_))) continue;
       std::swap(newest_[key], arrived_);
       if (arrived_.use_count() > 1) arrived_ = std::make_shared<Message>();
     }
@@ -42,6 +48,7 @@ class Newest {
  private:
   bus::Reader<Message> reader_;
   std::uint32_t Message::*key_;
+  bool (*keeps_)(const Message&);
   std::vector<std::shared_ptr<Message>> newest_;
   std::shared_ptr<Message> arrived_;
 };
@@ -72,7 +79,8 @@ struct InProcess::Impl {
         tapped(options.tap ? options.tap(carrier) : nullptr),
         probes(carrier, bus::kProbeState, &ProbeState::probe, scene.probes.size()),
         contacts(carrier, bus::kContacts, &Contacts::probe, scene.probes.size()),
-        models(carrier, bus::kContactModel, &ContactModel::probe, scene.probes.size()),
+        models(carrier, bus::kContactModel, &ContactModel::probe, scene.probes.size(),
+               [](const ContactModel& model) { return model.process == 1; }),
         forces(carrier, bus::kHapticForce, &HapticForce::probe, scene.probes.size()),
         nodes(carrier, bus::kNodePositions, &NodePositions::organ, scene.organs.size()),
         surfaces(carrier, bus::kSurface, &SurfaceTopology::organ, scene.organs.size()) {
@@ -88,16 +96,37 @@ struct InProcess::Impl {
       return std::make_unique<collision::CollisionStage>(
           scene, collision::probes_of(scene, std::move(assets.probe_meshes)), bus);
     });
-    add("deformation", options, [&](bus::Bus& bus) {
-      auto stage = std::make_unique<deformation::DeformationStage>(
-          scene, std::move(assets.organs), bus, options.runner, options.guarding);
-      deformation = stage.get();
-      return stage;
-    });
-    for (std::size_t organ = 0; deformation && organ < scene.organs.size(); ++organ) {
-      deformation::write_node_positions(deformation->world(), organ, nodes[organ]);
+    for (std::size_t process = 1; process <= scene::process_count(scene); ++process) {
+      const std::string name = runtime::name_of({"deformation", process});
+      add(name, options,
+          [&](bus::Bus& bus) { return add_deformation(process, assets, bus, options); });
     }
     listen();
+  }
+
+  std::unique_ptr<runtime::Stage> add_deformation(std::size_t process, Assets& assets,
+                                                  bus::Bus& bus, const InProcessOptions& options) {
+    const auto own = scene::organs_of(scene, process);
+    std::vector<geometry::OrganShape> shapes;
+    for (const std::size_t organ : own) shapes.push_back(std::move(assets.organs.at(organ)));
+    auto stage = std::make_unique<deformation::DeformationStage>(
+        scene, std::move(shapes), bus, process, options.runner, options.guarding);
+    deformation.resize(std::max(deformation.size(), process));
+    deformation[process - 1] = stage.get();
+    for (std::size_t k = 0; k < own.size(); ++k) {
+      deformation::write_node_positions(stage->world(), k, nodes[own[k]]);
+      nodes[own[k]].organ = static_cast<std::uint32_t>(own[k]);
+    }
+    return stage;
+  }
+
+  /// Where an organ is simulated, and its index there.
+  std::pair<deformation::DeformationStage*, std::size_t> owner_of(std::size_t organ) const {
+    const std::size_t process = scene.organs.at(organ).process;
+    PALPATE_DEMAND(process <= deformation.size() && deformation[process - 1] != nullptr);
+    const auto own = scene::organs_of(scene, process);
+    return {deformation[process - 1],
+            static_cast<std::size_t>(std::find(own.begin(), own.end(), organ) - own.begin())};
   }
 
   ~Impl() {
@@ -170,8 +199,8 @@ struct InProcess::Impl {
   Newest<SurfaceTopology> surfaces;
   std::vector<std::string> warnings;
   haptics::HapticsStage* haptics = nullptr;
-  deformation::DeformationStage* deformation = nullptr;
-  std::vector<Member> members;  ///< in the order of runtime::kModules
+  std::vector<deformation::DeformationStage*> deformation;  ///< by process
+  std::vector<Member> members;                              ///< in the order of runtime::kModules
 };
 
 InProcess::InProcess(const scene::Scene& scene, Assets assets, const InProcessOptions& options)
@@ -198,8 +227,8 @@ haptics::HapticsStage& InProcess::haptics() {
   return *impl_->haptics;
 }
 const deformation::DeformationStage& InProcess::deformation() const {
-  PALPATE_DEMAND(impl_->deformation != nullptr);
-  return *impl_->deformation;
+  PALPATE_DEMAND(impl_->deformation.size() == 1);
+  return *impl_->deformation.front();
 }
 
 const runtime::Health& InProcess::health(const std::string& module) const {
@@ -210,8 +239,8 @@ const runtime::Health& InProcess::health(const std::string& module) const {
 }
 
 void InProcess::ask_for_volume(std::size_t organ, double ratio) {
-  PALPATE_DEMAND(impl_->deformation != nullptr);
-  impl_->deformation->ask_for_volume(organ, ratio);
+  const auto [stage, own] = impl_->owner_of(organ);
+  stage->ask_for_volume(own, ratio);
 }
 
 ContactTroubles InProcess::contact_troubles() const { return impl_->contact_troubles(); }

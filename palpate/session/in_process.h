@@ -66,7 +66,7 @@ class InProcess {
   bus::Bus& bus();  ///< for listening
   // Of the usual stages; a broken demand where another is in their place.
   haptics::HapticsStage& haptics();
-  const deformation::DeformationStage& deformation() const;
+  const deformation::DeformationStage& deformation() const;  ///< of a scene with one process of it
   const deformation::DeformationWorld& world() const { return deformation().world(); }
   /// As TargetVolume::ask() of that organ.
   void ask_for_volume(std::size_t organ, double ratio);
@@ -77,7 +77,7 @@ class InProcess {
   // rest shape.
   const ProbeState& probe(std::size_t probe) const;
   const Contacts& contacts(std::size_t probe) const;
-  const ContactModel& contact_model(std::size_t probe) const;
+  const ContactModel& contact_model(std::size_t probe) const;  ///< of the first process
   const HapticForce& haptic_force(std::size_t probe) const;
   const NodePositions& node_positions(std::size_t organ) const;
   const SurfaceTopology& surface(std::size_t organ) const;

@@ -136,8 +136,8 @@ class Session(Closing[_core.Session]):
     # What it says.
 
     def latest(self, topic: str, key: int | str = 0) -> Message:
-        """The newest message of `probe_state`, `haptic_force`, `contacts`, `contact_model` (key: a probe),
-        `node_positions` or `surface` (key: an organ). Its arrays are not copied.
+        """The newest message of `probe_state`, `haptic_force`, `contacts`, `contact_model` (key: a probe; of
+        the first deformation process), `node_positions` or `surface` (key: an organ). Its arrays are not copied.
 
         Raises:
             KeyError, IndexError: there is none of that name or key.

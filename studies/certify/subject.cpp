@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "modules/core/error.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::certify {
@@ -72,7 +73,7 @@ Pose pose_below(const Place& place, double below) {
 
 Subject load_subject(const std::filesystem::path& file, const KeepGoing& keep_going) {
   Subject subject;
-  subject.scene = scene::load_scene(file);
+  subject.scene = scene::in_one_process(scene::load_scene(file));
   subject.scene.probes.resize(1);
   subject.assets = session::load_assets(subject.scene);
   scene::Probe& probe = subject.scene.probes[0];

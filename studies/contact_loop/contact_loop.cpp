@@ -103,10 +103,11 @@ class Judge {
 
   void judge(LoopResult& result) {
     ++result.searches;
-    const auto on = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const NodePositions& s) {
-      return s.header.sequence == newest_.node_positions_sequence;
+    // What deformation says at an instant, it says after the search of that instant.
+    const auto on = std::find_if(surfaces_.rbegin(), surfaces_.rend(), [&](const NodePositions& s) {
+      return s.header.source_time_ns < newest_.header.source_time_ns;
     });
-    if (on == surfaces_.end()) return;
+    if (on == surfaces_.rend()) return;
     const auto points = points_inside(newest_.probe_pose, on->positions);
     if (points.empty()) {
       lost_since_ = -1;

@@ -16,6 +16,7 @@
 #include "modules/runtime/stop_signal.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
@@ -271,7 +272,8 @@ std::string told(const scene::Scene& scene, const PlanOptions& options) {
 }  // namespace
 
 int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
-  const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
+  const scene::Scene scene =
+      scene::in_one_process(scene::load_scene_with(options.scene, options.settings));
   check_plannable(scene);
   if (options.shard && options.points.empty()) {
     throw InputError("--shard needs --points, the folder that all shards share");

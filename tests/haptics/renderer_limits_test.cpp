@@ -84,7 +84,7 @@ TEST_CASE("haptic renderer: a hand in debt that is near nothing any more is let 
     if (out.force.norm() > 0) last = now;
   }
   INFO("let go " << last - since << " s after the last law with rows");
-  CHECK(last - since <= HapticRenderer::kLetGo + 10 * kT);
+  CHECK(last - since <= HeldLaw::kLetGo + 10 * kT);
 }
 
 TEST_CASE("haptic renderer: where the slew limit is slower than the fade, it decides") {

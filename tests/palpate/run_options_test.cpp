@@ -100,6 +100,24 @@ TEST_CASE("run options: --only starts those and refuses names that do not exist"
   CHECK_THROWS_AS(module_commands(options, ""), palpate::InputError);
 }
 
+TEST_CASE("run options: each process of deformation is a module of its own") {
+  // Oracle: names and command lines, by hand.
+  auto options = some_run();
+  options.headless = true;
+  const auto commands = module_commands(options, "/bin/p", 2);
+  CHECK(names(commands) == Names{"deformation", "deformation_2", "collision", "haptics"});
+  CHECK(command_text(commands[0]) ==
+        "/bin/p/palpate-deformation /scenes/a.yaml --session s1 --domain 9");
+  CHECK(command_text(commands[1]) ==
+        "/bin/p/palpate-deformation /scenes/a.yaml --session s1 --domain 9 --process 2");
+  options.lockstep = true;
+  CHECK(has(module_commands(options, "", 2)[3], "deformation,deformation_2,collision,haptics"));
+  options.lockstep = false;
+  options.only = {"deformation_2"};
+  CHECK(names(module_commands(options, "", 2)) == Names{"deformation_2"});
+  CHECK_THROWS_WITH(module_commands(options, ""), Catch::Contains("no module 'deformation_2'"));
+}
+
 TEST_CASE("run options: --no-realtime reaches every module") {
   // Oracle: definition.
   auto options = some_run();

@@ -92,6 +92,10 @@ TEST_CASE("session tally: a module's cycles count from the start, or from its ow
   CHECK(tally.real_time_factor() == 0);
   tally.receive(status("deformation", 1, 0));
   CHECK(tally.real_time_factor() == 0.9);
+  auto other = status("deformation_2", 1, 0);
+  other.real_time_factor = 0.5;
+  tally.receive(other);
+  CHECK(tally.real_time_factor() == 0.5);  // of the slower one
 }
 
 TEST_CASE("session tally: what a status said while degraded is kept once, with its newest count") {

@@ -54,4 +54,13 @@ TEST_CASE("roles: all topics they name exist", "[bus]") {
   }
 }
 
+TEST_CASE("roles: each of several processes of a job plays the job's") {
+  // Oracle: the names by hand.
+  REQUIRE(find_role("deformation") != nullptr);
+  CHECK(find_role("deformation_2") == find_role("deformation"));
+  for (const char* name : {"deformation_", "deformation_2x", "nobody_2", "_2", ""}) {
+    CHECK(find_role(name) == nullptr);
+  }
+}
+
 }  // namespace palpate::bus

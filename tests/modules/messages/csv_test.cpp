@@ -98,12 +98,12 @@ TEST_CASE("csv: values stand under their names") {
   Contacts contacts;
   contacts.contacts.resize(2);
   contacts.contacts[1].gap = -0.5;
-  contacts.node_positions_sequence = 8;
+  contacts.generations = {8, 9, 9};
   CHECK(csv_columns(contacts) ==
         "probe_position_x_m,probe_position_y_m,probe_position_z_m,probe_rotation_x,"
-        "probe_rotation_y,probe_rotation_z,probe_rotation_w,node_positions_sequence,truncated,"
+        "probe_rotation_y,probe_rotation_z,probe_rotation_w,organ_count,truncated,"
         "face_count,face_node_count,contact_count,deepest_gap_m");
-  CHECK(values_of(contacts) == "0,0,0,0,0,0,1,8,0,0,0,2,-0.5");
+  CHECK(values_of(contacts) == "0,0,0,0,0,0,1,3,0,0,0,2,-0.5");
 
   ModuleStatus status;
   status.state = ModuleState::kDegraded;

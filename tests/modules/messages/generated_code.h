@@ -105,7 +105,7 @@ inline void check_same(const idl::Contacts& w, const Contacts& m) {
   REQUIRE(w.probe() == m.probe);
   REQUIRE(w.probe_position_m() == xyz(m.probe_pose.position));
   REQUIRE(w.probe_rotation_xyzw() == xyzw(m.probe_pose.rotation));
-  REQUIRE(w.node_positions_sequence() == m.node_positions_sequence);
+  REQUIRE(w.generations() == m.generations);
   REQUIRE(w.truncated() == m.truncated);
   REQUIRE(w.faces().size() == m.faces.size());
   for (std::size_t i = 0; i < m.faces.size(); ++i) check_same(w.faces()[i], m.faces[i]);
@@ -117,6 +117,7 @@ inline void check_same(const idl::Contacts& w, const Contacts& m) {
 inline void check_same(const idl::ContactModel& w, const ContactModel& m) {
   check_header(w, m);
   REQUIRE(w.probe() == m.probe);
+  REQUIRE(w.process() == m.process);
   REQUIRE(w.anchor_position_m() == xyz(m.anchor.position));
   REQUIRE(w.anchor_rotation_xyzw() == xyzw(m.anchor.rotation));
   REQUIRE(w.anchor_age_s() == m.anchor_age);

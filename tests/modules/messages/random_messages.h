@@ -121,8 +121,12 @@ inline void mend(Random& random, ContactModel& m) {
   for (double& x : m.compliance) x = real(random, -1, 1);
 }
 
-/// Gives each face some nodes.
+/// Gives each face some nodes; one contact at least.
 inline void mend(Random& random, Contacts& m) {
+  if (m.contacts.empty()) {
+    m.contacts.resize(1);
+    m.contacts[0].barycentric = Vec3::UnitX();
+  }
   m.face_nodes.clear();
   for (FaceContacts& face : m.faces) {
     face.node_count = static_cast<std::uint32_t>(whole(random, 1, 20));

@@ -69,11 +69,45 @@ TEST_CASE(
   CHECK(recorder.keys("scene") == 1);
 }
 
+TEST_CASE("wiring: a job that several processes share has a name for each") {
+  // Oracle: the names by hand.
+  CHECK(name_of({"deformation", 1}) == "deformation");
+  CHECK(name_of({"deformation", 12}) == "deformation_12");
+  for (const char* name : {"haptics", "deformation", "deformation_2", "deformation_16"}) {
+    const auto module = module_named(name);
+    REQUIRE(module);
+    CHECK(name_of(*module) == name);
+  }
+  for (const char* name : {"deformation_", "deformation_1", "deformation_02", "deformation_17",
+                           "deformation_2x", "haptics_2", "", "all"}) {
+    CHECK_FALSE(module_named(name));
+  }
+}
+
+TEST_CASE("wiring: each process of deformation waits alike, and haptics for all of them") {
+  // Oracle: by hand; two probes, two processes.
+  scene::Scene scene = two_probes_one_organ();
+  scene.organs.resize(2);
+  scene.organs[1].process = 2;
+  const InputRule first(scene, "deformation"), second(scene, "deformation_2");
+  for (const std::int64_t at : {0, 4'000'000}) {
+    for (const char* topic : {"probe_state", "contacts"}) {
+      CHECK(second.required(topic, at) == first.required(topic, at));
+      CHECK(second.horizon(topic, at) == first.horizon(topic, at));
+      CHECK(second.keys(topic) == first.keys(topic));
+    }
+  }
+  CHECK(rate_of("deformation_2", scene) == rate_of("deformation", scene));
+  CHECK(InputRule(scene, "haptics").keys("contact_model") == 4);
+  CHECK(InputRule(scene, "collision").keys("node_positions") == 2);
+  CHECK(reader_count("contacts", {"haptics", "collision", "deformation", "deformation_2"}) == 2);
+}
+
 TEST_CASE("wiring: a topic's readers are counted among those who take part") {
   // Oracle: by hand.
   CHECK(reader_count("probe_state", {"haptics", "collision", "deformation"}) == 2);
   CHECK(reader_count("probe_state", {"haptics", "collision", "deformation", "recorder"}) == 3);
-  CHECK(reader_count("contact_model", {"haptics", "visualizer"}) == 1);
+  CHECK(reader_count("contact_model", {"haptics", "visualizer"}) == 2);
   CHECK(reader_count("module_status", {"visualizer", "recorder"}) == 0);
 }
 

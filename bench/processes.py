@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Organs in one deformation process beside the same organs in two, in lockstep on two cores.
+
+  bench/processes.py [--organs N] [--nodes N] [--model WORD]   N stomachs side by side, each with a probe
+      that presses it. Simulated per wall time of both, run in turns, each as the difference of two durations, so
+      that starting and ending drop out; what each process computes in a period, of the first pair; whether both
+      said the same of nodes, probes and forces (palpate diff).
+"""
+import argparse
+import json
+import os
+import pathlib
+import random
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SAME = ("surface", "node_positions", "probe_state", "contacts", "haptic_force")
+RATE = 250  # [Hz]
+
+
+def scene_text(arguments, processes):
+    organs, probes = [], []
+    for i in range(arguments.organs):
+        x = 0.3 * i
+        organs.append({"name": f"organ_{i}", "model": arguments.model, "position_m": [x, 0, 0],
+                       "mesh": {"file": str(ROOT / "scenes/meshes/stomach.ply"), "nodes": arguments.nodes},
+                       "fixed": [{"box": {"min_m": [x - 0.05, 0.02, -0.08], "max_m": [x + 0.06, 0.05, 0.05]}}],
+                       "process": 1 + i * processes // arguments.organs})
+        moves = [{"to_m": [x - 0.029, -0.015, -0.059], "duration_s": 1}, {"wait_s": 0.2},
+                 {"to_m": [x + 0.008, -0.02, -0.049], "duration_s": 2}]
+        probes.append({"shape": {"sphere": {"radius_m": 0.008}},
+                       "device": {"scripted": {"start_m": [x - 0.06, -0.064, -0.093], "moves": moves}}})
+    return json.dumps({"palpate_scene": 1, "organs": organs, "probes": probes,
+                       "rates": {"haptics_hz": 1000, "collision_hz": RATE, "deformation_hz": RATE}})
+
+
+def run(palpate, scene, duration, record=None):
+    """@returns wall time [s], and the time that each child computed [s]."""
+    command = [palpate, "run", scene, "--lockstep", "--headless", "--duration", str(duration),
+               "--domain", str(random.Random(os.getpid()).randrange(1, 200))]
+    command += ["--record", record] if record else []
+    began, computed = time.monotonic(), {}
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    while process.poll() is None:
+        time.sleep(0.05)
+        try:
+            listed = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+            for child in listed:
+                words = pathlib.Path(f"/proc/{child}/cmdline").read_text().split("\0")
+                module = pathlib.Path(words[0]).name
+                if not module.startswith("palpate-"):
+                    continue
+                module = module.removeprefix("palpate-")
+                if "--process" in words:
+                    module += "_" + words[words.index("--process") + 1]
+                ticks = pathlib.Path(f"/proc/{child}/stat").read_text().rsplit(") ")[1].split()[11:13]
+                computed[module] = sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
+        except (OSError, IndexError):
+            pass
+    if process.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{process.stderr.read()}")
+    return time.monotonic() - began, computed
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--organs", type=int, default=8)
+    parser.add_argument("--nodes", type=int, default=550)
+    parser.add_argument("--model", default="implicit_volume")
+    parser.add_argument("--pairs", type=int, default=5)
+    parser.add_argument("--duration", type=float, default=1, help="simulated seconds, and four times as many")
+    parser.add_argument("--palpate", default=ROOT / "build/release/bin/palpate", type=pathlib.Path)
+    arguments = parser.parse_args()
+    short, long = arguments.duration, 4 * arguments.duration
+    with tempfile.TemporaryDirectory() as folder:
+        scenes, records = {}, {}
+        for processes in (1, 2):
+            scenes[processes] = pathlib.Path(folder) / f"{processes}.yaml"
+            records[processes] = pathlib.Path(folder) / f"{processes}.mcap"
+            scenes[processes].write_text(scene_text(arguments, processes))
+            run(arguments.palpate, scenes[processes], short, records[processes])
+        told = subprocess.run([arguments.palpate, "diff", records[1], records[2]], capture_output=True, text=True)
+        rows = dict(re.findall(r"^(\w+) +(\d+ +\d+ +\d+ +\d+)$", told.stdout, re.M))
+        same = all(rows[topic].split()[1:] == ["0", "0", "0"] for topic in SAME)
+
+        ratios, speeds, shares = [], {1: [], 2: []}, {}
+        for pair in range(arguments.pairs):
+            speed = {}
+            for processes in ((1, 2), (2, 1))[pair % 2]:
+                slow, computed = run(arguments.palpate, scenes[processes], long)
+                quick, before = run(arguments.palpate, scenes[processes], short)
+                speed[processes] = (long - short) / (slow - quick)
+                speeds[processes].append(speed[processes])
+                periods = RATE * (long - short)
+                shares.setdefault(processes, {m: 1e3 * (t - before.get(m, 0)) / periods for m, t in computed.items()})
+            ratios.append(speed[2] / speed[1])
+    for processes, modules in shares.items():
+        print(f"{processes}: {statistics.median(speeds[processes]):.2f} times real time; computed per period: "
+              + ", ".join(f"{module} {ms:.2f} ms" for module, ms in sorted(modules.items())))
+    ratios.sort()
+    print(f"{arguments.organs} organs of {arguments.nodes} nodes, {arguments.model}: two processes simulate "
+          f"{statistics.median(ratios):.2f} times what one does ({ratios[0]:.2f} to {ratios[-1]:.2f}, "
+          f"{arguments.pairs} pairs); {'the same bits' if same else 'DIFFERENT BITS'}")
+    return 0 if same else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
