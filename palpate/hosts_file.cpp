@@ -31,8 +31,7 @@ YamlValue value_of(const YamlValue& map, const std::string& key) {
 
 /// Refuses keys that are unknown, missing or given twice.
 void check_keys(const YamlValue& map, const std::vector<std::string>& keys) {
-  const scene::ObjectReader checked(map,
-                                    {keys, std::vector<std::string>(keys.size()), keys, false});
+  scene::ObjectReader(map, {keys, std::vector<std::string>(keys.size()), keys, false});
 }
 
 std::string word_of(const YamlValue& value) { return scene::text_from(value, {}); }

@@ -15,6 +15,7 @@
 #include "modules/scene/settings.h"
 #include "palpate/module_group.h"
 #include "palpate/run_command.h"
+#include "palpate/session_claim.h"
 
 namespace palpate::launcher {
 namespace {
@@ -33,6 +34,8 @@ std::string recorded_scene(const std::filesystem::path& recording) {
 
 int show(const std::filesystem::path& recording, const Playing& playing, const RunOptions& run,
          std::ostream& out, std::ostream& log) {
+  // Samples of then among those of now would move a running session's organs.
+  const SessionClaim claim(run.bus.session, run.bus.domain);
   const runtime::StopSignal stop;
   const TemporaryFolder folder;
   RunOptions viewing = run;

@@ -33,6 +33,8 @@ namespace {
 constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 /// A session that already runs has been heard by then: twice the longest discovery measured.
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
+/// With keys each pair has to prove who it is first.
+constexpr std::int64_t kSecureDiscoveryNs = 3 * kNanosecondsPerSecond;
 constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
 /// After a pause, and after the start, all have heard each other by then, and statuses say so.
 constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
@@ -62,8 +64,7 @@ class Run {
   }
 
   int perform() {
-    SceneDescription description = runtime::scene_description(scene_);
-    scenes_.write(description);
+    if (options_.only.empty()) tell_scene();
     log_ << fmt::format("palpate: session {} of scene {}\n", options_.bus.session, scene_.name);
     if (wait_until_ready()) {
       start();
@@ -86,15 +87,36 @@ class Run {
     return !stop_.requested() && modules_.any_running();
   }
 
+  void tell_scene() {
+    scene_told_ = true;
+    SceneDescription description = runtime::scene_description(scene_);
+    scenes_.write(description);
+  }
+
+  /// Whoever starts part of a session tells it no scene that it does not play.
+  /// @returns false if it plays another
+  bool joins() {
+    if (scene_told_) return true;
+    if (!session_.fault().empty()) {
+      log_ << "error: " << options_.scene.string() << ": " << session_.fault() << std::endl;
+      exit_code_ = kExitBadInput;
+      return false;
+    }
+    tell_scene();
+    return true;
+  }
+
   /// False if the session cannot start.
   bool wait_until_ready() {
     auto expected = modules_.reporting_modules();
     if (options_.conducts && !options_.everywhere.empty()) expected = options_.everywhere;
     std::erase(expected, "recorder");
     const std::int64_t begin_ns = runtime::monotonic_now_ns();
-    const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : kDiscoveryNs);
+    const std::int64_t heard_ns = options_.secure.empty() ? kDiscoveryNs : kSecureDiscoveryNs;
+    const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : heard_ns);
     std::int64_t line_ns = begin_ns + kWaitingLineEveryNs;
     while (next_cycle()) {
+      if (loop_.woke_ns() >= earliest_ns && !joins()) return false;
       auto waiting = monitor_.not_ready(expected);
       const bool started = session_.phase() != runtime::SessionPhase::kWaiting;
       if (!options_.conducts && !started) waiting.emplace_back("the host that starts the session");
@@ -218,8 +240,9 @@ class Run {
   double duration_ = 0;  ///< 0: until stopped [s]
   std::int64_t began_ns_ = 0, line_ns_ = 0;
   std::int64_t stood_ns_ = 0;  ///< when it was last paused or had not begun; 0: never
-  bool joined_ = false;        ///< another launcher conducts the session
-  bool ended_ = false;         ///< the run; its window may stay
+  bool scene_told_ = false;
+  bool joined_ = false;  ///< another launcher conducts the session
+  bool ended_ = false;   ///< the run; its window may stay
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
   HangWatch hangs_;

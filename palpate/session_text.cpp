@@ -34,9 +34,12 @@ std::string mesh_part(double force_error) {
 std::string probe_lines(const SessionTally& tally) {
   std::string text;
   for (const auto& probe : tally.probes()) {
-    text += fmt::format("probe {:<14} force at most {:.3f} N{}   limits that acted: {}\n",
-                        probe.name, probe.greatest_force, mesh_part(probe.error_of_greatest),
-                        limit_names(probe.limits));
+    // What a limit made of the force is not the mesh's.
+    const bool saturated = (probe.limits & kForceSaturated) != 0;
+    text +=
+        fmt::format("probe {:<14} force at most {:.3f} N{}   limits that acted: {}\n", probe.name,
+                    probe.greatest_force, saturated ? "" : mesh_part(probe.error_of_greatest),
+                    limit_names(probe.limits));
   }
   return text;
 }

@@ -51,6 +51,8 @@ class Everywhere {
     apply_profile({topic.delivery, Keep::kNewest, false}, writer_qos);
     writer_qos.resource_limits().max_instances = 0;  // any number of keys
     writer_qos.resource_limits().max_samples = 0;
+    // With each heartbeat its library would walk over thousands of keys, and starve the test.
+    writer_qos.reliable_writer_qos().times.heartbeatPeriod = {3600, 0};
     writer_ = participant_->create_publisher(everywhere)->create_datawriter(named, writer_qos);
   }
   ~Everywhere() {
