@@ -87,7 +87,10 @@ fs::path user_secret_file() {
 }
 
 std::string user_secret(const fs::path& file) {
-  const auto open = [&] { return ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW); };
+  // Without O_NONBLOCK another user's FIFO of that name would hold up every program here.
+  const auto open = [&] {
+    return ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  };
   int number = open();
   if (number < 0 && errno == ENOENT) {
     make_secret(file);
@@ -96,7 +99,8 @@ std::string user_secret(const fs::path& file) {
   const Descriptor descriptor(number);
   if (number < 0) refuse(file, std::strerror(errno));
   struct stat status {};
-  ::fstat(number, &status);
+  if (::fstat(number, &status) != 0) refuse(file, std::strerror(errno));
+  if (!S_ISREG(status.st_mode)) refuse(file, "is no regular file");
   if (status.st_uid != ::geteuid()) refuse(file, "belongs to another user");
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) refuse(file, "others may read or write it");
   std::string secret(kSecretBytes, '\0');

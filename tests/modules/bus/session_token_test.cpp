@@ -91,6 +91,18 @@ TEST_CASE("session token: a secret that others may read, or that is cut, is refu
   CHECK(told(folder / "none" / "secret").find("No such file") != std::string::npos);
 }
 
+TEST_CASE("session token: what is no regular file is refused at once, a FIFO too", "[bus]") {
+  // Oracle: the text; to open a FIFO for reading waits for a writer, and here comes none.
+  const ScratchFolder folder;
+  REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);
+  std::filesystem::create_directory(folder / "folder");
+  std::filesystem::permissions(folder / "folder", std::filesystem::perms::owner_all);
+  for (const char* name : {"fifo", "folder"}) {
+    CHECK_THAT(refusal([&] { user_secret(folder / name); }),
+               Catch::Contains(std::string(name) + ": is no regular file; PALPATE_TOKEN"));
+  }
+}
+
 TEST_CASE("session token: one per session, domain and user, the same each time", "[bus]") {
   // Oracle: all different; a second folder stands for another user, or another host.
   const ScratchFolder mine, another;
