@@ -20,7 +20,7 @@ struct ReadTopics {
   std::map<std::string, TopicColumns> columns;
   std::map<std::string, std::size_t> invalid;  ///< samples refused by the codec
   recording::McapMap scene;
-  std::string torn;
+  std::string warning;  ///< lines
 };
 
 ReadTopics topics_in(const std::string& file, const std::set<std::string>& wanted) {
@@ -37,7 +37,9 @@ ReadTopics topics_in(const std::string& file, const std::set<std::string>& wante
     }
   }
   read.scene = reader.metadata(recording::kSceneMetadata);
-  if (reader.torn()) read.torn = reader.torn_warning();
+  for (const std::string& line : reader.warnings()) {
+    read.warning += (read.warning.empty() ? "" : "\n  ") + line;
+  }
   return read;
 }
 
@@ -53,7 +55,7 @@ py::tuple read_recording(const std::string& file, const std::set<std::string>& w
     const std::size_t messages = columns.size();
     result.append(py::make_tuple(name, columns.take(), messages));
   }
-  return py::make_tuple(result, topics.scene, topics.invalid, topics.torn);
+  return py::make_tuple(result, topics.scene, topics.invalid, topics.warning);
 }
 
 }  // namespace

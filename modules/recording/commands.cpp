@@ -75,7 +75,7 @@ void replay(const ReplayOptions& options, const std::function<bool()>& stop_requ
   }
   const PlayReport report = play(recording, session, stop_requested, playing);
   if (!report.stopped) session.wait_until_received(kAcknowledgeTimeout);
-  if (recording.torn()) err << "warning: " << recording.torn_warning() << '\n';
+  for (const auto& line : recording.warnings()) err << "warning: " << line << '\n';
   if (report.refused > 0) err << "warning: " << report.refused << " samples could not be sent\n";
   out << (report.stopped ? "stopped after " : "replayed ") << report.samples << " samples, "
       << report.duration << " s\n";
@@ -94,7 +94,7 @@ int run_inspect_command(const InspectOptions& options, std::ostream& out, std::o
     const auto& file = options.repaired.empty() ? options.recording : options.repaired;
     const RecordingSummary summary = summarize(file, options.csv_folder);
     options.json ? print_json(summary, out) : print_summary(summary, out);
-    if (summary.torn) err << "warning: " << summary.torn_warning << '\n';
+    for (const auto& line : summary.warnings) err << "warning: " << line << '\n';
   });
 }
 

@@ -174,7 +174,7 @@ RecordingDifference compare(const DiffOptions& options) {
   }
   RecordingDifference difference = comparison.finish();
   for (const SampleReader* file : {&a, &b}) {
-    if (file->torn()) difference.warnings.push_back(file->torn_warning());
+    for (std::string& line : file->warnings()) difference.warnings.push_back(std::move(line));
   }
   return difference;
 }

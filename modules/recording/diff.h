@@ -42,7 +42,7 @@ struct TopicDifference {
 struct RecordingDifference {
   std::optional<Difference> first;  ///< earliest in simulated time
   std::map<std::string, TopicDifference> topics;
-  std::vector<std::string> warnings;  ///< of a torn file
+  std::vector<std::string> warnings;  ///< SampleReader::warnings() of both
   bool equal() const;
 };
 

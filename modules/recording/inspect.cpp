@@ -138,7 +138,7 @@ RecordingSummary summarize(const std::filesystem::path& recording,
   summary.file_bytes = reader.file_bytes();
   summary.parts = reader.parts();
   summary.torn = reader.torn();
-  if (summary.torn) summary.torn_warning = reader.torn_warning();
+  summary.warnings = reader.warnings();
   summary.session = reader.metadata(kSessionMetadata);
   summary.scene = reader.metadata(kSceneMetadata);
   summary.cost = reader.metadata(kCostMetadata);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "modules/recording/sample_reader.h"
@@ -30,10 +31,10 @@ struct RecordingSummary {
   std::uint64_t file_bytes = 0;
   int parts = 1;  ///< files: a recorder that was started again began another
   bool torn = false;
-  std::string torn_warning;  ///< one line; empty if the file is whole
-  McapMap cost;              ///< recorder.h: kCostMetadata; empty if torn, or in lockstep
-  McapMap session;           ///< recorder.h: kSessionMetadata
-  McapMap scene;             ///< recorder.h: kSceneMetadata; empty if no scene was heard
+  std::vector<std::string> warnings;  ///< a line each: torn files, parts left out
+  McapMap cost;                       ///< recorder.h: kCostMetadata; empty if torn, or in lockstep
+  McapMap session;                    ///< recorder.h: kSessionMetadata
+  McapMap scene;                      ///< recorder.h: kSceneMetadata; empty if no scene was heard
   std::int64_t first_ns = 0, last_ns = 0;  ///< receive times over all topics
   std::vector<TopicSummary> topics;        ///< those with samples, in the order of their names
 };

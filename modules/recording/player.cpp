@@ -142,7 +142,7 @@ std::vector<ProbeTrajectory> extract_probe_trajectories(const std::filesystem::p
   std::size_t invalid = 0;
   const auto motions = read_motions(reader, invalid);
   const std::string name = recording.string();
-  if (reader.torn()) warnings.push_back(reader.torn_warning());
+  for (std::string& line : reader.warnings()) warnings.push_back(std::move(line));
   if (invalid > 0) {
     warnings.push_back(name + ": " + std::to_string(invalid) +
                        " invalid probe_state samples left out");

@@ -34,11 +34,23 @@ std::optional<RecordedSample> SampleReader::next() {
 
 void SampleReader::look_for_next_part() {
   std::error_code error;
-  if (!std::filesystem::exists(part_of(recording_, part_ + 1), error)) return;
-  std::unique_ptr<SampleReader> part(new SampleReader(recording_, part_ + 1));
+  if (std::exchange(looked_for_later_, true)) return;
+  for (int number = part_ + 1; std::filesystem::exists(part_of(recording_, number), error);
+       ++number) {
+    try {
+      later_ = part_that_goes_on(number);
+      return;
+    } catch (const InputError& unreadable) {
+      left_out_.push_back(std::string(unreadable.what()) + "; this part is left out");
+    }
+  }
+}
+
+std::unique_ptr<SampleReader> SampleReader::part_that_goes_on(int number) {
+  std::unique_ptr<SampleReader> part(new SampleReader(recording_, number));
   part->first_channel_ = static_cast<std::uint16_t>(first_channel_ + channel_count_);
   part->first_ = part->next_of_part();
-  if (goes_on_in(*part)) later_ = std::move(part);
+  return goes_on_in(*part) ? std::move(part) : nullptr;
 }
 
 /// A part that an earlier recording of that name left behind began before this one.
@@ -132,10 +144,17 @@ McapMap SampleReader::metadata(const std::string& name) const {
   return found == metadata_.end() ? McapMap{} : found->second;
 }
 
-std::string SampleReader::torn_warning() const {
-  if (!reader_.torn() && later_) return later_->torn_warning();
-  return file_.string() + ": not closed by its writer; whole up to byte " +
-         std::to_string(reader_.offset()) + " of " + std::to_string(reader_.file_bytes());
+std::vector<std::string> SampleReader::warnings() const {
+  std::vector<std::string> lines;
+  if (reader_.torn()) {
+    lines.push_back(file_.string() + ": not closed by its writer; whole up to byte " +
+                    std::to_string(reader_.offset()) + " of " +
+                    std::to_string(reader_.file_bytes()));
+  }
+  lines.insert(lines.end(), left_out_.begin(), left_out_.end());
+  if (!later_) return lines;
+  for (std::string& line : later_->warnings()) lines.push_back(std::move(line));
+  return lines;
 }
 
 void SampleReader::refuse(const std::string& what) const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "modules/bus/topics.h"
 #include "modules/recording/mcap_reader.h"
@@ -35,7 +36,8 @@ class SampleReader {
   explicit SampleReader(const std::filesystem::path& file);
 
   /// The next sample; none at the end, be it regular or torn. Behind the end comes the next part,
-  /// if it is of the same session and was begun later; `channel` goes on counting.
+  /// if it is of the same session and was begun later; `channel` goes on counting. A part that
+  /// does not even begin as a recording does is left out.
   /// @throws InputError "file: offset N: …" if the bytes are not records, a topic is not one of
   /// ours, or a schema differs from the present one
   std::optional<RecordedSample> next();
@@ -44,17 +46,19 @@ class SampleReader {
   McapMap metadata(const std::string& name) const;
 
   const std::filesystem::path& file() const { return file_; }
-  std::uint64_t file_bytes() const;                               ///< with those of parts begun
-  int parts() const { return later_ ? later_->parts() : part_; }  ///< begun
+  std::uint64_t file_bytes() const;                                 ///< with those of parts begun
+  int parts() const { return 1 + (later_ ? later_->parts() : 0); }  ///< begun
   /// After next() gave none: the writer of one of its parts was stopped hard.
   bool torn() const { return reader_.torn() || (later_ && later_->torn()); }
-  /// One line about a torn file: where it ends, and what is lost.
-  std::string torn_warning() const;
+  /// After next() gave none: a line about each torn file, where it ends, and about each part left
+  /// out.
+  std::vector<std::string> warnings() const;
 
  private:
   SampleReader(const std::filesystem::path& recording, int part);
   std::optional<RecordedSample> next_of_part();
   void look_for_next_part();
+  std::unique_ptr<SampleReader> part_that_goes_on(int number);
   bool goes_on_in(SampleReader& part) const;
   void read_clocks(const McapMap& session);
   void check(const McapSchema& schema) const;
@@ -69,6 +73,8 @@ class SampleReader {
   std::uint16_t first_channel_ = 0;  ///< in the numbers that next() gives
   std::uint16_t channel_count_ = 0;
   std::unique_ptr<SampleReader> later_;
+  bool looked_for_later_ = false;
+  std::vector<std::string> left_out_;    ///< parts behind this one
   std::optional<RecordedSample> first_;  ///< read already
   std::map<std::uint16_t, std::string> schema_names_;
   std::map<std::uint16_t, const bus::TopicInfo*> topics_;  ///< by channel

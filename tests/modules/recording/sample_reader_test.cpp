@@ -73,6 +73,35 @@ TEST_CASE("sample reader: goes on in the parts of a recorder that was started ag
   CHECK_FALSE(reader.torn());
 }
 
+TEST_CASE("sample reader: a later part that is no recording is left out, and named") {
+  // Oracle: the samples of the parts before and behind it; one line about it, however often one
+  // asks for a next sample.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  for (const int part : {1, 3}) {
+    SampleFile writer(part_of(file, part), {});
+    writer.add(raw_sample(bus::kProbeState, probe_state(1, 0, 1, {4, 5, 6}), part, 1));
+    writer.close();
+  }
+  const std::string bad = part_of(file, 2).string();
+  std::string why = bad +
+                    ": offset 0: not an MCAP file of version 0 (its first bytes are not "
+                    "\\x89MCAP0\\r\\n); this part is left out";
+  SECTION("empty") { write_bytes(bad, {}); }
+  SECTION("junk") { write_bytes(bad, std::vector<std::uint8_t>(100, 'x')); }
+  SECTION("a folder") {
+    std::filesystem::create_directory(bad);
+    why = bad + ": no such recording; this part is left out";
+  }
+  SampleReader reader(file);
+  std::vector<std::int64_t> times;
+  while (auto sample = reader.next()) times.push_back(sample->received_time_ns);
+  CHECK_FALSE(reader.next());
+  CHECK(times == std::vector<std::int64_t>{1, 3});
+  CHECK(reader.parts() == 2);
+  CHECK(reader.warnings() == std::vector<std::string>{why});
+}
+
 TEST_CASE("sample reader: gives each sample with its topic, its channel and its time") {
   // Oracle: round trip with SampleFile; one channel per writer.
   const ScratchFolder folder;
@@ -155,8 +184,9 @@ TEST_CASE("sample reader: a torn file says where it ends") {
   CHECK(reader.next());
   CHECK_FALSE(reader.next());
   CHECK(reader.torn());
-  CHECK(reader.torn_warning() == file.string() + ": not closed by its writer; whole up to byte " +
-                                     std::to_string(whole) + " of " + std::to_string(whole + 20));
+  CHECK(reader.warnings() ==
+        std::vector<std::string>{file.string() + ": not closed by its writer; whole up to byte " +
+                                 std::to_string(whole) + " of " + std::to_string(whole + 20)});
 }
 
 }  // namespace palpate::recording
