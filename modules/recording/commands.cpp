@@ -87,9 +87,11 @@ int run_inspect_command(const InspectOptions& options, std::ostream& out, std::o
   return report_failure(err, [&] {
     if (!options.repaired.empty()) {
       const RepairReport report = repair(options.recording, options.repaired);
-      err << options.repaired.string() << ": " << report.samples
-          << " samples; left out: " << report.skipped << " damaged pieces"
+      err << options.repaired.string() << ": " << report.samples << " samples"
+          << (report.parts > 1 ? " of " + std::to_string(report.parts) + " parts" : "")
+          << "; left out: " << report.skipped << " damaged pieces"
           << (report.torn ? " and a torn end" : "") << '\n';
+      for (const auto& line : report.warnings) err << "warning: " << line << '\n';
     }
     const auto& file = options.repaired.empty() ? options.recording : options.repaired;
     const RecordingSummary summary = summarize(file, options.csv_folder);

@@ -5,21 +5,35 @@
 #include "modules/core/error.h"
 #include "modules/recording/mcap_reader.h"
 #include "modules/recording/mcap_writer.h"
+#include "modules/recording/recorder.h"
+#include "modules/recording/sample_reader.h"
 
 namespace palpate::recording {
 namespace {
+
+constexpr std::uint32_t kMostIds = 0xFFFF;
 
 /// Puts records into a file that numbers schemas and channels itself.
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& file) : writer_(file) {}
 
+  /// The numbers of its schemas and channels are its own.
+  void begin_part() {
+    ++parts_;
+    writer_.end_chunk();  // its clocks, which come next, are for what comes behind them
+    schemas_.clear();
+    channels_.clear();
+  }
   void operator()(const McapSchema& schema) {
-    if (!schemas_.contains(schema.id)) schemas_[schema.id] = writer_.add_schema(schema);
+    if (schemas_.contains(schema.id)) return;
+    demand_id(writer_.statistics().schema_count);
+    schemas_[schema.id] = writer_.add_schema(schema);
   }
   void operator()(McapChannel channel) {
     const std::uint16_t id = channel.id;
     if (channels_.contains(id)) return;
+    demand_id(writer_.statistics().channel_count);
     if (channel.schema_id != 0) channel.schema_id = schemas_.at(channel.schema_id);
     channels_[id] = writer_.add_channel(std::move(channel));
   }
@@ -27,7 +41,10 @@ class Copy {
     message.channel_id = channels_.at(message.channel_id);
     writer_.add_message(message, message.data);
   }
-  void operator()(const McapMetadata& metadata) { writer_.add_metadata(metadata); }
+  void operator()(const McapMetadata& metadata) {
+    if (parts_ > 1 && metadata.name == kCostMetadata) return;  // true of its part alone
+    writer_.add_metadata(metadata);
+  }
   void operator()(const McapAttachment& attachment) { writer_.add_attachment(attachment); }
 
   std::uint64_t close() {
@@ -36,22 +53,70 @@ class Copy {
   }
 
  private:
+  static void demand_id(std::uint32_t used) {
+    if (used >= kMostIds) throw InputError("more schemas or channels than one recording can have");
+  }
+
+  int parts_ = 0;
   McapWriter writer_;
   std::map<std::uint16_t, std::uint16_t> schemas_, channels_;
 };
 
+McapMap session_of(const std::filesystem::path& file) {
+  McapReader reader(file, McapDamage::kSkip);
+  while (const auto record = reader.next()) {
+    const auto* metadata = std::get_if<McapMetadata>(&*record);
+    if (metadata != nullptr && metadata->name == kSessionMetadata) return metadata->entries;
+    if (std::holds_alternative<McapMessage>(*record)) break;  // it comes before them
+  }
+  return {};
+}
+
+/// As a SampleReader goes on, though what they hold may be damaged.
+std::vector<std::filesystem::path> parts_of(const std::filesystem::path& recording,
+                                            std::vector<std::string>& warnings) {
+  std::vector<std::filesystem::path> parts{recording};
+  McapMap before = session_of(recording);
+  std::error_code error;
+  for (int number = 2; std::filesystem::exists(part_of(recording, number), error); ++number) {
+    const auto part = part_of(recording, number);
+    try {
+      McapMap session = session_of(part);
+      if (!goes_on(before, session)) {
+        warnings.push_back(part.string() +
+                           ": of another session, or begun earlier; this part is left out");
+        break;
+      }
+      before = std::move(session);
+      parts.push_back(part);
+    } catch (const InputError& unreadable) {
+      warnings.push_back(std::string(unreadable.what()) + "; this part is left out");
+    }
+  }
+  return parts;
+}
+
 }  // namespace
 
 RepairReport repair(const std::filesystem::path& damaged, const std::filesystem::path& repaired) {
-  McapReader reader(damaged, McapDamage::kSkip);
+  RepairReport report;
+  const auto parts = parts_of(damaged, report.warnings);  // before one may be made of that name
   std::error_code none;
   if (std::filesystem::exists(repaired, none)) {
     throw InputError(repaired.string() +
                      ": is there already; a repaired recording replaces nothing");
   }
   Copy copy(repaired);
-  while (auto record = reader.next()) std::visit(copy, std::move(*record));
-  return {copy.close(), reader.skipped(), reader.torn()};
+  for (const auto& part : parts) {
+    McapReader reader(part, McapDamage::kSkip);
+    copy.begin_part();
+    while (auto record = reader.next()) std::visit(copy, std::move(*record));
+    report.skipped += reader.skipped();
+    report.torn |= reader.torn();
+  }
+  report.samples = copy.close();
+  report.parts = static_cast<int>(parts.size());
+  return report;
 }
 
 }  // namespace palpate::recording

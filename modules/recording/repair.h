@@ -1,18 +1,22 @@
-// A recording that is torn or damaged, written anew: whole, with its indexes.
+// A recording that is torn or damaged, written anew: whole, in one part, with its indexes.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace palpate::recording {
 
 struct RepairReport {
   std::uint64_t samples = 0;
-  std::uint64_t skipped = 0;  ///< damaged chunks and other records, left out
-  bool torn = false;          ///< it had no regular end
+  std::uint64_t skipped = 0;               ///< damaged chunks and other records, left out
+  bool torn = false;                       ///< one of its parts had no regular end
+  int parts = 0;                           ///< taken
+  std::vector<std::string> warnings = {};  ///< a line for each part that was not taken
 };
 
-/// Writes what can be read of one file to another.
+/// Writes what can be read of a recording, all of its parts, to another file.
 /// @throws InputError if `damaged` is not an MCAP file, or `repaired` is there already;
 /// std::runtime_error as McapWriter does
 RepairReport repair(const std::filesystem::path& damaged, const std::filesystem::path& repaired);

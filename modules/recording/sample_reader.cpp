@@ -18,6 +18,16 @@ std::filesystem::path part_of(const std::filesystem::path& recording, int number
   return part;
 }
 
+bool goes_on(const McapMap& before, const McapMap& later) {
+  const auto entry = [](const McapMap& about, const char* key) {
+    const auto found = about.find(key);
+    return found == about.end() ? std::string() : found->second;
+  };
+  const std::string first = entry(before, "start_unix_ns"), second = entry(later, "start_unix_ns");
+  return entry(before, "session") == entry(later, "session") && !first.empty() &&
+         std::pair(first.size(), first) <= std::pair(second.size(), second);
+}
+
 SampleReader::SampleReader(const std::filesystem::path& file) : SampleReader(file, 1) {}
 
 SampleReader::SampleReader(const std::filesystem::path& recording, int part)
@@ -50,19 +60,8 @@ std::unique_ptr<SampleReader> SampleReader::part_that_goes_on(int number) {
   std::unique_ptr<SampleReader> part(new SampleReader(recording_, number));
   part->first_channel_ = static_cast<std::uint16_t>(first_channel_ + channel_count_);
   part->first_ = part->next_of_part();
-  return goes_on_in(*part) ? std::move(part) : nullptr;
-}
-
-/// A part that an earlier recording of that name left behind began before this one.
-bool SampleReader::goes_on_in(SampleReader& part) const {
-  const auto entry = [](const SampleReader& reader, const char* key) {
-    const McapMap about = reader.metadata(kSessionMetadata);
-    const auto found = about.find(key);
-    return found == about.end() ? std::string() : found->second;
-  };
-  const std::string begun = entry(*this, "start_unix_ns"), later = entry(part, "start_unix_ns");
-  return entry(*this, "session") == entry(part, "session") && !begun.empty() &&
-         std::pair(begun.size(), begun) <= std::pair(later.size(), later);
+  const bool taken = goes_on(metadata(kSessionMetadata), part->metadata(kSessionMetadata));
+  return taken ? std::move(part) : nullptr;
 }
 
 std::uint64_t SampleReader::file_bytes() const {
@@ -84,8 +83,12 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
     } else if (const auto* channel = std::get_if<McapChannel>(&*record)) {
       add(*channel);
     } else if (const auto* metadata = std::get_if<McapMetadata>(&*record)) {
-      metadata_[metadata->name] = metadata->entries;
-      if (metadata->name == kSessionMetadata) read_clocks(metadata->entries);
+      if (metadata->name == kSessionMetadata) {  // of repaired parts there are several
+        read_clocks(metadata->entries);
+        metadata_.emplace(metadata->name, metadata->entries);
+      } else {
+        metadata_[metadata->name] = metadata->entries;
+      }
     }
   }
   return std::nullopt;

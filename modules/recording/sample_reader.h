@@ -30,6 +30,10 @@ inline constexpr const char* kThinned = "at_most_hz";
 /// @param number  1: the recording's own name
 std::filesystem::path part_of(const std::filesystem::path& recording, int number);
 
+/// Whether a part whose session's metadata are `later` goes on where one of `before` ended: an
+/// earlier recording of that name may have left parts behind.
+bool goes_on(const McapMap& before, const McapMap& later);
+
 class SampleReader {
  public:
   /// @throws InputError as McapReader does
@@ -59,7 +63,6 @@ class SampleReader {
   std::optional<RecordedSample> next_of_part();
   void look_for_next_part();
   std::unique_ptr<SampleReader> part_that_goes_on(int number);
-  bool goes_on_in(SampleReader& part) const;
   void read_clocks(const McapMap& session);
   void check(const McapSchema& schema) const;
   void add(const McapChannel& channel);

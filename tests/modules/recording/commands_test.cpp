@@ -1,9 +1,12 @@
 #include "modules/recording/commands.h"
 
 #include <catch2/catch.hpp>
+#include <set>
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/recording/recorder.h"
+#include "modules/recording/sample_reader.h"
 #include "tests/modules/bus/loopback.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
@@ -51,6 +54,47 @@ TEST_CASE("commands: inspect repairs a torn file into another") {
   CHECK(nothing.str().empty());
   CHECK(run_inspect_command({folder / "torn.mcap", {}, false, folder / "again.mcap"}, out, err) ==
         kExitBadInput);
+}
+
+TEST_CASE("commands: inspect repairs all parts into one, and names those it cannot take") {
+  // Oracle: the times given to the samples, in the order of the parts; the texts by hand.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap", again = folder / "again.mcap";
+  for (const int part : {1, 2, 4}) {
+    SampleFile writer(part_of(file, part), {});
+    for (const int writer_id : {1, 2}) {
+      writer.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 5), 10 * part, writer_id));
+    }
+    writer.end_chunk();
+    writer.add_metadata({kCostMetadata, {{"wall_s", "1"}}});
+    writer.flush();
+    if (part != 1) writer.close();
+  }
+  write_bytes(part_of(file, 3), {'n', 'o'});
+  std::ostringstream out, err;
+  CHECK(run_inspect_command({file, {}, false, again}, out, err) == kExitDone);
+  CHECK_THAT(
+      err.str(),
+      Catch::StartsWith(again.string() + ": 6 samples of 3 parts; left out: 0 damaged pieces and "
+                                         "a torn end\nwarning: ") &&
+          Catch::Contains("a.part3.mcap") && Catch::EndsWith("; this part is left out\n"));
+  SampleReader reader(again);
+  std::vector<std::int64_t> times;
+  std::set<int> channels;
+  while (const auto sample = reader.next()) {
+    times.push_back(sample->received_time_ns);
+    channels.insert(sample->channel);
+  }
+  CHECK(times == std::vector<std::int64_t>{10, 10, 20, 20, 40, 40});
+  CHECK(channels.size() == 6);  // each part has its own writers
+  CHECK_FALSE(reader.torn());
+  McapReader records(again);
+  int costs = 0;
+  while (const auto record = records.next()) {
+    const auto* metadata = std::get_if<McapMetadata>(&*record);
+    costs += metadata != nullptr && metadata->name == kCostMetadata ? 1 : 0;
+  }
+  CHECK(costs == 1);
 }
 
 TEST_CASE("commands: diff warns of a torn file, whichever of the two it is") {
