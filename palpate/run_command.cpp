@@ -12,6 +12,7 @@
 #include "modules/core/error.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/core/units.h"
+#include "modules/recording/mcap_writer.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
@@ -261,6 +262,7 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
 
 int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   RunOptions options = asked;
+  if (!options.record.empty()) recording::check_recording_target(options.record);
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const runtime::StopSignal stop;  // or a signal would leave the folder

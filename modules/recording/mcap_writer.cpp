@@ -39,6 +39,25 @@ void refuse_to_replace_what_is_no_recording(const std::filesystem::path& file) {
 
 }  // namespace
 
+void check_recording_target(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& why) {
+    throw InputError(file.string() + ": cannot be recorded to: " + why);
+  };
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  std::error_code none;
+  if (!std::filesystem::is_directory(folder, none)) {
+    refuse("there is no folder " + folder.string());
+  }
+  // Not what the file's mode says: parts may come beside it.
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    refuse("the folder " + folder.string() + " may not be written to");
+  }
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, none))) return;
+  if (!std::filesystem::is_regular_file(file, none)) refuse("it is there and no regular file");
+  if (::access(file.c_str(), W_OK) != 0) refuse("it may not be written to");
+  refuse_to_replace_what_is_no_recording(file);
+}
+
 McapWriter::McapWriter(const std::filesystem::path& file) : file_(file) {
   refuse_to_replace_what_is_no_recording(file);
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);

@@ -11,6 +11,11 @@
 
 namespace palpate::recording {
 
+/// Before anything is begun whose recording it is to be.
+/// @throws InputError if the folder is missing or cannot be written to, or if there is something
+/// of that name that is no recording
+void check_recording_target(const std::filesystem::path& file);
+
 /// Messages are gathered into chunks of half a second or a megabyte. Whole chunks and the other
 /// records, which lie beside them, are written by flush(), by close(), and when a megabyte has
 /// gathered. Not thread-safe.

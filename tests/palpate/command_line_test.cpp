@@ -121,6 +121,24 @@ TEST_CASE("command line: a bad scene is refused by every program with file and l
   }
 }
 
+TEST_CASE("command line: a recording that cannot be written is refused before anything starts") {
+  // Oracle: exit code 2 and one line by hand: neither a session nor a module has said a word.
+  const BallScene scene;
+  const std::string folder = scene.folder().string(), no = folder + "/no";
+  for (const auto& [target, why] : std::vector<std::pair<std::string, std::string>>{
+           {no + "/a.mcap", "there is no folder " + no},
+           {folder, "it is there and no regular file"},
+           {"/dev/full", "it is there and no regular file"}}) {
+    for (const std::string mode : {"--headless", "--lockstep", "--in-process"}) {
+      const auto outcome = type(
+          "palpate", {"run", scene.file().string(), "--duration", "0.1", "--record", target, mode});
+      CAPTURE(target, mode);
+      CHECK(outcome.code == kExitBadInput);
+      CHECK(outcome.said == "palpate: " + target + ": cannot be recorded to: " + why + "\n");
+    }
+  }
+}
+
 TEST_CASE("command line: a recording that is not there is bad input") {
   // Oracle: the exit codes of core/error.h.
   const auto outcome = type("palpate", {"inspect", "/nowhere/a.mcap"});

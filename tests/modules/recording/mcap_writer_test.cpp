@@ -2,6 +2,8 @@
 
 #include <zstd.h>
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "modules/recording/mcap_bytes.h"
@@ -69,6 +71,29 @@ TEST_CASE("mcap writer: replaces a recording, and nothing else") {
   for (int i = 0; i < 2; ++i) {
     for (const char* name : {"empty", "new.mcap"}) CHECK_NOTHROW(McapWriter(folder / name));
   }
+}
+
+TEST_CASE("mcap writer: what a recording cannot be written to is refused before, and left alone") {
+  // Oracle: the texts by hand. A FIFO, opened to be written to, would wait for a reader.
+  const ScratchFolder folder;
+  const std::string at = folder.path().string() + "/";
+  std::filesystem::create_directory(at + "folder");
+  REQUIRE(::mkfifo((at + "fifo").c_str(), 0600) == 0);
+  std::filesystem::create_symlink(at + "none", at + "link");
+  const std::string no_file = ": cannot be recorded to: it is there and no regular file";
+  for (const std::string& target :
+       {at + "folder", at + "fifo", at + "link", std::string("/dev/full")}) {
+    CHECK_THROWS_WITH(check_recording_target(target), target + no_file);
+  }
+  CHECK_THROWS_WITH(check_recording_target(at + "no/a.mcap"),
+                    at + "no/a.mcap: cannot be recorded to: there is no folder " + at + "no");
+  write_bytes(folder / "text", {'n', 'o'});
+  CHECK_THROWS_WITH(check_recording_target(folder / "text"),
+                    Catch::EndsWith("text: is no recording, and is not replaced by one"));
+  CHECK_NOTHROW(check_recording_target(folder / "new.mcap"));
+  CHECK_FALSE(std::filesystem::exists(folder / "new.mcap"));
+  McapWriter(folder / "new.mcap").close();
+  CHECK_NOTHROW(check_recording_target(folder / "new.mcap"));
 }
 
 TEST_CASE("mcap writer: a file has the bytes of the specification") {
