@@ -123,6 +123,10 @@ McapHeader parse_header(std::span<const std::uint8_t> content) {
 }
 
 McapSchema parse_schema(std::span<const std::uint8_t> content) {
+  if (content.size() > kMostSchemaBytes) {
+    throw McapFieldError("a schema of " + std::to_string(content.size()) + " bytes; at most " +
+                         std::to_string(kMostSchemaBytes) + " are read");
+  }
   ByteReader reader(content);
   McapSchema schema;
   schema.id = reader.u16();

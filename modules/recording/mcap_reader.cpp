@@ -15,6 +15,27 @@ std::string in_chunk(std::size_t place, const std::string& what) {
   return "byte " + std::to_string(place) + " of the chunk that begins there: " + what;
 }
 
+/// Of kinds that are not used: longer ones are passed over unread.
+constexpr std::uint64_t kMostUnusedBytes = 1u << 20;
+
+bool is_used(std::uint8_t opcode) {
+  switch (static_cast<McapOpcode>(opcode)) {
+    case McapOpcode::kHeader:
+    case McapOpcode::kFooter:
+    case McapOpcode::kSchema:
+    case McapOpcode::kChannel:
+    case McapOpcode::kMessage:
+    case McapOpcode::kChunk:
+    case McapOpcode::kAttachment:
+    case McapOpcode::kStatistics:
+    case McapOpcode::kMetadata:
+    case McapOpcode::kDataEnd:
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace
 
 McapReader::McapReader(const std::filesystem::path& file, McapDamage damage)
@@ -95,21 +116,38 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
 
 // Reads one whole record into content_. False, and torn, where the file ends before the record.
 bool McapReader::read_envelope(std::uint8_t& opcode) {
-  std::array<std::uint8_t, kMcapEnvelopeBytes> envelope{};
-  const std::uint64_t left = file_bytes_ - offset_;
-  record_offset_ = offset_;
-  crc_before_ = crc_;
-  torn_ = ended_ = true;
-  if (left < envelope.size() || !read_bytes(envelope.data(), envelope.size())) return false;
-  opcode = envelope[0];
-  const std::uint64_t length = ByteReader(std::span(envelope).subspan(1)).u64();
-  if (opcode == 0 && damage_ == McapDamage::kSkip) return false;
-  if (opcode == 0) refuse(record_offset_, "opcode 0: no MCAP record begins here");
-  if (length > left - envelope.size()) return false;
+  std::uint64_t length = 0;
+  do {
+    std::array<std::uint8_t, kMcapEnvelopeBytes> envelope{};
+    const std::uint64_t left = file_bytes_ - offset_;
+    record_offset_ = offset_;
+    crc_before_ = crc_;
+    torn_ = ended_ = true;
+    if (left < envelope.size() || !read_bytes(envelope.data(), envelope.size())) return false;
+    opcode = envelope[0];
+    length = ByteReader(std::span(envelope).subspan(1)).u64();
+    if (opcode == 0 && damage_ == McapDamage::kSkip) return false;
+    if (opcode == 0) refuse(record_offset_, "opcode 0: no MCAP record begins here");
+    if (length > left - envelope.size()) return false;
+    offset_ += envelope.size() + length;
+  } while (passes_over(opcode, length));
   content_.resize(length);
-  if (!read_bytes(content_.data(), length)) return false;
-  offset_ += envelope.size() + length;
+  if (!read_bytes(content_.data(), length)) {
+    offset_ = record_offset_;
+    return false;
+  }
   torn_ = ended_ = false;
+  return true;
+}
+
+bool McapReader::passes_over(std::uint8_t opcode, std::uint64_t length) {
+  if (length <= (is_used(opcode) ? kMostRecordBytes : kMostUnusedBytes)) return false;
+  if (is_used(opcode)) {
+    damaged("a record of " + std::to_string(length) + " bytes; at most " +
+            std::to_string(kMostRecordBytes) + " are read");
+  }
+  stream_.seekg(static_cast<std::streamoff>(length), std::ios::cur);
+  crc_known_ = false;
   return true;
 }
 
@@ -163,6 +201,7 @@ void McapReader::check(const McapMessage& message) {
 void McapReader::read_closing_part() {
   check_data_crc();
   crc_ = 0;
+  crc_known_ = true;
   std::uint8_t opcode = 0;
   while (read_envelope(opcode)) {
     if (opcode == static_cast<std::uint8_t>(McapOpcode::kStatistics)) {
@@ -177,7 +216,7 @@ void McapReader::read_closing_part() {
 
 void McapReader::check_data_crc() {
   const std::uint32_t stated = ByteReader(content_).u32();
-  if (stated == 0 || stated == crc_before_) return;
+  if (!crc_known_ || stated == 0 || stated == crc_before_) return;
   refuse(record_offset_, "the recording is damaged before this place: its CRC is wrong");
 }
 
@@ -190,7 +229,7 @@ void McapReader::check_summary_crc() {
       .u64(content_.size())
       .raw(footer.take(kFooterBytes - sizeof(std::uint32_t)));
   const std::uint32_t stated = footer.u32();
-  if (stated == 0 || stated == crc32(covered, crc_before_)) return;
+  if (!crc_known_ || stated == 0 || stated == crc32(covered, crc_before_)) return;
   refuse(record_offset_, "the summary is damaged: its CRC is wrong");
 }
 

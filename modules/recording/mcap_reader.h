@@ -50,6 +50,7 @@ class McapReader {
   std::optional<McapRecord> next_beside_chunks();
   std::optional<McapRecord> next_in_chunk();
   bool read_envelope(std::uint8_t& opcode);
+  bool passes_over(std::uint8_t opcode, std::uint64_t length);
   std::optional<McapRecord> parse(McapOpcode opcode, std::span<const std::uint8_t> content);
   void remember(const McapChannel& channel);
   void check(const McapMessage& message);
@@ -69,6 +70,7 @@ class McapReader {
   std::uint64_t record_offset_ = 0;
   std::uint32_t crc_ = 0;         ///< of the section's bytes read
   std::uint32_t crc_before_ = 0;  ///< the same before the record read last
+  bool crc_known_ = true;         ///< not if records of the section were passed over
   std::vector<std::uint8_t> content_;
   std::vector<std::uint8_t> chunk_;  ///< unpacked
   std::size_t chunk_place_ = 0;      ///< of its next record

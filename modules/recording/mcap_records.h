@@ -37,6 +37,11 @@ enum class McapOpcode : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
+/// A longer record that would have to be in memory is refused; no mesh or chunk comes near it.
+inline constexpr std::uint64_t kMostRecordBytes = 1u << 30;
+/// Of a schema; ours have some thousands.
+inline constexpr std::uint64_t kMostSchemaBytes = 1u << 20;
+
 using McapMap = std::map<std::string, std::string>;
 
 struct McapHeader {

@@ -129,7 +129,7 @@ void SampleFile::attach_files(const SceneDescription& scene, std::uint64_t log_t
   for (const auto& mesh : meshes_of(scene.resolved_text)) {
     std::ifstream stream(mesh, std::ios::binary);
     std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (bytes.empty()) continue;
+    if (bytes.empty() || bytes.size() > kMostRecordBytes / 2) continue;  // readers refuse it
     writer_.add_attachment(
         {log_time_ns, mesh.filename().string(), "application/octet-stream", std::move(bytes)});
   }

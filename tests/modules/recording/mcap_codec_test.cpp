@@ -70,4 +70,14 @@ TEST_CASE("mcap codec: contents cut anywhere are refused, a changed attachment t
   CHECK_THROWS_WITH(parse_attachment(changed), "the attachment 'a' is damaged: its CRC is wrong");
 }
 
+TEST_CASE("mcap codec: a schema of more than a mebibyte is refused") {
+  // Oracle: the bound, met and passed by one byte: id, and three texts with their lengths.
+  const std::size_t rest = 2 + 3 * 4;
+  McapSchema schema{1, "", "", std::string(kMostSchemaBytes - rest, 'x')};
+  CHECK(parse_schema(content_of(schema)).data == schema.data);
+  schema.data += 'x';
+  CHECK_THROWS_WITH(parse_schema(content_of(schema)),
+                    "a schema of 1048577 bytes; at most 1048576 are read");
+}
+
 }  // namespace palpate::recording

@@ -1,6 +1,9 @@
 #include "modules/recording/mcap_reader.h"
 
+#include <sys/resource.h>
+
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "modules/core/error.h"
 #include "tests/modules/recording/mcap_sample_file.h"
@@ -311,6 +314,58 @@ TEST_CASE("mcap reader: records of kinds it does not know are skipped") {
   bytes[ends[6]] = 0x80;
   write_bytes(folder / "a.mcap", bytes);
   CHECK(read_all(folder / "a.mcap").messages.size() == kMessages - 1);
+}
+
+TEST_CASE("mcap reader: a record that is too long is refused, or passed over if it is of no use") {
+  // Oracle: the messages before and behind two sparse gigabytes; the process's peak of memory.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  write_old_sample_file(file, kMessages, false);
+  const auto place = std::filesystem::file_size(file);
+  constexpr std::uint64_t kLength = std::uint64_t{2} << 30;
+  const auto append = [&](std::uint8_t opcode) {
+    std::vector<std::uint8_t> envelope, message;
+    ByteWriter(envelope).u8(opcode).u64(kLength);
+    append_message(message, sample_message(0), sample_message(0).data);
+    std::ofstream stream(file, std::ios::binary | std::ios::app);
+    stream.write(reinterpret_cast<const char*>(envelope.data()), std::ptrdiff_t(envelope.size()));
+    stream.flush();
+    std::filesystem::resize_file(file, place + envelope.size() + kLength);
+    stream.write(reinterpret_cast<const char*>(message.data()), std::ptrdiff_t(message.size()));
+  };
+  const auto peak_kib = [] {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    return used.ru_maxrss;
+  };
+  const auto before = peak_kib();
+  SECTION("of a kind that is not used") {
+    append(0x80);
+    CHECK(read_all(file).messages.size() == kMessages + 1);
+  }
+  SECTION("an attachment") {
+    append(static_cast<std::uint8_t>(McapOpcode::kAttachment));
+    CHECK_THROWS_WITH(read_all(file),
+                      file.string() + ": offset " + std::to_string(place) +
+                          ": a record of 2147483648 bytes; at most 1073741824 are read");
+    const Contents contents = read_all(file, McapDamage::kSkip);
+    CHECK(contents.messages.size() == kMessages + 1);
+    CHECK(contents.skipped == 1);
+  }
+  CHECK(peak_kib() - before < 100'000);
+}
+
+TEST_CASE("mcap reader: what is passed over leaves the CRC of its section unknown, not wrong") {
+  // Oracle: a whole recording, with a CRC that cannot cover what was put in afterwards.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  const auto ends = write_sample_file(file, kMessages);
+  auto bytes = bytes_of(file);
+  std::vector<std::uint8_t> unused;
+  append_record(unused, static_cast<McapOpcode>(0x80), McapContent((1u << 20) + 1));
+  bytes.insert(bytes.begin() + std::ptrdiff_t(ends[0]), unused.begin(), unused.end());
+  write_bytes(file, bytes);
+  CHECK(read_all(file).messages.size() == kMessages);
 }
 
 TEST_CASE("mcap reader: a missing file is named") {
