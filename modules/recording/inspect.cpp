@@ -76,7 +76,7 @@ class Summarizer {
 
 std::string entry(const McapMap& map, const std::string& key) {
   const auto found = map.find(key);
-  return found == map.end() ? "?" : found->second;
+  return found == map.end() ? "?" : printable(found->second);
 }
 
 std::string fixed(double value, int decimals) {

@@ -7,6 +7,7 @@
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_chunk.h"
 #include "modules/recording/mcap_codec.h"
+#include "modules/recording/sample_reader.h"
 
 namespace palpate::recording {
 namespace {
@@ -262,7 +263,7 @@ void McapReader::damaged(const std::string& what) {
 }
 
 void McapReader::refuse(std::uint64_t offset, const std::string& what) const {
-  throw InputError(file_.string() + ": offset " + std::to_string(offset) + ": " + what);
+  throw InputError(file_.string() + ": offset " + std::to_string(offset) + ": " + printable(what));
 }
 
 }  // namespace palpate::recording

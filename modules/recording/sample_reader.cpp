@@ -10,6 +10,17 @@
 
 namespace palpate::recording {
 
+std::string printable(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto before = static_cast<unsigned char>(i == 0 ? 0 : text[i - 1]);
+    const bool high = before == 0xC2 && byte >= 0x80 && byte < 0xA0;  // U+0080 … U+009F in UTF-8
+    if (byte < 0x20 || byte == 0x7F || high) text[i] = '?';
+    if (high) text[i - 1] = '?';
+  }
+  return text;
+}
+
 std::filesystem::path part_of(const std::filesystem::path& recording, int number) {
   if (number <= 1) return recording;
   auto part = recording;
@@ -162,7 +173,7 @@ std::vector<std::string> SampleReader::warnings() const {
 
 void SampleReader::refuse(const std::string& what) const {
   throw InputError(file_.string() + ": offset " + std::to_string(reader_.record_offset()) + ": " +
-                   what);
+                   printable(what));
 }
 
 }  // namespace palpate::recording
