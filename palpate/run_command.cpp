@@ -101,6 +101,7 @@ class Run {
     if (!session_.fault().empty()) {
       log_ << "error: " << options_.scene.string() << ": " << session_.fault() << std::endl;
       exit_code_ = kExitBadInput;
+      joined_ = true;  // the session goes on without us
       return false;
     }
     tell_scene();

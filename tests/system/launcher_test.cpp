@@ -158,6 +158,19 @@ TEST_CASE("launcher: a second one with --only joins the session and leaves it ru
   CHECK(first.wait_for_end() == 0);
 }
 
+TEST_CASE("launcher: who would join with another scene is refused, and the session goes on") {
+  // Oracle: exit codes, and the first one's session time, which goes on.
+  const BallScene scene, other("topic: {start_m: [0, 0, 0.08]}");
+  Launched first(scene, {"--only", "deformation,haptics"});
+  REQUIRE(first.wait_for_text("1.0 s  real time"));
+  Launched second(other, {"--only", "collision"}, first.options());
+  CHECK(second.wait_for_end() == 2);
+  CHECK_THAT(second.said(), Contains("the session plays scene"));
+  REQUIRE(first.wait_for_text("4.0 s  real time"));
+  first.child().signal(SIGINT);
+  CHECK(first.wait_for_end() == 0);
+}
+
 TEST_CASE("launcher: a module that refuses its input ends the start with exit code 2") {
   // Oracle: the exit codes. Who joins a session looks at nothing before; of the modules only
   // haptics reads the recording that the scene names.
