@@ -55,7 +55,9 @@ struct SplitRun {
 
 TEST_CASE("dead half: only the force of its own organs fades, and it returns") {
   // Oracle: each finger presses a ball of its own; the forces before, and that the launcher starts
-  // again what died.
+  // again what died. A killed half may have a successor, which knows of no touch, before its law is
+  // stale; one that hangs has none for seconds, so its law must fade.
+  const int signal = GENERATE(SIGKILL, SIGSTOP);
   const TwoBallsScene scene("2");
   SplitRun run(scene);
   REQUIRE(run.wait([&] { return run.felt(0) > 0.05 && run.felt(1) > 0.05; }));
@@ -63,8 +65,9 @@ TEST_CASE("dead half: only the force of its own organs fades, and it returns") {
   const double before = run.felt(0);
   const auto first = run.modules.at("deformation_2").process_id;
   run.least[0] = before;
-  kill(static_cast<pid_t>(first), SIGKILL);
+  kill(static_cast<pid_t>(first), signal);
   REQUIRE(run.wait([&] { return run.felt(1) == 0; }));
+  if (signal == SIGSTOP) CHECK((run.newest[1].limits & kForceStaleFade) != 0);
   CHECK(run.wait([&] {
     const auto& status = run.modules.at("deformation_2");
     return status.process_id != first && status.state >= ModuleState::kRunning &&
