@@ -83,7 +83,7 @@ class LockstepRun {
         session_(bus_, digest_),
         conductor_(bus_),
         scenes_(bus_.writer(bus::kScene)),
-        monitor_(bus_, scene_),
+        monitor_(bus_, scene_, SessionMonitor::Hears::kStatuses),
         loop_(kConductorRate) {}
 
   int perform() {
@@ -93,6 +93,7 @@ class LockstepRun {
     log_ << fmt::format("palpate: session {} of scene {}, in lockstep\n", options_.bus.session,
                         scene_.name);
     if (!wait_until_ready()) return end(false);
+    monitor_.hear_all(bus_);
     monitor_.tally().start();
     Progress progress(duration_, out_);
     while (next_cycle() && slowest_ns() < end_ns()) {

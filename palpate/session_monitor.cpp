@@ -2,18 +2,22 @@
 
 namespace palpate::launcher {
 
-SessionMonitor::SessionMonitor(bus::Bus& bus, const scene::Scene& scene)
-    : statuses_(bus.reader(bus::kModuleStatus)),
-      positions_(bus.reader(bus::kNodePositions)),
-      forces_(bus.reader(bus::kHapticForce)),
-      laws_(bus.reader(bus::kContactModel)),
-      tally_(scene) {}
+SessionMonitor::Physics::Physics(bus::Bus& bus)
+    : positions(bus.reader(bus::kNodePositions)),
+      forces(bus.reader(bus::kHapticForce)),
+      laws(bus.reader(bus::kContactModel)) {}
+
+SessionMonitor::SessionMonitor(bus::Bus& bus, const scene::Scene& scene, Hears hears)
+    : statuses_(bus.reader(bus::kModuleStatus)), tally_(scene) {
+  if (hears == Hears::kAll) hear_all(bus);
+}
 
 void SessionMonitor::poll() {
   while (statuses_.take(status_)) tally_.receive(status_);
-  while (positions_.take(node_positions_)) tally_.receive(node_positions_);
-  while (laws_.take(law_)) tally_.receive(law_);
-  while (forces_.take(force_)) tally_.receive(force_);
+  if (!physics_) return;
+  while (physics_->positions.take(node_positions_)) tally_.receive(node_positions_);
+  while (physics_->laws.take(law_)) tally_.receive(law_);
+  while (physics_->forces.take(force_)) tally_.receive(force_);
 }
 
 std::vector<std::string> SessionMonitor::not_ready(const std::vector<std::string>& modules) const {

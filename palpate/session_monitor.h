@@ -1,6 +1,8 @@
 // Hears a session for its tally.
 #pragma once
 
+#include <optional>
+
 #include "modules/bus/bus.h"
 #include "palpate/session_tally.h"
 
@@ -8,7 +10,14 @@ namespace palpate::launcher {
 
 class SessionMonitor {
  public:
-  SessionMonitor(bus::Bus& bus, const scene::Scene& scene);
+  enum class Hears { kAll, kStatuses };
+
+  SessionMonitor(bus::Bus& bus, const scene::Scene& scene, Hears hears = Hears::kAll);
+
+  /// Hears all from now on. In lockstep a module is ready when so many readers have met its writers
+  /// as take part: one that looks on may not be counted in the place of another, which would miss
+  /// what is said first.
+  void hear_all(bus::Bus& bus) { physics_.emplace(bus); }
 
   /// Takes what has arrived. Called at the rate of the node positions it misses none of them.
   void poll();
@@ -20,10 +29,16 @@ class SessionMonitor {
   const SessionTally& tally() const { return tally_; }
 
  private:
+  struct Physics {
+    explicit Physics(bus::Bus& bus);
+
+    bus::Reader<NodePositions> positions;
+    bus::Reader<HapticForce> forces;
+    bus::Reader<ContactModel> laws;
+  };
+
   bus::Reader<ModuleStatus> statuses_;
-  bus::Reader<NodePositions> positions_;
-  bus::Reader<HapticForce> forces_;
-  bus::Reader<ContactModel> laws_;
+  std::optional<Physics> physics_;
   ModuleStatus status_;
   NodePositions node_positions_;
   HapticForce force_;
