@@ -148,11 +148,13 @@ TEST_CASE("following: on tissue that is the same everywhere a slide feels no cha
 
 TEST_CASE("following: a probe that circles without end gains an organ no energy") {
   // Oracle: every turn is as the one before: its energy does not drift, in the middle or at most,
-  // nor does volume. A hundred changes of the mesh and more. One of quadratic tetrahedra may stand
-  // out for a step, so it is the middle one of the turns' greatest energies that counts.
-  Following block(following_scene(GENERATE(kLinearModel, kQuadraticModel)));
-  const auto on_circle = [](int k) {
-    const double angle = 2 * M_PI * k / 100;
+  // nor does volume. A hundred changes of the mesh and more. Linear ones at 75 mm/s, quadratic ones
+  // at 38, as fast as docs/accuracy.md has them even.
+  const char* model = GENERATE(kLinearModel, kQuadraticModel);
+  const int steps = std::string_view(model) == kLinearModel ? 100 : 200;  // a turn
+  Following block(following_scene(model));
+  const auto on_circle = [steps](int k) {
+    const double angle = 2 * M_PI * k / steps;
     return Following::at(0.05 + 0.012 * std::cos(angle), 0.05 + 0.012 * std::sin(angle), 3e-3);
   };
   block.go(on_circle(0), 0.02);
@@ -161,7 +163,7 @@ TEST_CASE("following: a probe that circles without end gains an organ no energy"
   std::size_t nodes = 0;
   for (int turn = 0; turn < 6; ++turn) {
     std::vector<double> energies;
-    for (int k = 1; k <= 100; ++k) {
+    for (int k = 1; k <= steps; ++k) {
       block.pressed.advance({{on_circle(k), Quat::Identity()}});
       changes += block.pressed.node_count() != nodes;
       nodes = block.pressed.node_count();
@@ -174,8 +176,8 @@ TEST_CASE("following: a probe that circles without end gains an organ no energy"
   CHECK(changes > 100);
   for (std::size_t turn = 2; turn < middles.size(); ++turn) {
     CHECK(middles[turn] == Approx(middles[1]).epsilon(0.01));
+    CHECK(mosts[turn] == Approx(mosts[1]).epsilon(0.01));
   }
-  CHECK(middle_of({mosts.begin() + 2, mosts.end()}) < 1.01 * mosts[1]);
   CHECK_FALSE(block.pressed.diverged());
   CHECK(block.pressed.volume_error() < 5e-3);  // as nodal_pressure keeps it, docs/accuracy.md
 }
