@@ -6,9 +6,10 @@
 #include <sstream>
 #include <utility>
 
-#include "deformation/contact/contact_law.h"
+#include "deformation/contact_intake.h"
 #include "deformation/force_error.h"
 #include "deformation/force_history.h"
+#include "deformation/law_of_probe.h"
 #include "deformation/organ_contacts.h"
 #include "deformation/world_organ.h"
 #include "modules/core/error.h"
@@ -17,11 +18,6 @@
 namespace palpate::deformation {
 namespace {
 
-/// The contact model is believed within this part of the mean edge: the touched nodes stay the
-/// same.
-constexpr double kValidityOfEdge = 0.5;
-/// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
-constexpr double kFarthestContact = 10;
 /// A mesh made at the end of an advance is taken in the next and used for some: looked at from
 /// their middle, in advances.
 constexpr double kLookAhead = 2.5;
@@ -34,83 +30,10 @@ struct DeformationWorld::Impl {
   std::vector<WorldOrgan> organs;
   std::vector<ProbeContacts> probes;
   std::optional<OrganContacts> organ_contacts;  ///< none: the scene has them off
-  std::vector<Contact> accepted;                ///< buffer of set_contacts()
-  std::vector<Pose> poses;                      ///< buffer of look_ahead()
-  std::vector<ForceHistory> forces;             ///< on each probe
-  double time = 0, period = 0;                  ///< simulated; of the last advance [s]
-  bool contact_refused = false;                 ///< since the last advance
-
-  bool names_our_triangle(const Contact& contact) const {
-    return contact.organ < organs.size() &&
-           contact.triangle < organs[contact.organ].simulated.model().triangles.size();
-  }
-
-  bool is_near(const Contact& contact, const Pose& probe) const {
-    const SimulatedOrgan& organ = organs[contact.organ].simulated;
-    const auto& nodes = organ.model().triangles[contact.triangle];
-    Vec3 tissue = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      tissue += contact.barycentric[k] * organ.state().positions[nodes[k]];
-    }
-    return contact.point_P.stableNorm() <= kFarthestContact &&
-           (probe.to_world(contact.point_P) - tissue).stableNorm() <= kFarthestContact;
-  }
-
-  /// Puts a contact that was found on an earlier mesh on that of now.
-  bool carry(std::span<const std::uint32_t> generations, Contact& contact) const {
-    if (contact.organ >= std::min(organs.size(), generations.size())) return true;
-    const WorldOrgan& organ = organs[contact.organ];
-    const std::uint32_t found_on = generations[contact.organ];
-    return found_on == organ.generation || !organ.following ||
-           organ.following->carry(found_on, contact);
-  }
-  bool carry(std::span<const std::uint32_t> generations, std::uint32_t of,
-             std::uint32_t& node) const {
-    if (of >= generations.size() || generations[of] == organs[of].generation) return true;
-    return !organs[of].following || organs[of].following->carry(generations[of], node);
-  }
-
-  bool is_plausible(const Contact& contact, const Pose& probe) {
-    if (!names_our_triangle(contact)) return false;
-    const bool near = is_near(contact, probe);
-    contact_refused |= !near;
-    return near;
-  }
-
-  /// The contacts of a face's nodes where the nodes are now.
-  void append_face(const FaceContacts& face, std::span<const std::uint32_t> nodes,
-                   const Pose& probe, std::span<const std::uint32_t> generations) {
-    if (face.organ >= organs.size()) return;
-    const WorldOrgan& organ = organs[face.organ];
-    const OrganModel& model = organ.simulated.model();
-    for (std::uint32_t node : nodes) {
-      if (!carry(generations, face.organ, node)) continue;
-      if (node >= model.surface_node_count || organ.surface->around(node).empty()) continue;
-      Contact contact =
-          contact_on_face(face, probe.to_body(organ.simulated.state().positions[node]));
-      contact.triangle = organ.surface->around(node).front();
-      const geometry::Triangle& corners = model.triangles[contact.triangle];
-      contact.barycentric = Vec3::Unit(std::ranges::find(corners, node) - corners.begin());
-      if (is_plausible(contact, probe)) accepted.push_back(contact);
-    }
-  }
-
-  /// All contacts of a message that can be believed, sorted by (organ, triangle).
-  void accept(const ContactSet& contacts, std::span<const std::uint32_t> generations) {
-    accepted.clear();
-    std::span<const std::uint32_t> nodes = contacts.face_nodes;
-    for (const FaceContacts& face : contacts.faces) {
-      const std::size_t count = std::min<std::size_t>(face.node_count, nodes.size());
-      append_face(face, nodes.first(count), contacts.probe_pose, generations);
-      nodes = nodes.subspan(count);
-    }
-    for (Contact contact : contacts.contacts) {
-      if (!carry(generations, contact)) continue;
-      if (is_plausible(contact, contacts.probe_pose)) accepted.push_back(contact);
-    }
-    const auto place = [](const Contact& c) { return std::pair(c.organ, c.triangle); };
-    std::ranges::stable_sort(accepted, {}, place);
-  }
+  ContactIntake intake;
+  std::vector<Pose> poses;           ///< buffer of look_ahead()
+  std::vector<ForceHistory> forces;  ///< on each probe
+  double time = 0, period = 0;       ///< simulated; of the last advance [s]
 
   /// One organ from one fraction of the advance to another, all probes moving along. A probe that
   /// would go through the wall is held by rows where it does.
@@ -236,32 +159,6 @@ struct DeformationWorld::Impl {
       if (near) probe.reset();
     }
   }
-
-  /// W of the contacts, organ by organ; organs do not answer each other. Lower triangle.
-  std::vector<double> compliance_of(const std::vector<CondensedContact>& contacts,
-                                    std::size_t directions) {
-    const std::size_t size = directions * contacts.size();
-    std::vector<double> lower(size * (size + 1) / 2, 0.0);
-    for (std::uint32_t i = 0; i < organs.size(); ++i) {
-      std::vector<ComplianceRow> rows;
-      std::vector<std::size_t> places;
-      for (std::size_t c = 0; c < contacts.size(); ++c) {
-        if (contacts[c].organ != i) continue;
-        append_compliance_rows(contacts[c], directions, rows);
-        for (std::size_t k = 0; k < directions; ++k) places.push_back(directions * c + k);
-      }
-      if (rows.empty()) continue;
-      const Eigen::MatrixXd W = organs[i].contact_compliance(rows, period);
-      for (std::size_t a = 0; a < places.size(); ++a) {
-        for (std::size_t b = 0; b <= a; ++b) {
-          const auto [low, high] = std::minmax(places[a], places[b]);
-          lower[high * (high + 1) / 2 + low] =
-              W(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-        }
-      }
-    }
-    return lower;
-  }
 };
 
 DeformationWorld::DeformationWorld(const scene::Scene& scene,
@@ -317,8 +214,8 @@ const OrganMesh* DeformationWorld::next_mesh(std::size_t organ) const {
 void DeformationWorld::set_contacts(const ContactSet& contacts,
                                     std::span<const std::uint32_t> generations) {
   if (contacts.probe >= impl_->probes.size()) return;
-  impl_->accept(contacts, generations);
-  impl_->probes[contacts.probe].set_contacts(impl_->accepted);
+  impl_->probes[contacts.probe].set_contacts(
+      impl_->intake.take(impl_->organs, contacts, generations));
 }
 
 void DeformationWorld::forget_contacts(std::size_t probe) {
@@ -332,7 +229,7 @@ void DeformationWorld::take_next_meshes() {
 
 AdvanceReport DeformationWorld::advance(double period) {
   AdvanceReport report;
-  report.contact_refused = std::exchange(impl_->contact_refused, false);
+  report.contact_refused = impl_->intake.take_refused();
   impl_->period = period;
   impl_->change_meshes(report);
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
@@ -412,32 +309,9 @@ double DeformationWorld::estimated_force_error(std::size_t probe) const {
   return worst;
 }
 
-LocalLaw DeformationWorld::local_law(std::size_t probe_index, bool* bounded) const {
-  const ProbeContacts& probe = impl_->probes.at(probe_index);
-  LocalLaw law;
-  law.anchor = probe.pose();
-  law.period = impl_->period;
-  law.friction_coefficient = probe.friction();
-  if (!(impl_->period > 0)) return law;
-
-  std::vector<const Body*> bodies;
-  std::vector<const OrganState*> states;
-  for (const WorldOrgan& organ : impl_->organs) {
-    bodies.push_back(&organ.simulated.model());
-    states.push_back(&organ.simulated.state());
-  }
-  const auto contacts = condense_contacts(probe, bodies, states, impl_->period);
-  for (const CondensedContact& contact : contacts) {
-    law.rows.push_back(contact.row);
-    law.validity_radius =
-        std::max(law.validity_radius,
-                 contact.row.gap + kValidityOfEdge * impl_->organs[contact.organ].mean_edge);
-  }
-  law.compliance = impl_->compliance_of(contacts, law.directions());
-  law.growth = impl_->forces[probe_index].growth(impl_->period);
-  const RowStiffness stiffness = stiffness_of(law);
-  law.stiffness = stiffness.matrix;
-  if (bounded != nullptr) *bounded = stiffness.bounded;
+LocalLaw DeformationWorld::local_law(std::size_t probe, bool* bounded) const {
+  LocalLaw law = law_of_probe(impl_->organs, impl_->probes.at(probe), impl_->period, bounded);
+  if (impl_->period > 0) law.growth = impl_->forces[probe].growth(impl_->period);
   return law;
 }
 

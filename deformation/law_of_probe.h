@@ -1,0 +1,18 @@
+// The force on a probe and how it varies with its pose, over all organs it touches.
+#pragma once
+
+#include <span>
+
+#include "deformation/contact/probe_contacts.h"
+#include "deformation/world_organ.h"
+
+namespace palpate::deformation {
+
+/// The local law of a probe at the end of an advance, but for its growth. Costs a small
+/// factorisation.
+/// @param period  of the advance [s]; 0, before the first: no rows
+/// @param bounded  out, if not null: its stiffness was bounded, or not found (contact_law.h)
+LocalLaw law_of_probe(std::span<WorldOrgan> organs, const ProbeContacts& probe, double period,
+                      bool* bounded);
+
+}  // namespace palpate::deformation
