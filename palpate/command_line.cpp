@@ -93,8 +93,10 @@ void add_run_options(Options& command, RunOptions& options) {
   command.add("--only", options.only, "Start only these modules, joining a running session")
       .excludes(lockstep)
       .excludes(in_process);
-  command.add_input("--secure", options.secure,
-                    "Folder of keys (palpate keys): who has none of them neither reads nor writes");
+  command
+      .add_input("--secure", options.secure,
+                 "Folder of keys (palpate keys): who has none of them neither reads nor writes")
+      .excludes(in_process);
   command
       .add_input("--hosts", options.hosts,
                  "File that says which host runs which modules, the same on all; with --host")

@@ -42,7 +42,9 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   viewing.scene = folder.write("scene.yaml", recorded_scene(recording));
   viewing.only = {"visualizer"};
   viewing.record.clear();
-  ModuleGroup visualizer(module_commands(viewing, program_folder()), log);
+  const auto commands = module_commands(viewing, program_folder());
+  check_keys_of(commands);
+  ModuleGroup visualizer(commands, log);
   const bool shown = visualizer.any_running();
   if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
 

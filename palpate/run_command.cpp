@@ -126,7 +126,9 @@ class Run {
       if (exit_code_ != kExitDone) return false;
       if (waiting.empty() || loop_.woke_ns() < line_ns) continue;
       line_ns += kWaitingLineEveryNs;
-      log_ << "palpate: waiting for " << joined(waiting) << std::endl;
+      log_ << "palpate: waiting for " << joined(waiting)
+           << (options_.secure.empty() ? "" : "; only who has keys of the same folder is heard")
+           << std::endl;
     }
     return false;
   }
@@ -281,6 +283,8 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
     }
   }
   if (options.in_process) return run_in_process(options, out, log);
+  check_keys_of(module_commands(options, program_folder(),
+                                scene::process_count(scene::load_scene(options.scene))));
   if (options.lockstep) return run_lockstep(options, out, log);
   std::optional<SessionClaim> claim;
   if (options.only.empty() || !options.hosts.empty())

@@ -5,9 +5,12 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 #include <string_view>
 
+#include "modules/bus/key_check.h"
+#include "modules/bus/roles.h"
 #include "modules/core/error.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/topic_selection.h"
@@ -153,6 +156,16 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
     }
   }
   return commands;
+}
+
+void check_keys_of(const std::vector<ModuleCommand>& commands) {
+  const char* const folder = std::getenv("PALPATE_KEYS");
+  if (folder == nullptr) return;
+  bus::check_keys(folder, "palpate");
+  for (const auto& command : commands) {
+    const bus::Role* const role = bus::find_role(command.module);
+    bus::check_keys(folder, role == nullptr ? command.module : role->name);
+  }
 }
 
 ModuleCommand again(ModuleCommand command, int earlier) {

@@ -59,6 +59,11 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder,
                                            std::size_t processes = 1);
 
+/// With PALPATE_KEYS in the environment: that this program and all that it will start can take
+/// part.
+/// @throws InputError as bus::check_keys() does
+void check_keys_of(const std::vector<ModuleCommand>& commands);
+
 /// The modules that take part, on all hosts, the recorder among them.
 /// @param modules  of the scene
 std::vector<std::string> participants_of(const RunOptions& options,

@@ -9,6 +9,7 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <vector>
 
+#include "modules/bus/key_check.h"
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
 
@@ -16,13 +17,6 @@ namespace palpate::bus {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kAuthorityFile = "authority.pem";
-constexpr const char* kGovernanceFile = "governance.p7s";
-
-std::string key_file(std::string_view role) { return std::string(role) + ".key"; }
-std::string certificate_file(std::string_view role) { return std::string(role) + ".pem"; }
-std::string permissions_file(std::string_view role) { return std::string(role) + ".p7s"; }
 
 /// Readable and writable by its owner alone, from the first byte on.
 void write_private(const fs::path& file, const std::string& text) {
@@ -90,13 +84,7 @@ std::string permissions(const Role& role, const Validity& validity) {
 }
 
 /// As DDS takes it.
-std::string readable(const fs::path& file) {
-  if (::access(file.c_str(), R_OK) != 0) {
-    throw InputError("keys: " + file.string() + ": " + std::strerror(errno) +
-                     "; `palpate keys` makes them");
-  }
-  return "file://" + file.string();
-}
+std::string url(const fs::path& file) { return "file://" + file.string(); }
 
 }  // namespace
 
@@ -107,33 +95,33 @@ void make_keys(const fs::path& folder, std::chrono::seconds valid_for) {
 
 void write_keys(const fs::path& folder, const Authority& authority, const Validity& validity) {
   make_folder(folder);
-  write_private(folder / kAuthorityFile, authority.certificate());
-  write_private(folder / kGovernanceFile, authority.signed_text(governance()));
+  write_private(key_files(folder, "").authority, authority.certificate());
+  write_private(key_files(folder, "").governance, authority.signed_text(governance()));
   for (const Role& role : roles()) {
+    const KeyFiles files = key_files(folder, role.name);
     const Identity identity = authority.identity(std::string(role.name), validity);
-    write_private(folder / key_file(role.name), identity.key);
-    write_private(folder / certificate_file(role.name), identity.certificate);
-    write_private(folder / permissions_file(role.name),
-                  authority.signed_text(permissions(role, validity)));
+    write_private(files.key, identity.key);
+    write_private(files.certificate, identity.certificate);
+    write_private(files.permissions, authority.signed_text(permissions(role, validity)));
   }
 }
 
 void apply_keys(const fs::path& folder, const std::string& role,
                 eprosima::fastdds::dds::DomainParticipantQos& qos) {
-  if (find_role(role) == nullptr) throw InputError("keys: there is no role '" + role + "'");
+  check_keys(folder, role);
+  const KeyFiles files = key_files(folder, role);
   auto& properties = qos.properties().properties();
   const auto add = [&](const char* name, const std::string& value) {
     properties.emplace_back(std::string("dds.sec.") + name, value);
   };
-  const std::string authority = readable(folder / kAuthorityFile);
   add("auth.plugin", "builtin.PKI-DH");
-  add("auth.builtin.PKI-DH.identity_ca", authority);
-  add("auth.builtin.PKI-DH.identity_certificate", readable(folder / certificate_file(role)));
-  add("auth.builtin.PKI-DH.private_key", readable(folder / key_file(role)));
+  add("auth.builtin.PKI-DH.identity_ca", url(files.authority));
+  add("auth.builtin.PKI-DH.identity_certificate", url(files.certificate));
+  add("auth.builtin.PKI-DH.private_key", url(files.key));
   add("access.plugin", "builtin.Access-Permissions");
-  add("access.builtin.Access-Permissions.permissions_ca", authority);
-  add("access.builtin.Access-Permissions.governance", readable(folder / kGovernanceFile));
-  add("access.builtin.Access-Permissions.permissions", readable(folder / permissions_file(role)));
+  add("access.builtin.Access-Permissions.permissions_ca", url(files.authority));
+  add("access.builtin.Access-Permissions.governance", url(files.governance));
+  add("access.builtin.Access-Permissions.permissions", url(files.permissions));
   add("crypto.plugin", "builtin.AES-GCM-GMAC");
 }
 

@@ -25,7 +25,7 @@ void write_keys(const std::filesystem::path& folder, const Authority& authority,
                 const Validity& validity);
 
 /// Has the participant prove its role with the keys of a folder, and demand the same of others.
-/// @throws InputError if there is no such role, or a file of it cannot be read
+/// @throws InputError as check_keys() does (key_check.h)
 void apply_keys(const std::filesystem::path& folder, const std::string& role,
                 eprosima::fastdds::dds::DomainParticipantQos& qos);
 

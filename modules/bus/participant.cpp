@@ -72,7 +72,7 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
       static_cast<std::uint32_t>(options.domain), qos);
   if (participant_ == nullptr && !role_.empty()) {
     throw std::runtime_error("DDS cannot start with the keys of role " + role_ +
-                             ": have they expired, or are they of two sessions?");
+                             ": its own words are above");
   }
   if (participant_ == nullptr) {
     throw std::runtime_error("DDS cannot start in domain " + std::to_string(options.domain) +

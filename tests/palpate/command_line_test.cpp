@@ -1,6 +1,7 @@
 // The programs as they are typed, in processes of their own.
 #include <catch2/catch.hpp>
 
+#include "modules/bus/keys.h"
 #include "modules/core/error.h"
 #include "tests/palpate/ball_scene.h"
 #include "tests/palpate/typed_command.h"
@@ -137,6 +138,40 @@ TEST_CASE("command line: a recording that cannot be written is refused before an
       CHECK(outcome.said == "palpate: " + target + ": cannot be recorded to: " + why + "\n");
     }
   }
+}
+
+TEST_CASE("command line: keys that cannot be used are refused before anything starts") {
+  // Oracle: exit code 2 and one line by hand: neither a session nor a module has said a word.
+  using bus::Authority, bus::valid_from_now, bus::write_keys;
+  constexpr std::chrono::hours kHour(1);
+  const BallScene scene;
+  const auto folder = scene.folder();
+  const auto now = valid_from_now(kHour);
+  write_keys(folder / "good", Authority(now), now);
+  write_keys(folder / "old", Authority(now), {now.from - kHour, now.from});
+  std::filesystem::copy(folder / "good", folder / "mixed");
+  std::filesystem::copy(folder / "old/authority.pem", folder / "mixed",
+                        std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy(folder / "good", folder / "part");
+  std::filesystem::remove(folder / "part/collision.key");
+  const auto run = [&](const std::string& keys, const std::string& mode) {
+    return type("palpate", {"run", scene.file().string(), "--duration", "0.1", mode, "--secure",
+                            (folder / keys).string()});
+  };
+  for (const auto& [keys, what] : std::vector<std::pair<std::string, std::string>>{
+           {"old", "palpate.pem: expired at "},
+           {"mixed", "palpate.pem: is not signed by the authority.pem beside it; copy "},
+           {"part", "collision.key: No such file or directory; `palpate keys` makes them"}}) {
+    for (const std::string mode : {"--headless", "--lockstep"}) {
+      const auto outcome = run(keys, mode);
+      CAPTURE(outcome.said);
+      CHECK(outcome.code == kExitBadInput);
+      CHECK_THAT(outcome.said,
+                 Catch::StartsWith("palpate: keys: " + (folder / keys / what).string()));
+      CHECK(std::ranges::count(outcome.said, '\n') == 1);
+    }
+  }
+  CHECK(run("good", "--lockstep").code == kExitDone);
 }
 
 TEST_CASE("command line: a recording that is not there is bad input") {

@@ -101,6 +101,7 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {{"run", scene, "--headless", "--record", scene}, "would be overwritten"},
       {{"run", scene, "extra"}, "extra"},
       {{"run", scene, "--heedless"}, "--heedless"},
+      {{"run", scene, "--in-process", "--secure", desk.file(".")}, "--secure"},
       {{"list", "everything"}, "everything"},
       {{"inspect", desk.file("notes.mcap")}, "notes.mcap"},
       {{"inspect", "nowhere.mcap"}, "nowhere.mcap"},

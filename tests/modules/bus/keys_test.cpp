@@ -211,8 +211,8 @@ TEST_CASE("keys: with expired ones of the session nothing is read or written", "
   REQUIRE(felt.matched());
   check_shut_out(felt, *listener, *speaker);
   CHECK(told([&] { process(folder / "old", "viewer", options); }) ==
-        "DDS cannot start with the keys of role viewer: have they expired, or are they of two "
-        "sessions?");
+        "keys: " + (folder / "old/viewer.pem").string() + ": expired at " + text_of(validity.to) +
+            "; `palpate keys` makes new ones");
 }
 
 }  // namespace palpate::bus
