@@ -1,58 +1,102 @@
 #include "modules/recording/mcap_codec.h"
 
+#include <concepts>
+
 #include "modules/recording/mcap_bytes.h"
 
 namespace palpate::recording {
 namespace {
 
-constexpr std::size_t kMessageFields = 22;  // bytes before the payload
+using ByChannel = std::map<std::uint16_t, std::uint64_t>;  ///< as a map of the container
 
-/// channel u16, number u64, …
-void write_by_channel(ByteWriter& writer, const std::map<std::uint16_t, std::uint64_t>& map) {
-  writer.u32(static_cast<std::uint32_t>(10 * map.size()));
-  for (const auto& [channel, number] : map) writer.u16(channel).u64(number);
+/// Writes fields one after the other.
+struct FieldWriter {
+  ByteWriter bytes;
+
+  void operator()(const auto&... fields) { (put(fields), ...); }
+  void put(std::uint16_t number) { bytes.u16(number); }
+  void put(std::uint32_t number) { bytes.u32(number); }
+  void put(std::uint64_t number) { bytes.u64(number); }
+  void put(const std::string& text) { bytes.text(text); }
+  void put(const McapMap& map) { bytes.text_map(map); }
+  void put(const ByChannel& map) {
+    bytes.u32(static_cast<std::uint32_t>(10 * map.size()));
+    for (const auto& [channel, number] : map) bytes.u16(channel).u64(number);
+  }
+};
+
+/// Reads them back.
+struct FieldReader {
+  ByteReader bytes;
+
+  void operator()(auto&... fields) { (take(fields), ...); }
+  void take(std::uint16_t& number) { number = bytes.u16(); }
+  void take(std::uint32_t& number) { number = bytes.u32(); }
+  void take(std::uint64_t& number) { number = bytes.u64(); }
+  void take(std::string& text) { text = bytes.text(); }
+  void take(McapMap& map) { map = bytes.text_map(); }
+  void take(ByChannel& map) {
+    ByteReader entries(bytes.take(bytes.u32()));
+    while (!entries.rest().empty()) {
+      const std::uint16_t channel = entries.u16();
+      map[channel] = entries.u64();
+    }
+  }
+};
+
+/// M, to be written, or read into.
+template <class T, class M>
+concept Is = std::same_as<std::remove_const_t<T>, M>;
+
+void fields(auto& each, Is<McapHeader> auto& m) { each(m.profile, m.library); }
+
+void fields(auto& each, Is<McapSchema> auto& m) { each(m.id, m.name, m.encoding, m.data); }
+
+void fields(auto& each, Is<McapChannel> auto& m) {
+  each(m.id, m.schema_id, m.topic, m.message_encoding, m.metadata);
 }
 
-std::map<std::uint16_t, std::uint64_t> read_by_channel(ByteReader& reader) {
-  ByteReader entries(reader.take(reader.u32()));
-  std::map<std::uint16_t, std::uint64_t> map;
-  while (!entries.rest().empty()) {
-    const std::uint16_t channel = entries.u16();
-    map[channel] = entries.u64();
-  }
-  return map;
+/// All but its payload.
+void fields(auto& each, Is<McapMessage> auto& m) {
+  each(m.channel_id, m.sequence, m.log_time_ns, m.publish_time_ns);
+}
+
+void fields(auto& each, Is<McapMetadata> auto& m) { each(m.name, m.entries); }
+
+void fields(auto& each, Is<McapChunkIndex> auto& m) {
+  each(m.message_start_time_ns, m.message_end_time_ns, m.offset, m.length, m.message_index_offsets,
+       m.message_index_length, m.compression, m.compressed_size, m.uncompressed_size);
+}
+
+void fields(auto& each, Is<McapStatistics> auto& m) {
+  each(m.message_count, m.schema_count, m.channel_count, m.attachment_count, m.metadata_count,
+       m.chunk_count, m.message_start_time_ns, m.message_end_time_ns, m.channel_message_counts);
+}
+
+template <class M>
+McapContent written(const M& record) {
+  McapContent content;
+  FieldWriter writer{ByteWriter(content)};
+  fields(writer, record);
+  return content;
+}
+
+template <class M>
+M read(std::span<const std::uint8_t> content) {
+  FieldReader reader{ByteReader(content)};
+  M record;
+  fields(reader, record);
+  return record;
 }
 
 }  // namespace
 
-McapContent content_of(const McapHeader& header) {
-  McapContent content;
-  ByteWriter(content).text(header.profile).text(header.library);
-  return content;
-}
-
-McapContent content_of(const McapSchema& schema) {
-  McapContent content;
-  ByteWriter(content).u16(schema.id).text(schema.name).text(schema.encoding).text(schema.data);
-  return content;
-}
-
-McapContent content_of(const McapChannel& channel) {
-  McapContent content;
-  ByteWriter(content)
-      .u16(channel.id)
-      .u16(channel.schema_id)
-      .text(channel.topic)
-      .text(channel.message_encoding)
-      .text_map(channel.metadata);
-  return content;
-}
-
-McapContent content_of(const McapMetadata& metadata) {
-  McapContent content;
-  ByteWriter(content).text(metadata.name).text_map(metadata.entries);
-  return content;
-}
+McapContent content_of(const McapHeader& header) { return written(header); }
+McapContent content_of(const McapSchema& schema) { return written(schema); }
+McapContent content_of(const McapChannel& channel) { return written(channel); }
+McapContent content_of(const McapMetadata& metadata) { return written(metadata); }
+McapContent content_of(const McapChunkIndex& index) { return written(index); }
+McapContent content_of(const McapStatistics& statistics) { return written(statistics); }
 
 McapContent content_of(const McapAttachment& attachment) {
   McapContent content;
@@ -67,36 +111,6 @@ McapContent content_of(const McapAttachment& attachment) {
   return content;
 }
 
-McapContent content_of(const McapChunkIndex& index) {
-  McapContent content;
-  ByteWriter writer(content);
-  writer.u64(index.message_start_time_ns)
-      .u64(index.message_end_time_ns)
-      .u64(index.offset)
-      .u64(index.length);
-  write_by_channel(writer, index.message_index_offsets);
-  writer.u64(index.message_index_length)
-      .text(index.compression)
-      .u64(index.compressed_size)
-      .u64(index.uncompressed_size);
-  return content;
-}
-
-McapContent content_of(const McapStatistics& statistics) {
-  McapContent content;
-  ByteWriter writer(content);
-  writer.u64(statistics.message_count)
-      .u16(statistics.schema_count)
-      .u32(statistics.channel_count)
-      .u32(statistics.attachment_count)
-      .u32(statistics.metadata_count)
-      .u32(statistics.chunk_count)
-      .u64(statistics.message_start_time_ns)
-      .u64(statistics.message_end_time_ns);
-  write_by_channel(writer, statistics.channel_message_counts);
-  return content;
-}
-
 void append_record(std::vector<std::uint8_t>& bytes, McapOpcode opcode,
                    std::span<const std::uint8_t> content) {
   ByteWriter(bytes).u8(static_cast<std::uint8_t>(opcode)).u64(content.size()).raw(content);
@@ -104,67 +118,39 @@ void append_record(std::vector<std::uint8_t>& bytes, McapOpcode opcode,
 
 void append_message(std::vector<std::uint8_t>& bytes, const McapMessage& message,
                     std::span<const std::uint8_t> data) {
-  ByteWriter(bytes)
-      .u8(static_cast<std::uint8_t>(McapOpcode::kMessage))
-      .u64(kMessageFields + data.size())
-      .u16(message.channel_id)
-      .u32(message.sequence)
-      .u64(message.log_time_ns)
-      .u64(message.publish_time_ns)
-      .raw(data);
+  constexpr std::size_t kFieldBytes = 22;  // before the payload
+  FieldWriter writer{ByteWriter(bytes)};
+  writer.bytes.u8(static_cast<std::uint8_t>(McapOpcode::kMessage)).u64(kFieldBytes + data.size());
+  fields(writer, message);
+  writer.bytes.raw(data);
 }
 
-McapHeader parse_header(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapHeader header;
-  header.profile = reader.text();
-  header.library = reader.text();
-  return header;
-}
+McapHeader parse_header(std::span<const std::uint8_t> content) { return read<McapHeader>(content); }
 
 McapSchema parse_schema(std::span<const std::uint8_t> content) {
   if (content.size() > kMostSchemaBytes) {
     throw McapFieldError("a schema of " + std::to_string(content.size()) + " bytes; at most " +
                          std::to_string(kMostSchemaBytes) + " are read");
   }
-  ByteReader reader(content);
-  McapSchema schema;
-  schema.id = reader.u16();
+  auto schema = read<McapSchema>(content);
   if (schema.id == 0) throw McapFieldError("schema id 0 is not allowed");
-  schema.name = reader.text();
-  schema.encoding = reader.text();
-  schema.data = reader.text();
   return schema;
 }
 
 McapChannel parse_channel(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapChannel channel;
-  channel.id = reader.u16();
-  channel.schema_id = reader.u16();
-  channel.topic = reader.text();
-  channel.message_encoding = reader.text();
-  channel.metadata = reader.text_map();
-  return channel;
+  return read<McapChannel>(content);
 }
 
 McapMessage parse_message(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
+  FieldReader reader{ByteReader(content)};
   McapMessage message;
-  message.channel_id = reader.u16();
-  message.sequence = reader.u32();
-  message.log_time_ns = reader.u64();
-  message.publish_time_ns = reader.u64();
-  message.data.assign(reader.rest().begin(), reader.rest().end());
+  fields(reader, message);
+  message.data.assign(reader.bytes.rest().begin(), reader.bytes.rest().end());
   return message;
 }
 
 McapMetadata parse_metadata(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapMetadata metadata;
-  metadata.name = reader.text();
-  metadata.entries = reader.text_map();
-  return metadata;
+  return read<McapMetadata>(content);
 }
 
 McapAttachment parse_attachment(std::span<const std::uint8_t> content) {
@@ -185,33 +171,11 @@ McapAttachment parse_attachment(std::span<const std::uint8_t> content) {
 }
 
 McapChunkIndex parse_chunk_index(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapChunkIndex index;
-  index.message_start_time_ns = reader.u64();
-  index.message_end_time_ns = reader.u64();
-  index.offset = reader.u64();
-  index.length = reader.u64();
-  index.message_index_offsets = read_by_channel(reader);
-  index.message_index_length = reader.u64();
-  index.compression = reader.text();
-  index.compressed_size = reader.u64();
-  index.uncompressed_size = reader.u64();
-  return index;
+  return read<McapChunkIndex>(content);
 }
 
 McapStatistics parse_statistics(std::span<const std::uint8_t> content) {
-  ByteReader reader(content);
-  McapStatistics statistics;
-  statistics.message_count = reader.u64();
-  statistics.schema_count = reader.u16();
-  statistics.channel_count = reader.u32();
-  statistics.attachment_count = reader.u32();
-  statistics.metadata_count = reader.u32();
-  statistics.chunk_count = reader.u32();
-  statistics.message_start_time_ns = reader.u64();
-  statistics.message_end_time_ns = reader.u64();
-  statistics.channel_message_counts = read_by_channel(reader);
-  return statistics;
+  return read<McapStatistics>(content);
 }
 
 }  // namespace palpate::recording
