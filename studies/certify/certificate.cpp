@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <stdexcept>
 
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/certify/hands.h"
+#include "studies/report/whole_file.h"
 
 namespace palpate::certify {
 namespace {
@@ -27,14 +26,6 @@ small {{ color: #555; }} img {{ max-width: 100%; }}
 .pass {{ background: #dcefdc; }} .fail {{ background: #f5c9c0; }} .open {{ background: #eee; }}
 </style></head><body><h1>{0}</h1>
 )";
-
-void write_file(const std::filesystem::path& file, const std::string& text) {
-  const auto part = file.string() + ".part";
-  std::ofstream stream(part);
-  if (!(stream << text << std::flush)) throw std::runtime_error("cannot write " + part);
-  stream.close();
-  std::filesystem::rename(part, file);
-}
 
 Json::Value number(double value) {
   return std::isfinite(value) ? Json::Value(value) : Json::Value();
@@ -144,7 +135,7 @@ void write_json(const Certificate& certificate, const Subject& subject,
   style["indentation"] = "  ";
   style["precision"] = kDigits;
   style["emitUTF8"] = true;
-  write_file(folder / "certificate.json", Json::writeString(style, json) + "\n");
+  report::write_whole_file(folder / "certificate.json", Json::writeString(style, json) + "\n");
 }
 
 void write_page(const Certificate& certificate, const Subject& subject,
@@ -167,7 +158,7 @@ void write_page(const Certificate& certificate, const Subject& subject,
   for (const auto& picture : pictures_in(folder)) {
     page += fmt::format("<p><img src=\"{0}\" alt=\"{0}\"></p>\n", picture);
   }
-  write_file(folder / "certificate.html", page + "</body></html>\n");
+  report::write_whole_file(folder / "certificate.html", page + "</body></html>\n");
 }
 
 }  // namespace palpate::certify

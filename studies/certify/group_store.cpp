@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <stdexcept>
 
-#include "studies/report/claims.h"
+#include "studies/report/stored_json.h"
 
 namespace palpate::certify {
 namespace {
@@ -54,40 +52,25 @@ std::filesystem::path GroupStore::file_of(const std::string& group) const {
 }
 
 bool GroupStore::read(const std::string& group, GroupResult& out) const {
-  std::ifstream stream(file_of(group));
-  if (!stream) return false;
-  Json::CharReaderBuilder builder;
-  builder["allowSpecialFloats"] = true;
-  Json::Value json;
-  std::string errors;
-  if (!Json::parseFromStream(builder, stream, &json, &errors) || json["of"] != of_) return false;
+  const auto json = report::stored_json(file_of(group), of_);
+  if (!json) return false;
   out = {};
-  for (const Json::Value& line : json["lines"]) out.lines.push_back(line_of(line));
-  out.push = json["push_n"].asDouble();
-  out.troubles = {json["truncated"].asUInt64(), json["lost"].asUInt64(),
-                  json["unsolved"].asUInt64()};
+  for (const Json::Value& line : (*json)["lines"]) out.lines.push_back(line_of(line));
+  out.push = (*json)["push_n"].asDouble();
+  out.troubles = {(*json)["truncated"].asUInt64(), (*json)["lost"].asUInt64(),
+                  (*json)["unsolved"].asUInt64()};
   return true;
 }
 
 void GroupStore::write(const std::string& group, const GroupResult& result) const {
   Json::Value json;
-  json["of"] = of_;
   json["lines"] = Json::arrayValue;
   for (const Line& line : result.lines) json["lines"].append(json_of_line(line));
   json["push_n"] = result.push;
   json["truncated"] = Json::UInt64(result.troubles.truncated);
   json["lost"] = Json::UInt64(result.troubles.lost);
   json["unsolved"] = Json::UInt64(result.troubles.unsolved);
-  Json::StreamWriterBuilder builder;  // 17 digits: the same bits
-  builder["useSpecialFloats"] = true;
-  const auto file = file_of(group);
-  const auto part = file.string() + "." + report::process_word() + ".part";
-  std::ofstream stream(part);
-  if (!(stream << Json::writeString(builder, json) << std::flush)) {
-    throw std::runtime_error("cannot write " + part);
-  }
-  stream.close();
-  std::filesystem::rename(part, file);
+  report::store_json(file_of(group), of_, std::move(json));
 }
 
 }  // namespace palpate::certify

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <ostream>
 #include <set>
@@ -27,6 +26,7 @@
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
 #include "studies/report/progress.h"
+#include "studies/report/whole_file.h"
 
 namespace palpate::plan {
 namespace {
@@ -83,15 +83,6 @@ void check_touched(const scene::Scene& scene, const Course& reference, double se
     }
   }
   throw untouched(scene, seconds);
-}
-
-void write_scene(const scene::Scene& scene, const std::filesystem::path& file) {
-  const auto part = file.string() + ".part";
-  std::ofstream stream(part);
-  stream << scene::resolved_text(scene);
-  stream.flush();
-  if (!stream) throw std::runtime_error(part + ": cannot be written");
-  std::filesystem::rename(part, file);
 }
 
 /// What candidates of one organ are judged by.
@@ -308,7 +299,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       for (std::size_t i = 0; i < plans.size(); ++i) {
         planned = scene_with(planned, plans[i].chosen->candidate, i);
       }
-      write_scene(planned, file);
+      report::write_whole_file(file, scene::resolved_text(planned));
     }
     options.json ? print_json(plans, sharing.machines, file, out)
                  : print_text(scene, plans, sharing.machines, file, out);

@@ -3,10 +3,7 @@
 #include <json/json.h>
 #include <spdlog/fmt/fmt.h>
 
-#include <fstream>
-#include <stdexcept>
-
-#include "studies/report/claims.h"
+#include "studies/report/stored_json.h"
 
 namespace palpate::plan {
 namespace {
@@ -41,13 +38,9 @@ std::string VerdictStore::key(const std::string& organ, const Candidate& candida
 bool VerdictStore::read(const std::string& organ, const Candidate& candidate,
                         StoredVerdict& out) const {
   if (folder_.empty()) return false;
-  std::ifstream stream(folder_ / (key(organ, candidate) + ".json"));
-  if (!stream) return false;
-  Json::CharReaderBuilder builder;
-  builder["allowSpecialFloats"] = true;
-  Json::Value json;
-  std::string errors;
-  if (!Json::parseFromStream(builder, stream, &json, &errors) || json["of"] != of_) return false;
+  const auto stored = report::stored_json(folder_ / (key(organ, candidate) + ".json"), of_);
+  if (!stored) return false;
+  const Json::Value& json = *stored;
   out = {};
   out.verdict.candidate = candidate;
   visit_numbers(out.verdict,
@@ -63,7 +56,6 @@ bool VerdictStore::read(const std::string& organ, const Candidate& candidate,
 void VerdictStore::write(const std::string& organ, const StoredVerdict& stored) const {
   Verdict verdict = stored.verdict;
   Json::Value json;
-  json["of"] = of_;
   json["organ"] = organ;
   json["candidate"] = verdict.candidate.name();
   visit_numbers(verdict, [&](const char* name, double& value) { json[name] = value; });
@@ -71,16 +63,7 @@ void VerdictStore::write(const std::string& organ, const StoredVerdict& stored) 
   json["misses"] = Json::arrayValue;
   for (const std::string& failure : verdict.failures) json["misses"].append(failure);
   json["machine"] = stored.machine;
-  Json::StreamWriterBuilder builder;  // 17 digits: the same bits
-  builder["useSpecialFloats"] = true;
-  const auto file = folder_ / (key(organ, verdict.candidate) + ".json");
-  const auto part = file.string() + "." + report::process_word() + ".part";
-  std::ofstream stream(part);
-  if (!(stream << Json::writeString(builder, json) << std::flush)) {
-    throw std::runtime_error("cannot write " + part);
-  }
-  stream.close();
-  std::filesystem::rename(part, file);
+  report::store_json(folder_ / (key(organ, verdict.candidate) + ".json"), of_, std::move(json));
 }
 
 }  // namespace palpate::plan

@@ -2,9 +2,6 @@
 
 #include <array>
 #include <cstdio>
-#include <stdexcept>
-
-#include "studies/report/claims.h"
 
 namespace palpate::report {
 namespace {
@@ -20,15 +17,8 @@ std::string quoted(const std::string& cell) {
 }  // namespace
 
 TableFile::TableFile(std::filesystem::path file, const std::vector<std::string>& columns)
-    : file_(std::move(file)), part_(file_), stream_((part_ += "." + process_word() + ".part")) {
+    : file_(std::move(file)) {
   write_row(columns);
-  if (!stream_) throw std::runtime_error("cannot write " + part_.string());
-}
-
-TableFile::~TableFile() {
-  stream_.close();
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored);
 }
 
 void TableFile::write_row(std::span<const double> values) {
@@ -36,25 +26,19 @@ void TableFile::write_row(std::span<const double> values) {
   const char* separator = "";
   for (const double value : values) {
     std::snprintf(text.data(), text.size(), "%s%.10g", separator, value);
-    stream_ << text.data();
+    file_.stream() << text.data();
     separator = ",";
   }
-  stream_ << '\n';
+  file_.stream() << '\n';
 }
 
 void TableFile::write_row(const std::vector<std::string>& cells) {
   const char* separator = "";
   for (const auto& cell : cells) {
-    stream_ << separator << quoted(cell);
+    file_.stream() << separator << quoted(cell);
     separator = ",";
   }
-  stream_ << '\n';
-}
-
-void TableFile::finish() {
-  stream_.close();
-  if (!stream_) throw std::runtime_error("cannot write " + part_.string());
-  std::filesystem::rename(part_, file_);
+  file_.stream() << '\n';
 }
 
 }  // namespace palpate::report
