@@ -1,17 +1,17 @@
 #include "deformation/elements/quadratic_mesh_change.h"
 
 #include <catch2/catch.hpp>
-#include <memory>
 #include <random>
 
 #include "deformation/elements/quadratic_pressure.h"
-#include "deformation/model/following_mesh.h"
-#include "deformation/model/mesh_change.h"
 #include "modules/geometry/surface_transfer.h"
+#include "tests/deformation/model/mesh_changes.h"
 #include "tests/deformation/steppers/tetrahedral_solids.h"
 
 namespace palpate::deformation {
 namespace {
+
+using testing::SolidThere;
 
 geometry::OrganShape quadratic_cube() {
   return geometry::with_edge_nodes(
@@ -20,27 +20,11 @@ geometry::OrganShape quadratic_cube() {
 
 TouchedPlace small_touch_at(const Vec3& centre) { return {centre, 6e-3, 8e-3}; }
 
-struct QuadraticRefined {
-  RefinedShape refined;
-  OrganModel model;
-
-  QuadraticRefined(FollowingMesh& mesh, const std::vector<TouchedPlace>& places,
-                   const scene::Organ& organ)
-      : refined(mesh.fine_at(places)),
-        model(build_organ_model(organ, Vec3::Zero(), refined.shape)) {
-    hold_as_coarse(refined.parents, model);
-  }
-  QuadraticMeshChange to(const QuadraticRefined& other) const {
-    return {model, refined.halvings, other.model, other.refined.halvings};
-  }
-  Vec3 momentum(const OrganState& state) const {
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < model.node_count(); ++i) {
-      sum += model.masses[i] * state.velocities[i];
-    }
-    return sum;
-  }
-};
+OrganState carried_quadratic(const SolidThere& from, const SolidThere& to,
+                             const OrganState& state) {
+  return QuadraticMeshChange(from.model, from.refined.halvings, to.model, to.refined.halvings)
+      .carried(state);
+}
 
 scene::Organ quadratic_organ() { return testing::solid_organ("quadratic_pressure", 0.499); }
 
@@ -52,33 +36,18 @@ Vec3 quadratic_map(const Vec3& X) {
 }
 
 TEST_CASE("quadratic mesh change: momentum stays, kinetic energy never grows") {
-  // Oracle: sums over the nodes. Velocities at random are the worst that can be carried.
   const scene::Organ organ = quadratic_organ();
   FollowingMesh mesh(quadratic_cube(), 1, 20000);
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> any(-1, 1), place(0, 0.06);
-  auto from = std::make_unique<QuadraticRefined>(mesh, std::vector<TouchedPlace>{}, organ);
-  OrganState state = rest_state(from->model);
-  for (int change = 0; change < 30; ++change) {
-    std::vector<TouchedPlace> places;
-    if (change % 5 != 4) places.push_back(small_touch_at({place(random), place(random), 0.06}));
-    auto to = std::make_unique<QuadraticRefined>(mesh, places, organ);
-    const QuadraticMeshChange carry = from->to(*to);
-    for (Vec3& v : state.velocities) v = Vec3(any(random), any(random), any(random));
-    const OrganState after = carry.carried(state);
-    REQUIRE(after.positions.size() == to->model.node_count());
-    // Sums of some thousand rounded numbers.
-    CHECK((to->momentum(after) - from->momentum(state)).norm() <
-          1e-12 * from->momentum(state).norm() + 1e-15);
-    CHECK(kinetic_energy(to->model, after.velocities) <=
-          kinetic_energy(from->model, state.velocities) * (1 + 1e-12));
-    const Vec3 even(0.1, -0.2, 0.3);
-    std::ranges::fill(state.velocities, even);
-    for (const Vec3& v : carry.carried(state).velocities) CHECK((v - even).norm() < 1e-15);
-    state = after;
-    from = std::move(to);
-  }
-  CHECK(state.positions == from->model.rest_positions);  // at rest all along, to the bit
+  OrganState state;
+  std::mt19937 random(12);
+  const auto last = testing::change_meshes(
+      mesh, organ, 30, 11, small_touch_at, [&](const SolidThere& from, const SolidThere& to) {
+        if (state.positions.empty()) state = rest_state(from.model);
+        testing::check_motion_carried(from, to, random, state, [&](const OrganState& s) {
+          return carried_quadratic(from, to, s);
+        });
+      });
+  CHECK(state.positions == last->model.rest_positions);  // at rest all along, to the bit
 }
 
 TEST_CASE("quadratic mesh change: a quadratic shape is carried from mesh to mesh as it is") {
@@ -86,24 +55,21 @@ TEST_CASE("quadratic mesh change: a quadratic shape is carried from mesh to mesh
   // keep their bits. What is lost is rounding, of lengths of 6 cm.
   const scene::Organ organ = quadratic_organ();
   FollowingMesh mesh(quadratic_cube(), 1, 20000);
-  auto from = std::make_unique<QuadraticRefined>(mesh, std::vector<TouchedPlace>{}, organ);
-  OrganState state = rest_state(from->model);
-  for (Vec3& x : state.positions) x = quadratic_map(x);
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> place(0, 0.06);
-  for (int change = 0; change < 20; ++change) {
-    std::vector<TouchedPlace> places;
-    if (change % 5 != 4) places.push_back(small_touch_at({place(random), place(random), 0.06}));
-    auto to = std::make_unique<QuadraticRefined>(mesh, places, organ);
-    state = from->to(*to).carried(state);
-    double furthest = 0;
-    for (std::size_t i = 0; i < state.positions.size(); ++i) {
-      furthest = std::max(furthest,
-                          (state.positions[i] - quadratic_map(to->model.rest_positions[i])).norm());
-    }
-    CHECK(furthest < 1e-15);
-    from = std::move(to);
-  }
+  OrganState state;
+  testing::change_meshes(mesh, organ, 20, 5, small_touch_at,
+                         [&](const SolidThere& from, const SolidThere& to) {
+                           if (state.positions.empty()) {
+                             state = rest_state(from.model);
+                             for (Vec3& x : state.positions) x = quadratic_map(x);
+                           }
+                           state = carried_quadratic(from, to, state);
+                           double furthest = 0;
+                           for (std::size_t i = 0; i < state.positions.size(); ++i) {
+                             const Vec3 there = quadratic_map(to.model.rest_positions[i]);
+                             furthest = std::max(furthest, (state.positions[i] - there).norm());
+                           }
+                           CHECK(furthest < 1e-15);
+                         });
 }
 
 TEST_CASE("quadratic mesh change: any shape is the same function on a finer mesh, and back") {
@@ -111,23 +77,22 @@ TEST_CASE("quadratic mesh change: any shape is the same function on a finer mesh
   // energy on any mesh.
   const scene::Organ organ = quadratic_organ();
   FollowingMesh mesh(quadratic_cube(), 1, 20000);
-  const QuadraticRefined coarse(mesh, {}, organ),
-      fine(mesh, {small_touch_at({0.02, 0.03, 0.06})}, organ);
+  const SolidThere coarse(mesh, {}, organ), fine(mesh, {small_touch_at({0.02, 0.03, 0.06})}, organ);
   REQUIRE(fine.model.node_count() > coarse.model.node_count() + 100);
   OrganState state = rest_state(coarse.model);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1e-3, 1e-3);
   for (Vec3& x : state.positions) x += Vec3(any(random), any(random), any(random));
-  const OrganState refined = coarse.to(fine).carried(state);
-  CHECK(fine.to(coarse).carried(refined).positions == state.positions);
+  const OrganState refined = carried_quadratic(coarse, fine, state);
+  CHECK(carried_quadratic(fine, coarse, refined).positions == state.positions);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     state.positions[i] = 1.1 * coarse.model.rest_positions[i];
   }
-  const auto energy = [](const QuadraticRefined& of, const OrganState& at) {
+  const auto energy = [](const SolidThere& of, const OrganState& at) {
     return QuadraticPressure(of.model.rest_positions, of.model.mesh()).energy(at.positions);
   };
   // Its metrics are floats.
-  CHECK(energy(fine, coarse.to(fine).carried(state)) ==
+  CHECK(energy(fine, carried_quadratic(coarse, fine, state)) ==
         Approx(energy(coarse, state)).epsilon(1e-5));
 }
 
@@ -136,15 +101,14 @@ TEST_CASE("quadratic mesh change: a turning motion is carried to finer meshes as
   // less energy, so there is nothing to take away.
   const scene::Organ organ = quadratic_organ();
   FollowingMesh mesh(quadratic_cube(), 1, 20000);
-  const QuadraticRefined coarse(mesh, {}, organ),
-      fine(mesh, {small_touch_at({0.02, 0.03, 0.06})}, organ);
+  const SolidThere coarse(mesh, {}, organ), fine(mesh, {small_touch_at({0.02, 0.03, 0.06})}, organ);
   const Vec3 turn(3, -1, 2), way(0.1, 0, 0.2);
   const auto velocity = [&](const Vec3& X) -> Vec3 { return turn.cross(X) + way; };
   OrganState state = rest_state(coarse.model);
   for (std::size_t i = 0; i < state.velocities.size(); ++i) {
     state.velocities[i] = velocity(coarse.model.rest_positions[i]);
   }
-  const OrganState after = coarse.to(fine).carried(state);
+  const OrganState after = carried_quadratic(coarse, fine, state);
   for (std::size_t i = 0; i < after.velocities.size(); ++i) {
     CHECK((after.velocities[i] - velocity(fine.model.rest_positions[i])).norm() < 1e-14);
   }
@@ -157,9 +121,9 @@ TEST_CASE("quadratic mesh change: what holds an organ holds the same places on e
   organ.fixed = {scene::BoxRegion{Vec3(-1, -1, -1), Vec3(1, 1, 1e-6)},
                  scene::SphereRegion{Vec3(0.03, 0.03, 0.06), 6e-3}};
   FollowingMesh mesh(quadratic_cube(), 1, 20000);
-  const QuadraticRefined coarse(mesh, {}, organ);
-  const QuadraticRefined fine(
-      mesh, {small_touch_at({0.03, 0.03, 0.06}), small_touch_at({0.02, 0.03, 0})}, organ);
+  const SolidThere coarse(mesh, {}, organ);
+  const SolidThere fine(mesh, {small_touch_at({0.03, 0.03, 0.06}), small_touch_at({0.02, 0.03, 0})},
+                        organ);
   CHECK(coarse.model.fixed_nodes.size() == 49);
   CHECK(fine.model.fixed_nodes.size() > 80);
   for (std::uint32_t i = 0; i < fine.model.node_count(); ++i) {
@@ -169,7 +133,7 @@ TEST_CASE("quadratic mesh change: what holds an organ holds the same places on e
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     if (coarse.model.inverse_masses[i] > 0) state.positions[i] += Vec3(1e-3, 2e-3, -1e-3);
   }
-  const OrganState after = coarse.to(fine).carried(state);
+  const OrganState after = carried_quadratic(coarse, fine, state);
   for (const std::uint32_t node : fine.model.fixed_nodes) {
     CHECK(after.positions[node] == fine.model.rest_positions[node]);
   }
@@ -179,7 +143,7 @@ TEST_CASE("surface transfer: a place on a quadratic solid's skin is the same pla
   // Oracle: the rest place of every fourth of every face, before and after.
   const scene::Organ organ = quadratic_organ();
   FollowingMesh mesh(quadratic_cube(), 1, 20000);
-  const QuadraticRefined a(mesh, {small_touch_at({0.01, 0.02, 0.06})}, organ),
+  const SolidThere a(mesh, {small_touch_at({0.01, 0.02, 0.06})}, organ),
       b(mesh, {small_touch_at({0.03, 0.03, 0.06})}, organ);
   const auto skin = [](const OrganModel& model) {
     return std::span(model.rest_positions).first(model.surface_node_count);
