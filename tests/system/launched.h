@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -39,13 +40,18 @@ class Running {
       return said_.find(text) != std::string::npos;
     });
   }
-  /// Exit code; −1 if it does not end or is killed.
-  int wait_for_end() {
-    wait_until([&] {
-      listen();
-      return child_->ended().has_value();
-    });
+  /// Exit code; −1 if it does not end within the deadline or is killed.
+  /// @param meddle  called again and again while it runs, with its process
+  int wait_for_end(double deadline = kDeadline, const std::function<void(pid_t)>& meddle = {}) {
+    wait_until(
+        [&] {
+          listen();
+          if (meddle) meddle(child_->process_id());
+          return child_->ended().has_value();
+        },
+        deadline);
     listen();
+    UNSCOPED_INFO(said_);
     if (!child_->ended() || !WIFEXITED(*child_->ended())) return -1;
     return WEXITSTATUS(*child_->ended());
   }

@@ -1,6 +1,4 @@
 // Lockstep over DDS with the real processes, beside the same session in one process.
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
@@ -21,6 +19,7 @@
 #include "palpate/child_process.h"
 #include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/ball_scene.h"
+#include "tests/system/launched.h"
 
 using namespace palpate;
 using namespace palpate::testing;
@@ -35,24 +34,7 @@ constexpr double kRunDeadline = 100;  // [s]; a run takes about one
 int run(const std::filesystem::path& scene, std::vector<std::string> more,
         const std::function<void(pid_t)>& meddle = {},
         const bus::BusOptions& options = own_bus_options()) {
-  std::vector<std::string> arguments{"run",
-                                     scene.string(),
-                                     "--headless",
-                                     "--session",
-                                     options.session,
-                                     "--domain",
-                                     std::to_string(options.domain)};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  launcher::ChildProcess child(std::filesystem::path(PALPATE_BIN_DIR) / "palpate", arguments);
-  const bool ended = wait_until(
-      [&] {
-        for (const auto& line : child.take_lines()) UNSCOPED_INFO(line);
-        if (meddle) meddle(child.process_id());
-        return child.ended().has_value();
-      },
-      kRunDeadline);
-  if (!ended || !WIFEXITED(*child.ended())) return -1;
-  return WEXITSTATUS(*child.ended());
+  return Launched(scene, std::move(more), options).wait_for_end(kRunDeadline, meddle);
 }
 
 int run(const BallScene& scene, std::vector<std::string> more,

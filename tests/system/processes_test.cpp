@@ -1,7 +1,5 @@
 // Organs in several deformation processes, over DDS with the real processes, beside the same
 // session in one.
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <fstream>
@@ -9,9 +7,8 @@
 #include <map>
 
 #include "modules/recording/sample_reader.h"
-#include "palpate/child_process.h"
-#include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/two_balls_scene.h"
+#include "tests/system/launched.h"
 
 using namespace palpate;
 using namespace palpate::testing;
@@ -19,35 +16,6 @@ using namespace palpate::testing;
 namespace {
 
 constexpr double kSplitRunDeadline = 100;  // [s]; a run takes about one
-
-/// `palpate run` to its end. @returns its exit code, what it said in `said`
-int run_split(const std::filesystem::path& scene, std::vector<std::string> more,
-              std::string* said = nullptr) {
-  const bus::BusOptions options = own_bus_options();
-  std::vector<std::string> arguments{"run",
-                                     scene.string(),
-                                     "--headless",
-                                     "--session",
-                                     options.session,
-                                     "--domain",
-                                     std::to_string(options.domain)};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  launcher::ChildProcess child(std::filesystem::path(PALPATE_BIN_DIR) / "palpate", arguments);
-  const auto listen = [&] {
-    for (const auto& line : child.take_lines()) {
-      UNSCOPED_INFO(line);
-      if (said != nullptr) *said += line + '\n';
-    }
-  };
-  const bool ended = wait_until(
-      [&] {
-        listen();
-        return child.ended().has_value();
-      },
-      kSplitRunDeadline);
-  listen();
-  return ended && WIFEXITED(*child.ended()) ? WEXITSTATUS(*child.ended()) : -1;
-}
 
 std::string file_bytes(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -104,13 +72,14 @@ TEST_CASE("processes: two leave the bytes in lockstep that one leaves, and the o
   const auto with = [&](const char* how, const std::filesystem::path& file) {
     return std::vector<std::string>{how, "--duration", "1", "--record", file.string()};
   };
-  std::string said;
-  REQUIRE(run_split(apart.file(), with("--lockstep", split), &said) == 0);
-  CHECK(said.find("deformation_2 250 cycles") != std::string::npos);
-  REQUIRE(run_split(apart.file(), with("--in-process", inside)) == 0);
+  Launched lockstep(apart.file(), with("--lockstep", split));
+  REQUIRE(lockstep.wait_for_end(kSplitRunDeadline) == 0);
+  CHECK(lockstep.said().find("deformation_2 250 cycles") != std::string::npos);
+  REQUIRE(Launched(apart.file(), with("--in-process", inside)).wait_for_end(kSplitRunDeadline) ==
+          0);
   CHECK(file_bytes(split) == file_bytes(inside));
 
-  REQUIRE(run_split(together.file(), with("--lockstep", one)) == 0);
+  REQUIRE(Launched(together.file(), with("--lockstep", one)).wait_for_end(kSplitRunDeadline) == 0);
   auto a = payloads(split), b = payloads(one);
   REQUIRE(a["node_positions"].size() == 500);
   for (const char* topic : {"surface", "node_positions", "probe_state", "contacts"}) {
@@ -129,15 +98,15 @@ TEST_CASE("processes: two leave the bytes in lockstep that one leaves, and the o
 TEST_CASE("processes: in real time both run, and the summary tells of each") {
   // Oracle: the summary's lines; all forces in both balls' recordings are there.
   const TwoBallsScene apart("2");
-  std::string said;
-  REQUIRE(run_split(apart.file(), {"--duration", "1.5"}, &said) == 0);
+  Launched run(apart.file(), {"--duration", "1.5"});
+  REQUIRE(run.wait_for_end(kSplitRunDeadline) == 0);
   for (const char* name : {"deformation  ", "deformation_2 ", "collision ", "haptics "}) {
     INFO(name);
-    CHECK(said.find(name) != std::string::npos);
+    CHECK(run.said().find(name) != std::string::npos);
   }
-  CHECK(said.find("FAILED") == std::string::npos);
-  said.clear();
-  CHECK(run_split(apart.file(), {"--only", "deformation_3"}, &said) == 2);
-  CHECK(said.find("there are deformation, deformation_2, collision, haptics, visualizer") !=
+  CHECK(run.said().find("FAILED") == std::string::npos);
+  Launched none(apart.file(), {"--only", "deformation_3"});
+  CHECK(none.wait_for_end(kSplitRunDeadline) == 2);
+  CHECK(none.said().find("there are deformation, deformation_2, collision, haptics, visualizer") !=
         std::string::npos);
 }
