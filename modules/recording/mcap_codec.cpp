@@ -11,15 +11,15 @@ using ByChannel = std::map<std::uint16_t, std::uint64_t>;  ///< as a map of the 
 
 /// Writes fields one after the other.
 struct FieldWriter {
-  ByteWriter bytes;
+  ByteWriter& bytes;
 
-  void operator()(const auto&... fields) { (put(fields), ...); }
-  void put(std::uint16_t number) { bytes.u16(number); }
-  void put(std::uint32_t number) { bytes.u32(number); }
-  void put(std::uint64_t number) { bytes.u64(number); }
-  void put(const std::string& text) { bytes.text(text); }
-  void put(const McapMap& map) { bytes.text_map(map); }
-  void put(const ByChannel& map) {
+  void operator()(const auto&... fields) const { (put(fields), ...); }
+  void put(std::uint16_t number) const { bytes.u16(number); }
+  void put(std::uint32_t number) const { bytes.u32(number); }
+  void put(std::uint64_t number) const { bytes.u64(number); }
+  void put(const std::string& text) const { bytes.text(text); }
+  void put(const McapMap& map) const { bytes.text_map(map); }
+  void put(const ByChannel& map) const {
     bytes.u32(static_cast<std::uint32_t>(10 * map.size()));
     for (const auto& [channel, number] : map) bytes.u16(channel).u64(number);
   }
@@ -27,15 +27,15 @@ struct FieldWriter {
 
 /// Reads them back.
 struct FieldReader {
-  ByteReader bytes;
+  ByteReader& bytes;
 
-  void operator()(auto&... fields) { (take(fields), ...); }
-  void take(std::uint16_t& number) { number = bytes.u16(); }
-  void take(std::uint32_t& number) { number = bytes.u32(); }
-  void take(std::uint64_t& number) { number = bytes.u64(); }
-  void take(std::string& text) { text = bytes.text(); }
-  void take(McapMap& map) { map = bytes.text_map(); }
-  void take(ByChannel& map) {
+  void operator()(auto&... fields) const { (take(fields), ...); }
+  void take(std::uint16_t& number) const { number = bytes.u16(); }
+  void take(std::uint32_t& number) const { number = bytes.u32(); }
+  void take(std::uint64_t& number) const { number = bytes.u64(); }
+  void take(std::string& text) const { text = bytes.text(); }
+  void take(McapMap& map) const { map = bytes.text_map(); }
+  void take(ByChannel& map) const {
     ByteReader entries(bytes.take(bytes.u32()));
     while (!entries.rest().empty()) {
       const std::uint16_t channel = entries.u16();
@@ -48,27 +48,27 @@ struct FieldReader {
 template <class T, class M>
 concept Is = std::same_as<std::remove_const_t<T>, M>;
 
-void fields(auto& each, Is<McapHeader> auto& m) { each(m.profile, m.library); }
+void fields(const auto& each, Is<McapHeader> auto& m) { each(m.profile, m.library); }
 
-void fields(auto& each, Is<McapSchema> auto& m) { each(m.id, m.name, m.encoding, m.data); }
+void fields(const auto& each, Is<McapSchema> auto& m) { each(m.id, m.name, m.encoding, m.data); }
 
-void fields(auto& each, Is<McapChannel> auto& m) {
+void fields(const auto& each, Is<McapChannel> auto& m) {
   each(m.id, m.schema_id, m.topic, m.message_encoding, m.metadata);
 }
 
 /// All but its payload.
-void fields(auto& each, Is<McapMessage> auto& m) {
+void fields(const auto& each, Is<McapMessage> auto& m) {
   each(m.channel_id, m.sequence, m.log_time_ns, m.publish_time_ns);
 }
 
-void fields(auto& each, Is<McapMetadata> auto& m) { each(m.name, m.entries); }
+void fields(const auto& each, Is<McapMetadata> auto& m) { each(m.name, m.entries); }
 
-void fields(auto& each, Is<McapChunkIndex> auto& m) {
+void fields(const auto& each, Is<McapChunkIndex> auto& m) {
   each(m.message_start_time_ns, m.message_end_time_ns, m.offset, m.length, m.message_index_offsets,
        m.message_index_length, m.compression, m.compressed_size, m.uncompressed_size);
 }
 
-void fields(auto& each, Is<McapStatistics> auto& m) {
+void fields(const auto& each, Is<McapStatistics> auto& m) {
   each(m.message_count, m.schema_count, m.channel_count, m.attachment_count, m.metadata_count,
        m.chunk_count, m.message_start_time_ns, m.message_end_time_ns, m.channel_message_counts);
 }
@@ -76,16 +76,16 @@ void fields(auto& each, Is<McapStatistics> auto& m) {
 template <class M>
 McapContent written(const M& record) {
   McapContent content;
-  FieldWriter writer{ByteWriter(content)};
-  fields(writer, record);
+  ByteWriter writer(content);
+  fields(FieldWriter{writer}, record);
   return content;
 }
 
 template <class M>
 M read(std::span<const std::uint8_t> content) {
-  FieldReader reader{ByteReader(content)};
+  ByteReader reader(content);
   M record;
-  fields(reader, record);
+  fields(FieldReader{reader}, record);
   return record;
 }
 
@@ -119,10 +119,10 @@ void append_record(std::vector<std::uint8_t>& bytes, McapOpcode opcode,
 void append_message(std::vector<std::uint8_t>& bytes, const McapMessage& message,
                     std::span<const std::uint8_t> data) {
   constexpr std::size_t kFieldBytes = 22;  // before the payload
-  FieldWriter writer{ByteWriter(bytes)};
-  writer.bytes.u8(static_cast<std::uint8_t>(McapOpcode::kMessage)).u64(kFieldBytes + data.size());
-  fields(writer, message);
-  writer.bytes.raw(data);
+  ByteWriter writer(bytes);
+  writer.u8(static_cast<std::uint8_t>(McapOpcode::kMessage)).u64(kFieldBytes + data.size());
+  fields(FieldWriter{writer}, message);
+  writer.raw(data);
 }
 
 McapHeader parse_header(std::span<const std::uint8_t> content) { return read<McapHeader>(content); }
@@ -142,10 +142,10 @@ McapChannel parse_channel(std::span<const std::uint8_t> content) {
 }
 
 McapMessage parse_message(std::span<const std::uint8_t> content) {
-  FieldReader reader{ByteReader(content)};
+  ByteReader reader(content);
   McapMessage message;
-  fields(reader, message);
-  message.data.assign(reader.bytes.rest().begin(), reader.bytes.rest().end());
+  fields(FieldReader{reader}, message);
+  message.data.assign(reader.rest().begin(), reader.rest().end());
   return message;
 }
 
