@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "modules/bus/byte_cursor.h"
+#include "modules/bus/secured_words.h"
 #include "modules/messages/message_types.h"
 
 namespace palpate::bus {
@@ -33,9 +34,6 @@ enum Kind : std::uint8_t {
   kHeartbeatFrag = 0x13,
   kData = 0x15,
   kDataFrag = 0x16,
-  kSecureBody = 0x30,  // DDS Security 1.1, section 7.3.6
-  kSecurePrefix = 0x31,
-  kSecurePostfix = 0x32,
 };
 
 enum Flag : std::uint8_t {
@@ -229,14 +227,6 @@ PacketFault at_least(const Submessage& message, std::size_t bytes) {
   return message.content.size() < bytes ? PacketFault::kLength : PacketFault::kNone;
 }
 
-// In front: transformation and key, session and initialisation vector; behind: authentication
-// codes.
-PacketFault check_secure(const Submessage& message) {
-  constexpr std::size_t kLength = 4, kAround = 20;
-  if (!message.rules.secured) return PacketFault::kKind;
-  return at_least(message, message.kind == kSecureBody ? kLength : kAround);
-}
-
 // Whether it is from a writer of a topic, or to one.
 bool is_of_topic(const Submessage& message) {
   const bool data = message.kind == kData || message.kind == kDataFrag;
@@ -275,12 +265,9 @@ PacketFault check(const Submessage& message) {
       return check_data(message);
     case kDataFrag:
       return check_data_frag(message);
-    case kSecureBody:
-    case kSecurePrefix:
-    case kSecurePostfix:
-      return check_secure(message);
     default:
-      return PacketFault::kKind;
+      return message.rules.secured && SecuredWords::is_one(message.kind) ? PacketFault::kNone
+                                                                         : PacketFault::kKind;
   }
 }
 
@@ -317,7 +304,8 @@ const char* text_of(PacketFault fault) {
                               "a broken list of parameters",
                               "words in another participant's name",
                               "a sample without this session's token",
-                              "words on a topic that are not encrypted"};
+                              "words on a topic that are not encrypted",
+                              "encrypted words that are not whole"};
   return kTexts.at(static_cast<std::size_t>(fault));
 }
 
@@ -326,6 +314,7 @@ FilteredPacket filter_packet(Bytes packet, const SampleRules& rules,
   if (!is_rtps(packet)) return {{}, PacketFault::kHeader};
   PacketFault last = PacketFault::kNone;
   kept.clear();
+  SecuredWords secured;
   std::size_t sound = kHeaderBytes;  // bytes from the beginning that lost nothing
   for (Bytes rest = packet.subspan(kHeaderBytes); !rest.empty();) {
     const std::optional<std::size_t> size = size_of(rest);
@@ -334,6 +323,7 @@ FilteredPacket filter_packet(Bytes packet, const SampleRules& rules,
     const Submessage message{rest[0], rest[1],
                              rest.subspan(kSubmessageHeaderBytes, *size - kSubmessageHeaderBytes),
                              packet.subspan(kPrefixAt, kPrefixBytes), rules};
+    if (rules.secured && !secured.follows(rest.first(*size))) return {{}, PacketFault::kSecured};
     const PacketFault fault = vendor ? PacketFault::kNone : check(message);
     if (fault != PacketFault::kNone) last = fault;
     if (fault != PacketFault::kNone && fault != PacketFault::kGap) return {{}, fault};
@@ -348,6 +338,7 @@ FilteredPacket filter_packet(Bytes packet, const SampleRules& rules,
     }
     rest = rest.subspan(*size);
   }
+  if (!secured.complete()) return {{}, PacketFault::kSecured};
   const Bytes passed = kept.empty() ? packet.first(sound) : Bytes(kept);
   return {passed.size() > kHeaderBytes ? passed : Bytes(), last};
 }

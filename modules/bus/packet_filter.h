@@ -21,6 +21,7 @@ enum class PacketFault {
   kIdentity,    ///< discovery of another participant than the packet's own, or its name taken
   kToken,       ///< a sample of another session
   kPlain,       ///< of a topic, and not encrypted
+  kSecured,     ///< encrypted words without their beginning or end, or with other lengths
 };
 const char* text_of(PacketFault fault);  ///< one line, without a full stop
 

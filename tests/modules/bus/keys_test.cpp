@@ -2,40 +2,23 @@
 
 #include <sys/stat.h>
 
-#include <cstdlib>
 #include <thread>
 
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
-#include "tests/modules/bus/loopback.h"
+#include "tests/modules/bus/keyed_process.h"
 #include "tests/scratch_folder.h"
 
 namespace palpate::bus {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::keyed_process;
 using testing::own_options;
 using testing::take_soon;
 using testing::wait_until;
 
 constexpr std::chrono::hours kHour(1);
-
-/// A process of a role with the keys of a folder; an empty one: without keys.
-std::unique_ptr<DdsBus> process(const fs::path& keys, const char* role, const BusOptions& options) {
-  if (!keys.empty()) ::setenv("PALPATE_KEYS", keys.c_str(), 1);
-  ::setenv("PALPATE_ROLE", role, 1);
-  std::unique_ptr<DdsBus> bus;
-  try {
-    bus = std::make_unique<DdsBus>(options);
-  } catch (...) {
-    ::unsetenv("PALPATE_KEYS");
-    ::unsetenv("PALPATE_ROLE");
-    throw;
-  }
-  ::unsetenv("PALPATE_KEYS");
-  ::unsetenv("PALPATE_ROLE");
-  return bus;
-}
 
 template <class F>
 std::string told(const F& f) {
@@ -50,8 +33,8 @@ std::string told(const F& f) {
 /// Haptics says forces, a viewer hears them.
 struct Felt {
   Felt(const fs::path& keys, const BusOptions& options)
-      : haptics(process(keys, "haptics", options)),
-        viewer(process(keys, "viewer", options)),
+      : haptics(keyed_process(keys, "haptics", options)),
+        viewer(keyed_process(keys, "viewer", options)),
         forces(haptics->writer(kHapticForce)),
         heard(viewer->reader(kHapticForce)) {}
   bool matched() {
@@ -121,10 +104,10 @@ TEST_CASE("keys: files are their owner's alone, the authority's key is not among
 TEST_CASE("keys: what is missing is named", "[bus]") {
   // Oracle: the texts.
   const ScratchFolder folder;
-  CHECK(told([&] { process(folder.path(), "haptics", own_options()); }) ==
+  CHECK(told([&] { keyed_process(folder.path(), "haptics", own_options()); }) ==
         "keys: " + (folder / "authority.pem").string() +
             ": No such file or directory; `palpate keys` makes them");
-  CHECK(told([&] { process(folder.path(), "nobody", own_options()); }) ==
+  CHECK(told([&] { keyed_process(folder.path(), "nobody", own_options()); }) ==
         "keys: there is no role 'nobody'");
 }
 
@@ -134,8 +117,8 @@ TEST_CASE("keys: roles of one session hear each other, messages of many datagram
   const fs::path keys = folder / "keys";
   make_keys(keys, kHour);
   const BusOptions options = own_options();
-  const auto deformation = process(keys, "deformation", options);
-  const auto collision = process(keys, "collision", options);
+  const auto deformation = keyed_process(keys, "deformation", options);
+  const auto collision = keyed_process(keys, "collision", options);
   auto writer = deformation->writer(kNodePositions);
   auto reader = collision->reader(kNodePositions);
   REQUIRE(
@@ -158,8 +141,8 @@ TEST_CASE("keys: a role writes and reads what is its own", "[bus]") {
   const fs::path keys = folder / "keys";
   make_keys(keys, kHour);
   const BusOptions options = own_options();
-  const auto haptics = process(keys, "haptics", options);
-  const auto viewer = process(keys, "viewer", options);
+  const auto haptics = keyed_process(keys, "haptics", options);
+  const auto viewer = keyed_process(keys, "viewer", options);
   CHECK(told([&] { haptics->writer(kHapticForce); }) == "accepted");
   CHECK(told([&] { haptics->writer(kNodePositions); }) ==
         "DDS refused a writer of node_positions: role haptics may have none");
@@ -177,7 +160,7 @@ TEST_CASE("keys: without keys nothing is read or written", "[bus]") {
   const BusOptions options = own_options();
   Felt felt(folder / "keys", options);
   REQUIRE(felt.matched());
-  const auto stranger = process({}, "haptics", options);
+  const auto stranger = keyed_process({}, "haptics", options);
   check_shut_out(felt, *stranger, *stranger);
 }
 
@@ -189,8 +172,8 @@ TEST_CASE("keys: with those of another session nothing is read or written", "[bu
   const BusOptions options = own_options();
   Felt felt(folder / "keys", options);
   REQUIRE(felt.matched());
-  const auto listener = process(folder / "others", "viewer", options);
-  const auto speaker = process(folder / "others", "haptics", options);
+  const auto listener = keyed_process(folder / "others", "viewer", options);
+  const auto speaker = keyed_process(folder / "others", "haptics", options);
   check_shut_out(felt, *listener, *speaker);
 }
 
@@ -204,13 +187,13 @@ TEST_CASE("keys: with expired ones of the session nothing is read or written", "
   const Validity validity = valid_from_now(kShort);
   write_keys(folder / "old", authority, validity);
   const BusOptions options = own_options();
-  const auto listener = process(folder / "old", "viewer", options);
-  const auto speaker = process(folder / "old", "haptics", options);
+  const auto listener = keyed_process(folder / "old", "viewer", options);
+  const auto speaker = keyed_process(folder / "old", "haptics", options);
   std::this_thread::sleep_until(validity.to + std::chrono::seconds(1));
   Felt felt(folder / "keys", options);
   REQUIRE(felt.matched());
   check_shut_out(felt, *listener, *speaker);
-  CHECK(told([&] { process(folder / "old", "viewer", options); }) ==
+  CHECK(told([&] { keyed_process(folder / "old", "viewer", options); }) ==
         "keys: " + (folder / "old/viewer.pem").string() + ": expired at " + text_of(validity.to) +
             "; `palpate keys` makes new ones");
 }

@@ -165,16 +165,15 @@ TEST_CASE("packet filter: with keys, words on topics come encrypted or not at al
     CHECK(fault_of(words, false) == PacketFault::kNone);
   }
   CHECK(fault_of(announcement(kSomebody), true) == PacketFault::kNone);
-  const auto secret = [](std::uint8_t kind, std::size_t bytes) {
-    return submessage(kind, 1, Content().raw(Bytes(bytes)));
-  };
-  const Bytes sound = joined({header(), secret(0x31, 20), secret(0x30, 100), secret(0x32, 20)});
+  const Bytes word = secured_word();
+  const Bytes sound = joined({header(), timestamp(), word, word});
   CHECK(filtered(sound, true).packet == sound);
   CHECK(filtered(sound, false).fault == PacketFault::kKind);
-  CHECK(fault_of(secret(0x31, 19), true) == PacketFault::kLength);
-  CHECK(fault_of(secret(0x30, 3), true) == PacketFault::kLength);
-  CHECK(fault_of(secret(0x32, 19), true) == PacketFault::kLength);
-  CHECK(fault_of(secret(0x33, 100), true) == PacketFault::kKind);  // whole packets: nobody of ours
+  CHECK(fault_of(short_of(word), true) == PacketFault::kLength);
+  CHECK(fault_of(Bytes(word.begin() + 24, word.end()), true) == PacketFault::kSecured);
+  CHECK(fault_of(Bytes(word.begin(), word.end() - 24), true) == PacketFault::kSecured);
+  CHECK(fault_of(submessage(0x33, 1, Content().raw(Bytes(100))), true) ==
+        PacketFault::kKind);  // whole packets: nobody of ours
 }
 
 TEST_CASE("packet filter: the end of a key is left out, and is no fault", "[bus]") {

@@ -135,6 +135,12 @@ inline Bytes acknack(std::int64_t base, std::uint32_t bits) {
                     Content().entity(kUserReader).entity(kUserWriter).set(base, bits).four(1));
 }
 inline Bytes timestamp() { return submessage(9, 1, Content().four(1).four(2)); }
+/// An encrypted sub-message of so many bytes, with one code for all who read it.
+inline Bytes secured_word(std::uint8_t bytes = 96) {
+  return joined({submessage(0x31, 1, Content().raw(Bytes(20))),
+                 submessage(0x30, 1, Content().raw({0, 0, 0, bytes}).raw(Bytes(bytes))),
+                 submessage(0x32, 1, Content().raw(Bytes(20)))});
+}
 /// What Fast DDS 2.9.1 ends every packet with.
 inline Bytes statistics() { return submessage(0x80, 1, Content().raw(Bytes(56))); }
 /// The 84 bytes that end every process of a domain: the same, with four bytes behind it.
