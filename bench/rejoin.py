@@ -21,6 +21,7 @@ import numpy as np  # noqa: E402
 import palpate  # noqa: E402
 
 KILLS = 4  # of a session: one that fails more often in a row is given up
+PATIENCE = 10  # for the first word of each topic [s]: the machine may be busy
 HELD = """palpate_scene: 1
 organs:
   - {name: stomach, mesh: {file: %s}, tissue: {youngs_modulus_pa: 30e3}, springs: {inner_ratio: 0.5},
@@ -32,11 +33,11 @@ probes:
 
 
 def force(live):
-    return float(np.linalg.norm(live.latest("haptic_force", 0)["force_n"]))
+    return float(np.linalg.norm(live.latest("haptic_force", 0, timeout_s=PATIENCE)["force_n"]))
 
 
 def status(live, module):
-    return live.latest("module_status", module)
+    return live.latest("module_status", module, timeout_s=PATIENCE)
 
 
 def wait(condition, timeout=20.0):
@@ -84,11 +85,13 @@ def measure(module, how, repeats, folder):
         name = f"rejoin{os.getpid()}x{len(times)}{module}"
         words = [ROOT / "build/release/bin/palpate", "run", scene, "--headless", "--session", name, "--domain", "77"]
         with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
-            time.sleep(1)
-            with palpate.connect(name, 77) as live:
-                for _ in range(min(KILLS, repeats - len(times))):
-                    times.append(lose(live, module, number))
-            run.terminate()
+            try:
+                time.sleep(1)
+                with palpate.connect(name, 77) as live:
+                    for _ in range(min(KILLS, repeats - len(times))):
+                        times.append(lose(live, module, number))
+            finally:
+                run.terminate()
         wait(lambda: not leftovers(name), 3)
         if leftovers(name):
             sys.exit(f"left: {leftovers(name)}")

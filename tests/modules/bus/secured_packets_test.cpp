@@ -23,6 +23,7 @@ using testing::OverheardPacket;
 using testing::Wiretap;
 
 constexpr int kForgedBursts = 200, kForgedBurst = 50;  // 10,000 packets on each topic
+constexpr int kTellings = 20;
 constexpr std::size_t kModels = 50;  // packets that the stranger hears before he begins
 
 std::string role_that_writes(std::string_view topic) {
@@ -173,12 +174,15 @@ TEST_CASE("secured packets: nothing of a sample can be read in them", "[bus]") {
     auto writer = writing->writer(kScene);
     auto reader = reading->reader(kScene);
     SceneDescription scene;
-    scene.resolved_text = word;
-    REQUIRE(writer.write(scene));
-    REQUIRE(testing::take_soon(reader, scene));
     int told = 0;
-    for (const OverheardPacket& packet : stranger.overheard())
-      told += std::ranges::search(packet.bytes, word).empty() ? 0 : 1;
+    for (int k = 0; k < kTellings; ++k) {
+      stranger.overheard();  // forgotten: there is much else to be heard on a loopback
+      scene.resolved_text = word;
+      REQUIRE(writer.write(scene));
+      REQUIRE(testing::take_soon(reader, scene));
+      for (const OverheardPacket& packet : stranger.overheard())
+        told += std::ranges::search(packet.bytes, word).empty() ? 0 : 1;
+    }
     CHECK((told > 0) == keys.empty());
   }
 }
