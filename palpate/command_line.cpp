@@ -154,6 +154,9 @@ void add_inspect(Program& program, recording::InspectOptions& options) {
   command.add("--csv", options.csv_folder, "Folder for one CSV file per topic");
   command.add_output("--repair", options.repaired,
                      "File for what can be read of a torn or damaged recording; with its indexes");
+  command.add_output("--foxglove", options.foxglove,
+                     "File with the same samples and, beside them, what Foxglove's panels show: "
+                     "surfaces, probes, forces");
   command.flag("--json", options.json, "Print JSON");
 }
 

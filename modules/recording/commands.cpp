@@ -10,6 +10,7 @@
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/recording/foxglove_export.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/player.h"
 #include "modules/recording/repair.h"
@@ -81,6 +82,14 @@ void replay(const ReplayOptions& options, const std::function<bool()>& stop_requ
       << report.duration << " s\n";
 }
 
+void translate(const std::filesystem::path& recording, const std::filesystem::path& file,
+               std::ostream& err) {
+  const FoxgloveReport report = export_to_foxglove(recording, file);
+  err << file.string() << ": " << report.samples << " samples, and " << report.translations
+      << " messages of Foxglove's types beside them\n";
+  for (const auto& line : report.warnings) err << "warning: " << line << '\n';
+}
+
 }  // namespace
 
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err) {
@@ -94,6 +103,7 @@ int run_inspect_command(const InspectOptions& options, std::ostream& out, std::o
       for (const auto& line : report.warnings) err << "warning: " << line << '\n';
     }
     const auto& file = options.repaired.empty() ? options.recording : options.repaired;
+    if (!options.foxglove.empty()) translate(file, options.foxglove, err);
     const RecordingSummary summary = summarize(file, options.csv_folder);
     options.json ? print_json(summary, out) : print_summary(summary, out);
     for (const auto& line : summary.warnings) err << "warning: " << line << '\n';

@@ -15,10 +15,12 @@ struct InspectOptions {
   std::filesystem::path csv_folder;     ///< --csv DIR; empty: none
   bool json = false;                    ///< --json
   std::filesystem::path repaired = {};  ///< --repair OUT; empty: none
+  std::filesystem::path foxglove = {};  ///< --foxglove OUT; empty: none
 };
 
 /// Prints the recording's table to `out`; a torn file's warning and errors go to `err`. To repair
-/// it, writes what can be read to another file and prints the table of that.
+/// it, writes what can be read to another file and prints the table of that. For Foxglove, writes
+/// another file with its types beside ours.
 /// @return an exit code of core/error.h
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err);
 

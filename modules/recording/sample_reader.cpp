@@ -5,10 +5,18 @@
 #include <utility>
 
 #include "modules/core/error.h"
+#include "modules/recording/foxglove_messages.h"
 #include "modules/recording/idl_text.h"
 #include "modules/recording/recorder.h"
 
 namespace palpate::recording {
+namespace {
+
+bool is_translation(const std::string& type) {
+  return std::ranges::find(foxglove::kTypes, type) != foxglove::kTypes.end();
+}
+
+}  // namespace
 
 std::string printable(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -82,10 +90,15 @@ std::uint64_t SampleReader::file_bytes() const {
 std::optional<RecordedSample> SampleReader::next_of_part() {
   while (auto record = reader_.next()) {
     if (auto* message = std::get_if<McapMessage>(&*record)) {
+      const auto topic = topics_.find(message->channel_id);
+      if (topic == topics_.end()) continue;  // a translation
       const int channel = first_channel_ + message->channel_id;
-      return RecordedSample{topics_.at(message->channel_id), static_cast<std::uint16_t>(channel),
-                            thinned_.contains(message->channel_id),
+      return RecordedSample{topic->second,
+                            static_cast<std::uint16_t>(channel),
+                            about_.at(message->channel_id).contains(kThinned),
                             static_cast<std::int64_t>(message->log_time_ns) - to_time_of_day_ns_,
+                            message->log_time_ns,
+                            message->publish_time_ns,
                             std::move(message->data)};
     }
     if (const auto* schema = std::get_if<McapSchema>(&*record)) {
@@ -122,6 +135,7 @@ void SampleReader::read_clocks(const McapMap& session) {
 }
 
 void SampleReader::check(const McapSchema& schema) const {
+  if (is_translation(schema.name)) return;
   const auto topics = bus::all_topics();
   const auto known = std::find_if(topics.begin(), topics.end(), [&](const bus::TopicInfo& topic) {
     return topic.type->wire_name == schema.name;
@@ -136,9 +150,10 @@ void SampleReader::check(const McapSchema& schema) const {
 }
 
 void SampleReader::add(const McapChannel& channel) {
+  const auto schema = schema_names_.find(channel.schema_id);
+  if (schema != schema_names_.end() && is_translation(schema->second)) return;
   const bus::TopicInfo* topic = bus::find_topic(channel.topic);
   if (topic == nullptr) refuse("topic '" + channel.topic + "' is not one of Palpate's");
-  const auto schema = schema_names_.find(channel.schema_id);
   if (schema == schema_names_.end() || schema->second != topic->type->wire_name) {
     refuse("topic '" + channel.topic + "' must be of type '" + std::string(topic->type->wire_name) +
            "'");
@@ -148,9 +163,14 @@ void SampleReader::add(const McapChannel& channel) {
            "'; allowed: cdr");
   }
   topics_[channel.id] = topic;
-  if (channel.metadata.contains(kThinned)) thinned_.insert(channel.id);
+  about_[channel.id] = channel.metadata;
   channel_count_ =
       std::max<std::uint16_t>(channel_count_, static_cast<std::uint16_t>(channel.id + 1));
+}
+
+const McapMap& SampleReader::about_channel(std::uint16_t channel) const {
+  if (later_ && channel >= later_->first_channel_) return later_->about_channel(channel);
+  return about_.at(static_cast<std::uint16_t>(channel - first_channel_));
 }
 
 McapMap SampleReader::metadata(const std::string& name) const {

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,8 @@ struct RecordedSample {
   std::uint16_t channel = 0;          ///< one for each writer of a topic
   bool thinned = false;               ///< of its writer's samples only some are here
   std::int64_t received_time_ns = 0;  ///< monotonic clock of the recorder's host
+  std::uint64_t log_time_ns = 0;      ///< the same, on the file's clock
+  std::uint64_t publish_time_ns = 0;  ///< when its writer made it, on the file's clock
   std::vector<std::uint8_t> payload;  ///< CDR with its encapsulation header
 };
 
@@ -42,7 +43,8 @@ class SampleReader {
   /// @throws InputError as McapReader does
   explicit SampleReader(const std::filesystem::path& file);
 
-  /// The next sample; none at the end, be it regular or torn. Behind the end comes the next part,
+  /// The next sample; none at the end, be it regular or torn. Translations for Foxglove
+  /// (foxglove_export.h) are passed over. Behind the end comes the next part,
   /// if it is of the same session and was begun later; `channel` goes on counting. A part that
   /// does not even begin as a recording does is left out.
   /// @throws InputError "file: offset N: …" if the bytes are not records, a topic is not one of
@@ -51,6 +53,9 @@ class SampleReader {
 
   /// Entries of the metadata record of that name read so far; empty if there was none.
   McapMap metadata(const std::string& name) const;
+
+  /// Metadata of a sample's channel: `writer`, kThinned.
+  const McapMap& about_channel(std::uint16_t channel) const;
 
   const std::filesystem::path& file() const { return file_; }
   std::uint64_t file_bytes() const;                                 ///< with those of parts begun
@@ -84,7 +89,7 @@ class SampleReader {
   std::optional<RecordedSample> first_;  ///< read already
   std::map<std::uint16_t, std::string> schema_names_;
   std::map<std::uint16_t, const bus::TopicInfo*> topics_;  ///< by channel
-  std::set<std::uint16_t> thinned_;                        ///< channels
+  std::map<std::uint16_t, McapMap> about_;                 ///< channels
   std::map<std::string, McapMap> metadata_;
 };
 

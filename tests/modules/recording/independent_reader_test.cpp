@@ -1,53 +1,28 @@
 // Recordings as a reader that is not ours sees them: npm's @mcap/core with the omgidl parser.
 #include <catch2/catch.hpp>
-#include <cstdio>
-#include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <sstream>
 
+#include "tests/modules/recording/node_judge.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 
 namespace palpate::recording {
 namespace {
 
-std::string output_of(const std::string& command) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
-  std::string output;
-  char buffer[4096];
-  while (pipe && std::fgets(buffer, sizeof buffer, pipe.get())) output += buffer;
-  return output;
-}
-
-// Folder node_modules with the packages of scripts/node_modules; empty if there is none.
-std::string node_modules() {
-  if (output_of("node --version 2>/dev/null").empty()) return {};
-  const char* named = std::getenv("PALPATE_NODE_MODULES");
-  const std::filesystem::path folder =
-      named != nullptr ? named : PALPATE_SOURCE_DIR "/out/node_modules";
-  const bool complete =
-      std::filesystem::exists(folder / "@mcap/core") && std::filesystem::exists(folder / "fzstd");
-  return complete ? folder.string() : std::string();
-}
-
 std::string judged(const std::filesystem::path& file, const std::string& modules) {
-  return output_of("node " PALPATE_SOURCE_DIR "/tests/modules/recording/read_mcap.mjs " +
-                   file.string() + " " + modules + " 2>&1");
+  return testing::judged_by("read_mcap.mjs", file, modules);
 }
 
 constexpr Clocks kClocks{0, 1'700'000'000'000'000'000};
-
-constexpr const char* kSkipped =
-    "SKIPPED: node, or the packages that scripts/node_modules gets, are missing\n";
 
 }  // namespace
 
 TEST_CASE("independent reader: decodes recordings through their indexes, by their own schemas") {
   // Oracle: @mcap/core and @foxglove/omgidl-serialization, which share no code with ours.
-  const std::string modules = node_modules();
+  const std::string modules = testing::node_modules();
   if (modules.empty()) {
-    std::cout << kSkipped;
+    std::cout << testing::kNoNode;
     return;
   }
   const ScratchFolder folder;
@@ -81,9 +56,9 @@ TEST_CASE("independent reader: decodes recordings through their indexes, by thei
 
 TEST_CASE("independent reader: finds every sample of many chunks, in order of time") {
   // Oracle: the indexed reader of @mcap/core; the numbers of the samples that were recorded.
-  const std::string modules = node_modules();
+  const std::string modules = testing::node_modules();
   if (modules.empty()) {
-    std::cout << kSkipped;
+    std::cout << testing::kNoNode;
     return;
   }
   const ScratchFolder folder;
