@@ -6,6 +6,6 @@ function(palpate_data name folder)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/palpate)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/share/palpate/${name} SYMBOLIC)
   list(TRANSFORM ARGN PREPEND "PATTERN;" OUTPUT_VARIABLE patterns)
-  install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/${name}
+  install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/${name} USE_SOURCE_PERMISSIONS
           COMPONENT programs FILES_MATCHING ${patterns})
 endfunction()
