@@ -36,6 +36,8 @@ class MadeNetwork {
 
   /// The words that let a program run on a host, before its own: {"/usr/bin/nsenter", "--net=…"}.
   std::vector<std::string> on(std::size_t host) const;
+  /// A UDP socket of this program that is on a host; whoever asked closes it.
+  int socket_on(std::size_t host) const;
   static std::string address(std::size_t host) { return "10.77.0." + std::to_string(host + 1); }
 
   void set_faults(const LinkFaults& faults);
