@@ -103,6 +103,28 @@ class RunningSession {
     return wait([&](const Heard& heard) { return heard.force.force.norm() > force; });
   }
 
+  /// The same, and until the organ rests. @returns the force then [N]; 0: it was not felt
+  double rest_pressed(double force) {
+    if (!press(force)) return 0;
+    listen_for(1);
+    return heard_.force.force.norm();
+  }
+
+  void listen_for(double seconds) {
+    wait([](const Heard&) { return false; }, seconds);
+  }
+
+  /// Whether all modules have refused more packets than that, and go on.
+  bool all_go_on_refusing(std::uint64_t packets) {
+    return std::ranges::all_of(children_, [&](const auto& child) {
+      const std::string& name = child.first;
+      const bool refused = wait(
+          [&](const Heard& heard) { return heard.modules.at(name).packets_refused > packets; });
+      return refused && !child.second->ended().has_value() &&
+             heard_.modules.at(name).state == ModuleState::kRunning;
+    });
+  }
+
   void kill(const std::string& name) {
     children_.at(name)->signal(SIGKILL);
     wait_until([&] { return children_.at(name)->ended().has_value(); });
