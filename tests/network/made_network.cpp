@@ -40,37 +40,39 @@ bool succeeds(const std::string& command) {
   return std::system((command + " > /dev/null 2>&1").c_str()) == 0;
 }
 
-void send_descriptor(int socket, int descriptor) {
+/// A message of one byte with room for a descriptor beside it.
+struct DescriptorMessage {
   char byte = 0;
   iovec data{&byte, 1};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
   msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  cmsghdr* header = CMSG_FIRSTHDR(&message);
-  header->cmsg_level = SOL_SOCKET;
-  header->cmsg_type = SCM_RIGHTS;
-  header->cmsg_len = CMSG_LEN(sizeof(int));
-  std::memcpy(CMSG_DATA(header), &descriptor, sizeof descriptor);
-  if (sendmsg(socket, &message, 0) < 0) _exit(3);
+
+  DescriptorMessage() {
+    message.msg_iov = &data;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+  }
+  DescriptorMessage(const DescriptorMessage&) = delete;
+  DescriptorMessage& operator=(const DescriptorMessage&) = delete;
+  cmsghdr* header() { return CMSG_FIRSTHDR(&message); }
+};
+
+void send_descriptor(int socket, int descriptor) {
+  DescriptorMessage with;
+  with.header()->cmsg_level = SOL_SOCKET;
+  with.header()->cmsg_type = SCM_RIGHTS;
+  with.header()->cmsg_len = CMSG_LEN(sizeof(int));
+  std::memcpy(CMSG_DATA(with.header()), &descriptor, sizeof descriptor);
+  if (sendmsg(socket, &with.message, 0) < 0) _exit(3);
 }
 
 int receive_descriptor(int socket) {
-  char byte = 0;
-  iovec data{&byte, 1};
-  alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
-  msghdr message{};
-  message.msg_iov = &data;
-  message.msg_iovlen = 1;
-  message.msg_control = control;
-  message.msg_controllen = sizeof control;
-  if (recvmsg(socket, &message, MSG_CMSG_CLOEXEC) <= 0) return -1;
-  const cmsghdr* header = CMSG_FIRSTHDR(&message);
-  if (header == nullptr || header->cmsg_type != SCM_RIGHTS) return -1;
+  DescriptorMessage with;
+  if (recvmsg(socket, &with.message, MSG_CMSG_CLOEXEC) <= 0) return -1;
+  if (with.header() == nullptr || with.header()->cmsg_type != SCM_RIGHTS) return -1;
   int descriptor = -1;
-  std::memcpy(&descriptor, CMSG_DATA(header), sizeof descriptor);
+  std::memcpy(&descriptor, CMSG_DATA(with.header()), sizeof descriptor);
   return descriptor;
 }
 
