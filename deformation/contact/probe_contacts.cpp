@@ -37,6 +37,7 @@ void ProbeContacts::reset() {
 }
 
 void ProbeContacts::forget_contacts() {
+  searched_ = false;
   contacts_.clear();
   near_.clear();
   gentle_.clear();
@@ -52,6 +53,7 @@ void ProbeContacts::set_pose(const Pose& pose) {
 void ProbeContacts::set_contacts(std::span<const Contact> newest) {
   std::swap(previous_contacts_, contacts_);
   contacts_.clear();
+  searched_ = true;
   for (const Contact& contact : newest) {
     CarriedContact& carried = contacts_.emplace_back(contact);
     carried.behind = core_ && is_behind(contact);
@@ -127,14 +129,15 @@ void ProbeContacts::note_begun() {
   std::erase_if(near_, [&](const Near& n) { return !n.watched && !among(contacts_, n.organ); });
   std::erase_if(begun_, [&](std::uint32_t organ) { return !among(contacts_, organ); });
   for (const CarriedContact& contact : contacts_) {
-    const bool known = std::ranges::find(begun_, contact.organ) != begun_.end();
+    const bool known =
+        std::ranges::find(begun_, contact.organ) != begun_.end() || is_kept_outside(contact.organ);
     if (!known && !among(previous_contacts_, contact.organ)) begun_.push_back(contact.organ);
   }
 }
 
 /// Bounds how fast an organ's penetration is undone if it was not seen coming: all rows together
 /// push as one motion would, along their mean normal. Velocities come to it within kGentleRise:
-/// tissue that swings is not stopped at a blow.
+/// tissue that swings is not stopped at a blow. Where the probe itself moves on, tissue goes along.
 /// @param rows  of the organ, at the beginning of a sub-step of h
 void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, double h,
                               std::span<ContactRow> rows) {
@@ -146,10 +149,11 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
   }
   auto gentle = std::ranges::find(gentle_, organ, &GentleOrgan::organ);
   if (std::erase(begun_, organ) > 0 && gentle == gentle_.end() && deepest > kSeenDepth + way()) {
-    gentle = gentle_.insert(gentle_.end(), {organ, 0});
+    gentle = gentle_.insert(gentle_.end(), GentleOrgan{organ});
   }
   if (gentle == gentle_.end()) return;
   gentle->time += h;
+  gentle->core_inside |= core_ && near_of(organ).inside;
   if (deepest < kGentleDepth || gentle->time > kGentleTime) {
     gentle_.erase(gentle);
     return;
@@ -157,10 +161,11 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
   const Vec3 push = std::min(kGentleSpeed, deepest / kGentleEnd) * outward.normalized();
   const double change = std::min(1.0, h / kGentleRise);
   for (ContactRow& row : rows) {
-    Vec3 velocity = -row.probe_velocity;
+    Vec3 velocity = Vec3::Zero();
     for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
     const double speed = std::max(0.0, row.normal.dot(push));
-    const double approach = std::max(row.normal.dot(velocity), -speed);
+    const double tissue = row.normal.dot(velocity), probe = row.normal.dot(row.probe_velocity);
+    const double approach = std::max(std::min(tissue, tissue - probe), -speed);
     row.gap = std::max(row.gap, h * (approach - change * (approach + speed)));
   }
 }
@@ -172,6 +177,7 @@ bool ProbeContacts::begin(double period) {
   start_ = target_;
   contacts_.clear();
   near_.clear();
+  searched_ = false;
   return false;
 }
 
@@ -225,11 +231,25 @@ void ProbeContacts::look_around(std::uint32_t organ, SurfaceWalk& surface, const
   near.crossed = near.watched = false;
   near.triangles.clear();
   for (const NearTriangle& found : found_) {
-    near.watched |= found.pair.distance <= core_->radius + kWatched;
+    near.watched |= found.pair.distance <= core_->radius + kWatched + way();
     near.triangles.push_back(found.index);
     const bool touched = found.facing > 0 && found.pair.distance <= core_->radius + kTouched;
     if (!near.inside && touched) contact_on(organ, found.index);
   }
+}
+
+/// A probe that starts in a hurry reaches the wall before the next search does.
+void ProbeContacts::watch_from_afar(std::uint32_t organ, SurfaceWalk& surface,
+                                    const OrganState& state, const Pose& pose) {
+  const Vec3 a = pose.to_world(core_->a), b = pose.to_world(core_->b);
+  const std::uint32_t node = surface.nearest_node(a, b, state.positions);
+  surface.find(a, b, state.positions, surface.around(node), 0, found_);
+  const bool clear = std::ranges::all_of(found_, [&](const NearTriangle& found) {
+    return found.pair.distance > core_->radius && found.facing > 0;
+  });
+  if (!clear) return;
+  Near& near = near_of(organ);
+  for (const NearTriangle& found : found_) near.triangles.push_back(found.index);
 }
 
 bool ProbeContacts::measure_again(const SurfaceWalk& surface, const OrganState& state,
@@ -270,7 +290,11 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
                                 double h, double fraction, std::vector<ContactRow>& rows) {
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   const std::size_t first = rows.size();
-  if (!has_contacts(organ) && !may_cross(organ)) return;
+  const bool begins = fraction * period_ < 1.5 * h;
+  if (core_ && searched_ && begins && !has_contacts(organ) && !knows(organ)) {
+    watch_from_afar(organ, surface, state, before);
+  }
+  if (!has_contacts(organ) && !knows(organ)) return;
   if (core_) look_around(organ, surface, state, before);
   const bool inside = core_ && near_of(organ).inside;
   for (CarriedContact& contact : contacts_) {
@@ -292,7 +316,8 @@ bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   take_seeds(near_of(organ));
   // A core on its gentle way out may swing back in; it is not kept from it at a blow.
-  const bool gentle = std::ranges::find(gentle_, organ, &GentleOrgan::organ) != gentle_.end();
+  const auto out = std::ranges::find(gentle_, organ, &GentleOrgan::organ);
+  const bool gentle = out != gentle_.end() && out->core_inside;
   bool crossed = false;
   for (int end_of_core = 0; end_of_core < (core_->is_ball() ? 1 : 2); ++end_of_core) {
     const Vec3& tip = end_of_core == 0 ? core_->a : core_->b;
@@ -349,9 +374,19 @@ bool ProbeContacts::has_contacts(std::uint32_t organ) const {
   return std::ranges::find(contacts_, organ, &CarriedContact::organ) != contacts_.end();
 }
 
+bool ProbeContacts::knows(std::uint32_t organ) const {
+  return std::ranges::find(near_, organ, &Near::organ) != near_.end();
+}
+
 bool ProbeContacts::is_watched(std::uint32_t organ) const {
   const auto at = std::ranges::find(near_, organ, &Near::organ);
   return at != near_.end() && at->watched;
+}
+
+/// A wall whose every sub-step is looked at is seen coming, whatever searches found meanwhile.
+bool ProbeContacts::is_kept_outside(std::uint32_t organ) const {
+  const auto at = std::ranges::find(near_, organ, &Near::organ);
+  return at != near_.end() && at->watched && !at->inside;
 }
 
 bool ProbeContacts::touches(std::uint32_t organ) const {

@@ -35,7 +35,8 @@ class ProbeContacts {
  public:
   /// A round probe's rows are those of all tissue nearer to it than this [m].
   static constexpr double kTouched = 1e-3;
-  /// Tissue this near is watched even when a search, which was earlier, found it out of reach [m].
+  /// Tissue nearer than this and the way of an advance is watched even when a search, which was
+  /// earlier, found it out of reach [m].
   static constexpr double kWatched = 0.03;
   static constexpr double kSeenDepth = 1e-3;    ///< [m]
   static constexpr double kGentleRise = 0.03;   ///< to the speed of a gentle push [s]
@@ -101,11 +102,14 @@ class ProbeContacts {
     /// pass: where a wall is folded through itself the nearest triangle tells nothing.
     bool inside = true;
     bool crossed = false;                  ///< in the sub-step as it was last taken
-    bool watched = false;                  ///< nearer than kWatched
+    bool watched = false;                  ///< nearer than kWatched and the way of the advance
     std::vector<std::uint32_t> triangles;  ///< the nearest among them
   };
   Near& near_of(std::uint32_t organ);
   void take_seeds(const Near& near);
+  /// Where the probe is clear of an organ that searches found out of reach.
+  void watch_from_afar(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
+                       const Pose& pose);
   /// Looks around the core; what it touches and has no contact gets one.
   void look_around(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                    const Pose& pose);
@@ -123,7 +127,9 @@ class ProbeContacts {
   double way() const { return (target_.position - start_.position).norm(); }
   bool is_behind(const Contact& contact) const;
   bool has_contacts(std::uint32_t organ) const;
+  bool knows(std::uint32_t organ) const;  ///< what it is near there
   bool is_watched(std::uint32_t organ) const;
+  bool is_kept_outside(std::uint32_t organ) const;
   void note_begun();
   void be_gentle(std::uint32_t organ, const OrganState& state, double h,
                  std::span<ContactRow> rows);
@@ -131,6 +137,7 @@ class ProbeContacts {
   double friction_;
   std::optional<geometry::RoundedSegment> core_;
   bool placed_ = false;
+  bool searched_ = false;  ///< a search has told of it since it was placed, jumped or fell silent
   Pose start_, target_;
   double period_ = 0;
   std::vector<CarriedContact> contacts_, previous_contacts_;
@@ -139,7 +146,8 @@ class ProbeContacts {
   std::vector<std::uint32_t> seeds_;  ///< buffer
   struct GentleOrgan {
     std::uint32_t organ = 0;
-    double time = 0;  ///< since the first contact [s]
+    double time = 0;           ///< since the first contact [s]
+    bool core_inside = false;  ///< at the start of a sub-step since then
   };
   std::vector<GentleOrgan> gentle_;
   std::vector<std::uint32_t> begun_;  ///< organs first touched by the newest contacts

@@ -129,6 +129,23 @@ std::uint32_t SurfaceWalk::nearest_from(const Vec3& a, const Vec3& b,
   return nearest;
 }
 
+std::uint32_t SurfaceWalk::nearest_node(const Vec3& a, const Vec3& b,
+                                        std::span<const Vec3> positions) const {
+  const Vec3 along = b - a;
+  const double length = std::max(along.squaredNorm(), kDirectionless * kDirectionless);
+  std::uint32_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint32_t i = 0; i < body_.surface_node_count; ++i) {
+    const Vec3 from_a = positions[i] - a;
+    const double at = std::clamp(from_a.dot(along) / length, 0.0, 1.0);
+    const double squared = (from_a - at * along).squaredNorm();
+    if (squared >= least) continue;
+    least = squared;
+    nearest = i;
+  }
+  return nearest;
+}
+
 void SurfaceWalk::find(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
                        std::span<const std::uint32_t> seeds, double reach,
                        std::vector<NearTriangle>& near) {

@@ -39,6 +39,9 @@ class SurfaceWalk {
   NearTriangle triangle_near(std::uint32_t triangle, const Vec3& a, const Vec3& b,
                              std::span<const Vec3> positions) const;
 
+  /// Of all surface nodes the one nearest to the core a–b: a look at each.
+  std::uint32_t nearest_node(const Vec3& a, const Vec3& b, std::span<const Vec3> positions) const;
+
   /// Downhill from the seed nearest to the core a–b, then all triangles within `reach` [m] that are
   /// connected with where that ends or with a seed, and that one whatever its distance. Ascending.
   void find(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,

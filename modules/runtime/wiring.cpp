@@ -85,7 +85,9 @@ double rate_of(std::string_view name, const scene::Scene& scene) {
 }
 
 double input_stale_after(const scene::Scene& scene) {
-  return std::max(kInputStaleAfter, scene.haptics.stale_after);
+  constexpr double kPeriods = 2;  // of the writers of probe states and contacts
+  const double slowest = std::min(scene.rates.haptics, scene.rates.collision);
+  return std::max({kInputStaleAfter, scene.haptics.stale_after, kPeriods / slowest});
 }
 
 InputRule::InputRule(const scene::Scene& scene, std::string_view module)

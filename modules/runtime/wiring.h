@@ -68,7 +68,7 @@ class CycleGrid {
 double rate_of(std::string_view module, const scene::Scene& scene);
 
 /// Age from which probe states and contacts no longer tell the present: the scene's
-/// haptics.stale_after, but at least kInputStaleAfter, for several periods of every rate [s].
+/// haptics.stale_after, but at least kInputStaleAfter and two periods of who writes them [s].
 double input_stale_after(const scene::Scene& scene);
 
 /// Which samples a module's cycle must have.

@@ -2,13 +2,16 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <Eigen/Geometry>
 #include <ostream>
+#include <random>
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/session/contact_line.h"
 #include "studies/contact_loop/contact_loop.h"
+#include "studies/rigs/poked_organ.h"
 
 namespace palpate::contact_loop {
 namespace {
@@ -21,11 +24,65 @@ std::vector<T> or_else(const std::vector<T>& given, std::vector<T> usual) {
   return given.empty() ? usual : given;
 }
 
+/// The first is the usual one; the others are drawn where the line along y meets the organ, the
+/// same each time.
+std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3& first,
+                            int count) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : surface.nodes) box.extend(x);
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> share;
+  std::vector<Vec3> places{first};
+  while (std::ssize(places) < count) {
+    const double x = box.min().x() + share(random) * box.sizes().x();
+    const double z = box.min().z() + share(random) * box.sizes().z();
+    if (rigs::find_front(surface, x, z)) places.emplace_back(x, 0, z);
+  }
+  return places;
+}
+
 struct Sum {
   long runs = 0, inside = 0, lost = 0;
   long presses = 0, crossings = 0;  ///< of round tools
   ContactTroubles troubles;
+
+  void add(const Tool& tool, const LoopResult& result) {
+    ++runs;
+    inside += result.inside;
+    lost += result.lost;
+    troubles += result.troubles;
+    presses += tool.is_round() ? result.presses : 0;
+    crossings += result.crossings;
+  }
 };
+
+std::vector<LoopCase> loops_of(const std::vector<Tool>& tools, const std::vector<double>& speeds,
+                               const std::vector<double>& rates,
+                               const std::vector<double>& collision_rates) {
+  std::vector<LoopCase> loops;
+  for (const double rate : rates) {
+    for (const double collision_rate : collision_rates) {
+      for (const Tool& tool : tools) {
+        for (const double speed : speeds) loops.push_back({tool, speed, rate, collision_rate});
+      }
+    }
+  }
+  return loops;
+}
+
+void print_line(const std::string& scene, const Vec3& place, const LoopCase& loop,
+                const LoopResult& r, std::ostream& out) {
+  const auto* ball = std::get_if<scene::SphereShape>(&loop.tool.shape);
+  out << fmt::format(
+             "{:<23} {:4.0f} {:4.0f}  {:<7} {:>6} {:7g} {:4g} {:11g} {:9} {:6} {:6} {:11.3f} "
+             "{:12.2f} {:7} {:8} {:9} {:9} {:8}\n",
+             scene, 1e3 * place.x(), 1e3 * place.z(), loop.tool.name,
+             ball != nullptr ? fmt::format("{:g}", 1e3 * ball->radius) : "", loop.speed,
+             loop.deformation_hz, loop.collision_hz, r.searches, r.inside, r.lost, r.longest_lost,
+             1e3 * r.deepest, r.presses, r.advances, r.crossings, r.troubles.truncated,
+             r.troubles.unsolved)
+      << std::flush;
+}
 
 }  // namespace
 
@@ -57,35 +114,22 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
       if (name == "ball") tools.push_back(make_tool(name, radius));
     }
   }
-  out << "scene                   tool   r [mm] v [m/s] [Hz]  searches inside   lost longest [s] "
-         "deepest [mm] presses advances crossings truncated unsolved\n";
+  const Numbers searches = or_else(options.collision_rates, Numbers{250});
+  out << "scene                   x, z [mm]  tool   r [mm] v [m/s] [Hz] of searches  searches "
+         "inside   lost longest [s] deepest [mm] presses advances crossings truncated unsolved\n";
   Sum sum;
   for (const auto& file : files) {
     const scene::Scene scene = scene::load_scene(file);
     const session::Assets assets = session::load_assets(scene);
     const bool is_liver = scene.organs.at(0).name == "liver";
-    for (const double rate : rates) {
-      for (const Tool& tool : tools) {
-        for (const double speed : speeds) {
-          if (stop()) return kExitFailed;
-          const LoopResult r =
-              run_loop(scene, assets, is_liver ? kOnLiver : kOnStomach, {tool, speed, rate, 250});
-          const auto* ball = std::get_if<scene::SphereShape>(&tool.shape);
-          out << fmt::format(
-                     "{:<23} {:<6} {:>6} {:7g} {:4g} {:9} {:6} {:6} {:11.3f} {:12.2f} {:7} {:8} "
-                     "{:9} {:9} {:8}\n",
-                     file.stem().string(), tool.name,
-                     ball != nullptr ? fmt::format("{:g}", 1e3 * ball->radius) : "", speed, rate,
-                     r.searches, r.inside, r.lost, r.longest_lost, 1e3 * r.deepest, r.presses,
-                     r.advances, r.crossings, r.troubles.truncated, r.troubles.unsolved)
-              << std::flush;
-          ++sum.runs;
-          sum.inside += r.inside;
-          sum.lost += r.lost;
-          sum.troubles += r.troubles;
-          sum.presses += tool.is_round() ? r.presses : 0;
-          sum.crossings += r.crossings;
-        }
+    const auto places =
+        places_on(assets.organs.at(0).surface, is_liver ? kOnLiver : kOnStomach, options.places);
+    for (const Vec3& place : places) {
+      for (const LoopCase& loop : loops_of(tools, speeds, rates, searches)) {
+        if (stop()) return kExitFailed;
+        const LoopResult result = run_loop(scene, assets, place, loop);
+        print_line(file.stem().string(), place, loop, result, out);
+        sum.add(loop.tool, result);
       }
     }
   }

@@ -15,6 +15,8 @@ struct ContactLoopOptions {
   std::vector<double> radii;                  ///< of the balls [m]; empty: 0.5 to 8 mm
   std::vector<double> speeds;                 ///< [m/s]; empty: 0.05 to 2.5
   std::vector<double> rates;                  ///< of deformation [Hz]; empty: 50, 100, 250
+  std::vector<double> collision_rates;        ///< [Hz]; empty: 250
+  int places = 1;  ///< on an organ's front: the usual one, others at random
   bool quick = false;
 };
 

@@ -15,7 +15,10 @@ int main(int argc, char** argv) {
   program.add("--tool", options.tools, "Only these: ball, needle, box, blade, mesh, cone, grasper");
   program.add("--radius", options.radii, "Of the ball [m]").range(1e-4, 0.05);
   program.add("--speed", options.speeds, "Largest [m/s]").range(1e-3, 2.9);
-  program.add("--rate", options.rates, "Of deformation [Hz]").range(1.0, 1000.0);
+  program.add("--rate", options.rates, "Of deformation [Hz]").range(1.0, 2000.0);
+  program.add("--collision-rate", options.collision_rates, "Of searches [Hz]").range(1.0, 2000.0);
+  program.add("--places", options.places, "On the organ's front; from the second on at random")
+      .range(1, 1000);
   program.flag("--quick", options.quick, "A few balls: about a minute");
   return program.run(argc, argv, [&] {
     const runtime::StopSignal signal;

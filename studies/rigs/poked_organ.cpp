@@ -20,7 +20,7 @@ geometry::TriangleSurface surface_of(scene::Organ organ, std::size_t nodes) {
   return scene::load_organ(organ).surface;
 }
 
-double front_of(const geometry::TriangleSurface& surface, double x, double z) {
+std::optional<double> find_front(const geometry::TriangleSurface& surface, double x, double z) {
   std::optional<double> front;
   for (const auto& [i, j, k] : surface.triangles) {
     const Vec3 &a = surface.nodes[i], &b = surface.nodes[j], &c = surface.nodes[k];
@@ -31,6 +31,11 @@ double front_of(const geometry::TriangleSurface& surface, double x, double z) {
     const double y = a.y() + u * (b.y() - a.y()) + v * (c.y() - a.y());
     front = std::min(front.value_or(y), y);
   }
+  return front;
+}
+
+double front_of(const geometry::TriangleSurface& surface, double x, double z) {
+  const std::optional<double> front = find_front(surface, x, z);
   PALPATE_DEMAND(front.has_value());
   return *front;
 }

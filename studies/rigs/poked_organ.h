@@ -1,6 +1,8 @@
 // Organs of shipped scenes, held as their scenes hold them, poked by a sphere from the front (+y).
 #pragma once
 
+#include <optional>
+
 #include "modules/geometry/triangle_surface.h"
 #include "modules/scene/scene.h"
 
@@ -23,7 +25,9 @@ scene::Organ poked_organ(const PokedPlace& place);
 /// @throws InputError if its mesh cannot be read
 geometry::TriangleSurface surface_of(scene::Organ organ, std::size_t nodes);
 
-/// Where the line along y at (x, z) first meets the surface, from the front [m]; it must.
+/// Where the line along y at (x, z) first meets the surface, from the front [m]; none: nowhere.
+std::optional<double> find_front(const geometry::TriangleSurface& surface, double x, double z);
+/// The same; it must.
 double front_of(const geometry::TriangleSurface& surface, double x, double z);
 
 /// Adds the sphere as a probe, without friction.

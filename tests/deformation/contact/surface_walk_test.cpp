@@ -30,6 +30,11 @@ TEST_CASE("surface walk: from any seed it finds what brute force finds") {
     const auto seed =
         static_cast<std::uint32_t>(random.number(0, double(wall.model.triangles.size() - 1)));
     wall.surface.find(a, b, wall.x, std::span(&seed, 1), reach, near);
+    if (a == b) {
+      const auto to_a = [&](const Vec3& x) { return (x - a).norm(); };
+      const auto node = std::ranges::min_element(wall.x, {}, to_a) - wall.x.begin();
+      CHECK(wall.surface.nearest_node(a, b, wall.x) == node);
+    }
     double nearest = 1;
     std::size_t within = 0;
     for (std::uint32_t t = 0; t < wall.model.triangles.size(); ++t) {

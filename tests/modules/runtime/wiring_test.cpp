@@ -119,4 +119,6 @@ TEST_CASE("wiring: a scene that lets laws grow old lets probes and contacts, and
   CHECK(input_stale_after(scene) == 0.3);
   scene.haptics.stale_after = 0.005;
   CHECK(input_stale_after(scene) == kInputStaleAfter);
+  scene.rates.collision = 10;
+  CHECK(input_stale_after(scene) == Approx(0.2));
 }

@@ -8,7 +8,9 @@
 
 namespace palpate::contact_loop {
 
-TEST_CASE("contact loop command: a line for each ball and their sum, stopped, it says it failed") {
+TEST_CASE(
+    "contact loop command: a line for each ball and place and their sum, stopped, it says it "
+    "failed") {
   // Oracle: the options.
   ContactLoopOptions options;
   options.scenes = {data_file("scenes/stomach_probe.yaml")};
@@ -16,12 +18,14 @@ TEST_CASE("contact loop command: a line for each ball and their sum, stopped, it
   options.radii = {2e-3, 8e-3};
   options.speeds = {0.63};
   options.rates = {100};
+  options.collision_rates = {250};
+  options.places = 2;
   std::ostringstream out;
   CHECK(run_contact_loop(
             options, [] { return false; }, out) == kExitDone);
   const std::string said = out.str();
-  CHECK(std::count(said.begin(), said.end(), '\n') == 6);
-  CHECK(said.find("2 runs:") != std::string::npos);
+  CHECK(std::count(said.begin(), said.end(), '\n') == 8);
+  CHECK(said.find("4 runs:") != std::string::npos);
   CHECK(said.find(" 0 of them without contact") != std::string::npos);
   CHECK(run_contact_loop(
             options, [] { return true; }, out) == kExitFailed);
