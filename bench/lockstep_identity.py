@@ -33,7 +33,7 @@ def children(pid):
 def run(palpate, scene, mode, duration, record=None, stops=None):
     """@returns seconds it took, processes stopped on the way."""
     command = [palpate, "run", scene, "--duration", str(duration), *mode]
-    command += ["--record", record] if record else []
+    command += ["--record", record, "--overwrite"] if record else []
     began, stopped = time.monotonic(), 0
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     while stops and process.poll() is None:

@@ -43,7 +43,7 @@ def run(palpate, scene, duration, record=None):
     """@returns wall time [s], and the time that each child computed [s]."""
     command = [palpate, "run", scene, "--lockstep", "--headless", "--duration", str(duration),
                "--domain", str(random.Random(os.getpid()).randrange(1, 200))]
-    command += ["--record", record] if record else []
+    command += ["--record", record, "--overwrite"] if record else []
     began, computed = time.monotonic(), {}
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     while process.poll() is None:

@@ -78,7 +78,10 @@ void add_run_options(Options& command, RunOptions& options) {
   add_view_options(command, options);
   command.add("--duration", options.duration, "Seconds to run; else the scene's duration_s")
       .range(0.0, 1e6);
-  command.add_output("--record", options.record, "Recording to write (MCAP)");
+  command.add_output("--record", options.record,
+                     "Recording to write (MCAP); one that is there is replaced only with "
+                     "--overwrite");
+  command.flag("--overwrite", options.overwrite, "Replace the recording of that name");
   command.add("--record-topics", options.record_topics,
               "What it holds: all, TOPIC, or TOPIC=HZ for at most so many a second; else all in "
               "lockstep, and in real time all,node_positions=25,contact_model=25,contacts=25");

@@ -252,6 +252,19 @@ class Run {
   HangWatch hangs_;
 };
 
+void check_recording(const RunOptions& options) {
+  if (options.record.empty()) {
+    if (options.record_topics.empty() && !options.overwrite) return;
+    throw InputError(
+        fmt::format("{}: of a recording; give --record FILE, too",
+                    options.record_topics.empty() ? "--overwrite" : "--record-topics"));
+  }
+  recording::check_recording_target(options.record);
+  if (options.overwrite || !std::filesystem::exists(options.record)) return;
+  throw InputError(options.record.string() +
+                   ": is there already; give another name, or --overwrite");
+}
+
 }  // namespace
 
 void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out) {
@@ -265,7 +278,7 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
 
 int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   RunOptions options = asked;
-  if (!options.record.empty()) recording::check_recording_target(options.record);
+  check_recording(options);
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const runtime::StopSignal stop;  // or a signal would leave the folder

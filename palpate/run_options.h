@@ -30,6 +30,7 @@ struct RunOptions {
   std::vector<std::string> everywhere = {};  ///< modules of all hosts; set with `hosts`
   bool conducts = true;          ///< starts the session and ends it; else another host does
   std::filesystem::path record;  ///< recording to write; empty: none
+  bool overwrite = false;        ///< a recording that is there already
   std::vector<std::string> record_topics;  ///< as recording::TopicSelection; empty: the usual
   std::filesystem::path frames;            ///< folder for pictures; empty: none
   double frame_interval = 1;               ///< simulated, between two pictures [s]

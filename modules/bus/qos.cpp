@@ -31,6 +31,7 @@ Duration_t milliseconds(std::uint32_t ms) { return {0, ms * kNanosecondsPerMilli
 // Samples that wait for each key.
 int depth(const Profile& profile) {
   if (profile.every_sample) return kStateDepth;
+  if (profile.keep == Keep::kLongBacklog) return kLongBacklogDepth;
   return profile.keep == Keep::kBacklog ? kBacklogDepth : 1;
 }
 

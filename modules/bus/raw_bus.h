@@ -12,11 +12,15 @@ namespace palpate::bus {
 
 /// Fifty milliseconds of the fastest loop (4 kHz) and more.
 inline constexpr int kBacklogDepth = 256;
+/// A second of it: what a socket holds and hands out at once to a process that was not let run.
+inline constexpr int kLongBacklogDepth = 4096;
 
 /// Which samples wait for a reader that is busy.
 enum class Keep {
   kNewest,   ///< of each key, unless the bus keeps every sample
   kBacklog,  ///< of each key the newest kBacklogDepth
+  /// Of each key the newest kLongBacklogDepth: of small messages only, it is memory.
+  kLongBacklog,
 };
 
 struct RawSample {

@@ -20,7 +20,8 @@ using messages::Value;
 
 class Comparison {
  public:
-  explicit Comparison(const DiffOptions& options) : options_(options) {
+  Comparison(const DiffOptions& options, std::size_t most_waiting)
+      : options_(options), most_waiting_(most_waiting) {
     if (options.csv.empty()) return;
     csv_.open(options.csv);
     if (!csv_) throw std::runtime_error(options.csv.string() + ": cannot be written");
@@ -56,11 +57,24 @@ class Comparison {
     const bool valid = sample.topic->type->decode(sample.payload, message_a_) == nullptr;
     const std::string key = valid ? messages::key_text(message_a_) : std::string();
     Stream& stream = streams_[{topic, key}];
+    waiting_ += cost_of(sample);
     (stream.*side).push_back(std::move(sample));
-    if (stream.a.empty() || stream.b.empty()) return;
+    if (stream.a.empty() || stream.b.empty()) return demand_room();
     compare(topic, key, stream.a.front(), stream.b.front());
+    waiting_ -= cost_of(stream.a.front()) + cost_of(stream.b.front());
     stream.a.pop_front();
     stream.b.pop_front();
+  }
+
+  static std::size_t cost_of(const RecordedSample& sample) {
+    return sizeof sample + sample.payload.size();
+  }
+
+  void demand_room() const {
+    if (waiting_ <= most_waiting_) return;
+    throw InputError(options_.a.string() + " and " + options_.b.string() + ": more than " +
+                     std::to_string(most_waiting_ >> 20) +
+                     " MiB of samples are in one of them alone; leave topics out with --ignore");
   }
 
   void compare(const std::string& topic, const std::string& key, const RecordedSample& a,
@@ -122,6 +136,8 @@ class Comparison {
   }
 
   const DiffOptions& options_;
+  std::size_t most_waiting_;
+  std::size_t waiting_ = 0;  ///< bytes of what has no partner yet
   std::ofstream csv_;
   RecordingDifference result_;
   std::map<std::pair<std::string, std::string>, Stream> streams_;
@@ -159,10 +175,10 @@ bool RecordingDifference::equal() const {
   });
 }
 
-RecordingDifference compare(const DiffOptions& options) {
+RecordingDifference compare(const DiffOptions& options, std::size_t most_waiting) {
   check_names(options);
   SampleReader a(options.a), b(options.b);
-  Comparison comparison(options);
+  Comparison comparison(options, most_waiting);
   // In turns: of recordings of one session little waits for the other.
   for (bool more_a = true, more_b = true; more_a || more_b;) {
     auto sample_a = more_a ? a.next() : std::nullopt;

@@ -12,6 +12,10 @@
 
 namespace palpate::recording {
 
+/// Samples of one recording that wait for those of the other; more of them are not compared
+/// [bytes].
+inline constexpr std::size_t kMostWaitingToCompare = 512u << 20;
+
 struct DiffOptions {
   std::filesystem::path a, b;
   std::set<std::string, std::less<>> ignore = {};  ///< names of topics, and of fields as in idl/
@@ -46,9 +50,11 @@ struct RecordingDifference {
   bool equal() const;
 };
 
-/// @throws InputError as SampleReader does, or for a name to ignore that is none;
+/// @throws InputError as SampleReader does, for a name to ignore that is none, or where more than
+/// `most_waiting` bytes of one would have to wait for the other;
 /// std::runtime_error if the CSV file cannot be written
-RecordingDifference compare(const DiffOptions& options);
+RecordingDifference compare(const DiffOptions& options,
+                            std::size_t most_waiting = kMostWaitingToCompare);
 
 void print_difference(const RecordingDifference& difference, std::ostream& out);
 

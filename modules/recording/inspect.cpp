@@ -29,7 +29,8 @@ struct WriterSequence {
 
 class Summarizer {
  public:
-  void add(const RecordedSample& sample, bool valid) {
+  /// @param about_channel  of the sample: names its writer, who may go on in the next part
+  void add(const RecordedSample& sample, const McapMap& about_channel, bool valid) {
     TopicSummary& topic = topics_[sample.topic->name];
     const std::int64_t time = sample.received_time_ns;
     if (topic.samples == 0) {
@@ -43,7 +44,7 @@ class Summarizer {
     topic.bytes += sample.payload.size();
     if (!valid) ++topic.invalid;
     topic.thinned |= sample.thinned;
-    add_sequence(sample);
+    add_sequence(sample, about_channel);
   }
 
   void finish(RecordingSummary& summary) {
@@ -61,9 +62,12 @@ class Summarizer {
   }
 
  private:
-  void add_sequence(const RecordedSample& sample) {
+  void add_sequence(const RecordedSample& sample, const McapMap& about_channel) {
     const std::uint64_t sequence = messages::header_of(sample.payload).sequence;
-    WriterSequence& writer = writers_[{sample.topic->name, sample.channel}];
+    const auto named = about_channel.find("writer");
+    const std::string name =
+        named == about_channel.end() ? std::to_string(sample.channel) : named->second;
+    WriterSequence& writer = writers_[{sample.topic->name, name}];
     if (writer.samples == 0) writer.first = writer.last = sequence;
     writer.first = std::min(writer.first, sequence);
     writer.last = std::max(writer.last, sequence);
@@ -71,7 +75,7 @@ class Summarizer {
   }
 
   std::map<std::string_view, TopicSummary> topics_;
-  std::map<std::pair<std::string_view, std::uint16_t>, WriterSequence> writers_;
+  std::map<std::pair<std::string_view, std::string>, WriterSequence> writers_;
 };
 
 std::string entry(const McapMap& map, const std::string& key) {
@@ -95,6 +99,14 @@ std::string time_of_day(const std::string& unix_ns) {
   } catch (const std::logic_error&) {  // the recording does not say
     return "at an unknown time";
   }
+}
+
+std::string session_text(const McapMap& session) {
+  if (entry(session, "clock") == kSimulated) {
+    return "in lockstep, or in one process: times are simulated";
+  }
+  return entry(session, "session") + " in domain " + entry(session, "domain") + ", recorded " +
+         time_of_day(entry(session, "start_unix_ns"));
 }
 
 void print_row(const TopicSummary& topic, std::int64_t start_ns, std::ostream& out) {
@@ -126,7 +138,7 @@ RecordingSummary summarize(const std::filesystem::path& recording,
   while (const auto sample = reader.next()) {
     if (!start_ns) start_ns = sample->received_time_ns;
     const bool valid = sample->topic->type->decode(sample->payload, message) == nullptr;
-    summarizer.add(*sample, valid);
+    summarizer.add(*sample, reader.about_channel(sample->channel), valid);
     if (csv_folder.empty() || !valid) continue;
     if (!csv) csv.emplace(csv_folder);
     csv->add(*sample, message, *start_ns);
@@ -162,9 +174,7 @@ void print_summary(const RecordingSummary& summary, std::ostream& out) {
       << fixed(1e-6 * double(summary.file_bytes), 1) << " MB, "
       << (summary.parts > 1 ? "in " + std::to_string(summary.parts) + " parts, " : "")
       << (summary.torn ? "torn: ends at its last whole record" : "whole") << '\n'
-      << "session    " << entry(summary.session, "session") << " in domain "
-      << entry(summary.session, "domain") << ", recorded "
-      << time_of_day(entry(summary.session, "start_unix_ns")) << '\n';
+      << "session    " << session_text(summary.session) << '\n';
   if (summary.scene.empty()) {
     out << "scene      none was heard\n";
   } else {

@@ -38,7 +38,7 @@ enum class McapOpcode : std::uint8_t {
 };
 
 /// A longer record that would have to be in memory is refused; no mesh or chunk comes near it.
-inline constexpr std::uint64_t kMostRecordBytes = 1u << 30;
+inline constexpr std::uint64_t kMostRecordBytes = 256u << 20;
 /// Of a schema; ours have some thousands.
 inline constexpr std::uint64_t kMostSchemaBytes = 1u << 20;
 

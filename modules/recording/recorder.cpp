@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
@@ -67,14 +68,17 @@ SampleFile::SampleFile(const std::filesystem::path& file) : writer_(file) {
   writer_.add_metadata({kSessionMetadata,
                         {{"protocol_version", std::to_string(kProtocolVersion)},
                          {"version", runtime::version_text()},
-                         {"clock", "simulated"}}});
+                         {"clock", kSimulated}}});
   writer_.flush();
 }
 
-void SampleFile::add(const TopicSample& sample) {
+bool SampleFile::takes(const TopicSample& sample) {
+  count_lost(sample, messages::header_of(sample.payload).sequence);
+  return topics_.takes(sample);
+}
+
+void SampleFile::write(const TopicSample& sample) {
   const Header header = messages::header_of(sample.payload);
-  count_lost(sample, header.sequence);
-  if (!topics_.takes(sample)) return;
   McapMessage message;
   message.channel_id = channel_of(sample);
   message.sequence = static_cast<std::uint32_t>(header.sequence);
@@ -139,18 +143,38 @@ Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::fil
                    const TopicSelection& topics)
     : reader_(bus, [&](std::string_view topic) { return topics.has(topic); }),
       file_(file, session),
-      space_(file) {
+      space_(file),
+      thread_(
+          {[this](const TopicSample& sample) { file_.write(sample); }, [this] { end_round(); }}) {
   file_.select(topics);
 }
 
 std::string Recorder::poll() {
-  for (const TopicSample& sample : reader_.take_all()) file_.add(sample);
+  thread_.check();
+  for (const TopicSample& sample : reader_.take_all()) {
+    if (file_.takes(sample) && !thread_.add(sample)) file_.add_lost();
+  }
+  return news();
+}
+
+void Recorder::end_round() {
   file_.flush();
-  return space_.look(age(), file_.bytes_written());
+  samples_written_ = file_.statistics().message_count;
+  const std::string said = space_.look(age(), file_.bytes_written());
+  full_ = space_.full();
+  if (said.empty()) return;
+  const std::lock_guard lock(news_mutex_);
+  news_ = said;
+}
+
+std::string Recorder::news() {
+  const std::lock_guard lock(news_mutex_);
+  return std::exchange(news_, {});
 }
 
 McapMap Recorder::close() {
   poll();
+  thread_.finish();
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
   const auto seconds = [](const timeval& time) {

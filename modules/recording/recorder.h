@@ -1,15 +1,19 @@
 // Records a session: every sample of every topic, into one MCAP file (docs/recording.md).
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <mutex>
+#include <string>
 #include <utility>
 
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/session_samples.h"
 #include "modules/recording/space_watch.h"
 #include "modules/recording/topic_selection.h"
+#include "modules/recording/writing_thread.h"
 
 namespace palpate::recording {
 
@@ -21,6 +25,8 @@ inline constexpr const char* kSceneMetadata = "palpate scene";      ///< name, d
 /// Metadata `clock` of a session: the file's times are nanoseconds since 1970. Before, they were of
 /// the monotonic clock, and the entry was missing.
 inline constexpr const char* kTimeOfDay = "time of day";
+/// Of a lockstep session.
+inline constexpr const char* kSimulated = "simulated";
 
 /// One instant on two clocks [ns].
 struct Clocks {
@@ -45,7 +51,14 @@ class SampleFile {
   void select(TopicSelection topics) { topics_ = std::move(topics); }
 
   /// Leaves out what was not selected.
-  void add(const TopicSample& sample);
+  void add(const TopicSample& sample) {
+    if (takes(sample)) write(sample);
+  }
+  /// Whether it was selected; counts what is missing before it. One thread may ask while another
+  /// writes.
+  bool takes(const TopicSample& sample);
+  /// Selected or not.
+  void write(const TopicSample& sample);
   void add_metadata(const McapMetadata& metadata) { writer_.add_metadata(metadata); }
   void end_chunk() { writer_.end_chunk(); }
   void flush() { writer_.flush(); }
@@ -54,6 +67,7 @@ class SampleFile {
   std::uint64_t bytes_written() const { return writer_.bytes_written(); }
   /// Gaps in the sequence numbers of what was to be added, selected or not.
   std::uint64_t lost() const { return lost_; }
+  void add_lost() { ++lost_; }
 
  private:
   void count_lost(const TopicSample& sample, std::uint64_t sequence);
@@ -71,7 +85,7 @@ class SampleFile {
   std::string scene_digest_;
 };
 
-/// Hears a session and writes it down.
+/// Hears a session and writes it down, in a thread of its own.
 class Recorder {
  public:
   /// @param session  told in the file: what `bus` was made of
@@ -79,27 +93,37 @@ class Recorder {
   Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file,
            const TopicSelection& topics = {});
 
-  /// Writes all that has arrived. Call at least every 50 ms, or fast topics lose samples.
+  /// Takes all that has arrived. Call at least every 50 ms, or fast topics lose samples.
   /// @return what is to be said of the disk's space, mostly nothing
   /// @throws std::runtime_error naming the file and the system's reason (disk full, …)
   std::string poll();
   /// The disk has no more room: close().
-  bool full() const { return space_.full(); }
+  bool full() const { return full_; }
+  /// So far.
+  std::uint64_t samples_written() const { return samples_written_; }
 
   /// Writes what is left, and what the recorder took, and ends the file.
   /// @return that: `wall_s`, `processor_s` of this process, `samples_lost`
   McapMap close();
 
   int matched_writers() const { return reader_.matched_writers(); }
+  /// After close().
   const SampleFile& file() const { return file_; }
 
  private:
   double age() const;  ///< [s]
+  void end_round();
+  std::string news();
 
   SessionReader reader_;
   SampleFile file_;
   SpaceWatch space_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  std::atomic<bool> full_ = false;
+  std::atomic<std::uint64_t> samples_written_ = 0;
+  std::mutex news_mutex_;
+  std::string news_;
+  WritingThread thread_;  ///< uses all before
 };
 
 }  // namespace palpate::recording

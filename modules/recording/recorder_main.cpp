@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   palpate::runtime::ModuleOptions options;
   options.bus.participant_name = "recorder";
   std::filesystem::path file;
-  program.add_output("FILE", file, "the recording to write; an existing one is replaced")
+  program.add_output("FILE", file, "the recording to write; one that is there is replaced")
       .required();
   Words topics;
   program.add("--topics", topics,

@@ -5,11 +5,21 @@
 #include "modules/core/error.h"
 
 namespace palpate::recording {
+namespace {
+
+/// The fastest are small: of them a second is kept, as of the others.
+bus::Keep keep_of(const bus::TopicInfo& topic) {
+  const bool fast = topic.name == bus::kProbeState.name || topic.name == bus::kProbeInput.name ||
+                    topic.name == bus::kHapticForce.name;
+  return fast ? bus::Keep::kLongBacklog : bus::Keep::kBacklog;
+}
+
+}  // namespace
 
 SessionReader::SessionReader(bus::Bus& bus, const std::function<bool(std::string_view)>& wanted) {
   for (const bus::TopicInfo& topic : bus::all_topics()) {
     const bool heard = !wanted || wanted(topic.name);
-    readers_.push_back(heard ? bus.raw_reader(topic, bus::Keep::kBacklog) : nullptr);
+    readers_.push_back(heard ? bus.raw_reader(topic, keep_of(topic)) : nullptr);
   }
 }
 

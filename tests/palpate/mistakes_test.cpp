@@ -51,6 +51,7 @@ class Desk {
     write("tab.yaml", "palpate_scene: 1\norgans:\n\t- name: a\n");
     write("twice.yaml", "palpate_scene: 1\nduration_s: 1\nduration_s: 2\n");
     write("notes.mcap", "no recording\n");
+    write("old.mcap", "\x89MCAP0\r\n");
     moves("good.csv", 1, 1);
     moves("in_mm.csv", 1000, 1);
     moves("in_ms.csv", 1, 1000);
@@ -99,6 +100,9 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {{"run", scene, "--in-process", "--frames", "f"}, "--frames"},
       {{"run", scene, "--headless", "--only", "hapitcs"}, "hapitcs"},
       {{"run", scene, "--headless", "--record", scene}, "would be overwritten"},
+      {{"run", scene, "--headless", "--record-topics", "all"}, "give --record FILE"},
+      {{"run", scene, "--headless", "--overwrite"}, "give --record FILE"},
+      {{"run", scene, "--headless", "--record", desk.file("old.mcap")}, "is there already"},
       {{"run", scene, "extra"}, "extra"},
       {{"run", scene, "--heedless"}, "--heedless"},
       {{"run", scene, "--in-process", "--secure", desk.file(".")}, "--secure"},

@@ -80,8 +80,8 @@ TEST_CASE(
     usleep(20'000);
     kill(chosen, SIGCONT);
   };
-  REQUIRE(run(scene, {"--lockstep", "--duration", "0.5", "--record", four.string()}, stop_one) ==
-          0);
+  REQUIRE(run(scene, {"--lockstep", "--duration", "0.5", "--record", four.string(), "--overwrite"},
+              stop_one) == 0);
   CHECK(stops > 3);
   CHECK(bytes(four) == expected);
 }

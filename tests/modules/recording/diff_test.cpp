@@ -35,6 +35,16 @@ std::filesystem::path record(const std::filesystem::path& file, const Changes& c
 
 }  // namespace
 
+TEST_CASE("diff: what is in one recording alone does not fill the memory") {
+  // Oracle: the bound given; 200 samples of one organ have no partner in the other.
+  const ScratchFolder folder;
+  const auto a = record(folder / "a.mcap", {.samples = 200});
+  const auto b = record(folder / "b.mcap", {.samples = 1});
+  CHECK_THROWS_WITH(compare({a, b}, 10'000), Catch::Contains("are in one of them alone"));
+  CHECK_FALSE(compare({a, b}).equal());
+  CHECK(compare({a, a}, 10'000).equal());
+}
+
 TEST_CASE("diff: a recording equals itself, whoever wrote it and whenever it arrived") {
   // Oracle: the same samples by another writer.
   const ScratchFolder folder;

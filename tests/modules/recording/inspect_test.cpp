@@ -120,6 +120,38 @@ TEST_CASE("inspect: says what recording took, and that gaps of a thinned topic a
   CHECK_THAT(out.str(), Catch::Contains("\nrecorder   ") && Catch::Contains("thinned"));
 }
 
+TEST_CASE("inspect: what a writer said between two parts of a recording is missing") {
+  // Oracle: by hand: 1 to 3 in the first part, 8 and 9 of the same writer in the second.
+  const ScratchFolder folder;
+  const auto write = [](const std::filesystem::path& file, std::uint64_t first, std::uint64_t last,
+                        std::int64_t start_unix) {
+    SampleFile part(file, {.session = "bench"}, {0, start_unix});
+    for (std::uint64_t i = first; i <= last; ++i) {
+      part.add(raw_sample(bus::kNodePositions, node_positions(i, 1e-3, 1), std::int64_t(i) * kMs));
+    }
+    part.close();
+  };
+  write(folder / "a.mcap", 1, 3, 1'000'000'000);
+  write(folder / "a.part2.mcap", 8, 9, 2'000'000'000);
+  const RecordingSummary summary = summarize(folder / "a.mcap");
+  CHECK(summary.parts == 2);
+  REQUIRE(summary.topics.size() == 1);
+  CHECK(summary.topics[0].missing == 4);
+  CHECK(summary.topics[0].writers == 1);
+}
+
+TEST_CASE("inspect: of a lockstep recording says that its times are simulated") {
+  // Oracle: the text by hand.
+  const ScratchFolder folder;
+  SampleFile file(folder / "a.mcap");
+  file.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 1), kMs));
+  file.close();
+  std::ostringstream out;
+  print_summary(summarize(folder / "a.mcap"), out);
+  CHECK_THAT(out.str(), Catch::Contains("in lockstep, or in one process: times are simulated\n"));
+  CHECK_THAT(out.str(), !Catch::Contains("?"));
+}
+
 TEST_CASE("inspect: an empty recording has no topics and no scene") {
   // Oracle: by hand.
   const ScratchFolder folder;

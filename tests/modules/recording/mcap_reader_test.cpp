@@ -347,7 +347,7 @@ TEST_CASE("mcap reader: a record that is too long is refused, or passed over if 
     append(static_cast<std::uint8_t>(McapOpcode::kAttachment));
     CHECK_THROWS_WITH(read_all(file),
                       file.string() + ": offset " + std::to_string(place) +
-                          ": a record of 2147483648 bytes; at most 1073741824 are read");
+                          ": a record of 2147483648 bytes; at most 268435456 are read");
     const Contents contents = read_all(file, McapDamage::kSkip);
     CHECK(contents.messages.size() == kMessages + 1);
     CHECK(contents.skipped == 1);

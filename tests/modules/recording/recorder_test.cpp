@@ -60,7 +60,7 @@ TEST_CASE("recorder: writes every sample of a session, byte for byte") {
   const std::uint64_t expected = 1 + sent_probes.size() + sent_nodes.size();
   REQUIRE(wait_until([&] {
     recorder.poll();
-    return recorder.file().statistics().message_count >= expected;
+    return recorder.samples_written() >= expected;
   }));
   recorder.close();
 
