@@ -9,6 +9,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/foxglove_messages.h"
 #include "modules/recording/idl_text.h"
+#include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/recorder.h"
 #include "modules/recording/sample_reader.h"

@@ -13,6 +13,7 @@
 
 #include "modules/core/units.h"
 #include "modules/recording/csv_export.h"
+#include "modules/recording/mcap_bytes.h"
 #include "modules/recording/recorder.h"
 
 namespace palpate::recording {

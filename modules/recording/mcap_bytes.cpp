@@ -90,6 +90,17 @@ std::span<const std::uint8_t> ByteReader::take(std::size_t size) {
   return field;
 }
 
+std::string printable(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto before = static_cast<unsigned char>(i == 0 ? 0 : text[i - 1]);
+    const bool high = before == 0xC2 && byte >= 0x80 && byte < 0xA0;  // U+0080 … U+009F in UTF-8
+    if (byte < 0x20 || byte == 0x7F || high) text[i] = '?';
+    if (high) text[i - 1] = '?';
+  }
+  return text;
+}
+
 std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t before) {
   std::uint32_t crc = ~before;
   for (; bytes.size() >= kCrcSlices; bytes = bytes.subspan(kCrcSlices)) {

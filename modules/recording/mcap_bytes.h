@@ -58,6 +58,9 @@ class ByteReader {
   std::span<const std::uint8_t> bytes_;
 };
 
+/// Text of a file as a terminal may get it: '?' in place of control characters.
+std::string printable(std::string text);
+
 /// CRC-32 (polynomial 0xEDB88320, as zlib's).
 /// @param before  of the bytes that come before these: crc32(ab) = crc32(b, crc32(a))
 std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);

@@ -7,7 +7,6 @@
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_chunk.h"
 #include "modules/recording/mcap_codec.h"
-#include "modules/recording/sample_reader.h"
 
 namespace palpate::recording {
 namespace {

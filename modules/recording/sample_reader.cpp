@@ -7,6 +7,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/foxglove_messages.h"
 #include "modules/recording/idl_text.h"
+#include "modules/recording/mcap_bytes.h"
 #include "modules/recording/recorder.h"
 
 namespace palpate::recording {
@@ -17,17 +18,6 @@ bool is_translation(const std::string& type) {
 }
 
 }  // namespace
-
-std::string printable(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto before = static_cast<unsigned char>(i == 0 ? 0 : text[i - 1]);
-    const bool high = before == 0xC2 && byte >= 0x80 && byte < 0xA0;  // U+0080 … U+009F in UTF-8
-    if (byte < 0x20 || byte == 0x7F || high) text[i] = '?';
-    if (high) text[i - 1] = '?';
-  }
-  return text;
-}
 
 std::filesystem::path part_of(const std::filesystem::path& recording, int number) {
   if (number <= 1) return recording;

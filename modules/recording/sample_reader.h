@@ -24,9 +24,6 @@ struct RecordedSample {
   std::vector<std::uint8_t> payload;  ///< CDR with its encapsulation header
 };
 
-/// Text of a recording as a terminal may get it: '?' in place of control characters.
-std::string printable(std::string text);
-
 /// Metadata of a channel whose topic was recorded at most so many times a second.
 inline constexpr const char* kThinned = "at_most_hz";
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "modules/scene/about.h"
+#include "modules/scene/motion_file.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::scene {
@@ -25,8 +26,9 @@ struct Words<TrajectoryDevice::QuaternionOrder> {
 
 template <class V>
 void describe(V& v, TrajectoryDevice& device) {
-  v.field("file", device.file,
-          plain("a table (CSV, text) with a header, or a ROS 1 bag (.bag)").needed());
+  v.field(
+      "file", device.file,
+      plain("a table (CSV, text) with a header, or a bag of ROS 1 (.bag) or 2 (.mcap)").needed());
   v.field("columns", device.columns,
           plain("of a table, as its header names them or numbers from 1: time, x, y, z and the "
                 "four of the quaternion, or the first four alone")
@@ -45,9 +47,10 @@ void describe(V& v, TrajectoryDevice& device) {
   using Default = TrajectoryDevice;
   const bool of_table = !device.columns.empty() || device.time_unit != Default{}.time_unit ||
                         device.quaternion != Default{}.quaternion;
-  v.require(!device.is_bag() || !of_table,
+  const bool is_bag = motion_file_of(device.file) != MotionFile::kTable;
+  v.require(!is_bag || !of_table,
             "columns, time_unit and quaternion are of tables; a bag's messages need none");
-  v.require(device.is_bag() || !device.topic, "topic is of bags (.bag)");
+  v.require(is_bag || !device.topic, "topic is of bags (.bag, .mcap)");
   describe_pose(v, device.offset, "where the recording's origin is in W",
                 "unit quaternion, of the recording's frame");
   v.field("loop", device.loop, plain("start again at the end; else hold the last pose"));

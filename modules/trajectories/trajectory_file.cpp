@@ -1,5 +1,7 @@
 #include "modules/trajectories/trajectory_file.h"
 
+#include "modules/scene/motion_file.h"
+#include "modules/trajectories/mcap_bag.h"
 #include "modules/trajectories/ros_bag.h"
 #include "modules/trajectories/table.h"
 
@@ -8,7 +10,14 @@ namespace palpate::trajectories {
 std::vector<TimedPose> read_trajectory(const scene::TrajectoryDevice& config,
                                        std::vector<std::string>& warnings,
                                        const Progress& progress) {
-  return (config.is_bag() ? read_ros_bag : read_table)(config, warnings, progress);
+  switch (scene::motion_file_of(config.file)) {
+    case scene::MotionFile::kRos1Bag:
+      return read_ros_bag(config, warnings, progress);
+    case scene::MotionFile::kMcapBag:
+      return read_mcap_bag(config, warnings, progress);
+    default:
+      return read_table(config, warnings, progress);
+  }
 }
 
 }  // namespace palpate::trajectories

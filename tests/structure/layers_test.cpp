@@ -27,18 +27,19 @@ std::string line_for(const Include& include, const std::string& why) {
 std::map<std::string, Names> allowed_layers() {
   const Names scene{"core", "geometry", "scene"};
   const Names runtime = scene + Names{"messages", "bus", "runtime"};
-  const Names stages = runtime + Names{"recording", "trajectories", "deformation",
-                                       "collision", "haptics",      "session"};
+  const Names stages = runtime + Names{"recording", "mcap",    "trajectories", "deformation",
+                                       "collision", "haptics", "session"};
   return {{"core", {}},
           {"geometry", {"core"}},
           {"scene", {"core", "geometry"}},
           {"messages", scene},
           {"bus", scene + Names{"messages"}},
           {"runtime", scene + Names{"messages", "bus"}},
-          {"recording", runtime},
+          {"mcap", {"core"}},
+          {"recording", runtime + Names{"mcap"}},
           {"deformation", scene + Names{"collision"}},
           {"collision", scene},
-          {"trajectories", scene},
+          {"trajectories", scene + Names{"mcap"}},
           {"haptics", scene + Names{"trajectories"}},
           {"visualizer", runtime},
           {"meshes", {"core", "geometry"}},

@@ -68,6 +68,7 @@ bool is_wiring(const std::string& file) {
 }
 
 std::string layer_of(const std::string& path) {
+  if (path.starts_with("modules/recording/mcap_")) return "mcap";  // a library of its own
   if (path.starts_with("modules/")) return path.substr(8, path.find('/', 8) - 8);
   if (path.starts_with("palpate/session/")) return "session";
   if (path.starts_with("scenes/meshes/")) return "meshes";

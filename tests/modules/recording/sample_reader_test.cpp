@@ -5,6 +5,7 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
+#include "modules/recording/mcap_bytes.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 

@@ -30,6 +30,7 @@ TEST_CASE("schema: keys of a recording go with its kind of file") {
   // Oracle: the rules of the trajectory's table.
   const SceneFolder folder;
   folder.write("press.bag", "");
+  folder.write("press.mcap", "");
   const auto said = [&](const std::string& keys) {
     std::string text = kMinimalScene;
     const auto device = text.find("device:");
@@ -39,10 +40,15 @@ TEST_CASE("schema: keys of a recording go with its kind of file") {
   };
   CHECK(said("file: press.csv, columns: [t, x, y, z], time_unit: us, length_unit: in") ==
         "accepted");
-  CHECK(said("file: press.bag, topic: /tool, length_unit: mm") == "accepted");
+  for (const std::string bag : {"press.bag", "press.mcap"}) {
+    CHECK(said("file: " + bag + ", topic: /tool, length_unit: mm") == "accepted");
+    CHECK_THAT(said("file: " + bag + ", time_unit: ms"),
+               Catch::EndsWith("are of tables; a bag's messages need none"));
+  }
   CHECK_THAT(said("file: press.csv, columns: [t, x, y]"),
              Catch::EndsWith("columns must name 4 (time, x, y, z) or 8 (and the quaternion)"));
-  CHECK_THAT(said("file: press.csv, topic: /tool"), Catch::EndsWith("topic is of bags (.bag)"));
+  CHECK_THAT(said("file: press.csv, topic: /tool"),
+             Catch::EndsWith("topic is of bags (.bag, .mcap)"));
   for (const char* key : {"time_unit: ms", "quaternion: wxyz", "columns: [t, x, y, z]"}) {
     CHECK_THAT(said(std::string("file: press.bag, ") + key),
                Catch::EndsWith("are of tables; a bag's messages need none"));
