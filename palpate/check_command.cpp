@@ -7,11 +7,11 @@
 
 #include "modules/core/error.h"
 #include "modules/scene/processes.h"
+#include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
 #include "palpate/scene_check.h"
-#include "palpate/scene_file.h"
 #include "palpate/session/contact_line.h"
 
 namespace palpate::launcher {
@@ -31,6 +31,10 @@ std::string verdict(const SceneCheck& check) {
       "real-time factor {:.2f}{}\n",
       1e3 * check.cost, 1e3 * check.period, share, check.real_time_factor(),
       processes == 1 ? "" : fmt::format("; here in one process, in a run {} share it", processes));
+  if (check.mesh_changes > 0) {
+    text += fmt::format("  its mesh follows the touch: {:.0f} changes a second in that\n",
+                        check.mesh_changes);
+  }
   if (check.cost > check.period) {
     text += "  as fast as the machine allows, and right: palpate run --lockstep\n";
   }
@@ -160,7 +164,8 @@ void print_json(const SceneCheck& check, std::ostream& out) {
 }  // namespace
 
 int check_command(const CheckOptions& options, std::ostream& out, std::ostream& log) {
-  const scene::Scene scene = scene::load_scene_with(scene_file(options.scene), options.settings);
+  const scene::Scene scene =
+      scene::load_scene_with(scene::scene_file(options.scene), options.settings);
   if (options.resolved) {
     out << scene::resolved_text(scene);
     return kExitDone;

@@ -14,13 +14,13 @@
 #include "modules/recording/commands.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/program.h"
+#include "modules/scene/scene_file.h"
 #include "palpate/check_command.h"
 #include "palpate/list_command.h"
 #include "palpate/mesh_command.h"
 #include "palpate/new_command.h"
 #include "palpate/replay_command.h"
 #include "palpate/run_command.h"
-#include "palpate/scene_file.h"
 #include "palpate/study_command.h"
 
 namespace palpate::launcher {
@@ -123,7 +123,7 @@ void add_run(Program& program, RunOptions& options) {
       program.command("run", "Run a scene: start, watch and stop its processes", [&options] {
         use_keys(options.secure);
         options.headless |= no_display();
-        options.scene = scene_file(options.scene);
+        options.scene = scene::scene_file(options.scene);
         return run_command(options, std::cout, std::cerr);
       });
   options.scene = kFirstScene;
@@ -138,7 +138,7 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
       [&recording, &playing, &options] {
         use_keys(options.secure);
         options.headless |= no_display();
-        options.scene = scene_file(options.scene);
+        options.scene = scene::scene_file(options.scene);
         return replay_command(recording, playing, options, std::cout, std::cerr);
       });
   command.add_input("RECORDING", recording, "Recording (MCAP)").required();
@@ -258,7 +258,7 @@ int completion(const Program& program, const std::vector<std::string>& words) {
   }
   for (const auto& word : program.completions(words)) std::cout << word << '\n';
   if (words.size() > 1 && !words.back().starts_with('-')) {
-    for (const auto& scene : shipped_scenes()) std::cout << scene.name << '\n';
+    for (const auto& scene : scene::shipped_scenes()) std::cout << scene.name << '\n';
   }
   return kExitDone;
 }

@@ -8,7 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/scene/key_list.h"
 #include "modules/scene/models.h"
-#include "palpate/scene_file.h"
+#include "modules/scene/scene_file.h"
 
 namespace palpate::launcher {
 namespace {
@@ -28,7 +28,7 @@ std::vector<Line> options_of(const scene::KeyList& keys) {
 std::vector<Line> lines_of(const std::string& kind) {
   std::vector<Line> lines;
   if (kind == "scenes") {
-    for (const auto& scene : shipped_scenes()) lines.push_back({scene.name, scene.meaning});
+    for (const auto& scene : scene::shipped_scenes()) lines.push_back({scene.name, scene.meaning});
   } else if (kind == "models") {
     for (const auto& model : scene::model_formats()) lines.push_back({model.word, model.meaning});
   } else if (kind == "shapes") {

@@ -13,10 +13,12 @@
 #include "modules/core/units.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/runtime/clock.h"
+#include "modules/runtime/thread_time.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/key_list.h"
 #include "modules/scene/models.h"
+#include "modules/scene/probe_shape.h"
 #include "modules/scene/processes.h"
 #include "palpate/session/in_process.h"
 #include "palpate/session/timed_stage.h"
@@ -69,44 +71,60 @@ OrganCheck check_of(const scene::Organ& organ, const geometry::OrganShape& shape
   return check;
 }
 
-constexpr double kTip = 5e-3;  // [m]
+/// As round as the scene's first probe [m]: a mesh that follows is as fine as that wants.
+double tip_of(const scene::Scene& scene) {
+  constexpr double kUsual = 5e-3;
+  if (scene.probes.empty()) return kUsual;
+  const auto form = scene::form_of(scene.probes[0].shape);
+  const auto* core = std::get_if<geometry::RoundedSegment>(&form);
+  return core != nullptr ? core->radius : kUsual;
+}
 
 /// The scene with a sphere for its probes, which is moved from outside.
 scene::Scene touched_by_sphere(scene::Scene scene) {
-  scene.probes = {{"tip", scene::SphereShape{kTip}, 0.1, scene::ScriptedDevice{}}};
+  scene.probes = {{"tip", scene::SphereShape{tip_of(scene)}, 0.1, scene::ScriptedDevice{}}};
   return scene;
 }
 
 double wall_time() { return seconds_from_ns(runtime::monotonic_now_ns()); }
+double thread_time() { return seconds_from_ns(runtime::thread_time_ns()); }
 
 /// A session of the scene with its deformation timed.
 class TimedSession {
  public:
   TimedSession(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
                ChunkRunner& runner)
-      : session_(touched_by_sphere(scene), {std::move(shapes), {geometry::TriangleSurface{}}},
+      : radius_(tip_of(scene)),
+        is_alone_(scene.deformation_threads <= 1),
+        follows_(!scene.organs.empty() && scene.organs[0].solid.refine.follow),
+        session_(touched_by_sphere(scene), {std::move(shapes), {geometry::TriangleSurface{}}},
                  options(runner)) {
     auto device = std::make_unique<haptics::PlacedDevice>(Pose{});
     tip_ = device.get();
     session_.haptics().set_device(0, std::move(device));
+    choose_place();
   }
 
   const deformation::DeformationWorld& world() const { return session_.world(); }
   ContactTroubles contact_troubles() const { return session_.contact_troubles(); }
+  double mesh_changes() const { return changes_; }  ///< per second while that was measured
 
-  /// Wall time of deformation in a period, mean over about `measure_for` seconds [s]. The sphere
+  /// Time of deformation in a period, mean over about `measure_for` seconds [s]. The sphere
   /// presses a triangle that is free to move once a second, 1 mm deep: an implicit step that has
-  /// nothing to do is no measure of one that has.
+  /// nothing to do is no measure of one that has. Over a mesh that follows it also goes to and fro
+  /// by half its radius, so that the mesh changes as in a slide.
   double cost_of_period(double period, double measure_for) {
     place_tip();
     session_.run_until(period);  // memory is taken, caches are warm
     spent_ = 0;
+    const std::uint32_t first = world().generation(0);
     const double end = wall_time() + measure_for;
     int periods = 0;
     for (; wall_time() < end; ++periods) {
       place_tip();
       session_.run_until(session_.time() + period);
     }
+    changes_ = (world().generation(0) - first) / (periods * period);
     return periods > 0 ? spent_ / periods : 0;
   }
 
@@ -117,12 +135,16 @@ class TimedSession {
     options.make = [this](std::string_view module, bus::Bus& bus,
                           const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
       if (module != "deformation") return usual(bus);
-      return std::make_unique<session::TimedStage>(usual(bus), wall_time, spent_);
+      // Alone it needs what its thread does, whoever else is busy on this machine: in a run it goes
+      // before them. Where a team computes, who waits for it does nothing.
+      return std::make_unique<session::TimedStage>(usual(bus), is_alone_ ? thread_time : wall_time,
+                                                   spent_);
     };
     return options;
   }
 
-  void place_tip() {
+  /// On the mesh as it begins: others have other triangles.
+  void choose_place() {
     const deformation::OrganModel& organ = world().model(0);
     const std::set<std::uint32_t> fixed(organ.fixed_nodes.begin(), organ.fixed_nodes.end());
     const auto free = std::find_if(
@@ -131,13 +153,30 @@ class TimedSession {
         });
     if (free == organ.triangles.end()) return;
     const auto corner = [&](std::size_t k) { return organ.rest_positions[(*free)[k]]; };
-    const Vec3 n = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
-    const double depth = 0.5e-3 * (1 - std::cos(2 * M_PI * session_.time()));
+    place_ = {(corner(0) + corner(1) + corner(2)) / 3,
+              (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized()};
+  }
+
+  void place_tip() {
+    if (!place_) return;
+    const double phase = 2 * M_PI * session_.time();
+    const double depth = 0.5e-3 * (1 - std::cos(phase));
     Pose pose;
-    pose.position = (corner(0) + corner(1) + corner(2)) / 3 + (kTip - depth) * n;
+    pose.position = place_->middle + (radius_ - depth) * place_->normal;
+    if (follows_) {
+      pose.position += radius_ / 2 * std::sin(phase) * place_->normal.unitOrthogonal();
+    }
     tip_->place(pose);
   }
 
+  struct Place {
+    Vec3 middle, normal;
+  };
+
+  const double radius_;  ///< of the tip [m]
+  const bool is_alone_, follows_;
+  std::optional<Place> place_;  ///< none: all is fixed
+  double changes_ = 0;
   double spent_ = 0;  ///< in deformation so far [s]
   session::InProcess session_;
   haptics::PlacedDevice* tip_ = nullptr;
@@ -170,6 +209,7 @@ SceneCheck check_scene(const scene::Scene& scene, double measure_for,
     check.organs.push_back(check_of(scene.organs[i], shapes[i], session.world(), i, check.period));
   }
   check.cost = session.cost_of_period(check.period, measure_for);
+  check.mesh_changes = session.mesh_changes();
   check.troubles = session.contact_troubles();
   return check;
 }

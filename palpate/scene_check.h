@@ -42,7 +42,8 @@ struct SceneCheck {
   std::vector<ProbeCheck> probes;
   std::vector<std::string> doubts;
   double period = 0;         ///< of deformation [s]
-  double cost = 0;           ///< wall time of deformation in a period, lightly touched [s]
+  double cost = 0;           ///< time of deformation in a period, lightly touched [s]
+  double mesh_changes = 0;   ///< of the first organ while that was measured [1/s]
   ContactTroubles troubles;  ///< while that was measured
 
   double real_time_factor() const { return cost > period ? period / cost : 1; }

@@ -5,7 +5,7 @@
 
 #include "modules/core/error.h"
 #include "modules/scene/models.h"
-#include "palpate/scene_file.h"
+#include "modules/scene/scene_file.h"
 
 using namespace palpate;
 using namespace palpate::launcher;
@@ -19,14 +19,14 @@ TEST_CASE("list: every model, shape and device has its line, every shipped scene
   for (const char* word : {"sphere", "capsule", "plane", "scripted", "mouse", "emulated"}) {
     CHECK_THAT(out.str(), Contains(std::string("\n  ") + word));
   }
-  const auto scenes = shipped_scenes();
+  const auto scenes = scene::shipped_scenes();
   REQUIRE(scenes.size() >= 9);
-  for (const auto& scene : scenes) {
-    INFO(scene.name);
-    CHECK(scene.meaning.size() > 20);
-    CHECK(scene.meaning.ends_with("."));
-    CHECK_THAT(out.str(), Contains(scene.name));
-    CHECK(scene_file(scene.name) == scene.file);
+  for (const auto& each : scenes) {
+    INFO(each.name);
+    CHECK(each.meaning.size() > 20);
+    CHECK(each.meaning.ends_with("."));
+    CHECK_THAT(out.str(), Contains(each.name));
+    CHECK(scene::scene_file(each.name) == each.file);
   }
   std::ostringstream shapes;
   list_command("shapes", shapes);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpate::launcher {
+namespace palpate::scene {
 
 struct ShippedScene {
   std::string name;  ///< what `palpate run` takes: "stomach_probe"
@@ -19,5 +19,7 @@ std::vector<ShippedScene> shipped_scenes();
 /// The file that a command's SCENE means: itself if it exists, else the shipped scene of that name.
 /// @throws InputError where there is neither, or for a mesh
 std::filesystem::path scene_file(const std::filesystem::path& named);
+/// Whether it is a file of the data folder, where nothing is written.
+bool is_shipped(const std::filesystem::path& file);
 
-}  // namespace palpate::launcher
+}  // namespace palpate::scene

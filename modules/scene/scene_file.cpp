@@ -1,4 +1,4 @@
-#include "palpate/scene_file.h"
+#include "modules/scene/scene_file.h"
 
 #include <algorithm>
 #include <fstream>
@@ -6,7 +6,7 @@
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 
-namespace palpate::launcher {
+namespace palpate::scene {
 namespace {
 
 /// The comment lines a file begins with, as one line, to the end of the first sentence.
@@ -53,4 +53,9 @@ std::filesystem::path scene_file(const std::filesystem::path& named) {
                    ": no such file, and no shipped scene has that name (palpate list scenes)");
 }
 
-}  // namespace palpate::launcher
+bool is_shipped(const std::filesystem::path& file) {
+  std::error_code none;
+  return std::filesystem::equivalent(file.parent_path(), data_folder() / "scenes", none);
+}
+
+}  // namespace palpate::scene
