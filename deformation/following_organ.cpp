@@ -53,7 +53,7 @@ FollowingOrgan::FollowingOrgan(const scene::Scene& scene, scene::Organ organ,
 OrganMesh FollowingOrgan::made(std::uint32_t generation) {
   OrganMesh mesh{generation, mesh_.fine_at(places_), nullptr};
   OrganModel model = build_organ_model(organ_, gravity_, mesh.refined.shape);
-  hold_as_coarse(mesh.refined.parents, model);
+  hold_as_coarse(mesh.refined, model);
   mesh.model = std::make_unique<const OrganModel>(std::move(model));
   return mesh;
 }

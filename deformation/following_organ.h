@@ -46,6 +46,8 @@ class FollowingOrgan {
             std::uint32_t generation);
   /// nullptr: the organ keeps the mesh it has.
   const OrganMesh* next() const { return next_ ? &*next_ : nullptr; }
+  /// Of the newest mesh.
+  std::span<const TouchedPlace> places() const { return places_; }
   /// The organ goes on with next(). @param model  that it had
   /// @param generation  of that
   OrganMesh take_next(std::uint32_t generation, const OrganModel& model);

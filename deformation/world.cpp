@@ -211,6 +211,11 @@ const OrganMesh* DeformationWorld::next_mesh(std::size_t organ) const {
   return following ? following->next() : nullptr;
 }
 
+std::span<const TouchedPlace> DeformationWorld::touched_places(std::size_t organ) const {
+  const auto& following = impl_->organs.at(organ).following;
+  return following ? following->places() : std::span<const TouchedPlace>();
+}
+
 void DeformationWorld::set_contacts(const ContactSet& contacts,
                                     std::span<const std::uint32_t> generations) {
   if (contacts.probe >= impl_->probes.size()) return;

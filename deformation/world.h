@@ -27,6 +27,7 @@ struct OrganReading {
 };
 
 struct OrganMesh;
+struct TouchedPlace;
 
 class DeformationWorld {
  public:
@@ -47,6 +48,8 @@ class DeformationWorld {
   std::uint32_t generation(std::size_t organ) const;
   /// What the organ will go on with in the next advance, to be told before; nullptr: as it is.
   const OrganMesh* next_mesh(std::size_t organ) const;
+  /// What its next mesh was made for, or that it has; none: it keeps its mesh, or nothing is near.
+  std::span<const TouchedPlace> touched_places(std::size_t organ) const;
 
   /// Newest pose X_WP of a probe. Contacts are carried along rigidly with it until the next ones.
   /// A probe the scene does not have is ignored.

@@ -101,7 +101,7 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
   if (organ.solid.refine.follow) {
     following = std::make_unique<FollowingOrgan>(scene, organ, shape, runner);
     refined = following->begin(1).refined;
-    hold_as_coarse(refined.parents, built);
+    hold_as_coarse(refined, built);
   }
   auto model = std::make_unique<const OrganModel>(std::move(built));
   auto dynamics = make_dynamics(organ, *model, period, runner);

@@ -19,7 +19,7 @@
 namespace palpate::deformation {
 
 /// Longest edge under a probe over its radius R, for forces that are wrong by at most so much: what
-/// `palpate-bench-touch` found at R, R/2 and R/3 (docs/accuracy.md) is about 0.27 (edge/R)^1.6.
+/// `palpate chart` found at R, R/2 and R/3 (docs/accuracy.md) is about 0.27 (edge/R)^1.6.
 double edge_over_radius(double force_error);
 /// The same the other way, of longer edges, too.
 double force_error_of_edge(double edge_over_radius);

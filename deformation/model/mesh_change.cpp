@@ -84,13 +84,16 @@ OrganState MeshChange::carried(const OrganState& state) const {
   return carried;
 }
 
-void hold_as_coarse(std::span<const MeshChange::Parents> parents, Body& body) {
-  const std::vector<int> levels = levels_of(parents);
+void hold_as_coarse(const RefinedShape& refined, Body& body) {
+  const std::vector<int> levels = levels_of(refined.parents);
+  const bool middles_are_coarse = !refined.shape.edge_nodes.empty();
   std::vector<std::uint32_t> held = body.fixed_nodes;
   std::ranges::stable_sort(held, {}, [&](std::uint32_t node) { return levels[node]; });
+  std::vector<char> rests(body.node_count(), 0);  // with all that it comes from
   for (const std::uint32_t node : held) {
-    const auto& [a, b] = parents[node];
-    if (a == kCoarse || (body.inverse_masses[a] == 0 && body.inverse_masses[b] == 0)) continue;
+    const auto& [a, b] = refined.parents[node];
+    rests[node] = a == kCoarse || (rests[a] && rests[b]);
+    if (rests[node] || (middles_are_coarse && levels[node] == 1)) continue;
     body.inverse_masses[node] = 1 / body.masses[node];
   }
   std::erase_if(body.fixed_nodes,

@@ -13,8 +13,8 @@
 #include <span>
 #include <vector>
 
+#include "deformation/model/following_mesh.h"
 #include "deformation/model/organ_state.h"
-#include "modules/geometry/bisection.h"
 
 namespace palpate::deformation {
 
@@ -42,7 +42,8 @@ class MeshChange {
   std::vector<Middle> coming_;       ///< nodes of `to`, after their parents
 };
 
-/// Holds what the coarse mesh holds and no more: a new node is fixed only if both its parents are.
-void hold_as_coarse(std::span<const MeshChange::Parents> parents, Body& body);
+/// Holds what the coarse mesh holds and no more: a new node only where all that it comes from is
+/// held. Middles of a quadratic coarse mesh's edges are nodes of it.
+void hold_as_coarse(const RefinedShape& refined, Body& body);
 
 }  // namespace palpate::deformation

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/organ_messages.h"
 #include "modules/messages/cdr.h"
 #include "modules/scene/assets.h"
 #include "palpate/session/timed_stage.h"
@@ -16,6 +17,7 @@ constexpr double kForceChange = 2e-4;  // of the force
 constexpr double kLeastForce = 1e-3;   // [N]; changes are seen as parts of no less
 constexpr double kEnergyShare = 1e-6;
 constexpr double kLongestSettling = 3;  // [s]
+constexpr int kTimes = 100;             // of what is timed: far above the clock's own
 
 scene::Scene at_one_rate(scene::Scene scene) {
   scene.rates.haptics = scene.rates.collision = scene.rates.deformation;
@@ -39,6 +41,7 @@ PressedOrgan::PressedOrgan(const scene::Scene& scene, const geometry::OrganShape
       poses_(std::move(poses)),
       session_(at_one_rate(scene), assets_of(scene, shape), timed()) {
   place_probes();
+  first_generation_ = generation();
 }
 
 session::InProcessOptions PressedOrgan::timed() {
@@ -115,8 +118,24 @@ void PressedOrgan::settle(double longest) {
   }
 }
 
+geometry::TriangleSurface PressedOrgan::skin() const {
+  geometry::TriangleSurface skin;
+  const auto& nodes = model().rest_positions;
+  skin.nodes.assign(nodes.begin(),
+                    nodes.begin() + static_cast<std::ptrdiff_t>(model().surface_node_count));
+  skin.triangles = model().triangles;
+  return skin;
+}
+
+double PressedOrgan::encoding_of_mesh() const {
+  std::vector<std::uint8_t> bytes;
+  const auto mesh = deformation::surface_message(session_.world(), 0);
+  const double begin = report::processor_time();
+  for (int i = 0; i < kTimes; ++i) messages::write_payload(mesh, bytes);
+  return (report::processor_time() - begin) / kTimes;
+}
+
 double PressedOrgan::encoding() const {
-  constexpr int kTimes = 100;  // far above the clock's own
   std::vector<std::uint8_t> bytes;
   const double begin = report::processor_time();
   for (int i = 0; i < kTimes; ++i) {

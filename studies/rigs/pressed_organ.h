@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "haptics/devices/placed_device.h"
@@ -48,6 +49,14 @@ class PressedOrgan {
   Vec3 rest_position(std::size_t node) const;  ///< [m]
   std::size_t node_count() const { return model().node_count(); }
   const deformation::OrganModel& model() const { return session_.world().model(0); }
+  /// Of its mesh: counts its changes.
+  std::uint32_t generation() const { return session_.world().generation(0); }
+  std::uint32_t changes() const { return generation() - first_generation_; }
+  geometry::TriangleSurface skin() const;  ///< at rest, as it is meshed now
+  /// See DeformationWorld.
+  std::span<const deformation::TouchedPlace> touched_places() const {
+    return session_.world().touched_places(0);
+  }
   deformation::OrganReading read() const { return session_.world().read(0); }
   /// Of the last period.
   const deformation::AdvanceReport& report() const { return session_.deformation().report(); }
@@ -63,6 +72,8 @@ class PressedOrgan {
   double rendering() const { return rendering_; }  ///< the same in haptics [s]
   /// Processor time in which all that is said in a period becomes bytes; nothing is sent [s].
   double encoding() const;
+  /// The same of its mesh, which is said once, and anew when it changes [s].
+  double encoding_of_mesh() const;
   double time() const { return session_.world().time(); }  ///< simulated so far [s]
 
  private:
@@ -73,6 +84,7 @@ class PressedOrgan {
   bool diverged_ = false;
   std::vector<Pose> poses_;
   session::InProcess session_;
+  std::uint32_t first_generation_ = 0;
   std::vector<haptics::PlacedDevice*> devices_;  ///< the session's
 };
 

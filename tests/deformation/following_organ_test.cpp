@@ -80,11 +80,15 @@ TEST_CASE("following: the mesh is fine under a probe near by, and coarse when it
   const std::size_t coarse = uneven_block(std::string_view(model) == kQuadraticModel).node_count();
   Following block(following_scene(model));
   CHECK(block.pressed.node_count() == coarse);
+  CHECK(block.pressed.touched_places().empty());
   block.go(Following::at(0.05, 0.05, -2e-3), 0.02);
   CHECK(block.pressed.node_count() > 2 * coarse);
   CHECK(block.pressed.force(0).norm() == 0);
   block.go(Following::at(0.05, 0.05, 4e-3), 0.02);
   CHECK(block.pressed.force(0).z() > 0.05);
+  REQUIRE(block.pressed.touched_places().size() == 1);
+  const Vec3 under(0.05, 0.05, kTopOfBlock);
+  CHECK((block.pressed.touched_places()[0].centre - under).norm() < kTipRadius / 2);
   CHECK(block.pressed.node_count() <= 3000);
   block.go(Following::at(0.05, 0.05, -0.03), 0.05);
   CHECK(block.pressed.node_count() == coarse);

@@ -22,7 +22,7 @@ struct SolidThere {
              const scene::Organ& organ)
       : refined(mesh.fine_at(places)),
         model(build_organ_model(organ, Vec3::Zero(), refined.shape)) {
-    hold_as_coarse(refined.parents, model);
+    hold_as_coarse(refined, model);
   }
 
   Vec3 momentum(const OrganState& state) const {

@@ -55,6 +55,10 @@ TEST_CASE("pressed organ: untouched, nothing is felt and nothing moves") {
   PressedOrgan pressed(scene, geometry::make_ball(0.05, 1), {pose});
   pressed.settle(0.2);
   CHECK(pressed.force(0) == Vec3::Zero());
+  CHECK(pressed.changes() == 0);
+  CHECK(pressed.skin().nodes == geometry::make_ball(0.05, 1).nodes);
+  CHECK(pressed.skin().triangles == geometry::make_ball(0.05, 1).triangles);
+  CHECK(pressed.encoding_of_mesh() > 0);
   CHECK(pressed.volume_error() <
         1e-6);  // float32 positions are not looked at, the volume is double
   for (std::size_t i = 0; i < pressed.node_count(); ++i) {
