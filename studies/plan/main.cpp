@@ -10,9 +10,13 @@ int main(int argc, char** argv) {
       "Run it on a machine that is not busy.",
       "palpate plan");
   plan::PlanOptions options;
-  program.add_input("SCENE", options.scene, "Scene file (YAML) with `needs`").required();
-  program.add_output("-o,--out", options.out,
-                     "Scene file to write (else SCENE.planned.yaml beside it)");
+  program
+      .add_input("SCENE", options.scene,
+                 "Scene file (YAML) with `needs`, or the name of a shipped scene")
+      .required();
+  program.add_output(
+      "-o,--out", options.out,
+      "Scene file to write (else SCENE.planned.yaml beside it, of a shipped scene here)");
   program.add("--seconds", options.seconds, "Of the scene, from its start")
       .range(0.1, 600.0)
       .shows_default();
@@ -21,6 +25,9 @@ int main(int argc, char** argv) {
   program.add("--touches", options.touches, "Instants at which the truth of a solid is computed")
       .range(1, 100)
       .shows_default();
+  program.flag(
+      "--verify", options.verify,
+      "Afterwards judge the choice for a solid by a truth on finer meshes, at other instants");
   program.flag("--json", options.json, "Print JSON");
   program.add("--points", options.points, "Folder that shards share; what they left is used");
   std::string shard;

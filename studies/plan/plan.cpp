@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <tuple>
 
 #include "deformation/models.h"
@@ -23,13 +24,20 @@ constexpr std::size_t kMarks = 60;
 constexpr std::size_t kLeastNodes = 60, kMostNodes = 20000;
 constexpr double kReferenceRate = 500;  // [Hz]
 constexpr double kLongestHold = 1.5;    // [s]
-constexpr const char* kRefined = "nodal_pressure";
 
 /// Longest edge at a touched place in radii, and its growth with the distance.
 struct Rung {
   double edge, growth;
 };
-constexpr std::array kRungs{Rung{1, 1}, Rung{0.5, 0.7}, Rung{0.5, 0.5}, Rung{1.0 / 3, 0.35}};
+constexpr std::array kLinear{Rung{1, 1}, Rung{0.5, 0.7}, Rung{0.5, 0.5}, Rung{1.0 / 3, 0.35}};
+constexpr std::array kQuadratic{Rung{1.4, 1}, Rung{1, 1}, Rung{0.7, 1}};
+
+/// None: a model that is not refined where it is touched.
+std::span<const Rung> rungs_of(const std::string& model) {
+  if (model == "nodal_pressure") return kLinear;
+  if (model == "quadratic_pressure") return kQuadratic;
+  return {};
+}
 
 std::vector<std::string> models_for(scene::Needs::Contents contents) {
   const bool fluid = contents == scene::Needs::Contents::kFluid;
@@ -56,18 +64,35 @@ std::vector<chart::NodeWeights> find_marks(const geometry::OrganShape& shape,
   return found;
 }
 
-/// The marks' displacements: surfaces of other meshes lie a little aside.
-std::vector<Vec3> marked(const rigs::PressedOrgan& pressed,
-                         const std::vector<chart::NodeWeights>& marks) {
-  std::vector<Vec3> displacements;
-  for (const auto& weights : marks) {
-    Vec3& sum = displacements.emplace_back(Vec3::Zero());
-    for (const auto& [node, weight] : weights) {
-      sum += weight * (pressed.position(node) - pressed.rest_position(node));
+/// Marks on a surface whose mesh may change.
+class Marks {
+ public:
+  /// @param marks  stay where they are
+  Marks(const rigs::PressedOrgan& pressed, const std::vector<Vec3>& marks)
+      : pressed_(pressed), marks_(marks) {}
+
+  /// Displacements: surfaces of other meshes lie a little aside.
+  std::vector<Vec3> moved() {
+    if (generation_ != pressed_.generation()) {
+      generation_ = pressed_.generation();
+      weights_ = find_marks(pressed_.skin(), marks_);
     }
+    std::vector<Vec3> displacements;
+    for (const auto& weights : weights_) {
+      Vec3& sum = displacements.emplace_back(Vec3::Zero());
+      for (const auto& [node, weight] : weights) {
+        sum += weight * (pressed_.position(node) - pressed_.rest_position(node));
+      }
+    }
+    return displacements;
   }
-  return displacements;
-}
+
+ private:
+  const rigs::PressedOrgan& pressed_;
+  const std::vector<Vec3>& marks_;
+  std::uint32_t generation_ = 0;  // meshes begin at 1
+  std::vector<chart::NodeWeights> weights_;
+};
 
 /// √ mean of the squared lengths of what `difference` gives for each entry.
 template <class Difference>
@@ -106,11 +131,12 @@ std::string Candidate::name() const {
   auto text =
       fmt::format("{}, {} nodes, {:g} Hz{}", model, nodes, rate,
                   integrator == scene::Integrator::kBackwardEuler ? ", backward_euler" : "");
-  if (!refine.near.empty()) {
+  if (refine.any()) {
     text += fmt::format(", {:.3g} mm + {:.2g} d",
                         1e3 * refine.edge_length.value_or(scene::Refinement::kRegionEdge),
                         refine.growth.value_or(scene::Refinement::kGrowth));
   }
+  if (refine.follow) text += " following";
   return text;
 }
 
@@ -142,10 +168,11 @@ std::vector<Candidate> candidates_of(const scene::Scene& scene,
         if (count < kLeastNodes || count > kMostNodes || rate > 2000) continue;
         candidates.push_back({model, count, rate});
       }
-      if (model != kRefined || touched.empty() || count > nodes || count < kLeastNodes) continue;
-      for (const auto& [edge, growth] : kRungs) {
-        candidates.push_back(
-            {model, count, least, scene::Integrator::kAutomatic, {touched, edge * radius, growth}});
+      if (touched.empty() || count > nodes || count < kLeastNodes) continue;
+      for (const auto& [edge, growth] : rungs_of(model)) {
+        constexpr auto kIntegrator = scene::Integrator::kAutomatic;
+        candidates.push_back({model, count, least, kIntegrator, {touched, edge * radius, growth}});
+        candidates.push_back({model, count, least, kIntegrator, {{}, edge * radius, growth, true}});
       }
     }
   }
@@ -162,7 +189,7 @@ scene::Scene scene_with(const scene::Scene& scene, const Candidate& candidate, s
   organ.solid.poisson_ratio =
       chart::unlocked_poisson_ratio(candidate.model, organ.solid.poisson_ratio);
   organ.mesh.nodes = candidate.nodes;
-  if (!candidate.refine.near.empty()) organ.solid.refine = candidate.refine;
+  organ.solid.refine = candidate.refine;
   if (candidate.rate > 0) changed.rates.deformation = candidate.rate;
   changed.rates.collision = std::max(changed.rates.collision, changed.rates.deformation);
   changed.rates.haptics = std::max(changed.rates.haptics, changed.needs.haptics_rate);
@@ -180,9 +207,8 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
     poses.push_back(devices.back()->read(0).pose);
   }
   rigs::PressedOrgan pressed(scene, shape, poses);
-  const auto places = find_marks(shape, marks);
+  Marks marked(pressed, marks);
   Course course;
-  course.node_count = shape.node_count();
   double next_sample = 0;
   std::size_t next_held = 0;
   const double period = pressed.period();
@@ -190,24 +216,26 @@ Course run_course(const scene::Scene& scene, const geometry::OrganShape& shape,
     keep_going();
     for (std::size_t i = 0; i < devices.size(); ++i) poses[i] = devices[i]->read(time).pose;
     pressed.advance(poses);
+    course.node_count = std::max(course.node_count, pressed.node_count());
     if (next_held < held.size() && time + period / 2 >= held[next_held]) {
       ++next_held;
       course.moving_forces.push_back(forces_of(pressed, devices.size()));
       pressed.settle(kLongestHold);
       course.held_forces.push_back(forces_of(pressed, devices.size()));
-      course.held_surfaces.push_back(marked(pressed, places));
+      course.held_surfaces.push_back(marked.moved());
     }
     if (time + period / 2 < next_sample) continue;
     next_sample += 1 / kSampleRate;
     course.forces.push_back(forces_of(pressed, devices.size()));
-    course.surfaces.push_back(marked(pressed, places));
+    course.surfaces.push_back(marked.moved());
   }
   course.volume_error = pressed.volume_error();
   course.deformation_cost = pressed.busy() / pressed.time();
   const auto& rates = scene.rates;
   course.collision_cost =
       pressed.searching() / pressed.time() * rates.collision / rates.deformation;
-  course.publishing_cost = pressed.encoding() * rates.deformation;
+  course.publishing_cost = pressed.encoding() * rates.deformation +
+                           pressed.encoding_of_mesh() * pressed.changes() / pressed.time();
   course.haptic_tick = pressed.rendering() / pressed.time() * period;
   course.diverged = pressed.diverged();
   course.contacts = pressed.contact_troubles();

@@ -34,9 +34,9 @@ struct Course {
   double volume_error = 0;      ///< largest |V − V*|/V*
   double deformation_cost = 0;  ///< processor seconds per simulated second
   double collision_cost = 0;    ///< the same of the search for contacts
-  double publishing_cost = 0;   ///< the same of making bytes of what they say
+  double publishing_cost = 0;   ///< the same of making bytes of what they say, new meshes included
   double haptic_tick = 0;       ///< processor time of one [s]
-  std::size_t node_count = 0;   ///< of the state, inner ones included
+  std::size_t node_count = 0;   ///< of the state, inner ones included; most, of a mesh that changes
   bool diverged = false;
   ContactTroubles contacts;
 };
@@ -88,7 +88,8 @@ std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface);
 Candidate reference_of(const scene::Scene& scene);
 
 /// All that are tried, on a quarter, half, once and twice the scene's nodes, at the least rate and
-/// twice that; of a solid also with small tetrahedra at the places that probes touch.
+/// twice that; of a solid also with small tetrahedra at the places that probes touch, in advance or
+/// wherever they are.
 /// @param touched  those places; none: no such candidates
 /// @param radius   of the smallest probe [m]
 std::vector<Candidate> candidates_of(const scene::Scene& scene,

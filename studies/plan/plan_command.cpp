@@ -16,6 +16,7 @@
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/processes.h"
+#include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
@@ -135,34 +136,45 @@ void find_places(const scene::Scene& scene, const PlanOptions& options, Standard
   standard.radius = paths.smallest_radius();
 }
 
-/// Equilibria of quadratic elements at some of the poses in which probes touch.
-void find_truths(const scene::Scene& scene, const PlanOptions& options, std::ostream& log,
-                 const std::function<void()>& keep_going, Standard& standard) {
-  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
-  const auto times = paths.touching(options.touches);
-  log << fmt::format("truth: equilibria of quadratic elements at {} instants", times.size())
-      << std::endl;
+/// Equilibria of quadratic elements.
+/// @param fineness  see truth::Effort
+std::vector<TrueTouch> truths_at(const scene::Scene& scene, const ProbePaths& paths,
+                                 const std::vector<double>& times, const std::vector<Vec3>& marks,
+                                 double fineness, const std::function<void()>& keep_going) {
   const auto body = truth::body_of(scene.organs[0]);
   std::vector<std::optional<TrueTouch>> found(times.size());
   runtime::WorkerTeam team(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
   truth::run_all(team, times.size(), [&](std::size_t i) {
     TrueTouch touch{times[i], {}, {}};
     auto question = paths.question_at(times[i], touch.probes);
-    question.marks = standard.marks;
-    const auto truths = truth::force_truth(body, question, {nullptr, 1, keep_going});
+    question.marks = marks;
+    const auto truths = truth::force_truth(body, question, {nullptr, fineness, keep_going});
     if (truths.empty()) return;
     touch.truth = truths[0];
     found[i] = touch;
   });
+  std::vector<TrueTouch> truths;
   for (const auto& touch : found) {
-    if (!touch) continue;
-    standard.held.push_back(touch->time);
-    standard.truths.push_back(*touch);
-    log << fmt::format("  {:.2f} s:", touch->time);
-    for (std::size_t j = 0; j < touch->probes.size(); ++j) {
-      log << fmt::format(" {:.4g} ± {:.2g} N", touch->truth.forces[j].norm(), touch->truth.bars[j]);
+    if (touch) truths.push_back(*touch);
+  }
+  return truths;
+}
+
+/// At some of the poses in which probes touch.
+void find_truths(const scene::Scene& scene, const PlanOptions& options, std::ostream& log,
+                 const std::function<void()>& keep_going, Standard& standard) {
+  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
+  const auto times = paths.touching(options.touches);
+  log << fmt::format("truth: equilibria of quadratic elements at {} instants", times.size())
+      << std::endl;
+  standard.truths = truths_at(scene, paths, times, standard.marks, 1, keep_going);
+  for (const TrueTouch& touch : standard.truths) {
+    standard.held.push_back(touch.time);
+    log << fmt::format("  {:.2f} s:", touch.time);
+    for (std::size_t j = 0; j < touch.probes.size(); ++j) {
+      log << fmt::format(" {:.4g} ± {:.2g} N", touch.truth.forces[j].norm(), touch.truth.bars[j]);
     }
-    log << fmt::format(", {} nodes", touch->truth.node_count) << std::endl;
+    log << fmt::format(", {} nodes", touch.truth.node_count) << std::endl;
   }
   if (standard.truths.empty()) {
     throw std::runtime_error("no equilibrium was found where probes touch: no plan");
@@ -171,6 +183,27 @@ void find_truths(const scene::Scene& scene, const PlanOptions& options, std::ost
     log << fmt::format("  none found at {} more", times.size() - standard.truths.size())
         << std::endl;
   }
+}
+
+/// The choice, run anew, against a truth on finer meshes at instants between those of the plan.
+/// @param scene  of one organ
+Verification verified(const scene::Scene& scene, const Candidate& chosen,
+                      const PlanOptions& options, const std::function<void()>& keep_going) {
+  constexpr double kFiner = 0.75;  // edges over those of the plan's truth
+  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
+  const auto planned = paths.touching(options.touches);
+  std::vector<double> times;
+  for (const double time : paths.touching(2 * options.touches + 1)) {
+    if (std::ranges::find(planned, time) == planned.end()) times.push_back(time);
+  }
+  const auto truths = truths_at(scene, paths, times, {}, kFiner, keep_going);
+  if (truths.empty()) throw std::runtime_error("no equilibrium was found to verify by");
+  times.clear();
+  for (const TrueTouch& touch : truths) times.push_back(touch.time);
+  const auto changed = scene_with(scene, chosen);
+  const Course course = run_course(changed, scene::load_organ(changed.organs[0]), {},
+                                   options.seconds, times, keep_going);
+  return {compare(course, truths), times.size()};
 }
 
 /// What all organs' measurements share.
@@ -263,8 +296,8 @@ std::string told(const scene::Scene& scene, const PlanOptions& options) {
 }  // namespace
 
 int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
-  const scene::Scene scene =
-      scene::in_one_process(scene::load_scene_with(options.scene, options.settings));
+  const scene::Scene scene = scene::in_one_process(
+      scene::load_scene_with(scene::scene_file(options.scene), options.settings));
   check_plannable(scene);
   if (options.shard && options.points.empty()) {
     throw InputError("--shard needs --points, the folder that all shards share");
@@ -282,7 +315,8 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       scene::Scene alone = scene;
       alone.organs = {organ};
       if (scene.organs.size() > 1) log << "organ '" << organ.name << "'" << std::endl;
-      plans.push_back({organ.name, measure_all(alone, options, sharing, log, keep_going), nullptr});
+      plans.push_back(
+          {organ.name, measure_all(alone, options, sharing, log, keep_going), nullptr, {}});
     }
     if (options.shard) {
       out << report::text_of(sharing.share, *options.shard);
@@ -293,13 +327,20 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     if (is_met) {
       file = options.out;
       if (file.empty()) {
-        file = scene.file.parent_path() / (scene.file.stem().string() + ".planned.yaml");
+        file = scene.file.stem().string() + ".planned.yaml";
+        if (!scene::is_shipped(scene.file)) file = scene.file.parent_path() / file;
       }
       scene::Scene planned = scene;
       for (std::size_t i = 0; i < plans.size(); ++i) {
         planned = scene_with(planned, plans[i].chosen->candidate, i);
       }
       report::write_whole_file(file, scene::resolved_text(planned));
+    }
+    for (std::size_t i = 0; options.verify && is_met && is_solid(scene) && i < plans.size(); ++i) {
+      scene::Scene alone = scene;
+      alone.organs = {scene.organs[i]};
+      log << "verifying: a finer truth, at other instants" << std::endl;
+      plans[i].verification = verified(alone, plans[i].chosen->candidate, options, keep_going);
     }
     options.json ? print_json(plans, sharing.machines, file, out)
                  : print_text(scene, plans, sharing.machines, file, out);

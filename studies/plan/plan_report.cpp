@@ -40,12 +40,12 @@ std::string why_not(const Verdict& verdict, const Verdict* chosen) {
 }
 
 void print(const OrganPlan& plan, bool solid, std::ostream& out) {
-  out << fmt::format("{:<58} {:>7} {:>7} {:>14} {:>11} {:>9}  {}\n", "candidate", "nodes", "load",
+  out << fmt::format("{:<62} {:>7} {:>7} {:>14} {:>11} {:>9}  {}\n", "candidate", "nodes", "load",
                      "force", "surface[mm]", "volume", "why not");
   for (const Verdict& v : plan.verdicts) {
     std::string why = &v == plan.chosen ? "CHOSEN" : fmt::format("{}", fmt::join(v.failures, "; "));
     if (why.empty()) why = why_not(v, plan.chosen);
-    out << fmt::format("{:<58} {:>7} {:>6.1f}% {:>14} {:>11.3g} {:>9.1e}  {}\n", v.candidate.name(),
+    out << fmt::format("{:<62} {:>7} {:>6.1f}% {:>14} {:>11.3g} {:>9.1e}  {}\n", v.candidate.name(),
                        v.node_count, 100 * v.total_load,
                        percent(v.errors.force, v.errors.force_bar), 1e3 * v.errors.surface,
                        v.errors.volume, why);
@@ -99,6 +99,15 @@ void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>
       value["candidates"].append(row);
     }
   }
+  for (const OrganPlan& plan : plans) {
+    if (!plan.verification) continue;
+    Json::Value row;
+    row["organ"] = plan.name;
+    row["instants"] = Json::UInt64(plan.verification->instants);
+    row["force_error"] = plan.verification->errors.force;
+    row["force_error_bar"] = plan.verification->errors.force_bar;
+    value["verified"].append(row);
+  }
   if (!written.empty()) value["written"] = written.string();
   out << Json::writeString(Json::StreamWriterBuilder(), value) << '\n';
 }
@@ -123,8 +132,13 @@ void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
   }
   for (const OrganPlan& plan : plans) {
     print_margins(scene.needs, *plan.chosen, out);
-    if (of_solid(scene))
-      out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
+    if (!of_solid(scene)) continue;
+    out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
+    if (plan.verification) {
+      const Errors& found = plan.verification->errors;
+      out << fmt::format("verified by a finer truth at {} other instants: force {}\n",
+                         plan.verification->instants, percent(found.force, found.force_bar));
+    }
   }
   out << "written: " << written.string() << '\n';
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,11 +12,18 @@
 
 namespace palpate::plan {
 
+/// The choice judged by a truth that the plan did not know.
+struct Verification {
+  Errors errors;
+  std::size_t instants = 0;
+};
+
 /// What was measured of one organ, the cheapest first.
 struct OrganPlan {
   std::string name;
   std::vector<Verdict> verdicts;
   const Verdict* chosen = nullptr;
+  std::optional<Verification> verification = {};
 };
 
 /// @param machines  that loads were measured on
