@@ -1,13 +1,14 @@
 """Tables of `palpate chart`: what its CSV files hold, and results.md for docs/accuracy.md."""
 
 import math
+import re
 import shutil
 
 import csv_rows
 
 # Shown in the docs.
 PICTURES = ["accuracy_cost.png", "accuracy_cost_mesh.png", "accuracy_curves.png", "accuracy_iterations.png",
-            "accuracy_mesh.png", "accuracy_profile.png", "accuracy_volume.png"]
+            "accuracy_mesh.png", "accuracy_profile.png", "accuracy_volume.png", "touch.png"]
 TITLES = {
     "ball": "solid ball between plates, 10–40 %",
     "block": "bonded block, 5–18 %",
@@ -18,7 +19,12 @@ TITLES = {
     "beam": "cantilever under its weight",
     "liver": "liver, 8 mm sphere, 3–9 mm",
     "stomach": "stomach as a solid, 8 mm sphere, 3–9 mm",
+    "liver_4mm": "liver, 4 mm sphere, 3–9 mm",
+    "stomach_4mm": "stomach as a solid, 4 mm sphere, 3–9 mm",
+    "slide": "8 mm sphere slides on a block, 4 mm deep",
 }
+# Pressed at many places: half of all forces are within the error shown.
+PLACES = ("liver", "stomach", "liver_4mm", "stomach_4mm")
 # What stands for the error of a case: column, factor for the axis, words.
 ERRORS = {
     "ball": ("force_error", 100, "error of force [%]"),
@@ -28,9 +34,13 @@ ERRORS = {
     "vibration": ("force_error", 100, "error of frequency [%]"),
     "squeeze": ("force_error", 100, "error of force over time [%]"),
     "beam": ("shape_error_m", 1e3, "error of the tip's sag [mm]"),
-    "liver": ("force_error", 100, "error of force [%]"),
-    "stomach": ("force_error", 100, "error of force [%]"),
+    "liver": ("force_median", 100, "median error of force [%]"),
+    "stomach": ("force_median", 100, "median error of force [%]"),
+    "liver_4mm": ("force_median", 100, "median error of force [%]"),
+    "stomach_4mm": ("force_median", 100, "median error of force [%]"),
+    "slide": ("force_error", 100, "error of force [%]"),
 }
+SMALL = {"": "as shipped", "near": "small where it is touched", "follow": "following"}
 
 
 # Columns of the tables that only some cases fill: name, column, factor.
@@ -40,7 +50,7 @@ FURTHER = [("shape [mm]", "shape_error_m", 1e3), ("field [mm]", "field_error_m",
 
 
 def rows_of(file):
-    return csv_rows.rows_of(file, words=("case", "model", "solver", "setting", "verdict"))
+    return csv_rows.rows_of(file, words=("case", "model", "small", "solver", "setting", "verdict"))
 
 
 def known(*values):
@@ -55,10 +65,56 @@ def cell(value, scale=1, digits=3):
     return f"{scale * value:.{digits}g}" if math.isfinite(value) else "–"
 
 
+def with_bar(point, column):
+    """In per cent, to the digits that the bar leaves."""
+    value, bar = 100 * point[column], 100 * point[f"{column}_bar"]
+    if not math.isfinite(value):
+        return "–"
+    digits = 0 if value >= 30 else 1
+    return f"{value:.{digits}f} ± {bar:.{digits}f}"
+
+
+def effectivity(samples):
+    """The middle half of what models say over what is wrong."""
+    ratios = sorted(s["estimated_error"] / abs(s["force"] / s["reference_force"] - 1) for s in samples
+                    if math.isfinite(s["estimated_error"]) and math.isfinite(s["reference_force"]))
+    if not ratios or ratios[-1] <= 0:
+        return "none"
+    return f"{ratios[len(ratios) // 4]:.2g} to {ratios[3 * len(ratios) // 4]:.2g}"
+
+
+def table_of_places(case, points, samples):
+    """An organ pressed at many places, or a slide."""
+    here = [p for p in points if p["case"] == case]
+    lines = [f"**{case}**: {TITLES[case]}", ""]
+    if case in PLACES:
+        head = ["model", "tetrahedra", "level", "nodes", "cost [s/s]", "median [%]", "95 of 100 [%]", "at most [%]",
+                "surface beside [mm]", "volume", "estimate over error, middle half", "in trouble"]
+    else:
+        head = ["model", "tetrahedra", "level", "nodes", "cost [s/s]", "error of force [%]", "ripple [%]", "volume"]
+    lines += ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    for p in here:
+        key = (p["case"], p["model"], p["level"], p["small"])
+        mine = [s for s in samples if (s["case"], s["model"], s["level"], s["small"]) == key]
+        row = [p["model"], SMALL[p["small"]], f"{p['level']:g}", f"{nodes_of(p):g}", cell(p["cost_s_per_s"], 1, 2)]
+        if case in PLACES:
+            row += [with_bar(p, column) for column in ("force_median", "force_95", "force_most")]
+            row += [cell(p["profile_error_m"], 1e3, 2), cell(p["volume_error"], 1, 2), effectivity(mine),
+                    f"{p['troubled_places']:g}"]
+        else:
+            row += ["diverged"] * 2 if p["diverged"] else [with_bar(p, "force_error"), cell(p["ripple"], 100, 2)]
+            row += [cell(p["volume_error"], 1, 2)]
+        lines.append("| " + " | ".join(row) + " |")
+    return lines + [""]
+
+
 def write_tables(folder, points, samples, cases):
     """results.md: the tables of docs/accuracy.md, at the smallest step rate of each model."""
     lines = []
     for case in cases:
+        if case in PLACES or case == "slide":
+            lines += table_of_places(case, points, samples)
+            continue
         here = [p for p in points if p["case"] == case and not p["iterations"]]
         slowest = {(p["model"], p["level"]): min(q["rate_hz"] for q in here if (q["model"], q["level"]) ==
                                                  (p["model"], p["level"])) for p in here}
@@ -67,8 +123,8 @@ def write_tables(folder, points, samples, cases):
         column, scale = ("field_error_m", 1e3) if case == "truthcube" else ("force", None)
         if case in ("beam", "vibration", "squeeze"):
             column = None
-        per_load = [f"at {load * (1e3 if case in ('indent', 'liver', 'stomach') else 100):g}"
-                    f"{' mm' if case in ('indent', 'liver', 'stomach') else ' %'}" for load in loads]
+        per_load = [f"at {load * (1e3 if case == 'indent' else 100):g}{' mm' if case == 'indent' else ' %'}"
+                    for load in loads]
         head = ["model", "level", "nodes", "cost [s/s]", ERRORS[case][2]]
         more = [(name, key, factor) for name, key, factor in FURTHER if any(math.isfinite(p[key]) for p in here)]
         head += [name for name, _, _ in more]
@@ -99,12 +155,26 @@ def write_tables(folder, points, samples, cases):
 
 
 def put_into_docs(folder, docs):
+    """The tables of the cases measured; the page keeps those of others. Pictures of all cases only with all of them."""
+    new = by_case((folder / "results.md").read_text(encoding="utf-8"))
     for name in PICTURES:
-        shutil.copyfile(folder / name, docs / "images" / name)
+        if name == "touch.png" or set(new) >= set(TITLES) - {"truthcube"}:
+            shutil.copyfile(folder / name, docs / "images" / name)
     page = docs / "accuracy.md"
     text = page.read_text(encoding="utf-8")
     begin, end = "<!-- begin of results.md -->\n", "<!-- end of results.md -->"
     head, rest = text.split(begin)
-    tail = rest.split(end)[1]
-    results = (folder / "results.md").read_text(encoding="utf-8")
-    page.write_text(head + begin + "\n" + results + "\n" + end + tail, encoding="utf-8")
+    old, tail = rest.split(end)
+    tables = by_case(old) | new
+    results = "\n\n".join(tables[case] for case in TITLES if case in tables)
+    page.write_text(head + begin + "\n" + results + "\n\n" + end + tail, encoding="utf-8")
+
+
+def by_case(text):
+    """The tables of results.md."""
+    tables = {}
+    for part in re.split(r"^(?=\*\*)", text, flags=re.MULTILINE):
+        name = re.match(r"\*\*(\w+)\*\*", part)
+        if name:
+            tables[name.group(1)] = part.strip()
+    return tables

@@ -22,6 +22,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from accuracy_tables import ERRORS, TITLES, known, nodes_of, put_into_docs, rows_of, write_tables  # noqa: E402
+from plot_touch import draw_touch  # noqa: E402
 
 PALETTE = ["#9a9a9a", "#1f6fb2", "#c0392b", "#d98c1f", "#8e5a2b", "#e377c2", "#a23bb0", "#2a8f5b", "#0f9d9d", "#7f8c1f",
            "#111111"]
@@ -51,7 +52,8 @@ def pareto(points, error):
 
 def label(point):
     iterations = f", {point['iterations']:g} iterations" if point["iterations"] else ""
-    return f"{point['model']}, {int(nodes_of(point))} nodes, {point['rate_hz']:g} Hz{iterations}"
+    where = {"near": " where touched", "follow": " following"}.get(point["small"], "")
+    return f"{point['model']}{where}, {int(nodes_of(point))} nodes, {point['rate_hz']:g} Hz{iterations}"
 
 
 def name_front(axis, front):
@@ -131,16 +133,16 @@ def draw_mesh(folder, points, cases, y, scale_of, words, name):
         lines = defaultdict(list)
         for p in points:
             if p["case"] == case and not p["diverged"] and not p["iterations"] and known(p[column]):
-                lines[(p["model"], p["rate_hz"])].append(p)
+                lines[(p["model"], p["rate_hz"], p["small"])].append(p)
         best = {}
-        for (model, rate), line in lines.items():
-            if len(line) >= 2 and rate <= best.get(model, (math.inf,))[0]:
-                best[model] = (rate, line)
-        for model, (rate, line) in best.items():
+        for (model, rate, small), line in lines.items():
+            if len(line) >= 2 and rate <= best.get((model, small), (math.inf,))[0]:
+                best[(model, small)] = (rate, line)
+        for (model, small), (rate, line) in best.items():
             line.sort(key=nodes_of)
             xs, ys = [nodes_of(p) for p in line], [scale * p[column] for p in line]
             axis.loglog(xs, ys, marker="o", markersize=4, color=COLORS.get(model, "k"), linewidth=1)
-            print(f"{case:10} {model:20} {words}: slope {slope(xs, ys):+.2f} in nodes ({rate:g} Hz)")
+            print(f"{case:11} {model:20} {small:6} {words}: slope {slope(xs, ys):+.2f} in nodes ({rate:g} Hz)")
         axis.set_title(TITLES[case], fontsize=9)
         axis.set_xlabel("nodes", fontsize=8)
         axis.set_ylabel(ERRORS[case][2] if y is None else words, fontsize=8)
@@ -294,6 +296,7 @@ def main():
     draw_mesh(folder, points, cases, None, None, "error", "accuracy_mesh.png")
     draw_mesh(folder, points, cases, "cost_s_per_s", 1, "cost [s/s]", "accuracy_cost_mesh.png")
     write_tables(folder, points, samples, cases)
+    draw_touch(folder, points, samples)
     if "ball" in cases:
         bullet = rows_of(folder / "bullet.csv")
         draw_volume(folder, points, bullet)

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """The force under a small sphere at many places of an organ: error against cost.
 
-  plot_touch.py OUT.png TABLE.csv [TABLE.csv ...]   a panel for each table that palpate-bench-touch --out wrote
+  plot_touch.py FOLDER   draws FOLDER/touch.png from what `palpate chart --case liver,stomach` left there
 """
 
 import argparse
-import math
 import sys
 from pathlib import Path
 
@@ -17,69 +16,84 @@ except ImportError as error:
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-from csv_rows import rows_of  # noqa: E402
+from accuracy_tables import known, rows_of  # noqa: E402
 
-COLORS = {"springs": "#9a9a9a", "linear": "#1f6fb2", "quadratic": "#c0392b"}
+# What is drawn, by model and where its tetrahedra are small: color, marker, words.
+LINES = {
+    ("implicit_volume", ""): ("#9a9a9a", "s", "springs (implicit_volume), as shipped"),
+    ("nodal_pressure", ""): ("#9ec5e8", "s", "linear, as shipped"),
+    ("nodal_pressure", "near"): ("#1f6fb2", "v", "linear, small where it is touched"),
+    ("nodal_pressure", "follow"): ("#1f6fb2", "o", "linear, following"),
+    ("quadratic_pressure", ""): ("#e8a79e", "s", "quadratic, as shipped"),
+    ("quadratic_pressure", "near"): ("#c0392b", "v", "quadratic, small where it is touched"),
+    ("quadratic_pressure", "follow"): ("#c0392b", "o", "quadratic, following"),
+}
+PANELS = {"liver": "liver", "stomach": "stomach", "liver_4mm": "liver, 4 mm sphere", "stomach_4mm": "stomach, 4 mm sphere"}
 LEAST = 0.4  # [%], below which errors are drawn there
 
 
-def quantile(values, part):
-    """What so many of 100 do not exceed."""
-    ordered = sorted(values)
-    return ordered[max(0, math.ceil(part * len(ordered) / 100) - 1)]
-
-
-def draw(axis, rows):
-    by_mesh = {}
-    for row in rows:
-        by_mesh.setdefault(row["mesh"], []).append(row)
-    medians = {}
-    for mesh, points in by_mesh.items():
-        kind = mesh.split(",")[0]
-        errors = [max(LEAST, 100 * abs(p["force_n"] / p["true_force_n"] - 1)) for p in points]
-        costs = [p["cost_s_per_s"] for p in points]
-        cost, median = quantile(costs, 50), quantile(errors, 50)
-        axis.plot(costs, errors, ".", color=COLORS[kind], alpha=0.25, markersize=4, markeredgewidth=0)
-        axis.plot([cost, cost], [median, quantile(errors, 95)], color=COLORS[kind], linewidth=1.4)
-        axis.plot(cost, median, "o" if "as shipped" not in mesh else "s", color=COLORS[kind], markersize=7)
-        below = kind == "quadratic"
-        axis.annotate(mesh.split(", ")[1], (cost, median), textcoords="offset points",
-                      xytext=(-7, -4) if below else (7, 4), ha="right" if below else "left", va="top" if below else "bottom",
-                      fontsize=8, color=COLORS[kind])
-        medians.setdefault(kind, []).append((cost, median))
-    for kind, line in medians.items():
-        axis.plot(*zip(*sorted(line)), color=COLORS[kind], linewidth=0.8, alpha=0.6, zorder=0)
-    axis.axhline(10, color="#555", linewidth=0.7, linestyle=":")
+def draw(axis, case, points, samples):
+    for (model, small), (color, marker, _) in LINES.items():
+        line = []
+        for p in points:
+            if (p["case"], p["model"], p["small"]) != (case, model, small) or not known(p["cost_s_per_s"], p["force_median"]):
+                continue
+            cost = p["cost_s_per_s"]
+            mine = [s for s in samples if (s["case"], s["model"], s["small"], s["level"]) == (case, model, small, p["level"])]
+            errors = [100 * abs(s["force"] / s["reference_force"] - 1) for s in mine if known(abs(s["reference_force"]))]
+            axis.plot([cost] * len(errors), [max(LEAST, e) for e in errors], ".", color=color, alpha=0.25, markersize=4,
+                      markeredgewidth=0)
+            median, most = 100 * p["force_median"], 100 * p["force_95"]
+            bar = 100 * p["force_95_bar"]
+            axis.plot([cost, cost], [max(LEAST, median), max(LEAST, most)], color=color, linewidth=1.4)
+            axis.plot([cost, cost], [max(LEAST, most - bar), most + bar], color=color, linewidth=4, alpha=0.35)
+            line.append((cost, max(LEAST, median)))
+        if line:
+            axis.plot(*zip(*sorted(line)), marker=marker, color=color, linewidth=0.8, markersize=6)
+    axis.axhline(10 if "4mm" not in case else 15, color="#555", linewidth=0.7, linestyle=":")
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.set_xlabel("processor seconds of one core per second, at 100 Hz")
     ticks = [1, 3, 10, 30, 100, 300]
     axis.set_yticks(ticks, [f"{t:g} %" for t in ticks])
     axis.minorticks_off()
-    axis.set_xlim(0.008, 1)
+    axis.set_xlim(0.008, 1.5)
     axis.set_xticks([0.01, 0.03, 0.1, 0.3, 1], ["0.01", "0.03", "0.1", "0.3", "1"])
-    places = len({row["place"] for row in rows})
-    axis.set_title(f"{rows[0]['organ']}: {places} places, 3, 6 and 9 mm deep", fontsize=10)
+    places = len({s["place"] for s in samples if s["case"] == case})
+    axis.set_title(f"{PANELS[case]}: {places} places, 3, 6 and 9 mm deep", fontsize=10)
+
+
+def draw_touch(folder, points, samples):
+    """FOLDER/touch.png, if organs were pressed."""
+    cases = [case for case in PANELS if any(p["case"] == case for p in points)]
+    if not cases:
+        return
+    columns = min(2, len(cases))
+    rows = (len(cases) + columns - 1) // columns
+    figure, axes = plt.subplots(rows, columns, figsize=(5.4 * columns, 4.2 * rows + 0.8), sharey=True, squeeze=False)
+    for axis in list(axes.flat)[len(cases):]:
+        axis.set_visible(False)
+    for axis, case in zip(axes.flat, cases):
+        draw(axis, case, points, samples)
+    for row in axes:
+        row[0].set_ylabel("error of the force on the sphere")
+    handles = [plt.Line2D([], [], marker=marker, color=color, linestyle="", label=words)
+               for key, (color, marker, words) in LINES.items()
+               if any((p["model"], p["small"]) == key for p in points if p["case"] in cases)]
+    figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False, fontsize=8)
+    figure.tight_layout(rect=(0, 0.16 / rows, 1, 1))
+    figure.savefig(folder / "touch.png", dpi=130)
+    plt.close(figure)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", type=Path)
-    parser.add_argument("tables", type=Path, nargs="+")
-    arguments = parser.parse_args()
-    figure, axes = plt.subplots(1, len(arguments.tables), figsize=(5.4 * len(arguments.tables), 4.6), sharey=True,
-                                squeeze=False)
-    for axis, table in zip(axes.flat, arguments.tables):
-        rows = rows_of(table, words={"organ", "mesh"})
-        if not rows:
-            sys.exit(f"error: {table} holds no points; palpate-bench-touch --out writes it")
-        draw(axis, rows)
-    axes[0][0].set_ylabel("error of the force on a sphere of 8 mm")
-    handles = [plt.Line2D([], [], marker="o", linestyle="", color=c, label=k) for k, c in COLORS.items()]
-    handles.append(plt.Line2D([], [], marker="s", linestyle="", color="#555", label="as shipped"))
-    figure.legend(handles=handles, loc="lower center", ncol=4, frameon=False, fontsize=9)
-    figure.tight_layout(rect=(0, 0.06, 1, 1))
-    figure.savefig(arguments.out, dpi=130)
+    parser.add_argument("folder", type=Path)
+    folder = parser.parse_args().folder
+    points, samples = rows_of(folder / "points.csv"), rows_of(folder / "samples.csv")
+    if not points:
+        sys.exit(f"error: {folder / 'points.csv'} holds no points; palpate chart writes it")
+    draw_touch(folder, points, samples)
 
 
 if __name__ == "__main__":

@@ -42,5 +42,8 @@ Measurement measure_truth_cube(const Setting& setting, const KeepGoing& keep_goi
 Measurement measure_beam(const Setting& setting, const KeepGoing& keep_going);
 Measurement measure_liver(const Setting& setting, const KeepGoing& keep_going);
 Measurement measure_stomach(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_small_liver(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_small_stomach(const Setting& setting, const KeepGoing& keep_going);
+Measurement measure_slide(const Setting& setting, const KeepGoing& keep_going);
 
 }  // namespace palpate::chart

@@ -21,8 +21,8 @@ struct Entry {
   SolveReference reference = nullptr;
 };
 
-const std::array<Entry, 9>& entries() {
-  static constexpr std::array<Entry, 9> kEntries{{
+const std::array<Entry, 12>& entries() {
+  static constexpr std::array<Entry, 12> kEntries{{
       {{"ball", "compression", "growth of the equator", 3, false, Reference::kTable}, measure_ball},
       {{"block", "compression", "bulge of a face", 3, false, Reference::kTable}, measure_block},
       {{"truthcube", "compression", "", 3, false, Reference::kTable}, measure_truth_cube},
@@ -34,14 +34,42 @@ const std::array<Entry, 9>& entries() {
       {{"beam", "gravity [m/s2]", "sag of the tip", 3, false, Reference::kOwn},
        measure_beam,
        bend_beam},
-      {{"liver", "depth [m]", "displacement 20 mm beside", 3, false, Reference::kOwn},
+      {{"liver", "depth [m]", "", 3, false, Reference::kOwn, kPlaces},
        measure_liver,
-       press_liver},
-      {{"stomach", "depth [m]", "displacement 20 mm beside", 3, false, Reference::kOwn},
+       truth_on_liver},
+      {{"stomach", "depth [m]", "", 3, false, Reference::kOwn, kPlaces},
        measure_stomach,
-       press_stomach},
+       truth_on_stomach},
+      {{"liver_4mm", "depth [m]", "", 3, false, Reference::kOwn, kPlaces},
+       measure_small_liver,
+       small_truth_on_liver},
+      {{"stomach_4mm", "depth [m]", "", 3, false, Reference::kOwn, kPlaces},
+       measure_small_stomach,
+       small_truth_on_stomach},
+      {{"slide", "way [m]", "", 2, false, Reference::kOwn, 1}, measure_slide, truth_of_slide},
   }};
   return kEntries;
+}
+
+bool is_same_load(const Sample& a, const Sample& b) {
+  return std::abs(a.load - b.load) < 1e-9 && a.place == b.place;
+}
+
+double bar_of(const Sample& sample) {
+  return std::isnan(sample.reference_force_bar) ? 0 : sample.reference_force_bar;
+}
+
+/// Of |force / reference − 1|: both the difference and what it is a part of are known to the bar.
+Known relative_error(const Sample& sample) {
+  const double error = std::abs(sample.force / sample.reference_force - 1);
+  return {error, bar_of(sample) / std::abs(sample.reference_force) * (1 + error)};
+}
+
+/// The value that so many of 1 do not exceed. @param values  not empty
+double quantile(std::vector<double> values, double part) {
+  std::ranges::sort(values);
+  const double count = static_cast<double>(values.size());
+  return values[static_cast<std::size_t>(std::max(1.0, std::ceil(part * count - 1e-9))) - 1];
 }
 
 /// √ mean of squares of what is known.
@@ -87,13 +115,36 @@ Measurement measure(const Case& of, const Setting& setting, const KeepGoing& kee
   throw InputError(fmt::format("case '{}' is not there", of.name));
 }
 
-Measurement solve_reference(const Case& of, int level, const KeepGoing& keep_going) {
+int reference_count(const Case& of) {
+  if (of.reference == Reference::kTable) return 0;
+  return of.has_truth() ? of.truth_count : kReferenceLevels;
+}
+
+Measurement solve_reference(const Case& of, int number, const KeepGoing& keep_going) {
   for (const Entry& entry : entries()) {
     if (std::string(entry.description.name) == of.name && entry.reference != nullptr) {
-      return entry.reference(level, keep_going);
+      return entry.reference(number, keep_going);
     }
   }
   throw InputError(fmt::format("case '{}' has no reference of its own", of.name));
+}
+
+Measurement whole_reference(const Case& of, const std::vector<Measurement>& solved) {
+  Measurement whole = solved.back();
+  if (of.has_truth()) {
+    whole.samples.clear();
+    for (const Measurement& part : solved) {
+      whole.samples.insert(whole.samples.end(), part.samples.begin(), part.samples.end());
+    }
+    return whole;
+  }
+  for (Sample& sample : whole.samples) {
+    for (const Sample& coarser : solved.front().samples) {
+      if (!is_same_load(sample, coarser)) continue;
+      sample.force_bar = std::abs(sample.force - coarser.force);
+    }
+  }
+  return whole;
 }
 
 void refer(const Measurement& reference, Measurement& measurement) {
@@ -102,7 +153,8 @@ void refer(const Measurement& reference, Measurement& measurement) {
   };
   for (Sample& sample : measurement.samples) {
     for (const Sample& answer : reference.samples) {
-      if (std::abs(answer.load - sample.load) > 1e-9) continue;
+      if (!is_same_load(answer, sample)) continue;
+      if (std::isnan(sample.reference_force)) sample.reference_force_bar = answer.force_bar;
       fill(answer.force, sample.reference_force);
       fill(answer.shape, sample.reference_shape);
       sample.reference_profile = answer.profile;
@@ -110,16 +162,51 @@ void refer(const Measurement& reference, Measurement& measurement) {
   }
 }
 
-double force_error(const Measurement& measurement) {
-  if (measurement.is_course) {
-    const double scale =
-        root_mean_square(measurement, [](const Sample& s) { return s.reference_force; });
+Known force_error_with_bar(const Measurement& m) {
+  if (m.is_course) {
+    const double scale = root_mean_square(m, [](const Sample& s) { return s.reference_force; });
     const double off =
-        root_mean_square(measurement, [](const Sample& s) { return s.force - s.reference_force; });
-    return off / scale;
+        root_mean_square(m, [](const Sample& s) { return s.force - s.reference_force; });
+    const double bar = root_mean_square(m, bar_of);
+    return {off / scale, bar / scale * (1 + off / scale)};
   }
-  return root_mean_square(measurement,
-                          [](const Sample& s) { return s.force / s.reference_force - 1; });
+  const auto known = [](double of_sample, const Sample& s) {
+    return std::isnan(s.reference_force) ? kUnknown : of_sample;
+  };
+  const auto part = [&](double Known::*member) {
+    return root_mean_square(m,
+                            [&](const Sample& s) { return known(relative_error(s).*member, s); });
+  };
+  const double bar = part(&Known::bar);
+  return {part(&Known::value), std::isnan(bar) ? 0 : bar};
+}
+
+// Each error lies between itself less its bar and itself plus that, so a quantile lies between
+// those of the one and of the other.
+Known force_quantile(const Measurement& measurement, double part) {
+  std::vector<double> values, least, most;
+  for (const Sample& sample : measurement.samples) {
+    const auto [error, bar] = relative_error(sample);
+    if (std::isnan(error)) continue;
+    values.push_back(error);
+    least.push_back(std::max(0.0, error - bar));
+    most.push_back(error + bar);
+  }
+  if (values.empty()) return {};
+  const double value = quantile(values, part);
+  return {value, std::max(value - quantile(least, part), quantile(most, part) - value)};
+}
+
+double ripple(const Measurement& measurement) {
+  if (!measurement.is_course) return kUnknown;
+  double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0;
+  for (const Sample& sample : measurement.samples) {
+    const double ratio = sample.force / sample.reference_force;
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+    sum += ratio;
+  }
+  return (most - least) / (sum / static_cast<double>(measurement.samples.size()));
 }
 
 double contact_radius_error(const Measurement& measurement) {

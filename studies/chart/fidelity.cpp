@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 
 #include "deformation/models.h"
 #include "modules/scene/models.h"
@@ -19,14 +20,31 @@ double unlocked_poisson_ratio(const std::string& model, double wanted) {
   return scene::format_of(model).locks() ? std::min(wanted, kUnlocked) : wanted;
 }
 
+const char* word_of(Small small) {
+  return small == Small::kNowhere ? "" : small == Small::kAtPlaces ? "near" : "follow";
+}
+
 std::string Setting::name() const {
-  return fmt::format("{}, level {}, {:g} Hz", model, level, rate) +
+  const char* where = small == Small::kAtPlaces    ? " where it is touched"
+                      : small == Small::kFollowing ? " following"
+                                                   : "";
+  return fmt::format("{}, level {}{}, {:g} Hz", model, level, where, rate) +
          (iterations > 0 ? fmt::format(", {} iterations", iterations) : "");
 }
 
 std::string Setting::key() const {
   return fmt::format("{}-{}-{:g}", model, level, rate) +
-         (iterations > 0 ? fmt::format("-{}", iterations) : "");
+         (iterations > 0 ? fmt::format("-{}", iterations) : "") +
+         (small != Small::kNowhere ? fmt::format("-{}", word_of(small)) : "");
+}
+
+SmallTetrahedra small_tetrahedra(const Setting& setting) {
+  static constexpr std::array<SmallTetrahedra, kSmallLevels> kLinear{
+      {{0.5, 0.5, 1}, {1.0 / 3, 0.5, 1}}};
+  static constexpr std::array<SmallTetrahedra, kSmallLevels> kQuadratic{
+      {{1, 1, 0.5}, {0.7, 1, 0.5}}};
+  const auto level = static_cast<std::size_t>(setting.level);
+  return (scene::is_quadratic(setting.model) ? kQuadratic : kLinear).at(level);
 }
 
 std::vector<std::string> model_hierarchy() {

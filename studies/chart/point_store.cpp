@@ -10,7 +10,7 @@ namespace palpate::chart {
 namespace {
 
 /// Of what is stored; raised when a case, a model or its constants change.
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 
 /// Visits all that is stored of a measurement and one of its samples, as numbers.
 template <class Visit>
@@ -45,9 +45,14 @@ void visit_numbers(const Visit& visit) {
   number("volume_error", &Measurement::volume_error);
   flag("diverged", &Measurement::diverged);
   flag("is_course", &Measurement::is_course);
+  count("troubled_places", &Measurement::troubled_places);
   answer("load", [](Sample& s) -> double& { return s.load; });
+  answer("place", [](Sample& s) -> double& { return s.place; });
   answer("force", [](Sample& s) -> double& { return s.force; });
+  answer("force_bar", [](Sample& s) -> double& { return s.force_bar; });
   answer("reference_force", [](Sample& s) -> double& { return s.reference_force; });
+  answer("reference_force_bar", [](Sample& s) -> double& { return s.reference_force_bar; });
+  answer("estimated_error", [](Sample& s) -> double& { return s.estimated_error; });
   answer("shape_m", [](Sample& s) -> double& { return s.shape; });
   answer("reference_shape_m", [](Sample& s) -> double& { return s.reference_shape; });
   answer("field_error_m", [](Sample& s) -> double& { return s.field_error; });

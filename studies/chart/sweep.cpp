@@ -115,10 +115,38 @@ double weight_of(const Setting& setting) {
   return model * std::pow(growth, setting.level) * (implicit ? setting.rate / 100 : 1);
 }
 
+/// Under a small sphere it is the mesh that counts, not the step; models that can be fine there
+/// are.
+std::vector<Setting> settings_under_sphere(const Case& of, Extent extent) {
+  constexpr double kRate = 100;  // [Hz]
+  // Under the smaller sphere only meshes that are small there are worth the time.
+  const bool every =
+      extent == Extent::kFull || std::string(of.name).find("4mm") == std::string::npos;
+  const int levels = extent == Extent::kFull ? of.level_count : 2;
+  std::vector<Setting> settings;
+  for (const std::string& model : model_hierarchy()) {
+    const auto& format = scene::format_of(model);
+    for (int level = 0; level < levels && every; ++level) {
+      // Solids that are fine all over take longer than all else.
+      const bool dear = is_slow(model) || (format.is_solid() && level > 0);
+      if (extent != Extent::kFull && dear) continue;
+      settings.push_back({model, level, kRate});
+    }
+    if (model != "nodal_pressure" && model != "quadratic_pressure") continue;
+    for (const Small small : {Small::kAtPlaces, Small::kFollowing}) {
+      for (int level = 0; level < kSmallLevels; ++level) {
+        settings.push_back({model, level, kRate, 0, small});
+      }
+    }
+  }
+  return settings;
+}
+
 std::vector<Setting> settings_of(const Case& of, Extent extent) {
   std::vector<Setting> settings;
   if (of.reference == Reference::kOwn && extent == Extent::kQuick)
     return settings;  // references take minutes
+  if (of.has_truth()) return settings_under_sphere(of, extent);
   for (const std::string& model : model_hierarchy()) {
     for (int level = 0; level < of.level_count; ++level) {
       for (const double rate : rates_of(extent)) {
@@ -146,17 +174,19 @@ SweepResult sweep(const std::vector<Case>& of, Extent extent,
       if (is_wanted(models, setting.model)) result.points.push_back({each, setting, {}});
     }
     if (each.reference != Reference::kTable && extent != Extent::kQuick) {
-      result.references.push_back({each, std::vector<Measurement>(kReferenceLevels)});
+      result.references.push_back(
+          {each, std::vector<Measurement>(static_cast<std::size_t>(reference_count(each)))});
     }
   }
   constexpr double kReferenceWeight = 100;
   std::vector<Job> jobs;
   for (ReferenceSolution& reference : result.references) {
-    for (int level = 0; level < kReferenceLevels; ++level) {
-      jobs.push_back({fmt::format("{}: reference, level {}", reference.of.name, level),
-                      reference.of, reference_key(level), kReferenceWeight,
-                      [&, level] { return solve_reference(reference.of, level, keep_going); },
-                      &reference.levels[static_cast<std::size_t>(level)]});
+    for (int k = 0; k < reference_count(reference.of); ++k) {
+      const char* what = reference.of.has_truth() ? "truth" : "reference, level";
+      jobs.push_back({fmt::format("{}: {} {}", reference.of.name, what, k), reference.of,
+                      reference_key(k), kReferenceWeight,
+                      [&, k] { return solve_reference(reference.of, k, keep_going); },
+                      &reference.solved[static_cast<std::size_t>(k)]});
     }
   }
   for (Point& point : result.points) {
@@ -170,7 +200,7 @@ SweepResult sweep(const std::vector<Case>& of, Extent extent,
   for (Point& point : result.points) {
     for (const ReferenceSolution& reference : result.references) {
       if (std::string(reference.of.name) == point.of.name) {
-        refer(reference.levels.back(), point.measurement);
+        refer(whole_reference(reference.of, reference.solved), point.measurement);
       }
     }
   }

@@ -23,10 +23,10 @@ struct Point {
   Measurement measurement;
 };
 
-/// A reference of our own on its meshes, coarse to fine.
+/// A reference of our own: on its meshes, coarse to fine, or the parts of a truth.
 struct ReferenceSolution {
   Case of;
-  std::vector<Measurement> levels;
+  std::vector<Measurement> solved;
 };
 
 struct SweepResult {

@@ -43,6 +43,51 @@ TEST_CASE(
   CHECK(profile_error(m) == Approx(0.5));
 }
 
+TEST_CASE("cases: what a reference's bar allows is said with every error") {
+  // Oracle: by hand. Errors of 10, 20 and 50 % of forces that are known to 5 %, the last to 1 %;
+  // a place without a reference is left out.
+  Measurement m;
+  m.samples = {{.load = 1, .force = 1.1, .place = 0},
+               {.load = 1, .force = 2.4, .place = 1},
+               {.load = 1, .force = 2, .place = 2},
+               {.load = 1, .force = 7, .place = 3}};
+  Measurement first, second;
+  first.samples = {{.load = 1, .force = 1, .place = 0, .force_bar = 0.05}};
+  second.samples = {{.load = 1, .force = 2, .place = 1, .force_bar = 0.1},
+                    {.load = 1, .force = 4, .place = 2, .force_bar = 0.04},
+                    {.load = 1, .place = 3}};
+  const Case places{"", "", "", 1, false, Reference::kOwn, 2};
+  refer(whole_reference(places, {first, second}), m);
+  CHECK(m.samples[1].reference_force == 2);
+  CHECK(std::isnan(m.samples[3].reference_force));
+  const std::array bars{0.05 * 1.1, 0.05 * 1.2, 0.01 * 1.5};
+  const Known all = force_error_with_bar(m);
+  CHECK(all.value == Approx(std::sqrt((0.01 + 0.04 + 0.25) / 3)));
+  CHECK(all.bar ==
+        Approx(std::sqrt((bars[0] * bars[0] + bars[1] * bars[1] + bars[2] * bars[2]) / 3)));
+  CHECK(force_quantile(m, 0.5).value == Approx(0.2));
+  CHECK(force_quantile(m, 0.5).bar == Approx(bars[1]));
+  CHECK(force_quantile(m, 0.95).value == Approx(0.5));
+  CHECK(force_quantile(m, 1).bar == Approx(bars[2]));
+  CHECK(std::isnan(force_quantile({}, 0.5).value));
+}
+
+TEST_CASE("cases: a reference on two meshes is as far off as they differ") {
+  // Oracle: by hand.
+  Measurement coarse, fine;
+  coarse.samples = {{.load = 1, .force = 1.2}};
+  fine.samples = {{.load = 1, .force = 1.1}};
+  const auto whole = whole_reference(find_case("squeeze"), {coarse, fine});
+  CHECK(whole.samples[0].force == 1.1);
+  CHECK(whole.samples[0].force_bar == Approx(0.1));
+  Measurement course;
+  course.is_course = true;
+  course.samples = {{.load = 0, .force = 1.0, .reference_force = 1},
+                    {.load = 1, .force = 2.2, .reference_force = 2}};
+  CHECK(ripple(course) == Approx(0.1 / 1.05));
+  CHECK(std::isnan(ripple(coarse)));
+}
+
 TEST_CASE("cases: a block with averaged pressures follows the reference") {
   // Oracle: reference case C. On edges of 16 mm the force is within 30 %, the inner displacements
   // within 1 mm of up to 15; coarser than what the chart shows.

@@ -3,30 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "modules/geometry/primitives.h"
 #include "modules/geometry/tools/gmsh_tool.h"
-#include "studies/chart/local_refinement.h"
 #include "tests/modules/geometry/tetrahedra.h"
 
 namespace palpate::chart {
 namespace {
-
-TEST_CASE("local refinement: the shape stays closed and the same, edges are as short as asked") {
-  // Oracle: enclosed volume and area, the mesh check, the edges' lengths.
-  const auto ball = geometry::make_ball(0.05, 2);
-  const Vec3 centre(0, 0, 0.05);
-  const auto fine = refine_around(ball, centre, 1e-3, 0.3);
-  CHECK(fine.nodes.size() > 2 * ball.nodes.size());
-  CHECK(geometry::enclosed_volume(fine.nodes, fine.triangles) ==
-        Approx(geometry::enclosed_volume(ball.nodes, ball.triangles)).epsilon(1e-12));
-  CHECK(geometry::surface_area(fine.nodes, fine.triangles) ==
-        Approx(geometry::surface_area(ball.nodes, ball.triangles)).epsilon(1e-12));
-  CHECK(fine.triangles.size() == 2 * fine.nodes.size() - 4);  // Euler
-  for (const auto& [a, b] : geometry::edges_of(fine.triangles)) {
-    const Vec3 &p = fine.nodes[a], &q = fine.nodes[b];
-    CHECK((p - q).norm() <= 1e-3 + 0.3 * ((p + q) / 2 - centre).norm());
-  }
-}
 
 TEST_CASE("equilibria: a beam sags by its weight as beam theory has it") {
   // Oracle: Timoshenko's beam, q L⁴/(8 E I) + q L²/(2 k G A) with k = 5/6, for a sag of 1 % of the
