@@ -232,7 +232,7 @@ std::uint64_t change(const Options& options, std::uint32_t tenths) {
                 "most E", "middle N", "most off", "over 10%", "|V-V*|/V*", "lost", "reset");
   }
   const double turn = speed / size / options.rate;
-  const std::uint32_t first = pressed.generation();
+  const std::uint32_t first = slide.pressed().generation();
   std::uint32_t changes = 0, told = 0;
   int fresh = 0, looked_at = 0;
   Fingerprint bits;
@@ -248,7 +248,7 @@ std::uint64_t change(const Options& options, std::uint32_t tenths) {
     if (told == 0) {
       for (std::size_t i = 0; i < pressed.node_count(); ++i) bits.add(pressed.position(i));
     }
-    const std::uint32_t now = pressed.generation() - first;
+    const std::uint32_t now = slide.pressed().generation() - first;
     if (now != changes && now / kFreshEvery != changes / kFreshEvery && is_told) {
       ++looked_at;
       fresh += is_as_fresh(pressed, slide.shape(), places, organ_of(options, true).solid.refine);

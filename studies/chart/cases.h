@@ -38,9 +38,9 @@ inline constexpr Profile unknown_profile() {
 /// One load and the answers to it; kUnknown where there is none.
 struct Sample {
   double load = 0;  ///< compression [1], depth [m], time [s]; exact frequency [Hz] of vibration
-  double force = kUnknown;      ///< on the probe [N]; the frequency [Hz] of vibration
+  double force = kUnknown;  ///< on the probe [N]; the frequency [Hz] of vibration
   double reference_force = kUnknown;
-  double shape = kUnknown;            ///< see Case::shape_name [m]
+  double shape = kUnknown;  ///< see Case::shape_name [m]
   double reference_shape = kUnknown;
   double field_error = kUnknown;     ///< RMS distance of points from where they should be [m]
   double contact_radius = kUnknown;  ///< of the touching nodes' share of the surface [m]

@@ -202,8 +202,7 @@ geometry::OrganShape OrganSites::shape_at(const Site& site, const Setting& setti
     mesh = scene::refined(mesh_, organ);
   } else if (setting.small == Small::kNowhere && setting.level > 0) {
     // Halved until none is longer than that, the mean of edges is about half as long as before.
-    const double longest =
-        1.5 * std::ldexp(geometry::mean_edge_length(surface_), -setting.level);
+    const double longest = 1.5 * std::ldexp(geometry::mean_edge_length(surface_), -setting.level);
     mesh = geometry::bisected(
         mesh_, [&](const Vec3&) { return longest; }, kMostCorners);
   }

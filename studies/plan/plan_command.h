@@ -14,7 +14,7 @@ struct PlanOptions {
   std::filesystem::path scene;
   std::filesystem::path out;  ///< scene file to write; empty: NAME.planned.yaml beside the scene,
                               ///< of a shipped one in the current folder
-  double seconds = 6;                      ///< of the scene, from its start
+  double seconds = 6;         ///< of the scene, from its start
   std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
   bool json = false;                       ///< the verdicts as JSON
   std::size_t touches = 6;                 ///< instants at which a solid's truth is computed
