@@ -7,6 +7,7 @@
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/cycle_budget.h"
+#include "modules/runtime/joined_streams.h"
 #include "modules/runtime/wiring.h"
 
 namespace palpate::runtime {
@@ -22,7 +23,28 @@ Cycle cycle_of(Module& module) {
   return now;
 }
 
-void run_in_real_time(Module& module, Stage& stage) {
+/// Asked at most so often: DDS answers under locks [ns].
+constexpr std::int64_t kJoinedAskedEveryNs = kNanosecondsPerSecond / 50;
+
+/// Ready once the stage is and, from then on whatever happens, its streams are joined.
+class Readiness {
+ public:
+  Readiness(const scene::Scene& scene, std::string_view name) : scene_(scene), name_(name) {}
+
+  bool now(Module& module, bool stage_ready) {
+    if (joined_ || !stage_ready || module.now_ns() < ask_at_ns_) return joined_ && stage_ready;
+    ask_at_ns_ = module.now_ns() + kJoinedAskedEveryNs;
+    return joined_ = are_streams_joined(module.bus(), scene_, name_);
+  }
+
+ private:
+  const scene::Scene& scene_;
+  std::string_view name_;
+  std::int64_t ask_at_ns_ = 0;
+  bool joined_ = false;
+};
+
+void run_in_real_time(Module& module, Stage& stage, Readiness readiness) {
   std::optional<CycleBudget> budget;
   while (module.next_cycle()) {
     Cycle now = cycle_of(module);
@@ -34,7 +56,7 @@ void run_in_real_time(Module& module, Stage& stage) {
     if (!budget && health.least_advance > 0) {
       budget.emplace(module.period(), health.least_advance);
     }
-    if (health.ready) module.ready();
+    if (readiness.now(module, health.ready)) module.ready();
     module.set_guard(health.guard);
     module.set_real_time_factor(health.real_time_factor);
     module.set_contact_troubles(health.contacts);
@@ -50,7 +72,7 @@ void run_stage(const ModuleOptions& options, const scene::Scene& scene, const st
   if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
   Module module(options, scene, name, rate_of(name, scene), priority);
   const auto stage = make(module.bus());
-  run_in_real_time(module, *stage);
+  run_in_real_time(module, *stage, {scene, name});
 }
 
 }  // namespace palpate::runtime

@@ -26,6 +26,30 @@ Vec3 force_at(const ContactModel& model, const Vec3& position) {
 
 }  // namespace
 
+TEST_CASE("session: deformation is not ready before it has heard of contacts") {
+  // Oracle: who presses as soon as all are ready must be felt. Without collision, for a second
+  // after the others have heard each other, deformation is not; with it all become so.
+  const BallScene scene{"topic: {start_m: [0, 0, 0.09]}"};
+  RunningSession session(scene);
+  session.start_module("haptics");
+  session.start_module("deformation");
+  REQUIRE(session.wait([](const Heard& heard) {
+    return heard.modules.size() == 2 && !heard.nodes.positions.empty() &&
+           heard.probe.header.sequence > 0;
+  }));
+  CHECK_FALSE(session.wait(
+      [](const Heard& heard) {
+        return heard.modules.at("deformation").state != ModuleState::kStarting;
+      },
+      1));
+  session.start_module("collision");
+  CHECK(session.wait([](const Heard& heard) {
+    return heard.modules.size() == 3 && std::ranges::all_of(heard.modules, [](const auto& module) {
+             return module.second.state == ModuleState::kReady;
+           });
+  }));
+}
+
 TEST_CASE("pressing: the tissue yields, keeps its volume, and the finger feels it") {
   // Oracle: invariants. Nothing moves before the touch; then the force points out of the tissue
   // and the nodes under the finger go at least as deep as it is in.
