@@ -85,6 +85,22 @@ TEST_CASE("released: while the session is paused nothing pushes, and it goes on 
   CHECK(session.heard().largest_force_step <= pressed.largest_step());
 }
 
+TEST_CASE("released: a session at fault, told of another scene while it presses, lets go") {
+  // Oracle: the same promise, from the last law that was given.
+  Pressed pressed;
+  RunningSession& session = pressed.session;
+  const BallScene other{"topic: {start_m: [0, 0, 0.2]}"};
+  bus::DdsBus bus(session.options());
+  auto scenes = bus.writer(bus::kScene);
+  SceneDescription description = runtime::scene_description(scene::load_scene(other.file()));
+  REQUIRE(scenes.write(description));
+  REQUIRE(session.wait([](const Heard& heard) {
+    return heard.modules.at("deformation").state == ModuleState::kFault;
+  }));
+  CHECK(pressed.wait_for_release(session.heard().model.header.source_time_ns) <= kReleased);
+  CHECK(session.heard().largest_force_step <= pressed.largest_step());
+}
+
 TEST_CASE("released: a module that is killed lets go") {
   // Oracle: the same promise. Deformation: from its last law. Collision: its contacts hold for
   // 50 ms, and one cycle of deformation later the tissue has let go; from its last contacts.
