@@ -12,7 +12,8 @@ namespace palpate::deformation {
 namespace {
 
 constexpr double kLeastStep = 1e-6;  // [s]
-/// Nodes that a law's compliance is taken from. Nearly incompressible tissue reaches further.
+/// Nodes that a law's compliance is taken from, each by itself. Nearly incompressible tissue
+/// reaches further.
 constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
 
 /// The organ as it is stepped: contacts with organs take symplectic Euler alone.
@@ -46,7 +47,8 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
         } else {
           simulated.dynamics().add_stiffness(patch, stiffness_share, sum);
         }
-      });
+      },
+      simulated.dynamics().step_matrix());
 }
 
 /// What is kept of the model beside it.
@@ -89,6 +91,7 @@ void WorldOrgan::reset() {
   generation += following != nullptr && following->next() != nullptr ? 2 : 1;
   if (following) take(following->begin(generation));
   simulated.reset();
+  compliance->forget();
 }
 
 WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,

@@ -39,9 +39,12 @@ Vec3 PatchCompliance::find_touched(const std::vector<Vec3>& positions,
 Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
                                        std::span<const ComplianceRow> rows,
                                        const PeriodSteps& steps, std::span<const Vec3> gradient,
-                                       const AddStiffness& add_stiffness) {
+                                       const AddStiffness& add_stiffness, const StepMatrix& last) {
   const Vec3 centre = find_touched(positions, rows);
-  grow_patch(model_, neighbours_, positions, touched_, centre, most_nodes_, patch_);
+  const std::size_t most =
+      last ? std::clamp(touched_.size(), std::min(kNearInSolid, most_nodes_), most_nodes_)
+           : most_nodes_;
+  grow_patch(model_, neighbours_, positions, touched_, centre, most, patch_);
   const SpringShares shares = shares_of(steps, model_.drag);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
   Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
@@ -62,20 +65,48 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
     A.diagonal().segment<3>(3 * patch_.place(node)).array() += static_cast<float>(own);
     mass += 3 * own;
   }
-  Eigen::Index far = 0;
-  const std::size_t reach =
-      std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(springs / mass)));
-  if (!model_.is_solid() && shares.stiffness > 0 && reach > 2 * most_nodes_) {
-    if (!far_) far_.emplace(model_);
-    far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
-    far = 3;
-    A.conservativeResize(size + far, size + far);
-    A.bottomLeftCorner(far, size) = far_->near_block().transpose();
-    A.bottomRightCorner(far, far) = far_->own_block();
-  }
+  const Eigen::Index far = extend(positions, centre, springs / mass, rows, shares, last, A);
   const Eigen::MatrixXd evenly = answers(A, far, shares.mass, rows, gradient);
   if (!is_explicit || far > 0) return evenly;
   return shortfall(evenly, rows, steps, gradient) * evenly;
+}
+
+Eigen::Index PatchCompliance::extend(const std::vector<Vec3>& positions, const Vec3& centre,
+                                     double stiffness, std::span<const ComplianceRow> rows,
+                                     const SpringShares& shares, const StepMatrix& last,
+                                     Eigen::MatrixXf& A) {
+  if (!(shares.stiffness > 0)) return 0;
+  const Eigen::Index size = A.rows();
+  const auto take = [&](const Eigen::MatrixXf& near_block, const Eigen::Matrix3f& own_block) {
+    // Nothing goes along, or a bad state's matrix: as if held.
+    if (own_block.llt().info() != Eigen::Success) return Eigen::Index{0};
+    A.conservativeResize(size + 3, size + 3);
+    A.bottomLeftCorner(3, size) = near_block.transpose();
+    A.bottomRightCorner(3, 3) = own_block;
+    return Eigen::Index{3};
+  };
+  if (last && patch_.nodes.size() + model_.fixed_nodes.size() < model_.node_count()) {
+    if (!solid_) solid_.emplace(model_);
+    solid_->find(last, shares, patch_, rows);
+    return take(solid_->near_block(patch_), solid_->own_block());
+  }
+  const std::size_t reach =
+      std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(stiffness)));
+  if (model_.is_solid() || reach <= 2 * most_nodes_) return 0;
+  if (!far_) far_.emplace(model_);
+  far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
+  return take(far_->near_block(), far_->own_block());
+}
+
+Eigen::Vector3f PatchCompliance::far_load(std::uint32_t node, const Vec3& push) const {
+  return model_.is_solid() ? solid_->load(node, push) : far_->load(node, push);
+}
+
+Mat3 PatchCompliance::alone(std::uint32_t node, Eigen::Index far, double mass_share) const {
+  if (far > 0 && model_.is_solid()) return solid_->alone(node);
+  const Mat3* const own = far > 0 ? far_->alone(node) : nullptr;
+  if (own != nullptr) return *own;
+  return model_.inverse_masses[node] / mass_share * Mat3::Identity();
 }
 
 double PatchCompliance::shortfall(const Eigen::MatrixXd& evenly,
@@ -134,12 +165,11 @@ Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index 
       const int place = patch_.place(node);
       if (place >= 0) {
         loads.col(r).segment<3>(3 * place) += (weight * row.axis).cast<float>();
-      } else if (const Mat3* own = far > 0 ? far_->alone(node) : nullptr) {
-        alone(r, r) += weight * weight * row.axis.dot(*own * row.axis);
       } else {
-        alone(r, r) += weight * weight * model_.inverse_masses[node] / mass_share;
+        alone(r, r) +=
+            weight * weight * row.axis.dot(this->alone(node, far, mass_share) * row.axis);
       }
-      if (far > 0) loads.col(r).tail<3>() += far_->load(node, weight * row.axis);
+      if (far > 0) loads.col(r).tail<3>() += far_load(node, weight * row.axis);
     }
   }
   const Eigen::LLT<Eigen::MatrixXf> factor(A);

@@ -6,9 +6,9 @@
 // and k = (n − 1)/2n, with implicit ones d = 1 and k = (n + 1)/2n: the means over the steps of the
 // velocities and displacements their forces are taken at. Within T a wave of shear in soft tissue
 // makes its way of some millimetres; the patch is that large, and what is beyond is held. On a mesh
-// so fine that many nodes go along, the patch answers by its near nodes and, beyond them, as a
-// whole (far_answers.h). Contents whose volume is kept take their share at once, wherever they are:
-// a rank-one less.
+// so fine that many nodes go along, and in a solid, the patch answers by its near nodes and, beyond
+// them, as a whole (far_answers.h, solid_answers.h). Contents whose volume is kept take their share
+// at once, wherever they are: a rank-one less.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,6 +21,7 @@
 #include "deformation/contact/compliance_row.h"
 #include "deformation/contact/even_press.h"
 #include "deformation/contact/far_answers.h"
+#include "deformation/contact/solid_answers.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/patch.h"
 
@@ -32,6 +33,9 @@ using AddStiffness = std::function<void(const Patch& patch, double stiffness_sha
 
 class PatchCompliance {
  public:
+  /// Of a solid that answers beyond its patch; more where more are touched.
+  static constexpr std::size_t kNearInSolid = 48;
+
   /// @param model  outlives this
   /// @param nodes  of a patch, at most
   PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes);
@@ -40,13 +44,27 @@ class PatchCompliance {
   /// press of the rows' forces, or without any that of the first row, gives way as in those steps
   /// (even_press.h). Nodes that are touched but do not fit the patch answer alone.
   /// @param gradient  of a kept volume (volume_gradient.h), empty: none is kept
+  /// @param last  of a solid; none: the nodes beyond the patch are held
   Eigen::MatrixXd solve(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows,
                         const PeriodSteps& steps, std::span<const Vec3> gradient,
-                        const AddStiffness& add_stiffness);
+                        const AddStiffness& add_stiffness, const StepMatrix& last = {});
+
+  /// What was found for periods before.
+  void forget() { solid_.reset(); }
 
  private:
   /// @returns the middle of the rows [m]
   Vec3 find_touched(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows);
+  /// Adds the directions in which the body goes along beyond the patch to A.
+  /// @returns their number
+  Eigen::Index extend(const std::vector<Vec3>& positions, const Vec3& centre, double stiffness,
+                      std::span<const ComplianceRow> rows, const SpringShares& shares,
+                      const StepMatrix& last, Eigen::MatrixXf& A);
+  /// Of a push at a node, one for each direction beyond.
+  Eigen::Vector3f far_load(std::uint32_t node, const Vec3& push) const;
+  /// How far a push of 1 N moves a touched node that does not fit the patch while all others are
+  /// held [m/N]
+  Mat3 alone(std::uint32_t node, Eigen::Index far, double mass_share) const;
   /// @param A    lower triangle: of the patch, and of `far` directions beyond
   Eigen::MatrixXd answers(const Eigen::MatrixXf& A, Eigen::Index far, double mass_share,
                           std::span<const ComplianceRow> rows,
@@ -62,7 +80,8 @@ class PatchCompliance {
   std::size_t most_nodes_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
-  PressedPatch pressed_;           ///< K and D in explicit steps
+  PressedPatch pressed_;  ///< K and D in explicit steps
+  std::optional<SolidAnswers> solid_;
   std::optional<FarAnswers> far_;  ///< of springs, once they reach beyond the patch
 };
 

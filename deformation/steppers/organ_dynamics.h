@@ -6,6 +6,7 @@
 
 #include "deformation/contact/compliance_row.h"
 #include "deformation/contact/contact_solve.h"
+#include "deformation/elements/step_matrix.h"
 #include "deformation/model/organ_state.h"
 #include "deformation/model/patch.h"
 
@@ -42,6 +43,9 @@ class OrganDynamics {
   /// none.
   virtual void add_stiffness(const Patch& /*patch*/, double /*share*/,
                              Eigen::MatrixXf& /*sum*/) const {}
+
+  /// Of a solid that keeps one.
+  virtual StepMatrix step_matrix() const { return {}; }
 
   /// C A⁻¹ Cᵀ of rows on the organ (contact/patch_compliance.h) [m/N], of a model that knows it
   /// better than from a patch of nodes; empty: it does not.

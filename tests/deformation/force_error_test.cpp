@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "deformation/contact/touch_follower.h"
+#include "deformation/elements/linear_tetrahedra.h"
 #include "deformation/elements/quadrature.h"
 #include "deformation/world.h"
 #include "tests/deformation/steppers/tetrahedral_solids.h"
