@@ -25,22 +25,28 @@ Cycle cycle_of(Module& module) {
 
 /// Asked at most so often: DDS answers under locks [ns].
 constexpr std::int64_t kJoinedAskedEveryNs = kNanosecondsPerSecond / 50;
+/// Who is not heard by then takes no part: a session of some modules starts, too. Discovery takes
+/// half a second [ns].
+constexpr std::int64_t kJoinedWithinNs = 3 * kNanosecondsPerSecond;
 
-/// Ready once the stage is and, from then on whatever happens, its streams are joined.
+/// Ready once the stage is and its streams are joined, or have been waited for; from then on
+/// whatever happens.
 class Readiness {
  public:
   Readiness(const scene::Scene& scene, std::string_view name) : scene_(scene), name_(name) {}
 
   bool now(Module& module, bool stage_ready) {
     if (joined_ || !stage_ready || module.now_ns() < ask_at_ns_) return joined_ && stage_ready;
+    if (give_up_ns_ == 0) give_up_ns_ = module.now_ns() + kJoinedWithinNs;
     ask_at_ns_ = module.now_ns() + kJoinedAskedEveryNs;
-    return joined_ = are_streams_joined(module.bus(), scene_, name_);
+    joined_ = module.now_ns() >= give_up_ns_ || are_streams_joined(module.bus(), scene_, name_);
+    return joined_;
   }
 
  private:
   const scene::Scene& scene_;
   std::string_view name_;
-  std::int64_t ask_at_ns_ = 0;
+  std::int64_t ask_at_ns_ = 0, give_up_ns_ = 0;
   bool joined_ = false;
 };
 

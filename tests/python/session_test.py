@@ -30,7 +30,7 @@ class SameBitsTest(unittest.TestCase):
     def test_a_recording_is_that_of_the_command(self):
         with tempfile.TemporaryDirectory() as folder:
             for scene, seconds in ((STOMACH, 4), (BALL, 1.5)):
-                command, own = Path(folder) / "command.mcap", Path(folder) / "own.mcap"
+                command, own = (Path(folder) / f"{Path(scene).stem}_{name}.mcap" for name in ("command", "own"))
                 subprocess.run(
                     [PALPATE, "run", scene, "--in-process", "--duration", str(seconds), "--record", command],
                     check=True,
