@@ -115,8 +115,6 @@ struct TrajectoryDevice {
   std::optional<std::string> topic = {};  ///< `topic` of a bag; none: its only one with poses
   Pose offset = {};   ///< `position_m`, `rotation_xyzw`: X_WR of the recording's frame R
   bool loop = false;  ///< `loop`: start again at the end, else hold the last pose
-
-  bool is_bag() const { return file.extension() == ".bag"; }
 };
 /// Minimum-jerk moves between points.
 struct ScriptedDevice {
