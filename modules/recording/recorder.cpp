@@ -82,11 +82,12 @@ void SampleFile::write(const TopicSample& sample) {
   McapMessage message;
   message.channel_id = channel_of(sample);
   message.sequence = static_cast<std::uint32_t>(header.sequence);
-  message.log_time_ns = static_cast<std::uint64_t>(sample.received_time_ns + to_time_of_day_ns_);
-  if (header.source_time_ns > 0) {
-    message.publish_time_ns =
-        static_cast<std::uint64_t>(header.source_time_ns + to_time_of_day_ns_);
-  }
+  // Unsigned: a source time may be any number, and two of them fit.
+  const auto time_of_day_ns = [&](std::int64_t session_ns) {
+    return static_cast<std::uint64_t>(session_ns) + static_cast<std::uint64_t>(to_time_of_day_ns_);
+  };
+  message.log_time_ns = time_of_day_ns(sample.received_time_ns);
+  if (header.source_time_ns > 0) message.publish_time_ns = time_of_day_ns(header.source_time_ns);
   writer_.add_message(message, sample.payload);
   if (sample.topic->name == bus::kScene.name) note_scene(sample);
 }
