@@ -8,14 +8,9 @@
 namespace palpate::deformation {
 namespace {
 
-using testing::ball_organ;
-using testing::ball_scene;
-using testing::kBallRadius;
-using testing::kPeriod;
-using testing::plate_contacts;
-
 DeformationWorld intake_world(int levels) {
-  return DeformationWorld(ball_scene(1, ball_organ()), {geometry::make_ball(kBallRadius, levels)});
+  return DeformationWorld(testing::ball_scene(1, testing::ball_organ()),
+                          {geometry::make_ball(testing::kBallRadius, levels)});
 }
 
 TEST_CASE("contact intake: nodes told as a face are held as told one by one") {
@@ -23,11 +18,11 @@ TEST_CASE("contact intake: nodes told as a face are held as told one by one") {
   auto one_by_one = intake_world(3), as_face = intake_world(3);
   Pose pose;
   pose.rotation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
-  double height = kBallRadius;
+  double height = testing::kBallRadius;
   for (int step = 0; step < 30; ++step) {
     height -= 2e-4;
     pose.position = Vec3(0, 0, height);
-    const ContactSet listed = plate_contacts(one_by_one, 0, height, 1, 2e-3);
+    const ContactSet listed = testing::plate_contacts(one_by_one, 0, height, 1, 2e-3);
     ContactSet list = listed, faces;
     list.probe_pose = faces.probe_pose = pose;
     FaceContacts face;
@@ -48,8 +43,8 @@ TEST_CASE("contact intake: nodes told as a face are held as told one by one") {
     as_face.set_contacts(faces);
     one_by_one.set_probe(0, pose);
     as_face.set_probe(0, pose);
-    CHECK(one_by_one.advance(kPeriod).contacts_unsolved == 0);
-    CHECK(as_face.advance(kPeriod).contacts_unsolved == 0);
+    CHECK(one_by_one.advance(testing::kPeriod).contacts_unsolved == 0);
+    CHECK(as_face.advance(testing::kPeriod).contacts_unsolved == 0);
   }
   CHECK(one_by_one.force(0).norm() > 0.01);
   CHECK((one_by_one.force(0) - as_face.force(0)).norm() < 1e-5 * one_by_one.force(0).norm());
@@ -57,7 +52,7 @@ TEST_CASE("contact intake: nodes told as a face are held as told one by one") {
   for (std::size_t i = 0; i < one_by_one.positions(0).size(); ++i) {
     apart = std::max(apart, (one_by_one.positions(0)[i] - as_face.positions(0)[i]).norm());
   }
-  CHECK(apart < 1e-8);  // positions of plate_contacts() are float32: 4e-9 m of 5 cm
+  CHECK(apart < 1e-8);  // positions of testing::plate_contacts() are float32: 4e-9 m of 5 cm
 }
 
 TEST_CASE("contact intake: faces that name nothing here, or too many nodes, are ignored") {
@@ -70,7 +65,7 @@ TEST_CASE("contact intake: faces that name nothing here, or too many nodes, are 
   contacts.faces[1].node_count = 99;
   contacts.face_nodes = {0, 1, 1u << 30};
   world.set_contacts(contacts);
-  CHECK_FALSE(world.advance(kPeriod).diverged);
+  CHECK_FALSE(world.advance(testing::kPeriod).diverged);
   CHECK(world.force(0).isZero(0));
 }
 
@@ -89,7 +84,7 @@ TEST_CASE("contact intake: contacts that name nothing here are ignored") {
   contacts.probe = 99;
   world.set_contacts(contacts);
   world.set_probe(99, Pose{Vec3::Zero(), Quat::Identity()});
-  world.advance(kPeriod);
+  world.advance(testing::kPeriod);
   const OrganReading reading = world.read(0);
   CHECK(reading.volume == Approx(reading.target_volume).epsilon(1e-12));
 }
