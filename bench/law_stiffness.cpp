@@ -27,12 +27,18 @@ namespace {
 void print(const std::string& name, const certify::Subject& subject) {
   std::cout << name << ", " << subject.scene.rates.deformation << " Hz:" << std::flush;
   ContactTroubles troubles;
-  for (const auto& point : certify::measure_law(
-           subject, [] {}, troubles)) {
-    std::printf("  %.1f mm %.0f/%.0f", 1e3 * point.depth, point.law, point.organ);
+  const auto points = certify::measure_law(
+      subject, [] {}, troubles);
+  for (const auto& point : points) {
+    std::printf("  %.1f mm %.3g/%.3g", 1e3 * point.depth, point.law, point.organ);
     if (point.organ > 0) std::printf(" = %.2f", point.law / point.organ);
   }
-  std::cout << "\n";
+  std::printf(";");
+  for (const certify::Line& line : certify::law_lines(points)) {
+    const char* const failed = line.verdict == certify::Verdict::kFail ? " failed" : "";
+    std::printf("  %.1f %%%s", line.value, failed);
+  }
+  std::cout << std::endl;
 }
 
 certify::Subject on_ball(const char* model, double rate) {
@@ -69,6 +75,24 @@ certify::Subject on_organ(const std::string& file) {
   touch = rigs::poker_at(surface, place, 0);
   press.place.into = (rigs::poker_at(surface, place, 1) - touch).normalized();
   return press;
+}
+
+/// What is pressed instead of what the scene says.
+struct Instead {
+  std::string model;           ///< empty: as the scene says
+  std::size_t iterations = 0;  ///< of a step; 0: as the scene says
+};
+
+/// Where the scene's probe touches first.
+certify::Subject at_first_touch(const std::string& file, const Instead& instead) {
+  certify::Subject subject = certify::load_subject(file, [] {});
+  scene::Organ& organ = subject.scene.organs[subject.place.organ];
+  if (!instead.model.empty()) {
+    organ.model = instead.model;
+    subject.assets.organs[subject.place.organ] = scene::load_organ(organ);
+  }
+  if (instead.iterations > 0) organ.iterations = instead.iterations;
+  return subject;
 }
 
 /// What making and solving the law of a pressed ball costs: 16 rows with friction, the probe in
@@ -130,11 +154,11 @@ void print_cycle(const certify::Subject& subject) {
               1e6 * (organ.busy() - before) / count);
 }
 
-int run(const std::vector<std::string>& scenes, bool at_touch) {
+int run(const std::vector<std::string>& scenes, bool at_touch, const Instead& instead) {
   if (at_touch) {
     for (const std::string& scene : scenes) {
-      const certify::Subject subject = certify::load_subject(scene, [] {});
-      print(scene, subject);
+      const certify::Subject subject = at_first_touch(scene, instead);
+      print(instead.model.empty() ? scene : scene + " as " + instead.model, subject);
       print_cycle(subject);
     }
     return kExitDone;
@@ -157,10 +181,15 @@ int main(int argc, char** argv) {
   runtime::Program program("Stiffness of the hand's law against the organ's own, along a press.",
                            "palpate-bench-law");
   std::vector<std::string> scenes;
+  Instead instead;
   bool at_touch = false;
   program.add("SCENE", scenes, "Scenes whose first organ is pressed; none: a ball of each model");
+  std::vector<std::string> words;
+  for (const auto& row : deformation::model_rows()) words.emplace_back(row.word);
+  program.add("--model", instead.model, "With --at-touch: simulate the organ so").one_of(words);
+  program.add("--iterations", instead.iterations, "With --at-touch: of its steps, at most");
   program.flag(
       "--at-touch", at_touch,
       "Where each scene's probe touches first, as palpate certify does, and a cycle's cost");
-  return program.run(argc, argv, [&] { return run(scenes, at_touch); });
+  return program.run(argc, argv, [&] { return run(scenes, at_touch, instead); });
 }

@@ -25,13 +25,16 @@ class ForceHistory {
   const Vec3& newest() const { return forces_.front(); }
 
   /// How fast the force grew over the last kPeriods advances, in the mean; 0 where there was none
-  /// an advance before [1/s].
-  /// @param period  of an advance [s]
-  double growth(double period) const {
+  /// an advance before, and where it fell though the tissue is pressed in further, or grew though
+  /// that comes back: its swing, which does not go on [1/s].
+  /// @param period    of an advance [s]
+  /// @param yielding  how fast tissue gives way to the forces: their power on it [W]
+  double growth(double period, double yielding) const {
     const Vec3 &now = forces_.front(), &then = forces_.back();
     const double strength = now.norm();
     if (!(strength > 0) || forces_[1].isZero(0) || !(period > 0)) return 0;
     const double grown = (now - then).dot(now) / (strength * strength) / kPeriods;
+    if (grown * yielding < 0) return 0;
     return std::clamp(grown, -kMostGrowth, kMostGrowth) / period;
   }
 

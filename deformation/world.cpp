@@ -316,7 +316,9 @@ double DeformationWorld::estimated_force_error(std::size_t probe) const {
 
 LocalLaw DeformationWorld::local_law(std::size_t probe, bool* bounded) const {
   LocalLaw law = law_of_probe(impl_->organs, impl_->probes.at(probe), impl_->period, bounded);
-  if (impl_->period > 0) law.growth = impl_->forces[probe].growth(impl_->period);
+  double yielding = 0;
+  for (const LawRow& row : law.rows) yielding -= row.force.dot(row.velocity);
+  law.growth = impl_->forces[probe].growth(impl_->period, yielding);
   return law;
 }
 

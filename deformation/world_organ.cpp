@@ -30,25 +30,35 @@ scene::Organ stepped_organ(const scene::Scene& scene, std::size_t index) {
 
 Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> touched,
                                                double period) {
-  const OrganState& state = simulated.state();
-  std::span<const Vec3> gradient;
-  if (keeps_volume) {
-    evaluate_volume(simulated.model(), state.positions, volume);
-    gradient = volume.gradient;
-  }
   const PeriodSteps steps{period, simulated.substeps(period), simulated.dynamics().is_implicit()};
   Eigen::MatrixXd own = simulated.dynamics().compliance(touched, steps);
   if (own.size() > 0) return own;
+  look_ahead(period * steps.displaced());
+  std::span<const Vec3> gradient;
+  if (keeps_volume) {
+    evaluate_volume(simulated.model(), positions_ahead, volume);
+    gradient = volume.gradient;
+  }
   return compliance->solve(
-      state.positions, touched, steps, gradient,
+      positions_ahead, touched, steps, gradient,
       [&](const Patch& patch, double stiffness_share, double damping_share, Eigen::MatrixXf& sum) {
         if (springs) {
-          springs->add(state.positions, patch, stiffness_share, damping_share, sum);
+          springs->add(positions_ahead, patch, stiffness_share, damping_share, sum);
         } else {
           simulated.dynamics().add_stiffness(patch, stiffness_share, sum);
         }
       },
       simulated.dynamics().step_matrix());
+}
+
+/// Where nodes are that nothing stops. That is where an implicit step takes its forces, and
+/// explicit ones in the mean over a period: a thin wall under a probe that comes is stiffer there.
+void WorldOrgan::look_ahead(double time) {
+  const OrganState& state = simulated.state();
+  positions_ahead.resize(state.positions.size());
+  for (std::size_t i = 0; i < positions_ahead.size(); ++i) {
+    positions_ahead[i] = state.positions[i] + time * state.velocities[i];
+  }
 }
 
 /// What is kept of the model beside it.

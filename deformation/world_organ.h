@@ -33,7 +33,9 @@ struct WorldOrgan {
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
   std::unique_ptr<SurfaceWalk> surface = nullptr;
-  VolumeGradient volume = {};                           ///< buffer of contact_compliance()
+  // Buffers of contact_compliance():
+  VolumeGradient volume = {};
+  std::vector<Vec3> positions_ahead = {};
   std::unique_ptr<FollowingOrgan> following = nullptr;  ///< none: it keeps its mesh
   /// Of its mesh, where it follows: the middles' ends.
   std::vector<geometry::HalvedMesh::Parents> parents = {};
@@ -52,6 +54,7 @@ struct WorldOrgan {
  private:
   friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
                                ChunkRunner*, Guarding);
+  void look_ahead(double time);
   void take(OrganMesh mesh);
   void know_model();
 };

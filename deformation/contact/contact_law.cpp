@@ -57,6 +57,29 @@ CondensedContact one_of(const CarriedContact& contact, const Pose& probe, const 
   return one;
 }
 
+/// Triangles that share a node or an edge have one contact each where it is touched.
+bool are_one_place(const CondensedContact& a, const CondensedContact& b) {
+  constexpr double kSameWeight = 1e-9;
+  if (a.organ != b.organ) return false;
+  double apart = 0;
+  for (const auto& [node, weight] : a.weights) {
+    double other = 0;
+    for (const auto& [at, own] : b.weights) other += at == node ? own : 0;
+    apart = std::max(apart, std::abs(weight - other));
+  }
+  return apart < kSameWeight;
+}
+
+void leave_out_same_places(std::vector<CondensedContact>& contacts) {
+  std::vector<CondensedContact> others;
+  for (CondensedContact& contact : contacts) {
+    const bool told = std::ranges::any_of(
+        others, [&](const CondensedContact& c) { return are_one_place(c, contact); });
+    if (!told) others.push_back(std::move(contact));
+  }
+  contacts = std::move(others);
+}
+
 /// Places of contacts that are far from each other: the one that presses most, then always the one
 /// furthest from those chosen.
 std::vector<std::size_t> spread(const std::vector<CondensedContact>& contacts, std::size_t count) {
@@ -144,7 +167,12 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
   }
   std::ranges::stable_sort(pressing, std::greater{},
                            [](const CondensedContact& c) { return c.row.force.dot(c.row.normal); });
-  std::ranges::stable_sort(near, std::less{}, [](const CondensedContact& c) { return c.row.gap; });
+  // Those first that would be the first to press if probe and tissue went on.
+  const auto gap_ahead = [&](const CondensedContact& c) {
+    return c.row.gap + c.row.normal.dot(probe.went() - period * c.row.velocity);
+  };
+  std::ranges::stable_sort(near, std::less{}, gap_ahead);
+  leave_out_same_places(near);
   if (pressing.size() > kMaxLawRows) pressing = take_together(pressing);
   for (std::size_t i = 0; i < near.size() && pressing.size() < kMaxLawRows; ++i) {
     pressing.push_back(std::move(near[i]));

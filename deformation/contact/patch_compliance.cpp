@@ -16,7 +16,7 @@ SpringShares shares_of(const PeriodSteps& steps, double drag) {
 }  // namespace
 
 PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes)
-    : model_(model), neighbours_(std::move(neighbours)), most_nodes_(nodes) {}
+    : model_(model), neighbours_(std::move(neighbours)), nodes_(nodes) {}
 
 Vec3 PatchCompliance::find_touched(const std::vector<Vec3>& positions,
                                    std::span<const ComplianceRow> rows) {
@@ -36,14 +36,19 @@ Vec3 PatchCompliance::find_touched(const std::vector<Vec3>& positions,
   return centre / total;
 }
 
+std::size_t PatchCompliance::near_nodes(const StepMatrix& last) const {
+  if (!model_.is_solid()) {
+    return std::clamp(touched_.size(), nodes_, std::max(nodes_, kMostNearInSprings));
+  }
+  return last ? std::clamp(touched_.size(), std::min(kNearInSolid, nodes_), nodes_) : nodes_;
+}
+
 Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
                                        std::span<const ComplianceRow> rows,
                                        const PeriodSteps& steps, std::span<const Vec3> gradient,
                                        const AddStiffness& add_stiffness, const StepMatrix& last) {
   const Vec3 centre = find_touched(positions, rows);
-  const std::size_t most =
-      last ? std::clamp(touched_.size(), std::min(kNearInSolid, most_nodes_), most_nodes_)
-           : most_nodes_;
+  const std::size_t most = near_nodes(last);
   grow_patch(model_, neighbours_, positions, touched_, centre, most, patch_);
   const SpringShares shares = shares_of(steps, model_.drag);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
@@ -92,7 +97,7 @@ Eigen::Index PatchCompliance::extend(const std::vector<Vec3>& positions, const V
   }
   const std::size_t reach =
       std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(stiffness)));
-  if (model_.is_solid() || reach <= 2 * most_nodes_) return 0;
+  if (model_.is_solid() || reach <= 2 * nodes_) return 0;
   if (!far_) far_.emplace(model_);
   far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
   return take(far_->near_block(), far_->own_block());

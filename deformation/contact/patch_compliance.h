@@ -35,9 +35,11 @@ class PatchCompliance {
  public:
   /// Of a solid that answers beyond its patch; more where more are touched.
   static constexpr std::size_t kNearInSolid = 48;
+  /// Of springs where more are touched than a patch has, at most.
+  static constexpr std::size_t kMostNearInSprings = 110;
 
   /// @param model  outlives this
-  /// @param nodes  of a patch, at most
+  /// @param nodes  of a patch; of a solid at most
   PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes);
 
   /// C A⁻¹ Cᵀ [m/N], symmetric. In explicit steps of springs near by it is scaled so that the
@@ -55,6 +57,8 @@ class PatchCompliance {
  private:
   /// @returns the middle of the rows [m]
   Vec3 find_touched(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows);
+  /// How many nodes answer each by itself, once touched_ is found.
+  std::size_t near_nodes(const StepMatrix& last) const;
   /// Adds the directions in which the body goes along beyond the patch to A.
   /// @returns their number
   Eigen::Index extend(const std::vector<Vec3>& positions, const Vec3& centre, double stiffness,
@@ -77,7 +81,7 @@ class PatchCompliance {
 
   const OrganModel& model_;
   Neighbours neighbours_;
-  std::size_t most_nodes_;
+  std::size_t nodes_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
   PressedPatch pressed_;  ///< K and D in explicit steps

@@ -181,6 +181,11 @@ bool ProbeContacts::begin(double period) {
   return false;
 }
 
+void ProbeContacts::end() {
+  went_ = target_.position - start_.position;
+  start_ = target_;
+}
+
 Pose ProbeContacts::pose_at(double fraction) const {
   return {start_.position + fraction * (target_.position - start_.position),
           start_.rotation.slerp(fraction, target_.rotation)};

@@ -62,7 +62,7 @@ class ProbeContacts {
   /// Begins an advance of `period` [s], in which the probe moves from where it was to the newest
   /// pose. @returns false if it jumped: its contacts are dropped
   bool begin(double period);
-  void end() { start_ = target_; }  ///< ends it
+  void end();  ///< ends it
 
   /// Appends the rows of this probe's contacts with `organ` at `fraction` (0, 1] of the advance.
   /// A row at the sub-step's start is given by the probe at its end, minus the way it moves.
@@ -88,6 +88,7 @@ class ProbeContacts {
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance
+  const Vec3& went() const { return went_; }  ///< its origin in the last advance [m]
   /// So many advances further, if it goes on as in this one; no more than its own size.
   Pose ahead(double advances) const;
   Vec3 impulse() const;  ///< on the probe over the advance [N·s]
@@ -139,6 +140,7 @@ class ProbeContacts {
   bool placed_ = false;
   bool searched_ = false;  ///< a search has told of it since it was placed, jumped or fell silent
   Pose start_, target_;
+  Vec3 went_ = Vec3::Zero();
   double period_ = 0;
   std::vector<CarriedContact> contacts_, previous_contacts_;
   std::vector<Near> near_;            ///< by organ it is or was near
