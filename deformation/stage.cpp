@@ -7,6 +7,7 @@
 #include "deformation/guard_text.h"
 #include "deformation/organ_messages.h"
 #include "deformation/own_organs.h"
+#include "deformation/usual_age.h"
 #include "modules/core/units.h"
 #include "modules/runtime/silence_watch.h"
 #include "modules/runtime/wiring.h"
@@ -26,7 +27,9 @@ class ProbeInputs {
         contacts_(bus.reader(bus::kContacts)),
         states_heard_(probes, stale_after),
         contacts_heard_(probes, stale_after),
-        sampled_ns_(probes, 0) {}
+        sampled_ns_(probes, 0),
+        found_ns_(probes, 0),
+        usual_ages_(probes, UsualAge(stale_after)) {}
 
   void bring(std::int64_t now_ns, DeformationWorld& world) {
     while (states_.take(state_)) {
@@ -37,9 +40,11 @@ class ProbeInputs {
     }
     while (contacts_.take(newest_)) {
       contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
+      note_found(newest_.probe, newest_.header.source_time_ns);
       organs_.keep_own(newest_, newest_.generations);
       world.set_contacts(newest_, newest_.generations);
     }
+    brought_ns_ = now_ns;
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
       if (!states_heard_.silent(probe, now_ns) && !contacts_heard_.silent(probe, now_ns)) continue;
       world.forget_contacts(probe);
@@ -51,16 +56,36 @@ class ProbeInputs {
     return std::max(0.0, seconds_from_ns(now_ns - sampled_ns_[probe]));
   }
 
+  /// What a probe's law is as old as: now; once its contacts are older than they usually get,
+  /// these. Who feels the law then counts from the last word of who finds contacts, however late
+  /// the cycle comes that takes them away.
+  std::int64_t law_ns(std::size_t probe, std::int64_t now_ns) const {
+    const double old = seconds_from_ns(now_ns - found_ns_[probe]);
+    return old > usual_ages_[probe].limit() ? found_ns_[probe] : now_ns;
+  }
+
   bool any_silent(std::int64_t now_ns) const {
     return states_heard_.any_silent(now_ns) || contacts_heard_.any_silent(now_ns);
   }
 
  private:
+  /// Those before it were as old as they got when they were last brought.
+  void note_found(std::size_t probe, std::int64_t source_ns) {
+    if (probe >= found_ns_.size() || source_ns <= found_ns_[probe]) return;
+    usual_ages_[probe].note(seconds_from_ns(brought_ns_ - found_ns_[probe]),
+                            seconds_from_ns(source_ns - found_ns_[probe]));
+    found_ns_[probe] = source_ns;
+  }
+
   const OwnOrgans& organs_;
   bus::Reader<ProbeState> states_;
   bus::Reader<Contacts> contacts_;
   runtime::SilenceWatch states_heard_, contacts_heard_;
-  std::vector<std::int64_t> sampled_ns_;  ///< the newest pose of each probe
+  // Of each probe:
+  std::vector<std::int64_t> sampled_ns_;  ///< its newest pose
+  std::vector<std::int64_t> found_ns_;    ///< its newest contacts
+  std::vector<UsualAge> usual_ages_;      ///< of its contacts
+  std::int64_t brought_ns_ = 0;           ///< by the last bring()
   ProbeState state_;
   Contacts newest_;
 };
@@ -172,8 +197,9 @@ class Outputs {
       any_bounded |= bounded;
       model_.header = header;
       // The law's age counts from the cycle's beginning, where its probes were.
-      model_.header.source_time_ns = now_ns;
-      model_.anchor_age = inputs.age(probe, now_ns);
+      const std::int64_t law_ns = model_.rows.empty() ? now_ns : inputs.law_ns(probe, now_ns);
+      model_.header.source_time_ns = law_ns;
+      model_.anchor_age = inputs.age(probe, law_ns);
       model_.force_error = model_.touching() ? force_errors_.of(probe) : 0;
       models_.write(model_);
     }

@@ -150,7 +150,7 @@ void Processes::tick() {
     listen(runtime::monotonic_now_ns());
   }
   bus_->session.poll();
-  while (bus_->laws.take(bus_->law)) heard_.last_law_ns = bus_->law.header.source_time_ns;
+  while (bus_->laws.take(bus_->law)) heard_.hear_law(bus_->law.header.source_time_ns);
   while (bus_->contacts.take(bus_->touched)) {
     heard_.last_contacts_ns = bus_->touched.header.source_time_ns;
   }
@@ -190,6 +190,10 @@ void Processes::hear(const HapticForce& force, std::int64_t now_ns) {
     heard_.periods.push_back(seconds_from_ns(now.source_time_ns - before.source_time_ns));
   }
   if (!force.force.isZero(0)) heard_.last_pushed_ns = now.source_time_ns;
+  // Who is killed between two sends has said its last to haptics, and not here.
+  if (std::isfinite(force.contact_model_age)) {
+    heard_.hear_law(now.source_time_ns - ns_from_seconds(force.contact_model_age));
+  }
   while (bus_->states.take(bus_->state)) {
     const std::uint32_t answered = bus_->state.buttons;
     if (bus_->state.header.source_time_ns != now.source_time_ns || answered == answered_) continue;

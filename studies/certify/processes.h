@@ -1,6 +1,7 @@
 // The real processes over loopback DDS, and in this one the driver that palpate-emulated-device is.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -18,7 +19,7 @@ struct Heard {
   std::map<std::string, ModuleStatus> modules;  ///< the newest of each
   std::int64_t last_pushed_ns = 0;              ///< source time of the last force that was not zero
   std::int64_t last_driven_ns = 0;              ///< of the last pose that the driver wrote
-  std::int64_t last_law_ns = 0;                 ///< of the last contact_model
+  std::int64_t last_law_ns = 0;                 ///< of the last contact_model, here or in haptics
   std::int64_t last_contacts_ns = 0;
   std::int64_t last_motor_ns = 0;  ///< when the device's motors were last not at zero
   double largest_step = 0;         ///< of the force per tick, since it was set to 0 [N]
@@ -27,6 +28,8 @@ struct Heard {
   std::vector<double> periods;    ///< between two ticks of haptics that follow each other [s]
   std::vector<double> latencies;  ///< from a pose written to the force of its tick heard [s]
   std::vector<Tick> held;         ///< time and depth of the body, since a hand took the device
+
+  void hear_law(std::int64_t source_ns) { last_law_ns = std::max(last_law_ns, source_ns); }
 };
 
 /// What else runs on the machine.

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "deformation/usual_age.h"
 #include "modules/bus/memory_bus.h"
 #include "modules/geometry/surface_blocks.h"
 #include "tests/deformation/organs.h"
@@ -113,4 +114,51 @@ TEST_CASE("deformation stage: probes that nobody speaks for touch nothing, and i
   now.now_ns = 1'000'000'000;
   CHECK(std::string(session.stage.cycle(now).guard) ==
         "a probe or its contacts are stale: it touches nothing");
+}
+
+TEST_CASE("deformation stage: a law is as old as its contacts once they have stopped coming") {
+  // Oracle: the stated rule, on a clock by hand. Whoever feels such a law lets go by his own clock,
+  // stale_after_s + fade_time_s after at most UsualAge::kLeast, if there is never another cycle.
+  Session session;
+  auto states = session.bus.writer(bus::kProbeState);
+  auto contacts = session.bus.writer(bus::kContacts);
+  constexpr std::int64_t kCycleNs = 4'000'000, kLastHeardNs = 20 * kCycleNs;
+  double height = testing::kBallRadius;
+  bool had_rows = false;
+  std::int64_t last_with_rows_ns = 0;
+  for (std::int64_t now_ns = kCycleNs; now_ns <= 40 * kCycleNs; now_ns += kCycleNs) {
+    ProbeState state;
+    state.header.source_time_ns = now_ns;
+    state.pose = Pose{Vec3(0, 0, height), Quat::Identity()};
+    states.write(state);
+    if (now_ns <= kLastHeardNs) {
+      height -= 2e-4;
+      state.pose.position.z() = height;
+      Contacts found;
+      static_cast<ContactSet&>(found) =
+          testing::plate_contacts(session.stage.world(), 0, height, 1, 2e-3);
+      found.generations = {1};
+      found.header.source_time_ns = now_ns;
+      contacts.write(found);
+    }
+    runtime::Cycle now;
+    now.running = true;
+    now.advance = kPeriod;
+    now.now_ns = now_ns;
+    session.stage.cycle(now);
+    REQUIRE(session.models.take(session.model));
+    const std::int64_t law_ns = session.model.header.source_time_ns;
+    const bool stopped = 1e-9 * double(now_ns - kLastHeardNs) > UsualAge::kLeast;
+    if (!session.model.rows.empty()) {
+      had_rows = true;
+      last_with_rows_ns = law_ns;
+      CHECK(law_ns == (stopped ? kLastHeardNs : now_ns));
+      CHECK(session.model.anchor_age >= 0);
+    } else {
+      CHECK(law_ns == now_ns);
+    }
+  }
+  CHECK(had_rows);
+  CHECK(session.model.rows.empty());
+  CHECK(last_with_rows_ns == kLastHeardNs);
 }
