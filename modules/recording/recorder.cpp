@@ -12,6 +12,7 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
+#include "modules/recording/sample_reader.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_reader.h"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "deformation/model/following_mesh.h"
 #include "deformation/models.h"
 #include "studies/rigs/pressed_organ.h"
 #include "tests/modules/geometry/tetrahedra.h"

@@ -51,7 +51,7 @@ TEST_CASE("run options: a recorder comes first and is not waited for") {
   CHECK(command_text(module_commands(options, "/bin/p")[0]) ==
         "/bin/p/palpate-recorder out.mcap --session s1 --domain 9 --topics all,contacts=5");
   options.record_topics = {"contact"};
-  CHECK_THROWS_AS(module_commands(options, "/bin/p"), InputError);
+  CHECK_THROWS_AS(module_commands(options, "/bin/p"), palpate::InputError);
   options.record_topics.clear();
   CHECK_FALSE(commands[0].reports_status);
   CHECK(commands[1].reports_status);

@@ -10,6 +10,7 @@
 
 #include "deformation/model/following_mesh.h"
 #include "deformation/model/mesh_change.h"
+#include "deformation/model/organ_model.h"
 
 namespace palpate::deformation::testing {
 
