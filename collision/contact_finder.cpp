@@ -32,6 +32,8 @@ class ProbeSearch {
     seen_versions_.clear();
   }
 
+  void exchange(StateArchive& archive) { archive(cores_, nodes_, edges_, seen_versions_); }
+
   void change_surface(const SurfaceChange& change) {
     cores_.change_surface(change);
     nodes_.change_surface(change);
@@ -272,6 +274,11 @@ void ContactFinder::change_organ(std::size_t organ, std::vector<geometry::Triang
     probe.change_surface({static_cast<std::uint32_t>(organ), before, after, to});
   }
   before = std::move(after);
+}
+
+void ContactFinder::exchange(StateArchive& archive) {
+  for (OrganSurface& organ : impl_->organs) archive(organ);
+  for (ProbeSearch& probe : impl_->probes) archive(probe);
 }
 
 void ContactFinder::reset() {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/geometry/probe_form.h"
 #include "modules/geometry/surface_blocks.h"
@@ -70,6 +71,9 @@ class ContactFinder {
   /// @param margin  how far tissue and probe may approach until the next search [m], > 0
   SearchReport find(std::size_t probe, const ProbeMotion& motion, double margin,
                     const ContactLimits& limits, ContactSet& result);
+
+  /// Between two searches, of organs of the same triangles.
+  void exchange(StateArchive& archive);
 
  private:
   struct Impl;

@@ -21,6 +21,7 @@
 #include "collision/closed_surface.h"
 #include "collision/core_wall.h"
 #include "collision/surface_change.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::collision {
 
@@ -58,12 +59,16 @@ class CoreContacts {
   void find(const OrganStep& step, const Core& core, std::span<const SweptTriangle> candidates,
             std::vector<FoundContact>& found);
 
+  /// Between two steps.
+  void exchange(StateArchive& archive) { archive(now_); }
+
  private:
   /// `core` is behind `triangle`, which it crossed from the front.
   struct Behind {
     std::uint32_t organ = 0, core = 0, triangle = 0;
     double depth_limit = 0;  ///< down to which it is dragged back through the far side [m]
     double distance = 0;     ///< [m]
+    void exchange(StateArchive& archive) { archive(organ, core, triangle, depth_limit, distance); }
   };
 
   static const Behind& nearest_of(std::span<const Behind> before);

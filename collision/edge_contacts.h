@@ -15,6 +15,7 @@
 #include "collision/contact_reduction.h"
 #include "collision/mesh_solid.h"
 #include "collision/surface_change.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::collision {
 
@@ -32,11 +33,15 @@ class EdgeContacts {
   void find(const OrganStep& step, const SharpMesh& probe, std::span<const EdgePair> pairs,
             std::vector<FoundContact>& found);
 
+  /// Between two steps.
+  void exchange(StateArchive& archive) { archive(now_); }
+
  private:
   struct Crossed {
     std::uint32_t organ = 0;
     EdgePair pair;
     double depth_limit = 0;  ///< OrganStep::depth_limit of the step that crossed it
+    void exchange(StateArchive& archive) { archive(organ, pair, depth_limit); }
   };
   void find_pair(const OrganStep& step, const SharpMesh& probe, const EdgePair& pair,
                  std::vector<FoundContact>& found);

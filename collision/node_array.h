@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/types.h"
 
 namespace palpate::collision {
@@ -31,6 +32,8 @@ class NodeArray {
   /// Whichever they came as; the other is empty.
   std::span<const float> floats() const { return floats_; }
   std::span<const Vec3> doubles() const { return doubles_; }
+
+  void exchange(StateArchive& archive) { archive(doubles_, floats_); }
 
  private:
   std::vector<Vec3> doubles_;

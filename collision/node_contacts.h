@@ -13,6 +13,7 @@
 #include "collision/contact_reduction.h"
 #include "collision/probe_solid.h"
 #include "collision/surface_change.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::collision {
 
@@ -29,11 +30,15 @@ class NodeContacts {
   void find(const OrganStep& step, const ProbeSolid& solid, std::span<const std::uint32_t> nodes,
             std::vector<FoundContact>& found);
 
+  /// Between two steps.
+  void exchange(StateArchive& archive) { archive(now_); }
+
  private:
   struct Hold {
     std::uint32_t organ = 0, node = 0;
     Vec3 point = Vec3::Zero(), outward = Vec3::UnitZ();  ///< of the face, in P
     double depth_limit = 0;  ///< OrganStep::depth_limit of the step that entered it
+    void exchange(StateArchive& archive) { archive(organ, node, point, outward, depth_limit); }
   };
 
   /// A plane of the probe's surface, in P.

@@ -8,6 +8,7 @@
 
 #include "collision/bounds.h"
 #include "collision/node_array.h"
+#include "modules/core/state_archive.h"
 #include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
@@ -63,10 +64,16 @@ class OrganSurface {
     return edges_of_triangle_[triangle];
   }
 
+  /// Of the same triangles and blocks.
+  void exchange(StateArchive& archive) {
+    archive(blocks_, present_, found_, version_, previous_version_, newest_, previous_);
+  }
+
  private:
   struct Shape {
     NodeArray positions;
     Boxes boxes;  ///< by block
+    void exchange(StateArchive& archive) { archive(positions, boxes); }
   };
 
   void build_node_triangles();

@@ -8,6 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
+#include "modules/messages/message_state.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
 
@@ -43,6 +44,15 @@ class OrganInputs {
                        [](const OrganInput& organ) { return organ.boxes_misfit; });
   }
 
+  void exchange(StateArchive& archive) {
+    archive.same(organs_.size());
+    for (OrganInput& organ : organs_) archive(organ);
+    bool has_finder = finder_.has_value();
+    archive(has_finder, came_ns_, interval_);
+    if (archive.reads() && has_finder) make_finder();
+    if (finder_) archive(*finder_);
+  }
+
  private:
   struct OrganInput {
     std::uint32_t generation = 0;
@@ -54,6 +64,16 @@ class OrganInputs {
     /// Told, but no positions have come that are of it.
     std::optional<SurfaceTopology> next;
     bool boxes_misfit = false;  ///< of the newest node positions
+
+    void exchange(StateArchive& archive) {
+      archive(generation, triangles, triangle_blocks, surface_node_count, rest_positions,
+              block_count, boxes_misfit);
+      bool has_next = next.has_value();
+      archive(has_next);
+      if (!has_next) return next.reset();
+      if (!next) next.emplace();
+      messages::exchange_message(archive, *next);
+    }
   };
 
   static void read_boxes(std::span<const float> from, std::vector<geometry::BlockBox>& boxes) {
@@ -211,6 +231,15 @@ class ProbeInputs {
   std::size_t count() const { return probes_.size(); }
   bool silent(std::size_t probe, std::int64_t now_ns) const { return heard_.silent(probe, now_ns); }
 
+  void exchange(StateArchive& archive) {
+    archive.same(probes_.size());
+    for (Way& way : probes_) {
+      archive(way.known, way.searched, way.searched_ns);
+      messages::exchange_message(archive, way.newest);
+    }
+    archive(heard_);
+  }
+
  private:
   struct Way {
     bool known = false;
@@ -326,6 +355,10 @@ CollisionStage::CollisionStage(const scene::Scene& scene, std::vector<geometry::
     : impl_(std::make_unique<Impl>(scene, std::move(probes), bus)) {}
 
 CollisionStage::~CollisionStage() = default;
+
+void CollisionStage::exchange(StateArchive& archive) {
+  archive(impl_->organs, impl_->probes, impl_->troubles);
+}
 
 runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
   impl_->organs.take();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "deformation/world_organ.h"
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 
 namespace palpate::deformation {
@@ -23,6 +24,8 @@ class ContactIntake {
 
   /// Whether one was refused since this was asked last.
   bool take_refused() { return std::exchange(refused_, false); }
+
+  void exchange(StateArchive& archive) { archive(refused_); }
 
  private:
   void take_if_plausible(std::span<const WorldOrgan> organs, const Contact& contact,

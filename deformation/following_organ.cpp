@@ -61,6 +61,7 @@ OrganMesh FollowingOrgan::made(std::uint32_t generation) {
 OrganMesh FollowingOrgan::begin(std::uint32_t generation) {
   for (TouchFollower& touch : touches_) touch.reset();
   places_.clear();
+  present_.clear();
   next_.reset();
   earlier_.clear();
   return made(generation);
@@ -80,6 +81,7 @@ void FollowingOrgan::look(std::span<const Pose> poses, const OrganModel& model,
 OrganMesh FollowingOrgan::take_next(std::uint32_t generation, const OrganModel& model) {
   PALPATE_DEMAND(next_);
   OrganMesh next = *std::exchange(next_, std::nullopt);
+  present_ = places_;
   const auto surface_nodes = [](const OrganModel& of) {
     return std::span(of.rest_positions).first(of.surface_node_count);
   };
@@ -88,6 +90,22 @@ OrganMesh FollowingOrgan::take_next(std::uint32_t generation, const OrganModel& 
                                              surface_nodes(*next.model), next.model->triangles)});
   if (earlier_.size() > kMostEarlier) earlier_.pop_front();
   return next;
+}
+
+void FollowingOrgan::exchange(StateArchive& archive, std::uint32_t generation) {
+  bool has_next = next_.has_value();
+  for (TouchFollower& touch : touches_) archive(touch);
+  archive(places_, present_, has_next, earlier_);
+  if (!archive.reads()) return;
+  next_.reset();
+  if (has_next) next_ = made(generation + 1);
+}
+
+OrganMesh FollowingOrgan::present(std::uint32_t generation) {
+  places_.swap(present_);
+  OrganMesh mesh = made(generation);
+  places_.swap(present_);
+  return mesh;
 }
 
 std::unique_ptr<OrganDynamics> FollowingOrgan::dynamics_of(const OrganModel& model) const {

@@ -16,6 +16,7 @@
 #include "deformation/model/following_mesh.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/models.h"
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/geometry/surface_transfer.h"
 
@@ -61,10 +62,16 @@ class FollowingOrgan {
   bool carry(std::uint32_t generation, Contact& contact) const;
   bool carry(std::uint32_t generation, std::uint32_t& node) const;
 
+  /// Which meshes there are and were; when it reads, those that are to be are made anew.
+  void exchange(StateArchive& archive, std::uint32_t generation);
+  /// The mesh that the organ has, after exchange() has read.
+  OrganMesh present(std::uint32_t generation);
+
  private:
   struct Earlier {
     std::uint32_t generation = 0;
     geometry::SurfaceTransfer transfer;  ///< to the one after it
+    void exchange(StateArchive& archive) { archive(generation, transfer); }
   };
   OrganMesh made(std::uint32_t generation);
   std::size_t first_of(std::uint32_t generation) const;
@@ -76,6 +83,7 @@ class FollowingOrgan {
   FollowingMesh mesh_;
   std::vector<TouchFollower> touches_;         ///< by probe
   std::vector<TouchedPlace> places_, newest_;  ///< that the newest mesh is made for
+  std::vector<TouchedPlace> present_;          ///< that the organ's mesh is made for
   std::optional<OrganMesh> next_;
   std::deque<Earlier> earlier_;  ///< the newest last
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/types.h"
 
 namespace palpate::deformation {
@@ -37,6 +38,8 @@ class ForceHistory {
     if (grown * yielding < 0) return 0;
     return std::clamp(grown, -kMostGrowth, kMostGrowth) / period;
   }
+
+  void exchange(StateArchive& archive) { archive(forces_); }
 
  private:
   std::array<Vec3, kPeriods + 1> forces_{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};

@@ -77,6 +77,23 @@ void OrganContacts::reset() {
   reach_ = 0;
 }
 
+/// Pairs are found again where they were looked for.
+void OrganContacts::exchange(StateArchive& archive) {
+  archive(last_, reach_);
+  if (!(reach_ > 0)) return;
+  std::vector<std::vector<Vec3>> searched(organs_.size());
+  std::vector<std::span<const Vec3>> positions;
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    searched[i].assign(features_.positions(i).begin(), features_.positions(i).end());
+    archive(searched[i]);
+    if (searched[i].size() != organs_[i]->model().surface_node_count) {
+      throw InputError("its state is of another mesh");
+    }
+    positions.emplace_back(searched[i]);
+  }
+  if (archive.reads()) features_.search(positions, reach_);
+}
+
 void OrganContacts::begin_step() {
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     const auto surface = surface_of(*organs_[i]);

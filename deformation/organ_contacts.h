@@ -10,6 +10,7 @@
 #include "deformation/contact/organ_contact_rows.h"
 #include "deformation/guard/advance_report.h"
 #include "deformation/simulated_organ.h"
+#include "modules/core/state_archive.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
@@ -41,11 +42,15 @@ class OrganContacts {
   /// Forgets impulses and pairs: the organs are elsewhere.
   void reset();
 
+  /// Between two advances.
+  void exchange(StateArchive& archive);
+
  private:
   struct Remembered {
     ContactKey key{};
     double normal_impulse = 0;
     Vec3 tangential_impulse = Vec3::Zero();
+    void exchange(StateArchive& archive) { archive(key, normal_impulse, tangential_impulse); }
   };
 
   void refuse_crossed_rest(const scene::Scene& scene);

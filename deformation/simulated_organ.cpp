@@ -60,6 +60,17 @@ void SimulatedOrgan::reset() {
   quiet_time_ = kQuietTime;
 }
 
+void SimulatedOrgan::exchange(StateArchive& archive) {
+  archive.same(model_->node_count());
+  archive(target_volume_, *detector_, state_, last_good_, halvings_, failures_, suspension_time_,
+          gentle_time_, quiet_time_, folded_, collapsed_time_, advances_);
+  for (const OrganState* state : {&state_, &last_good_}) {
+    const bool fits = state->positions.size() == model_->node_count() &&
+                      state->velocities.size() == model_->node_count();
+    if (!fits) throw InputError("its state is of another mesh");
+  }
+}
+
 void SimulatedOrgan::change_mesh(std::unique_ptr<const OrganModel> model,
                                  std::unique_ptr<OrganDynamics> dynamics, const Carry& carry) {
   state_ = carry(state_);

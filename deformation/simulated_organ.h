@@ -21,6 +21,7 @@
 #include "deformation/model/organ_model.h"
 #include "deformation/model/target_volume.h"
 #include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -90,6 +91,9 @@ class SimulatedOrgan {
   /// Ends an advance of `period` [s]. @returns false if the state was replaced: impulses of the
   /// rows of this advance mean nothing
   bool finish(double period, AdvanceReport& report);
+
+  /// Between two advances, of the same mesh.
+  void exchange(StateArchive& archive);
 
  private:
   /// @returns V* before it

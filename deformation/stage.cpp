@@ -9,6 +9,7 @@
 #include "deformation/own_organs.h"
 #include "deformation/usual_age.h"
 #include "modules/core/units.h"
+#include "modules/messages/message_state.h"
 #include "modules/runtime/silence_watch.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
@@ -68,6 +69,15 @@ class ProbeInputs {
     return states_heard_.any_silent(now_ns) || contacts_heard_.any_silent(now_ns);
   }
 
+  void exchange(StateArchive& archive) {
+    archive(states_heard_, contacts_heard_, sampled_ns_, found_ns_, brought_ns_);
+    for (UsualAge& age : usual_ages_) archive(age);
+    const std::size_t probes = usual_ages_.size();
+    if (sampled_ns_.size() != probes || found_ns_.size() != probes) {
+      throw InputError("its state is of other probes");
+    }
+  }
+
  private:
   /// Those before it were as old as they got when they were last brought.
   void note_found(std::size_t probe, std::int64_t source_ns) {
@@ -103,6 +113,8 @@ class SimulatedTime {
     return world_time / (session_time - begin_.value_or(0) + period);
   }
 
+  void exchange(StateArchive& archive) { archive(begin_); }
+
  private:
   std::optional<double> begin_;
 };
@@ -130,6 +142,12 @@ class ForceErrors {
     next_ = world.time() + kEvery;
   }
   double of(std::size_t probe) const { return errors_[probe]; }
+
+  void exchange(StateArchive& archive) {
+    archive.same(errors_.size());
+    for (double& error : errors_) archive(error);
+    archive(next_);
+  }
 
  private:
   static constexpr double kEvery = 0.1;  // [s]
@@ -204,6 +222,18 @@ class Outputs {
       models_.write(model_);
     }
     return any_bounded;
+  }
+
+  /// When it reads, surfaces that are not those told at first are said, too.
+  void exchange(StateArchive& archive, const DeformationWorld& world) {
+    archive(force_errors_);
+    if (!archive.reads()) return;
+    bool as_told = true;
+    for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
+      as_told = as_told && next_blocks_[organ].generation == world.generation(organ);
+    }
+    if (!as_told) publish_surfaces(world);
+    publish_next_surfaces(world);
   }
 
  private:
@@ -321,6 +351,12 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   health.least_advance = least_advance(impl_->world, impl_->period);
   health.contacts = impl_->troubles;
   return health;
+}
+
+void DeformationStage::exchange(StateArchive& archive) {
+  archive(impl_->world, impl_->inputs, impl_->time, impl_->guards, impl_->law_bounded,
+          impl_->troubles);
+  impl_->outputs.exchange(archive, impl_->world);
 }
 
 const DeformationWorld& DeformationStage::world() const { return impl_->world; }

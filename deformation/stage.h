@@ -28,6 +28,7 @@ class DeformationStage : public runtime::Stage {
                    Guarding guarding = Guarding::kOn);
   ~DeformationStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
+  void exchange(StateArchive& archive) override;
 
   const DeformationWorld& world() const;                 ///< of its own organs
   void ask_for_volume(std::size_t organ, double ratio);  ///< of its own, as DeformationWorld does

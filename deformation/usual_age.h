@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "modules/core/state_archive.h"
+
 namespace palpate::deformation {
 
 class UsualAge {
@@ -20,6 +22,8 @@ class UsualAge {
     if (age < silent_) worst_ = std::max(worst_, age);
   }
   double limit() const { return std::max(kLeast, worst_); }  ///< [s]
+
+  void exchange(StateArchive& archive) { archive(worst_); }
 
  private:
   double silent_, worst_ = 0;

@@ -264,6 +264,17 @@ void DeformationWorld::reset() {
   impl_->time = impl_->period = 0;
 }
 
+void DeformationWorld::exchange(StateArchive& archive) {
+  archive.same(impl_->organs.size());
+  archive.same(impl_->probes.size());
+  for (auto& organ : impl_->organs) archive(organ);
+  for (auto& probe : impl_->probes) archive(probe);
+  if (impl_->organ_contacts) archive(*impl_->organ_contacts);
+  archive(impl_->intake, impl_->forces, impl_->time, impl_->period);
+  if (impl_->forces.size() != impl_->probes.size())
+    throw InputError("its state is of other probes");
+}
+
 double DeformationWorld::time() const { return impl_->time; }
 
 double DeformationWorld::stable_step(std::size_t organ) const {

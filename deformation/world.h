@@ -9,6 +9,7 @@
 
 #include "deformation/models.h"
 #include "deformation/simulated_organ.h"
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/scene.h"
@@ -95,6 +96,9 @@ class DeformationWorld {
   /// That force row by row and how it varies with the probe's pose. Costs a small factorisation.
   /// @param bounded  out: its stiffness was bounded, or could not be found (contact_law.h)
   LocalLaw local_law(std::size_t probe, bool* bounded = nullptr) const;
+
+  /// All that comes of it, between two advances; of a world of the same scene.
+  void exchange(StateArchive& archive);
 
  private:
   struct Impl;

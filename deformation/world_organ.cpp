@@ -97,6 +97,15 @@ void WorldOrgan::take(OrganMesh mesh) {
 
 void WorldOrgan::change_mesh() { take(following->take_next(generation, simulated.model())); }
 
+void WorldOrgan::exchange(StateArchive& archive) {
+  archive(generation);
+  if (following) {
+    following->exchange(archive, generation);
+    if (archive.reads()) take(following->present(generation));
+  }
+  archive(simulated, replaced, *compliance);
+}
+
 void WorldOrgan::reset() {
   generation += following != nullptr && following->next() != nullptr ? 2 : 1;
   if (following) take(following->begin(generation));

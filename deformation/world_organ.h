@@ -48,6 +48,8 @@ struct WorldOrgan {
 
   /// Of one that follows: goes on with the mesh that was made for it.
   void change_mesh();
+  /// Between two advances; one that follows takes its mesh when it reads.
+  void exchange(StateArchive& archive);
   /// At rest, at time 0, with the next generation; one that follows with its coarse mesh.
   void reset();
 

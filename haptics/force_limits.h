@@ -8,6 +8,7 @@
 
 #include <cstdint>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/types.h"
 
 namespace palpate::haptics {
@@ -24,6 +25,8 @@ class ForceLimiter {
   const Vec3& limit(const Vec3& wanted, std::uint32_t& limits);
 
   const Vec3& output() const { return output_; }  ///< of the last call
+
+  void exchange(StateArchive& archive) { archive(output_); }
 
  private:
   double max_length_, max_step_;

@@ -13,6 +13,7 @@
 #include "haptics/force_limits.h"
 #include "haptics/held_law.h"
 #include "haptics/passivity.h"
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/scene/scene.h"
 
@@ -43,6 +44,13 @@ class HapticRenderer {
   void reset();
 
   std::uint64_t refused_laws() const { return refused_laws_; }  ///< since the last reset
+
+  /// All that the next tick depends on.
+  void exchange(StateArchive& archive) {
+    archive(force_limiter_, torque_limiter_, passivity_);
+    for (HeldLaw& law : laws_) archive(law);
+    archive(presence_, pressed_, pressed_at_, refused_laws_, refused_since_tick_);
+  }
 
  private:
   double presence(double silence);

@@ -8,6 +8,7 @@
 #include "haptics/local_law.h"
 #include "haptics/wrench.h"
 #include "modules/core/touch.h"
+#include "modules/core/touch_state.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::haptics {
@@ -48,11 +49,17 @@ class HeldLaw {
   /// Too old to be felt, or of a probe in the open for a while.
   bool tells_nothing(double time) const;
 
+  void exchange(StateArchive& archive) {
+    archive(current_, next_, without_rows_, solver_, felt_, softening_, cross_fade_ticks_,
+            cross_fade_left_, cross_fade_);
+  }
+
  private:
   struct Received {
     LocalLaw law;
     double time = 0;     ///< of reception [s]
     bool valid = false;  ///< there is one
+    void exchange(StateArchive& archive) { archive(law, time, valid); }
   };
   static double age(const Received& received, double time);
 

@@ -167,6 +167,19 @@ void LawSolver::change(int direction, double by) {
   }
 }
 
+void LawSolver::exchange(StateArchive& archive) {
+  archive(anchor_, longest_, growth_, half_period_, friction_, validity_radius_, directions_,
+          per_row_);
+  if (directions_ < 0 || directions_ > kMost || per_row_ < 1)
+    throw InputError("its state is no law");
+  const auto count = static_cast<std::size_t>(directions_);
+  for (std::size_t i = 0; i < count; ++i) {
+    archive(anchor_forces_[i], forces_[i]);
+    for (std::size_t k = 0; k < count; ++k) archive(compliance_[i][k]);
+  }
+  for (std::size_t i = 0; i < count / static_cast<std::size_t>(per_row_); ++i) archive(rows_[i]);
+}
+
 double LawSolver::stored_energy() const {
   double sum = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(directions_); ++i) {

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "haptics/wrench.h"
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 
 namespace palpate::haptics {
@@ -41,6 +42,8 @@ class LawSolver {
   /// ½ λᵀW λ at the last evaluation: what the rows' springs could return [J].
   double stored_energy() const;
 
+  void exchange(StateArchive& archive);
+
  private:
   static constexpr int kMost = 3 * static_cast<int>(kMaxLawRows);
   using Numbers = std::array<double, kMost>;
@@ -51,6 +54,7 @@ class LawSolver {
     Vec3 velocity;
     double radius;
     Mat3 basis;  ///< n, t, s now
+    void exchange(StateArchive& archive) { archive(point_P, tissue, velocity, radius, basis); }
   };
 
   void place_rows(const Pose& pose, double time, bool& beyond_validity);

@@ -15,6 +15,7 @@
 #pragma once
 
 #include "haptics/wrench.h"
+#include "modules/core/state_archive.h"
 #include "modules/core/types.h"
 
 namespace palpate::haptics {
@@ -44,6 +45,8 @@ class PassivityControl {
   void clear();
 
   double energy() const { return energy_; }  ///< E [J]
+
+  void exchange(StateArchive& archive) { archive(energy_, has_pose_, pose_, held_); }
 
  private:
   double damping_, period_;

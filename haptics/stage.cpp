@@ -140,6 +140,11 @@ runtime::Health HapticsStage::cycle(const runtime::Cycle& now) {
   return health;
 }
 
+void HapticsStage::exchange(StateArchive& archive) {
+  archive.same(impl_->probes.size());
+  for (RenderedProbe& probe : impl_->probes) archive(*probe.device, probe.renderer);
+}
+
 Device& HapticsStage::device(std::size_t probe) { return *impl_->probes.at(probe).device; }
 
 void HapticsStage::set_device(std::size_t probe, std::unique_ptr<Device> device) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "modules/core/state_archive.h"
 #include "modules/core/types.h"
 
 namespace palpate::haptics {
@@ -12,6 +13,7 @@ struct Wrench {
   bool is_finite() const { return force.allFinite() && torque.allFinite(); }
   bool is_zero() const { return force.isZero(0) && torque.isZero(0); }
   bool operator==(const Wrench&) const = default;
+  void exchange(StateArchive& archive) { archive(force, torque); }
 };
 
 inline Wrench operator+(const Wrench& a, const Wrench& b) {

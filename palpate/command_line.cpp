@@ -81,7 +81,7 @@ void add_run_options(Options& command, RunOptions& options) {
   command.add_output("--record", options.record,
                      "Recording to write (MCAP); one that is there is replaced only with "
                      "--overwrite");
-  command.flag("--overwrite", options.overwrite, "Replace the recording of that name");
+  command.flag("--overwrite", options.overwrite, "Replace the recording or snapshot of that name");
   command.add("--record-topics", options.record_topics,
               "What it holds: all, TOPIC, or TOPIC=HZ for at most so many a second; else all in "
               "lockstep, and in real time all,node_positions=25,contact_model=25,contacts=25");
@@ -93,6 +93,14 @@ void add_run_options(Options& command, RunOptions& options) {
       command.flag("--in-process", options.in_process, "The same bits in one process")
           .excludes(lockstep)
           .excludes(frames);
+  command.add_input("--from-snapshot", options.from_snapshot,
+                    "Go on from a snapshot of the same scene, to the bit; with --lockstep or "
+                    "--in-process");
+  command
+      .add("--snapshot-at", options.snapshot_at,
+           "Simulated seconds at which a snapshot is written; the same")
+      .range(0.0, 1e6);
+  command.add_output("--snapshot", options.snapshot, "File for it");
   command.add("--only", options.only, "Start only these modules, joining a running session")
       .excludes(lockstep)
       .excludes(in_process);
@@ -146,6 +154,9 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
   command.add("--start", playing.start, "Seconds of the recording to leave out").range(0.0, 1e6);
   command.add("--rate", playing.rate, "Times as fast as it was").range(0.01, 100.0).shows_default();
   command.flag("--step", playing.step, "A picture for each press of Enter");
+  command.add("--rerun", playing.rerun,
+              "Compute these stages anew, in one process, on what the recording has of the others: "
+              "haptics, collision, deformation; with --record");
   add_run_options(command, options);
 }
 

@@ -1,4 +1,5 @@
 #include "palpate/lockstep_run.h"
+#include "modules/runtime/snapshot.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -38,10 +39,30 @@ double duration_of(const RunOptions& options, const scene::Scene& scene) {
                    ": duration_s is 0; a run without a clock needs an end: give --duration");
 }
 
+/// Where a run begins.
+runtime::Snapshot start_of(const RunOptions& options, const scene::Scene& scene) {
+  if (options.from_snapshot.empty()) return {};
+  return runtime::read_snapshot(options.from_snapshot, scene);
+}
+
+/// A run begins before it ends, and a snapshot is taken on the way.
+void check_times(const RunOptions& options, std::int64_t start_ns, double duration) {
+  const double start = seconds_from_ns(start_ns);
+  if (start >= duration) {
+    throw InputError(fmt::format("{}: is of {:g} s, the run ends at {:g} s: give --duration",
+                                 options.from_snapshot.string(), start, duration));
+  }
+  if (!options.snapshot_at) return;
+  if (*options.snapshot_at > start && *options.snapshot_at <= duration) return;
+  throw InputError(fmt::format("--snapshot-at {:g}: the run goes from {:g} to {:g} s",
+                               *options.snapshot_at, start, duration));
+}
+
 /// "palpate:   3.20 of 20 s, 1.9 times real time"
 class Progress {
  public:
-  Progress(double duration, std::ostream& out) : duration_(duration), out_(out) {}
+  Progress(std::int64_t start_ns, double duration, std::ostream& out)
+      : start_(seconds_from_ns(start_ns)), duration_(duration), out_(out) {}
 
   /// @param note  what is waited for; may be empty
   void tell(double simulated, const std::string& note) {
@@ -50,13 +71,13 @@ class Progress {
     told_ns_ = now_ns;
     const double wall = seconds_from_ns(now_ns - began_ns_);
     out_ << fmt::format("{:8.2f} of {:g} s, {:.2f} times real time{}{}", simulated, duration_,
-                        simulated / wall, note.empty() ? "" : ", ", note)
+                        (simulated - start_) / wall, note.empty() ? "" : ", ", note)
          << std::endl;
   }
   double wall_time() const { return seconds_from_ns(runtime::monotonic_now_ns() - began_ns_); }
 
  private:
-  double duration_;
+  double start_, duration_;
   std::ostream& out_;
   std::int64_t began_ns_ = runtime::monotonic_now_ns();
   std::int64_t told_ns_ = began_ns_;
@@ -77,7 +98,8 @@ class LockstepRun {
         scene_(scene::load_scene(options.scene)),
         digest_(scene::scene_digest(scene_)),
         duration_(duration_of(options, scene_)),
-        modules_(module_commands(options, program_folder(), scene::process_count(scene_)), log),
+        start_ns_(start_of(options, scene_).time_ns),
+        modules_(checked_commands(), log),
         names_(options.everywhere.empty() ? modules_.reporting_modules() : options.everywhere),
         bus_(every_sample(options.bus)),
         session_(bus_, digest_),
@@ -95,7 +117,7 @@ class LockstepRun {
     if (!wait_until_ready()) return end(false);
     monitor_.hear_all(bus_);
     monitor_.tally().start();
-    Progress progress(duration_, out_);
+    Progress progress(start_ns_, duration_, out_);
     while (next_cycle() && slowest_ns() < end_ns()) {
       grant();
       progress.tell(seconds_from_ns(slowest_ns()), waited_for());
@@ -105,6 +127,10 @@ class LockstepRun {
   }
 
  private:
+  std::vector<ModuleCommand> checked_commands() const {
+    check_times(options_, start_ns_, duration_);
+    return module_commands(options_, program_folder(), scene::process_count(scene_));
+  }
   std::int64_t end_ns() const { return ns_from_seconds(duration_); }
 
   /// False when a signal says stop, or a process has ended: without it nothing goes on.
@@ -178,15 +204,31 @@ class LockstepRun {
       exit_code_ = kExitFailed;
     }
     modules_.stop();
+    if (complete && options_.snapshot_at) unite_snapshot();
     monitor_.poll();
     if (wall_time > 0) {
-      SessionEnd said{scene_.name, seconds_from_ns(slowest_ns()),
+      SessionEnd said{scene_.name, seconds_from_ns(slowest_ns() - start_ns_),
                       wall_time,   modules_.last_words(),
                       failures_,   true};
       write_summary(said);
     }
     if (exit_code_ != kExitDone) return exit_code_;
     return failures_.empty() ? kExitDone : kExitFailed;
+  }
+
+  /// Of the parts that the modules have written.
+  void unite_snapshot() {
+    runtime::Snapshot whole;
+    std::vector<std::filesystem::path> parts;
+    for (const std::string& name : names_) {
+      if (!runtime::remembers(name)) continue;
+      parts.push_back(snapshot_part(options_, name));
+      runtime::Snapshot part = runtime::read_snapshot(parts.back(), scene_);
+      whole.time_ns = part.time_ns;
+      whole.modules.merge(part.modules);
+    }
+    runtime::write_snapshot(options_.snapshot, scene_, whole);
+    for (const auto& part : parts) std::filesystem::remove(part);
   }
 
   void write_summary(const SessionEnd& said) {
@@ -200,6 +242,7 @@ class LockstepRun {
   scene::Scene scene_;
   std::string digest_;
   double duration_;
+  std::int64_t start_ns_;
   ModuleGroup modules_;  // before the bus: processes are born from a program of one thread
   std::vector<std::string> names_;
   bus::DdsBus bus_;
@@ -231,12 +274,6 @@ int follow_lockstep(const RunOptions& options, std::ostream& log) {
   return exit_code;
 }
 
-session::InProcessOptions options_of(ChunkRunner& runner) {
-  session::InProcessOptions options;
-  options.runner = &runner;
-  return options;
-}
-
 }  // namespace
 
 /// Two lockstep runs of one session would take each other's samples for their own, and no stranger
@@ -253,8 +290,14 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   const runtime::StopSignal stop;
   const scene::Scene scene = scene::load_scene(options.scene);
   const double duration = duration_of(options, scene);
+  const runtime::Snapshot start = start_of(options, scene);
+  check_times(options, start.time_ns, duration);
   runtime::WorkerTeam team(scene.deformation_threads);
-  session::InProcess session(scene, session::load_assets(scene), options_of(team));
+  session::InProcessOptions wanted;
+  wanted.runner = &team;
+  wanted.from = &start;
+  wanted.from_file = options.from_snapshot;
+  session::InProcess session(scene, session::load_assets(scene), wanted);
   auto scenes = session.bus().writer(bus::kScene);
   SceneDescription description = runtime::scene_description(scene);
   description.header.source_time_ns = runtime::CycleGrid::kSetUp;
@@ -268,16 +311,26 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   SessionMonitor monitor(session.bus(), scene);
   monitor.tally().start();
   log << fmt::format("palpate: scene {} in one process\n", scene.name);
-  Progress progress(duration, out);
+  Progress progress(start.time_ns, duration, out);
+  bool save = options.snapshot_at.has_value();
+  const double save_at = options.snapshot_at.value_or(0);
+  const auto save_if_due = [&] {
+    if (!save || ns_from_seconds(session.time()) < ns_from_seconds(save_at)) return;
+    runtime::write_snapshot(options.snapshot, scene, session.snapshot());
+    save = false;
+  };
   while (session.time() < duration && !stop.requested()) {
+    save_if_due();
     session.tick();
     monitor.poll();
     monitor.tally().receive(session.contact_troubles());
     progress.tell(session.time(), "");
   }
+  save_if_due();
   const double reached = std::min(duration, session.time());
   session.finish(reached);
-  const SessionEnd said{scene.name, reached, progress.wall_time(), {}, {}, true};
+  const SessionEnd said{
+      scene.name, reached - seconds_from_ns(start.time_ns), progress.wall_time(), {}, {}, true};
   write_run_summary(options, summary(monitor.tally(), said), out);
   return kExitDone;
 }

@@ -14,6 +14,7 @@
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/module_group.h"
+#include "palpate/rerun.h"
 #include "palpate/run_command.h"
 #include "palpate/session_claim.h"
 
@@ -81,17 +82,23 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
 
 int replay_command(const std::filesystem::path& recording, const Playing& playing,
                    const RunOptions& run, std::ostream& out, std::ostream& log) {
-  if (run.scene.empty()) return show(recording, playing, run, out, log);
+  if (run.scene.empty() && playing.rerun.empty()) return show(recording, playing, run, out, log);
   if (playing.start > 0 || playing.rate != 1 || playing.step) {
     throw InputError(
-        "--start, --rate and --step: of a replay without SCENE; with one all is "
+        "--start, --rate and --step: of a replay without SCENE and --rerun; with them all is "
         "computed anew");
   }
   const runtime::StopSignal stop;  // or a signal would leave the folder
   const TemporaryFolder folder;
+  RunOptions again = run;
+  if (!playing.rerun.empty()) {
+    if (run.scene.empty()) again.scene = folder.write("recorded.yaml", recorded_scene(recording));
+    const scene::Scene scene = scene::load_scene_with(again.scene, run.settings);
+    again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+    return rerun(recording, playing.rerun, again, out, log);
+  }
   const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),
                                                   recording, folder.path(), log);
-  RunOptions again = run;
   again.settings.clear();
   again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
   return run_command(again, out, log);

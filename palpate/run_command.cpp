@@ -254,7 +254,8 @@ class Run {
 
 void check_recording(const RunOptions& options) {
   if (options.record.empty()) {
-    if (options.record_topics.empty() && !options.overwrite) return;
+    const bool overwrites = options.overwrite && options.snapshot.empty();
+    if (options.record_topics.empty() && !overwrites) return;
     throw InputError(
         fmt::format("{}: of a recording; give --record FILE, too",
                     options.record_topics.empty() ? "--overwrite" : "--record-topics"));
@@ -279,6 +280,7 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
 int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   RunOptions options = asked;
   check_recording(options);
+  check_snapshots(options);
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const runtime::StopSignal stop;  // or a signal would leave the folder

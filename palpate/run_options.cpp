@@ -1,4 +1,5 @@
 #include "palpate/run_options.h"
+#include "modules/runtime/snapshot.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -61,7 +62,17 @@ void add_lockstep(const RunOptions& options, const std::vector<std::string>& mod
   for (const std::string& module : participants_of(options, modules)) {
     participants += (participants.empty() ? "" : ",") + module;
   }
-  command.arguments.insert(command.arguments.end(), {"--lockstep", participants});
+  auto& arguments = command.arguments;
+  arguments.insert(arguments.end(), {"--lockstep", participants});
+  if (!options.from_snapshot.empty()) {
+    const auto from = std::filesystem::absolute(options.from_snapshot).string();
+    arguments.insert(arguments.end(), {"--from-snapshot", from});
+  }
+  if (options.snapshot_at && runtime::remembers(command.module)) {
+    arguments.insert(arguments.end(),
+                     {"--snapshot-at", fmt::format("{}", *options.snapshot_at), "--snapshot",
+                      snapshot_part(options, command.module).string()});
+  }
 }
 
 ModuleCommand module_command(const RunOptions& options, const std::vector<std::string>& modules,
@@ -100,6 +111,31 @@ std::vector<std::string> participants_of(const RunOptions& options,
     if (wanted(options, module)) all.push_back(module);
   }
   return all;
+}
+
+void check_snapshots(const RunOptions& options) {
+  const bool from = !options.from_snapshot.empty();
+  if (!options.snapshot_at && options.snapshot.empty() && !from) return;
+  if (options.snapshot_at.has_value() == options.snapshot.empty()) {
+    throw InputError(options.snapshot_at ? "--snapshot-at: where to? Give --snapshot FILE, too"
+                                         : "--snapshot: when? Give --snapshot-at SECONDS, too");
+  }
+  if (!options.lockstep && !options.in_process) {
+    throw InputError(fmt::format(
+        "{}: of --lockstep and --in-process; in real time no two processes are at the same instant",
+        from ? "--from-snapshot" : "--snapshot-at"));
+  }
+  if (!options.hosts.empty() && options.snapshot_at) {
+    throw InputError("--snapshot-at: not with --hosts; its parts would lie on several hosts");
+  }
+  if (!options.overwrite && std::filesystem::exists(options.snapshot)) {
+    throw InputError(options.snapshot.string() +
+                     ": is there already; give another name, or --overwrite");
+  }
+}
+
+std::filesystem::path snapshot_part(const RunOptions& options, const std::string& module) {
+  return std::filesystem::absolute(options.snapshot).string() + "." + module;
 }
 
 void apply_hosts(RunOptions& options) {

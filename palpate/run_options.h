@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,16 @@ struct RunOptions {
   bool visualizer = true;
   bool close = false;  ///< the window, too, when the run ends; else it stays
   bool realtime = true;
-  bool restart = true;            ///< modules that die or hang
-  bool lockstep = false;          ///< without a wall clock, as fast as the machine allows
-  bool in_process = false;        ///< the same in one process
-  double ready_deadline = 60;     ///< lockstep: longest wait for a process [s]
-  std::vector<std::string> only;  ///< modules to start; empty: all
-  std::filesystem::path hosts;    ///< which host runs what (hosts_file.h); empty: this one all
-  std::string host;               ///< which of them this one is
+  bool restart = true;                  ///< modules that die or hang
+  bool lockstep = false;                ///< without a wall clock, as fast as the machine allows
+  bool in_process = false;              ///< the same in one process
+  std::optional<double> snapshot_at;    ///< without a clock: when one is written [s]
+  std::filesystem::path snapshot;       ///< … and where
+  std::filesystem::path from_snapshot;  ///< without a clock: goes on there; empty: at rest
+  double ready_deadline = 60;           ///< lockstep: longest wait for a process [s]
+  std::vector<std::string> only;        ///< modules to start; empty: all
+  std::filesystem::path hosts;  ///< which host runs what (hosts_file.h); empty: this one all
+  std::string host;             ///< which of them this one is
   std::vector<std::string> everywhere = {};  ///< modules of all hosts; set with `hosts`
   bool conducts = true;          ///< starts the session and ends it; else another host does
   std::filesystem::path record;  ///< recording to write; empty: none
@@ -44,6 +48,12 @@ struct ModuleCommand {
   std::vector<std::string> arguments;
   bool reports_status = true;  ///< publishes module_status: the session waits until it is ready
 };
+
+/// @throws InputError where what it says of snapshots and recordings does not go together, or a
+/// file is there already
+void check_snapshots(const RunOptions& options);
+/// Where a module of a lockstep writes its part of options.snapshot.
+std::filesystem::path snapshot_part(const RunOptions& options, const std::string& module);
 
 /// Fills in what `hosts` says: modules and participants, and for this process and its children
 /// PALPATE_INTERFACES and PALPATE_PEERS. Without `hosts`: nothing.

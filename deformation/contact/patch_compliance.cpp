@@ -18,6 +18,14 @@ SpringShares shares_of(const PeriodSteps& steps, double drag) {
 PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes)
     : model_(model), neighbours_(std::move(neighbours)), nodes_(nodes) {}
 
+void PatchCompliance::exchange(StateArchive& archive) {
+  bool has_solid = solid_.has_value();
+  archive(has_solid);
+  if (!has_solid) return solid_.reset();
+  if (!solid_) solid_.emplace(model_);
+  archive(*solid_);
+}
+
 Vec3 PatchCompliance::find_touched(const std::vector<Vec3>& positions,
                                    std::span<const ComplianceRow> rows) {
   touched_.clear();

@@ -24,6 +24,7 @@
 #include "deformation/contact/solid_answers.h"
 #include "deformation/model/organ_model.h"
 #include "deformation/model/patch.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -53,6 +54,9 @@ class PatchCompliance {
 
   /// What was found for periods before.
   void forget() { solid_.reset(); }
+
+  /// What was found for periods before.
+  void exchange(StateArchive& archive);
 
  private:
   /// @returns the middle of the rows [m]

@@ -9,6 +9,7 @@
 #include "deformation/contact/surface_walk.h"
 #include "deformation/model/organ_state.h"
 #include "modules/core/touch.h"
+#include "modules/core/touch_state.h"
 #include "modules/geometry/surface_transfer.h"
 #include "modules/scene/scene.h"
 
@@ -29,6 +30,11 @@ struct CarriedContact : Contact {
   // On the probe over the advance, in W [N·s]:
   Vec3 pushed = Vec3::Zero();   ///< along the normals
   Vec3 dragged = Vec3::Zero();  ///< by friction
+
+  void exchange(StateArchive& archive) {
+    exchange_state(archive, static_cast<Contact&>(*this));
+    archive(row, behind, normal_force, tangential_force, pushed, dragged);
+  }
 };
 
 class ProbeContacts {
@@ -94,6 +100,12 @@ class ProbeContacts {
   Vec3 impulse() const;  ///< on the probe over the advance [N·s]
   const std::vector<CarriedContact>& contacts() const { return contacts_; }
 
+  /// Between two advances.
+  void exchange(StateArchive& archive) {
+    archive(placed_, searched_, start_, target_, went_, period_, contacts_, previous_contacts_,
+            near_, gentle_, begun_);
+  }
+
  private:
   Pose pose_at(double fraction) const;
   /// What a round probe's core is near in an organ.
@@ -105,6 +117,7 @@ class ProbeContacts {
     bool crossed = false;                  ///< in the sub-step as it was last taken
     bool watched = false;                  ///< nearer than kWatched and the way of the advance
     std::vector<std::uint32_t> triangles;  ///< the nearest among them
+    void exchange(StateArchive& archive) { archive(organ, inside, crossed, watched, triangles); }
   };
   Near& near_of(std::uint32_t organ);
   void take_seeds(const Near& near);
@@ -150,6 +163,7 @@ class ProbeContacts {
     std::uint32_t organ = 0;
     double time = 0;           ///< since the first contact [s]
     bool core_inside = false;  ///< at the start of a sub-step since then
+    void exchange(StateArchive& archive) { archive(organ, time, core_inside); }
   };
   std::vector<GentleOrgan> gentle_;
   std::vector<std::uint32_t> begun_;  ///< organs first touched by the newest contacts

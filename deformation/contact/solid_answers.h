@@ -14,6 +14,7 @@
 #include "deformation/model/body.h"
 #include "deformation/model/patch.h"
 #include "deformation/springs/spring_hessian_product.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -43,6 +44,9 @@ class SolidAnswers {
   Eigen::Vector3f load(std::uint32_t node, const Vec3& push) const;
   /// How far a push of 1 N moves a node while all others are held; zero of fixed ones [m/N]
   Mat3 alone(std::uint32_t node) const { return inverse_blocks_[node].cast<double>(); }
+
+  /// What it begins with.
+  void exchange(StateArchive& archive) { archive(found_); }
 
  private:
   struct System;

@@ -14,6 +14,7 @@
 
 #include "deformation/model/body.h"
 #include "deformation/model/following_mesh.h"
+#include "modules/core/state_archive.h"
 #include "modules/geometry/probe_form.h"
 
 namespace palpate::deformation {
@@ -41,6 +42,10 @@ class TouchFollower {
             std::vector<TouchedPlace>& places);
 
   double radius() const { return radius_; }  ///< R [m]
+
+  void exchange(StateArchive& archive) {
+    for (Sample& sample : samples_) archive(sample.place);
+  }
 
  private:
   struct Sample {

@@ -22,6 +22,7 @@
 
 #include "deformation/guard/advance_report.h"
 #include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -71,6 +72,10 @@ class DivergenceDetector {
   bool suspicious() const { return suspicious_; }
 
   double energy_budget() const { return energy_budget_; }  ///< what it may hold [J]
+
+  void exchange(StateArchive& archive) {
+    archive(energy_budget_, injected_energy_, kinetic_energy_, first_moment_, seen_, suspicious_);
+  }
 
  private:
   bool is_finite(const OrganState& state) const;

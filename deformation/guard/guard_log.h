@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "deformation/guard/advance_report.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -51,10 +52,13 @@ class GuardLog {
   /// The harshest guard of the advance that ended at simulated `time` [s].
   GuardEvent note(const AdvanceReport& report, double time);
 
+  void exchange(StateArchive& archive) { archive(counts_); }
+
  private:
   struct Count {
     std::uint64_t events = 0;
     double last_time = 0;  ///< [s]
+    void exchange(StateArchive& archive) { archive(events, last_time); }
   };
   std::array<Count, kGuardCodes> counts_;
 };

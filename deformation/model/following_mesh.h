@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/geometry/bisection.h"
 #include "modules/geometry/organ_shape.h"
 
@@ -23,6 +24,7 @@ struct TouchedPlace {
   double edge = 0;             ///< longest there [m]
 
   bool operator==(const TouchedPlace&) const = default;
+  void exchange(StateArchive& archive) { archive(centre, plateau, edge); }
 };
 
 /// A mesh of halves as an organ's shape.

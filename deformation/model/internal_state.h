@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/types.h"
 
 namespace palpate::deformation {
@@ -16,6 +17,9 @@ struct InternalState {
   Eigen::VectorXd rates;       ///< modal: ȧ [m·kg^½/s], else empty
   std::vector<Vec3> positions, velocities;
 
+  void exchange(StateArchive& archive) {
+    archive(pressures, amplitudes, rates, positions, velocities);
+  }
   bool goes_with(const std::vector<Vec3>& x, const std::vector<Vec3>& v) const {
     return positions == x && velocities == v;
   }

@@ -6,6 +6,7 @@
 
 #include "deformation/model/body.h"
 #include "deformation/model/internal_state.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -19,6 +20,10 @@ struct OrganState {
   double pressure_limit = std::numeric_limits<double>::infinity();
   double pressure = 0;  ///< p = −λ of the last step [Pa]
   InternalState internal;
+
+  void exchange(StateArchive& archive) {
+    archive(positions, velocities, volume, target_volume, pressure_limit, pressure, internal);
+  }
 };
 
 /// At rest, with the rest volume as target.

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "modules/core/state_archive.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::deformation {
@@ -27,6 +28,8 @@ class TargetVolume {
 
   /// What is asked for, without the limit on the rate.
   static double asked(const scene::Filling& filling, double time);
+
+  void exchange(StateArchive& archive) { archive(ratio_, told_); }
 
  private:
   scene::Filling filling_;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/core/types.h"
 #include "modules/scene/scene.h"
@@ -24,6 +25,8 @@ struct DeviceSample {
   /// From its pose to the force that answers it, beside the loop's own tick [s]; none: nobody holds
   /// it, its pose is given.
   std::optional<double> delay = std::nullopt;
+
+  void exchange(StateArchive& archive) { archive(pose, twist, buttons, limits, silence, delay); }
 };
 
 /// A pose source. All but reset() is called in the haptic loop: no allocation, lock, log or throw.
@@ -39,6 +42,8 @@ class Device {
   virtual void feel(const RenderedForce&) {}
   /// The session begins anew at time 0.
   virtual void reset() {}
+  /// All that read() depends on beside its time.
+  virtual void exchange(StateArchive&) {}
 };
 
 /// A device that another program moves, heard on topic probe_input.

@@ -12,6 +12,8 @@
 #include <limits>
 #include <optional>
 
+#include "modules/core/state_archive.h"
+
 namespace palpate::haptics {
 
 class DriverClock {
@@ -30,6 +32,10 @@ class DriverClock {
   void forget();
 
   std::uint64_t old() const { return old_; }  ///< samples that came too late, since construction
+
+  void exchange(StateArchive& archive) {
+    archive(newest_stamp_, window_began_ns_, least_, least_before_, old_);
+  }
 
  private:
   static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();

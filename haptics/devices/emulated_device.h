@@ -40,10 +40,17 @@ class EmulatedDevice final : public Device {
   const Vec3& motor_force() const { return motor_force_; }  ///< [N]
   double period() const { return period_; }                 ///< T [s]
 
+  void exchange(StateArchive& archive) override {
+    archive(begin_, read_at_, cycle_, position_, velocity_, motor_force_);
+    for (Arrival& arrival : arrivals_) archive(arrival);
+    for (Vec3& reading : readings_) archive(reading);
+  }
+
  private:
   struct Arrival {
     std::int64_t cycle = -1;
     Vec3 force = Vec3::Zero();
+    void exchange(StateArchive& archive) { archive(cycle, force); }
   };
   Arrival& arrival(std::int64_t cycle);
   Vec3& reading(std::int64_t cycle);

@@ -25,6 +25,8 @@ class MouseDevice final : public OutsideDevice {
   void refuse() override { current_.limits = kPoseRefused; }
   DeviceSample read(double time) override;
 
+  void exchange(StateArchive& archive) override { archive(current_, target_, last_time_); }
+
  private:
   DeviceSample current_;
   Pose target_;

@@ -15,6 +15,8 @@ class PlacedDevice final : public Device {
   }
   DeviceSample read(double) override { return sample_; }
 
+  void exchange(StateArchive& archive) override { archive(sample_); }
+
  private:
   DeviceSample sample_;
 };

@@ -30,6 +30,10 @@ class TopicDevice final : public OutsideDevice {
   Clock clock() const override { return Clock::kSource; }  // a hand does not pause
   DeviceSample read(double time) override;
 
+  void exchange(StateArchive& archive) override {
+    archive(clock_, newest_, newest_time_, pose_, last_time_, delay_, slewing_, limits_);
+  }
+
  private:
   Pose slewed(const Pose& target, double dt, Twist& twist);
 

@@ -24,6 +24,10 @@ class YieldingDevice final : public OutsideDevice {
   DeviceSample read(double time) override;
   void reset() override;
 
+  void exchange(StateArchive& archive) override {
+    archive(*script_, led_, follower_, pose_, time_, heard_at_);
+  }
+
  private:
   enum class Led { kByScript, kFromOutside, kBack };
   void return_to(const DeviceSample& script);

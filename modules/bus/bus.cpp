@@ -14,7 +14,7 @@ std::int64_t Bus::now_ns() const {
 template <class Message>
 bool Writer<Message>::write(Message& message) {
   Header& header = message.header;
-  header.sequence = sequence_ + 1;
+  header.sequence = output_->next_sequence();
   const std::int64_t given_ns = header.source_time_ns;
   if (given_ns == 0) header.source_time_ns = bus_->now_ns();
   const char* refused_field = messages::encode(message, payload_);
@@ -23,7 +23,7 @@ bool Writer<Message>::write(Message& message) {
     output_->refuse(refused_field);
     return false;
   }
-  ++sequence_;
+  output_->count();
   return output_->raw().write(payload_);
 }
 

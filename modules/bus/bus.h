@@ -55,7 +55,6 @@ class Writer {
   const Bus* bus_;
   std::unique_ptr<Output> output_;
   std::vector<std::uint8_t> payload_;
-  std::uint64_t sequence_ = 0;
 };
 
 /// Reads messages of one topic; poll it from the module's own loop, until take gives false. Not

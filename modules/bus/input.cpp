@@ -43,12 +43,43 @@ const RawSample* Input::next() {
 
 void Input::pull() {
   for (;;) {
-    if (spare_.empty()) spare_.emplace_back();
-    Waiting& arrived = spare_.front();
+    Waiting& arrived = spare();
     if (!raw_->take(arrived.sample)) return;
-    arrived.header = messages::header_of(arrived.sample.payload);
-    arrived.key = messages::key_of(*topic_.type, arrived.sample.payload);
+    read_header(arrived);
     note(arrived);
+    if (arrived.header.source_time_ns >= told_before_) insert(spare_.begin());
+  }
+}
+
+Input::Waiting& Input::spare() {
+  if (spare_.empty()) spare_.emplace_back();
+  return spare_.front();
+}
+
+void Input::read_header(Waiting& arrived) const {
+  arrived.header = messages::header_of(arrived.sample.payload);
+  arrived.key = messages::key_of(*topic_.type, arrived.sample.payload);
+}
+
+void Input::exchange(StateArchive& archive, std::int64_t time_ns) {
+  gated_ = true;
+  pull();
+  const auto is_before = [&](const Waiting& w) { return w.header.source_time_ns < time_ns; };
+  auto count = static_cast<std::uint64_t>(std::ranges::count_if(pending_, is_before));
+  archive(count);
+  if (!archive.reads()) {
+    for (Waiting& waiting : pending_) {
+      if (is_before(waiting)) archive(waiting.sample.payload);
+    }
+    return;
+  }
+  told_before_ = time_ns;
+  spare_.splice(spare_.end(), pending_);
+  for (; count > 0; --count) {
+    Waiting& waiting = spare();
+    waiting.sample.writer = {};
+    archive(waiting.sample.payload);
+    read_header(waiting);
     insert(spare_.begin());
   }
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "modules/bus/raw_bus.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::bus {
 
@@ -48,6 +49,10 @@ class Input {
   /// not. Arrivals are noted from the first call on.
   bool heard_until(std::int64_t source_time_ns, std::size_t keys = 1);
 
+  /// What waits of all that was said before `time_ns`, which has arrived. When it reads, whatever
+  /// else arrives of that time was told before: it is noted, and not handed out.
+  void exchange(StateArchive& archive, std::int64_t time_ns);
+
   // For Reader:
   /// The next sample, valid until the next call; nullptr if none.
   const RawSample* next();
@@ -62,6 +67,8 @@ class Input {
   };
 
   void pull();
+  Waiting& spare();
+  void read_header(Waiting& arrived) const;
   void insert(std::list<Waiting>::iterator arrived);
   void note(const Waiting& waiting);
   void count(const WriterId& writer, std::uint64_t sequence);
@@ -75,6 +82,7 @@ class Input {
 
   bool gated_ = false;
   std::int64_t horizon_ = kNoHorizon;
+  std::int64_t told_before_ = std::numeric_limits<std::int64_t>::min();  ///< source time
   std::list<Waiting> pending_;  ///< in the order they will be handed out
   std::list<Waiting> spare_;    ///< memory for arrivals
   std::vector<std::pair<messages::KeyBytes, std::int64_t>> newest_;  ///< source time of each key

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "modules/bus/raw_bus.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::bus {
 
@@ -27,7 +28,12 @@ class Output {
   RawWriter& raw() { return *raw_; }
   const WriterStatistics& statistics() const { return statistics_; }
 
+  /// Goes on with the numbers of another one.
+  void exchange(StateArchive& archive) { archive(sequence_); }
+
   // For Writer:
+  std::uint64_t next_sequence() const { return sequence_ + 1; }
+  void count() { ++sequence_; }
   void refuse(const char* field) {
     ++statistics_.refused;
     statistics_.last_refused_field = field;
@@ -38,6 +44,7 @@ class Output {
   TopicInfo topic_;
   std::unique_ptr<RawWriter> raw_;
   WriterStatistics statistics_;
+  std::uint64_t sequence_ = 0;  ///< of the last sample
 };
 
 }  // namespace palpate::bus

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/geometry/triangle_surface.h"
 
 namespace palpate::geometry {
@@ -23,6 +24,7 @@ struct BlockBox {
   }
   void add(const Vec3& point);
   bool operator==(const BlockBox&) const = default;
+  void exchange(StateArchive& archive) { archive(lower, upper); }
 };
 
 bool are_finite(std::span<const BlockBox> boxes);
@@ -63,6 +65,10 @@ class SurfaceBlocks {
   /// The box of every block. @param nodes  doubles or, as on the wire, floats, three per node [m]
   void bound(std::span<const Vec3> nodes, std::vector<BlockBox>& boxes) const;
   void bound(std::span<const float> nodes, std::vector<BlockBox>& boxes) const;
+
+  void exchange(StateArchive& archive) {
+    archive(first_triangle_, triangles_, first_node_, nodes_, corners_);
+  }
 
  private:
   static std::span<const std::uint32_t> part(const std::vector<std::uint32_t>& all,

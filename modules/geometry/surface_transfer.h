@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "modules/core/state_archive.h"
 #include "modules/geometry/triangle_surface.h"
 
 namespace palpate::geometry {
@@ -37,11 +38,17 @@ class SurfaceTransfer {
   /// The same place; of a triangle that is there no more, the one that holds it at rest.
   PlaceOnSurface place(const PlaceOnSurface& of_from) const;
 
+  SurfaceTransfer() = default;  ///< to exchange()
+  void exchange(StateArchive& archive) {
+    archive(from_rest_, to_rest_, from_, to_, nodes_, triangles_, new_);
+  }
+
  private:
   struct New {
     std::uint32_t triangle = 0;
     Vec3 centre = Vec3::Zero();
     double radius = 0;  ///< of a ball about `centre` that holds it [m]
+    void exchange(StateArchive& archive) { archive(triangle, centre, radius); }
   };
 
   std::vector<Vec3> from_rest_, to_rest_;

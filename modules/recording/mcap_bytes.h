@@ -1,4 +1,4 @@
-// Little-endian fields of MCAP records, and their CRC-32.
+// Little-endian fields of MCAP records.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "modules/core/crc32.h"
 #include "modules/recording/mcap_records.h"
 
 namespace palpate::recording {
@@ -60,9 +61,5 @@ class ByteReader {
 
 /// Text of a file as a terminal may get it: '?' in place of control characters.
 std::string printable(std::string text);
-
-/// CRC-32 (polynomial 0xEDB88320, as zlib's).
-/// @param before  of the bytes that come before these: crc32(ab) = crc32(b, crc32(a))
-std::uint32_t crc32(std::span<const std::uint8_t> bytes, std::uint32_t before = 0);
 
 }  // namespace palpate::recording

@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
   program.add("--topics", topics,
               "Topics to record: all, NAME, or NAME=HZ for at most so many samples a second");
   palpate::runtime::add_bus_options(program, options.bus);
-  palpate::runtime::add_lockstep_option(program, options.lockstep);
+  palpate::runtime::add_lockstep_options(program, options);
   program.add_input("--scene", options.scene,
                     "Scene file; needed in lockstep, which follows its rates");
   return program.run(argc, argv, [&] {

@@ -13,6 +13,7 @@ bus::Input* LockstepCursor::missing_at(std::int64_t time_ns) {
     const std::size_t keys = rule_.keys(input->topic().name);
     const std::int64_t required = rule_.required(input->topic().name, time_ns);
     if (keys == 0 || required == CycleGrid::kNever) continue;
+    if (required > CycleGrid::kSetUp && required < start_ns_) continue;
     if (!input->heard_until(required, keys)) return input;
   }
   return nullptr;
@@ -22,6 +23,22 @@ void LockstepCursor::open_until(std::int64_t time_ns) {
   for (bus::Input* input : inputs_) {
     input->set_horizon(rule_.horizon(input->topic().name, time_ns));
   }
+}
+
+void LockstepCursor::begin_at(std::int64_t start_ns) {
+  const std::int64_t period_ns = grid_.period_ns();
+  start_ns_ = start_ns;
+  next_ns_ = (start_ns + period_ns - 1) / period_ns * period_ns;
+}
+
+/// The outputs come last: a stage that reads may say states, which were said before.
+void LockstepCursor::exchange(StateArchive& archive, Stage& stage,
+                              std::span<bus::Output* const> outputs, std::int64_t time_ns) {
+  archive(stage);
+  archive.same(outputs.size());
+  for (bus::Output* output : outputs) archive(*output);
+  archive.same(inputs_.size());
+  for (bus::Input* input : inputs_) input->exchange(archive, time_ns);
 }
 
 Health LockstepCursor::step(Stage& stage) {

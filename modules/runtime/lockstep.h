@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,15 @@ class LockstepCursor {
   /// The next cycle of `stage`, with nothing missing.
   Health step(Stage& stage);
 
+  /// The first cycle is that at or after `start_ns`. What was to be said before that, nobody says
+  /// any more: it is not waited for.
+  void begin_at(std::int64_t start_ns);
+  /// Stage, outputs and inputs as they are when all cycles before `time_ns` are done and all said
+  /// before it has come; when it reads, after begin_at().
+  /// @param outputs  the module's own
+  void exchange(StateArchive& archive, Stage& stage, std::span<bus::Output* const> outputs,
+                std::int64_t time_ns);
+
   /// The same for the end of a session: all said before `end_ns` has come; then finish.
   bus::Input* missing_before_end(std::int64_t end_ns) { return missing_at(end_ns - 1); }
   void finish(Stage& stage, std::int64_t end_ns);
@@ -38,7 +48,7 @@ class LockstepCursor {
   InputRule rule_;
   CycleGrid grid_;
   std::vector<bus::Input*> inputs_;
-  std::int64_t next_ns_ = 0;
+  std::int64_t start_ns_ = 0, next_ns_ = 0;
 };
 
 }  // namespace palpate::runtime

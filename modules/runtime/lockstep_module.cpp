@@ -8,6 +8,7 @@
 #include "modules/runtime/clock.h"
 #include "modules/runtime/lockstep.h"
 #include "modules/runtime/session.h"
+#include "modules/runtime/snapshot.h"
 #include "modules/runtime/status_reporter.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
@@ -29,20 +30,29 @@ class LockstepModule {
  public:
   LockstepModule(const ModuleOptions& options, const scene::Scene& scene, const std::string& name,
                  const MakeStage& make)
-      : participants_(options.lockstep),
+      : options_(options),
+        scene_(scene),
+        name_(name),
+        participants_(options.lockstep),
         bus_(lockstep_options(options.bus, name)),
         session_(bus_, scene::scene_digest(scene)),
         status_(bus_, name, rate_of(name, scene), false) {
     bus_.set_clock([this] { return clock_ns_; });
     const std::size_t drivers_own = bus_.inputs().size();
+    outputs_before_ = bus_.outputs().size();
     stage_ = make(bus_);
     const auto inputs = bus_.inputs().subspan(drivers_own);
     cursor_.emplace(scene, name, std::vector<bus::Input*>(inputs.begin(), inputs.end()));
+    if (options.snapshot_at) save_at_ns_ = ns_from_seconds(*options.snapshot_at);
+    if (options.from_snapshot.empty()) return;
+    const Snapshot from = read_snapshot(options.from_snapshot, scene);
+    go_on_from(from, options.from_snapshot, name, *cursor_, *stage_, own_outputs());
+    start_ns_ = said_ns_ = from.time_ns;
   }
 
   void run() {
     while (goes_on() && !all_matched()) wait_for_command();
-    say(ModuleState::kReady, 0);
+    say(ModuleState::kReady, start_ns_);
     while (goes_on()) work();
     if (session_.phase() == SessionPhase::kStopped) finish();
     say(ModuleState::kStopped, cursor_->next_ns());
@@ -72,6 +82,7 @@ class LockstepModule {
     const std::int64_t until_ns = session_.state().granted_until_ns();
     bus::Input* missing = nullptr;
     while (cursor_->next_ns() < until_ns && (missing = cursor_->missing()) == nullptr) {
+      save_if_due(cursor_->next_ns());
       clock_ns_ = cursor_->next_ns();
       const Health health = cursor_->step(*stage_);
       ++loop_.cycles;
@@ -114,8 +125,22 @@ class LockstepModule {
       if (stop_.requested()) return;
       missing->wait(kLongestWait);
     }
+    save_if_due(end_ns);
     cursor_->finish(*stage_, end_ns);
     wait_until_heard();
+  }
+
+  std::span<bus::Output* const> own_outputs() const {
+    return bus_.outputs().subspan(outputs_before_);
+  }
+
+  /// Once all cycles before the snapshot's time are done, and all that was said before it is here.
+  void save_if_due(std::int64_t now_ns) {
+    if (!save_at_ns_ || now_ns < *save_at_ns_) return;
+    Snapshot own{*save_at_ns_};
+    save_at_ns_.reset();
+    add_to(own, name_, *cursor_, *stage_, own_outputs());
+    write_snapshot(options_.snapshot, scene_, own);
   }
 
   /// A writer that leaves takes along what a reader has not yet got: one that was stopped for a
@@ -145,6 +170,9 @@ class LockstepModule {
     status_.publish(monotonic_now_ns(), seconds_from_ns(sim_time_ns), loop_);
   }
 
+  const ModuleOptions& options_;
+  const scene::Scene& scene_;
+  std::string name_;
   std::vector<std::string> participants_;
   StopSignal stop_;
   std::int64_t clock_ns_ = CycleGrid::kSetUp;
@@ -154,6 +182,9 @@ class LockstepModule {
   std::unique_ptr<Stage> stage_;
   std::optional<LockstepCursor> cursor_;
   LoopStatistics loop_;
+  std::size_t outputs_before_ = 0;  ///< the stage's own
+  std::int64_t start_ns_ = 0;
+  std::optional<std::int64_t> save_at_ns_;  ///< none: no snapshot, or it is written
   std::int64_t said_ns_ = 0;
   std::int64_t waits_at_ns_ = CycleGrid::kSetUp, waiting_since_ns_ = 0;
   const char* guard_ = "";

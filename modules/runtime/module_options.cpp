@@ -29,16 +29,20 @@ void add_bus_options(Options& options, bus::BusOptions& bus) {
       .shows_default();
 }
 
-void add_lockstep_option(Options& options, std::vector<std::string>& participants) {
+void add_lockstep_options(Options& options, ModuleOptions& module) {
   std::vector<std::string> names(kModules.begin(), kModules.end());
   for (std::size_t process = 2; process <= scene::kMaxProcesses; ++process) {
     names.push_back(name_of({"deformation", process}));
   }
   options
-      .add("--lockstep", participants,
+      .add("--lockstep", module.lockstep,
            "Modules of a lockstep session, this one included: cycles wait for their inputs, "
            "no clock is read (palpate run --lockstep)")
       .one_of(names);
+  options.add_input("--from-snapshot", module.from_snapshot, "In lockstep: goes on from there");
+  options.add("--snapshot-at", module.snapshot_at, "In lockstep: when --snapshot is written [s]")
+      .range(0.0, 1e6);
+  options.add_output("--snapshot", module.snapshot, "Its own part of a snapshot");
 }
 
 int run_module(int argc, char** argv, const ModuleProgram& program,
@@ -50,7 +54,7 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   command.add_input("SCENE", options.scene, "Scene file (YAML)").required();
   add_bus_options(command, options.bus);
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
-  add_lockstep_option(command, options.lockstep);
+  add_lockstep_options(command, options);
   if (program.add_options) program.add_options(command);
   return command.run(argc, argv, [&] {
     run(options);

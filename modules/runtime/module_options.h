@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct ModuleOptions {
   bool realtime = true;         ///< --no-realtime
   /// --lockstep: the modules of a lockstep session, this one included; empty: real time.
   std::vector<std::string> lockstep;
+  std::filesystem::path from_snapshot;  ///< --from-snapshot: lockstep goes on there; empty: from 0
+  std::optional<double> snapshot_at;    ///< --snapshot-at [s], lockstep: when to write …
+  std::filesystem::path snapshot;       ///< --snapshot: … its part of one, a snapshot of itself
 };
 
 struct ModuleProgram {
@@ -26,8 +30,8 @@ struct ModuleProgram {
   std::function<void(Options&)> add_options;
 };
 
-/// Adds --lockstep with its check of names.
-void add_lockstep_option(Options& options, std::vector<std::string>& participants);
+/// Adds --lockstep with its check of names, and what is of lockstep alone.
+void add_lockstep_options(Options& options, ModuleOptions& module);
 
 /// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
 void add_bus_options(Options& options, bus::BusOptions& bus);

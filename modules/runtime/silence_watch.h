@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "modules/core/state_archive.h"
+
 namespace palpate::runtime {
 
 class SilenceWatch {
@@ -15,6 +17,8 @@ class SilenceWatch {
   void heard(std::size_t source, std::int64_t source_time_ns);
   bool silent(std::size_t source, std::int64_t now_ns) const;
   bool any_silent(std::int64_t now_ns) const;
+
+  void exchange(StateArchive& archive) { archive(newest_ns_); }
 
  private:
   std::vector<std::int64_t> newest_ns_;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 
+#include "modules/core/state_archive.h"
 #include "modules/core/units.h"
 #include "modules/messages/messages.h"
 
@@ -45,6 +46,9 @@ class Stage {
   virtual Health cycle(const Cycle& now) = 0;
   /// After the last cycle of a lockstep session, all samples of the session being there.
   virtual void finish(const Cycle&) {}
+  /// All that its cycles depend on beside what is said on the bus; may say things that are states
+  /// (bus::Delivery::kState) when it reads. One that begins anew anywhere has nothing.
+  virtual void exchange(StateArchive&) {}
 };
 
 }  // namespace palpate::runtime

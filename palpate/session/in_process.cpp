@@ -57,6 +57,7 @@ class Newest {
 struct Member {
   std::string module;
   std::unique_ptr<runtime::Stage> stage;
+  std::vector<bus::Output*> outputs;
   runtime::LockstepCursor cursor;
   runtime::Health health;
 };
@@ -76,6 +77,8 @@ struct InProcess::Impl {
   Impl(const scene::Scene& scene_in, Assets assets, const InProcessOptions& options)
       : scene(scene_in),
         troubles(options.troubles),
+        from(options.from != nullptr ? *options.from : runtime::Snapshot{}),
+        from_file(options.from_file),
         tapped(options.tap ? options.tap(carrier) : nullptr),
         probes(carrier, bus::kProbeState, &ProbeState::probe, scene.probes.size()),
         contacts(carrier, bus::kContacts, &Contacts::probe, scene.probes.size()),
@@ -148,13 +151,27 @@ struct InProcess::Impl {
 
   void add(const std::string& module, const MakeStage& make) {
     const std::size_t others = stages_bus().inputs().size();
+    const std::size_t others_out = stages_bus().outputs().size();
     auto stage = make(stages_bus());
     if (stage == nullptr) return;
     const auto own = stages_bus().inputs().subspan(others);
+    const auto outputs = stages_bus().outputs().subspan(others_out);
     members.push_back({module,
                        std::move(stage),
+                       {outputs.begin(), outputs.end()},
                        {scene, module, std::vector<bus::Input*>(own.begin(), own.end())},
                        {}});
+    if (from.time_ns == 0) return;
+    Member& member = members.back();
+    runtime::go_on_from(from, from_file, module, member.cursor, *member.stage, member.outputs);
+  }
+
+  runtime::Snapshot snapshot() {
+    runtime::Snapshot now{next_ns()};
+    for (Member& member : members) {
+      runtime::add_to(now, member.module, member.cursor, *member.stage, member.outputs);
+    }
+    return now;
   }
 
   std::int64_t next_ns() const {
@@ -188,6 +205,8 @@ struct InProcess::Impl {
 
   const scene::Scene scene;
   ContactTroubles* troubles;
+  const runtime::Snapshot from;  ///< at 0: none
+  const std::filesystem::path from_file;
   std::int64_t clock_ns = runtime::CycleGrid::kSetUp;
   bus::MemoryBus carrier{true};
   std::unique_ptr<bus::Bus> tapped;
@@ -218,6 +237,7 @@ void InProcess::run_until(double time) {
 
 void InProcess::tick() { impl_->tick(); }
 double InProcess::time() const { return seconds_from_ns(impl_->next_ns()); }
+runtime::Snapshot InProcess::snapshot() { return impl_->snapshot(); }
 void InProcess::finish(double time) { impl_->finish(ns_from_seconds(time)); }
 
 const scene::Scene& InProcess::scene() const { return impl_->scene; }

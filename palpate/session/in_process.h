@@ -3,6 +3,7 @@
 // their own, and what `palpate run --in-process` is.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,6 +16,7 @@
 #include "modules/geometry/organ_shape.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/runtime/lockstep.h"
+#include "modules/runtime/snapshot.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::session {
@@ -36,6 +38,10 @@ struct InProcessOptions {
   ContactTroubles* troubles = nullptr;  ///< at the session's end gets its own added; outlives it
   /// The bus that the stages see, given the one that carries: for taps. None: the same.
   std::function<std::unique_ptr<bus::Bus>(bus::Bus&)> tap;
+  /// Where the session goes on instead of at rest; outlives the construction. Its file is for
+  /// messages.
+  const runtime::Snapshot* from = nullptr;
+  std::filesystem::path from_file;
   /// How a module's stage is made, given the usual way: to time it (timed_stage.h), to put another
   /// in its place, or, with nullptr, to go without the module. None: the usual way.
   std::function<std::unique_ptr<runtime::Stage>(std::string_view module, bus::Bus& bus,
@@ -59,6 +65,8 @@ class InProcess {
   void tick();
   /// That instant [s].
   double time() const;
+  /// Of now, between two ticks: what options.from takes.
+  runtime::Snapshot snapshot();
   /// Ends the session at `time` [s]: what was said before it reaches every module.
   void finish(double time);
 

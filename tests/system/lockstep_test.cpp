@@ -208,6 +208,59 @@ TEST_CASE("lockstep: a recorder that was stopped gets what the others said befor
   CHECK(bytes(late) == bytes(one));
 }
 
+/// All samples from a simulated time on: topic and bytes.
+std::vector<std::pair<std::string, std::vector<std::uint8_t>>> samples_from(
+    const std::filesystem::path& file, std::int64_t from_ns) {
+  std::vector<std::pair<std::string, std::vector<std::uint8_t>>> samples;
+  recording::SampleReader reader(file);
+  while (const auto sample = reader.next()) {
+    if (messages::header_of(sample->payload).source_time_ns < from_ns) continue;
+    samples.emplace_back(sample->topic->name, sample->payload);
+  }
+  return samples;
+}
+
+TEST_CASE("lockstep: processes go on from a snapshot, their own or one process' own") {
+  // Oracle: the end of a recording that was never interrupted; the other driver's snapshot.
+  const BallScene scene(kPress, "rates: {collision_hz: 300, deformation_hz: 100}\n");
+  const auto in = [&](const char* name) { return (scene.folder() / name).string(); };
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.5", "--record", in("whole.mcap")}) == 0);
+  const auto expected = samples_from(in("whole.mcap"), 300'000'000);
+  REQUIRE(expected.size() > 400);
+  REQUIRE(run(scene, {"--lockstep", "--duration", "0.35", "--snapshot-at", "0.3", "--snapshot",
+                      in("four.snapshot")}) == 0);
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.3", "--snapshot-at", "0.3", "--snapshot",
+                      in("one.snapshot")}) == 0);
+  CHECK(bytes(in("four.snapshot")) == bytes(in("one.snapshot")));
+  CHECK_FALSE(std::filesystem::exists(in("four.snapshot.haptics")));
+
+  for (const char* driver : {"--in-process", "--lockstep"}) {
+    INFO(driver);
+    REQUIRE(run(scene, {driver, "--duration", "0.5", "--from-snapshot", in("one.snapshot"),
+                        "--record", in("rest.mcap"), "--overwrite"}) == 0);
+    CHECK(samples_from(in("rest.mcap"), 300'000'000) == expected);
+  }
+}
+
+TEST_CASE("snapshots: what cannot be gone on from is refused before anything starts") {
+  // Oracle: exit code 2.
+  const BallScene scene(kPress);
+  const auto file = (scene.folder() / "at.snapshot").string();
+  REQUIRE(run(scene, {"--in-process", "--duration", "0.1", "--snapshot-at", "0.1", "--snapshot",
+                      file}) == 0);
+  const std::vector<std::vector<std::string>> refused{
+      {"--in-process", "--duration", "0.1", "--snapshot-at", "0.1", "--snapshot", file},
+      {"--in-process", "--duration", "0.1", "--from-snapshot", file},
+      {"--in-process", "--duration", "1", "--from-snapshot", file, "--set",
+       "organs[0].tissue.youngs_modulus_pa=8e3"},
+      {"--lockstep", "--duration", "1", "--from-snapshot", scene.file().string()},
+      {"--duration", "1", "--from-snapshot", file},
+      {"--in-process", "--duration", "1", "--snapshot-at", "0.5"},
+      {"--in-process", "--duration", "1", "--snapshot-at", "2", "--snapshot", file + "2"}};
+  for (const auto& options : refused) CHECK(run(scene, options) == 2);
+  CHECK(run(scene, {"--in-process", "--duration", "0.2", "--from-snapshot", file}) == 0);
+}
+
 TEST_CASE("lockstep: two runs that were given one session's name do not hear each other") {
   // Oracle: the same session in one process. Each launcher runs beside the other's processes.
   const BallScene scene(kPress, "rates: {collision_hz: 300, deformation_hz: 100}\n");

@@ -1,0 +1,141 @@
+#include "modules/runtime/snapshot.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "modules/core/crc32.h"
+#include "modules/core/error.h"
+#include "modules/core/state_archive.h"
+#include "modules/runtime/program.h"
+#include "modules/scene/scene_reader.h"
+
+namespace palpate::runtime {
+namespace {
+
+// The file: these words, what is in it as a StateArchive's bytes, their CRC-32.
+constexpr std::string_view kWords = "palpate snapshot\n";
+
+struct Contents {
+  std::string version, scene, digest;
+  std::int64_t time_ns = 0;
+  std::vector<std::string> names;
+  std::vector<std::vector<std::uint8_t>> states;  ///< in their order
+  void exchange(StateArchive& archive) { archive(version, scene, digest, time_ns, names, states); }
+};
+
+std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<std::uint8_t> bytes;
+  if (stream && std::filesystem::is_regular_file(file)) {
+    bytes.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  }
+  if (!stream || bytes.empty()) throw InputError(file.string() + ": cannot be read, or is empty");
+  return bytes;
+}
+
+/// Between its words and its CRC, which are right.
+std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
+                                      const std::filesystem::path& file) {
+  const std::size_t begin = std::min(kWords.size(), bytes.size());
+  if (std::memcmp(bytes.data(), kWords.data(), begin) != 0) {
+    throw InputError(file.string() + ": is no snapshot (palpate run --snapshot-at)");
+  }
+  std::uint32_t crc = 0;
+  const bool long_enough = bytes.size() >= kWords.size() + sizeof crc;
+  if (long_enough) std::memcpy(&crc, bytes.data() + bytes.size() - sizeof crc, sizeof crc);
+  if (!long_enough || crc != crc32(bytes.first(bytes.size() - sizeof crc))) {
+    throw InputError(file.string() + ": is torn or damaged");
+  }
+  return bytes.subspan(kWords.size(), bytes.size() - kWords.size() - sizeof crc);
+}
+
+}  // namespace
+
+bool remembers(std::string_view module) {
+  const std::string_view job = module_named(module).value().job;
+  return job != "visualizer" && job != "recorder";
+}
+
+void go_on_from(const Snapshot& snapshot, const std::filesystem::path& file,
+                const std::string& module, LockstepCursor& cursor, Stage& stage,
+                std::span<bus::Output* const> outputs) {
+  cursor.begin_at(snapshot.time_ns);
+  if (!remembers(module)) return;
+  const auto state = snapshot.modules.find(module);
+  if (state == snapshot.modules.end()) {
+    throw InputError(file.string() + ": does not have the state of " + module);
+  }
+  StateArchive archive(state->second);
+  try {
+    cursor.exchange(archive, stage, outputs, snapshot.time_ns);
+    if (!archive.left().empty()) throw InputError("its state is longer than that of this program");
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + module + ": " + error.what());
+  }
+}
+
+void add_to(Snapshot& snapshot, const std::string& module, LockstepCursor& cursor, Stage& stage,
+            std::span<bus::Output* const> outputs) {
+  if (!remembers(module)) return;
+  StateArchive archive;
+  cursor.exchange(archive, stage, outputs, snapshot.time_ns);
+  snapshot.modules[module] = archive.bytes();
+}
+
+void write_snapshot(const std::filesystem::path& file, const scene::Scene& scene,
+                    const Snapshot& snapshot) {
+  Contents contents{version_text(),   scene.name, scene::scene_digest(scene),
+                    snapshot.time_ns, {},         {}};
+  for (const auto& [name, state] : snapshot.modules) {
+    contents.names.push_back(name);
+    contents.states.push_back(state);
+  }
+  StateArchive archive;
+  archive(contents);
+  std::vector<std::uint8_t> bytes(kWords.begin(), kWords.end());
+  bytes.insert(bytes.end(), archive.bytes().begin(), archive.bytes().end());
+  const std::uint32_t crc = crc32(bytes);
+  bytes.resize(bytes.size() + sizeof crc);
+  std::memcpy(bytes.data() + bytes.size() - sizeof crc, &crc, sizeof crc);
+
+  std::filesystem::path part = file;
+  part += ".part";
+  std::ofstream stream(part, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(part, file, error);
+  if (stream && !error) return;
+  std::filesystem::remove(part, error);
+  throw std::runtime_error(file.string() + ": the snapshot cannot be written");
+}
+
+Snapshot read_snapshot(const std::filesystem::path& file, const scene::Scene& scene) {
+  const std::vector<std::uint8_t> bytes = bytes_of(file);
+  StateArchive archive(checked(bytes, file));
+  Contents contents;
+  archive(contents.version);
+  if (contents.version != version_text()) {
+    throw InputError(file.string() + ": a snapshot of " + contents.version + ", this is " +
+                     version_text() + ": a state is that of one version");
+  }
+  archive = StateArchive(checked(bytes, file));
+  archive(contents);
+  const std::string digest = scene::scene_digest(scene);
+  if (contents.digest != digest) {
+    throw InputError(file.string() + ": a snapshot of scene '" + contents.scene + "' (digest " +
+                     contents.digest + "), not of this one (digest " + digest +
+                     "): it goes on with the same scene file, meshes and settings");
+  }
+  Snapshot snapshot{contents.time_ns};
+  for (std::size_t i = 0; i < std::min(contents.names.size(), contents.states.size()); ++i) {
+    snapshot.modules[contents.names[i]] = std::move(contents.states[i]);
+  }
+  return snapshot;
+}
+
+}  // namespace palpate::runtime

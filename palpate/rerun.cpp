@@ -1,0 +1,157 @@
+#include "palpate/rerun.h"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <ostream>
+#include <set>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/recording/mcap_writer.h"
+#include "modules/recording/recorder_stage.h"
+#include "modules/recording/sample_reader.h"
+#include "modules/recording/session_samples.h"
+#include "modules/runtime/stop_signal.h"
+#include "modules/runtime/wiring.h"
+#include "modules/runtime/worker_team.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/session/in_process.h"
+
+namespace palpate::launcher {
+namespace {
+
+/// So far ahead of the session samples are read: in real time they were not recorded in the order
+/// of their source times.
+constexpr std::int64_t kAheadNs = kNanosecondsPerSecond / 4;
+
+/// When a session in real time began, on the clock of source times; 0 of one in lockstep, whose
+/// source times are simulated [ns].
+/// @throws InputError if it was paused or reset: there is no one time to compute it in
+std::int64_t start_of(const std::filesystem::path& recording) {
+  recording::SampleReader reader(recording);
+  std::int64_t start_ns = 0;
+  messages::AnyMessage message;
+  while (const auto sample = reader.next()) {
+    if (sample->topic->name != bus::kSessionControl.name) continue;
+    if (sample->topic->type->decode(sample->payload, message) != nullptr) continue;
+    const auto& control = std::get<SessionControl>(message);
+    const bool goes_on = start_ns != 0 && control.command == SessionCommand::kStart &&
+                         control.start_time_ns != start_ns;
+    if (goes_on || control.reset_count > 0 || control.command == SessionCommand::kPause) {
+      throw InputError(recording.string() +
+                       ": its session was paused or reset; --rerun takes one that went on");
+    }
+    if (control.command == SessionCommand::kStart) start_ns = control.start_time_ns;
+  }
+  return start_ns;
+}
+
+/// Says what others said when they were recorded, on the session's clock.
+class RecordedInputs {
+ public:
+  /// @param stages  that say what they say themselves
+  RecordedInputs(const std::filesystem::path& recording, const std::set<std::string>& stages,
+                 bus::Bus& bus)
+      : reader_(recording), session_(bus), start_ns_(start_of(recording)) {
+    for (const runtime::Wire& wire : runtime::session_wires()) {
+      if (!stages.contains(std::string(wire.writer))) topics_.insert(wire.topic);
+    }
+    next_ = reader_.next();
+  }
+
+  /// All that was said before `time_ns` and a little more.
+  void say_until(std::int64_t time_ns) {
+    for (; next_ && said_ns(*next_) < time_ns + kAheadNs; next_ = reader_.next()) say(*next_);
+  }
+  /// Nothing is left, and the newest sample was said before `time_ns`.
+  bool at_end(std::int64_t time_ns) const { return !next_ && newest_ns_ < time_ns; }
+  bool empty() const { return newest_ns_ < 0; }
+  /// Of topics that were read, those of which only some samples are there.
+  const std::set<std::string>& thinned() const { return thinned_; }
+
+ private:
+  std::int64_t said_ns(const recording::RecordedSample& sample) const {
+    return messages::header_of(sample.payload).source_time_ns - start_ns_;
+  }
+
+  void say(recording::RecordedSample& sample) {
+    if (runtime::find_wire(sample.topic->name) == nullptr) return;
+    const std::int64_t time_ns = said_ns(sample);
+    newest_ns_ = std::max(newest_ns_, time_ns);
+    if (!topics_.contains(sample.topic->name)) return;
+    if (sample.thinned) thinned_.insert(std::string(sample.topic->name));
+    if (start_ns_ != 0) messages::shift_times(*sample.topic->type, -start_ns_, sample.payload);
+    session_.write(*sample.topic, sample.payload);
+  }
+
+  recording::SampleReader reader_;
+  recording::SessionWriter session_;
+  const std::int64_t start_ns_;  ///< of the session
+  std::set<std::string_view> topics_;
+  std::optional<recording::RecordedSample> next_;
+  std::int64_t newest_ns_ = -1;
+  std::set<std::string> thinned_;
+};
+
+session::InProcessOptions options_for(const std::set<std::string>& stages, ChunkRunner& runner) {
+  session::InProcessOptions options;
+  options.runner = &runner;
+  options.make = [&stages](std::string_view module, bus::Bus& bus,
+                           const session::MakeStage& usual) -> std::unique_ptr<runtime::Stage> {
+    const std::string job(runtime::module_named(module).value().job);
+    return stages.contains(job) ? usual(bus) : nullptr;
+  };
+  return options;
+}
+
+void check_stages(const std::vector<std::string>& stages, const RunOptions& run) {
+  for (const std::string& stage : stages) {
+    const bool known = stage == "haptics" || stage == "collision" || stage == "deformation";
+    if (known) continue;
+    throw InputError("--rerun: there is no stage '" + stage +
+                     "'; there are haptics, collision, deformation");
+  }
+  if (run.record.empty()) throw InputError("--rerun: where to? Give --record FILE, too");
+  recording::check_recording_target(run.record);
+  if (run.overwrite || !std::filesystem::exists(run.record)) return;
+  throw InputError(run.record.string() + ": is there already; give another name, or --overwrite");
+}
+
+}  // namespace
+
+int rerun(const std::filesystem::path& recording, const std::vector<std::string>& names,
+          const RunOptions& run, std::ostream& out, std::ostream& log) {
+  check_stages(names, run);
+  const runtime::StopSignal stop;
+  const std::set<std::string> stages(names.begin(), names.end());
+  const scene::Scene scene = scene::load_scene(run.scene);
+  runtime::WorkerTeam team(scene.deformation_threads);
+  session::InProcess session(scene, session::load_assets(scene), options_for(stages, team));
+  session.add("recorder", [&](bus::Bus& bus) {
+    return std::make_unique<recording::RecorderStage>(bus, run.record,
+                                                      recording::TopicSelection(run.record_topics));
+  });
+  RecordedInputs inputs(recording, stages, session.bus());
+  const std::int64_t end_ns =
+      run.duration > 0 ? ns_from_seconds(run.duration) : std::numeric_limits<std::int64_t>::max();
+  std::int64_t now_ns = 0;
+  for (; !stop.requested(); session.tick()) {
+    now_ns = ns_from_seconds(session.time());
+    inputs.say_until(now_ns);
+    if (inputs.at_end(now_ns) || now_ns >= end_ns) break;
+  }
+  if (inputs.empty()) {
+    throw InputError(recording.string() + ": holds no sample of a session's topics");
+  }
+  session.finish(seconds_from_ns(now_ns));
+  for (const std::string& topic : inputs.thinned()) {
+    log << "palpate: warning: of " << topic
+        << " only some samples were recorded (--record-topics all has them all)\n";
+  }
+  out << fmt::format("scene {}: {} computed anew for {:g} s on {}\n", scene.name,
+                     fmt::join(names, ", "), seconds_from_ns(now_ns), recording.string());
+  return kExitDone;
+}
+
+}  // namespace palpate::launcher

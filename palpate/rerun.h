@@ -1,0 +1,21 @@
+// `palpate replay --rerun`: some of the stages again, in one process, on what the others said when
+// they were recorded.
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "palpate/run_options.h"
+
+namespace palpate::launcher {
+
+/// @param stages  haptics, collision, deformation: which are computed anew
+/// @param run     its scene; `record` gets what was recorded of the others and what these say
+/// @throws InputError for a recording that cannot stand in: of a session that was reset, without a
+///         topic that is needed
+int rerun(const std::filesystem::path& recording, const std::vector<std::string>& stages,
+          const RunOptions& run, std::ostream& out, std::ostream& log);
+
+}  // namespace palpate::launcher
