@@ -2,11 +2,15 @@
 """How long a session that presses an organ is without force when one of its processes is killed or stopped.
 
 Usage: bench/rejoin.py [--repeats N] [--how kill stop] [--modules NAME ...]     (after a build)
-Per kind and module: seconds from the signal until its successor says that it runs, and until the force is back (half of what
-it was). A stopped process is found out after three seconds. At the end: what is left of all processes.
+Per kind and module: seconds from the signal and from the successor's start until it says that it runs (of the recorder: until
+its part grows), and until the force is back (half of what it was). A stopped process is found out after three seconds. Each
+session is recorded: its parts are read again, and what is missing within them and between them is told. At the end: what is
+left of all processes.
 """
 import argparse
+import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -59,16 +63,63 @@ def held(live, seconds=0.5):
             return now
 
 
-def lose(live, module, number):
+def started(pid):
+    """When a process was started, on the clock of time.monotonic() [s]; to a hundredth."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()
+    since_boot = int(fields[19]) / os.sysconf("SC_CLK_TCK")
+    return since_boot + time.monotonic() - time.clock_gettime(time.CLOCK_BOOTTIME)
+
+
+def recorder_of(launcher):
+    """Its process; 0: none."""
+    for child in Path(f"/proc/{launcher}/task/{launcher}/children").read_text(encoding="ascii").split():
+        try:
+            if Path(f"/proc/{child}/comm").read_text(encoding="ascii").strip() == "palpate-recorder"[:15]:
+                return int(child)
+        except OSError:
+            pass
+    return 0
+
+
+class Module:
+    """One process of a session, whoever is it at the moment."""
+
+    def __init__(self, name, live, launcher, recording):
+        self.name, self.live, self.launcher, self.recording = name, live, launcher, recording
+
+    def process(self):
+        return recorder_of(self.launcher) if self.name == "recorder" else int(status(self.live, self.name)["process_id"])
+
+    def runs(self):
+        if self.name != "recorder":
+            return status(self.live, self.name)["state"] in (2, 4, "running", "degraded")
+        return max(self.recording.parent.glob("*.mcap"), key=lambda part: part.stat().st_mtime).stat().st_size > 100_000
+
+
+def lose(module, number):
+    """Seconds until it runs again and until the force is back, from the signal and from the start of its successor."""
+    live = module.live
     before = held(live)
-    victim = int(status(live, module)["process_id"])
+    victim = module.process()
     begin = time.monotonic()
     os.kill(victim, number)
-    runs = wait(lambda: int(status(live, module)["process_id"]) != victim and status(live, module)["state"] in (2, 4, "running", "degraded"))
+    runs = wait(lambda: module.process() not in (0, victim) and module.runs())
     since = time.monotonic() - begin
+    restart = started(module.process()) - begin
     faded = force(live) < 0.5 * before
-    back = since + wait(lambda: force(live) > 0.5 * before)
-    return runs, back if faded else since
+    back = since + wait(lambda: force(live) > 0.5 * before) if faded else since
+    return runs, back, runs - restart, back - restart
+
+
+def read_again(recording):
+    """Parts that there are, those that inspect takes up, and samples missing."""
+    words = [ROOT / "build/release/bin/palpate", "inspect", recording, "--json"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"{recording}: cannot be read: {done.stderr}")
+    told = json.loads(done.stdout)
+    missing = sum(topic["missing"] for topic in told["topics"] if not topic["thinned"])
+    return len(list(recording.parent.glob("*.mcap"))), told.get("parts", 1), missing
 
 
 def leftovers(session):
@@ -79,39 +130,50 @@ def leftovers(session):
 def measure(module, how, repeats, folder):
     scene = Path(folder) / "held.yaml"
     scene.write_text(HELD % palpate.scene_path("stomach_probe").parent.joinpath("meshes/stomach.ply"))
-    times = []
+    times, parts = [], []
     number = {"kill": signal.SIGKILL, "stop": signal.SIGSTOP}[how]
     while len(times) < repeats:
         name = f"rejoin{os.getpid()}x{len(times)}{module}"
+        recording = Path(folder) / name / "held.mcap"
+        recording.parent.mkdir()
+        log = Path(folder) / "log"
         words = [ROOT / "build/release/bin/palpate", "run", scene, "--headless", "--session", name, "--domain", "77"]
-        with subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        with open(log, "wb") as said, subprocess.Popen([*words, "--record", recording], stdout=said, stderr=said) as run:
             try:
                 time.sleep(1)
                 with palpate.connect(name, 77) as live:
                     for _ in range(min(KILLS, repeats - len(times))):
-                        times.append(lose(live, module, number))
+                        times.append(lose(Module(module, live, run.pid, recording), number))
+            except Exception:
+                print(log.read_text(errors="replace"))
+                raise
             finally:
                 run.terminate()
         wait(lambda: not leftovers(name), 3)
         if leftovers(name):
             sys.exit(f"left: {leftovers(name)}")
-    return np.array(times)
+        parts.append(read_again(recording))
+        shutil.rmtree(recording.parent)
+    return np.array(times), np.sum(parts, axis=0)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeats", type=int, default=8)
     parser.add_argument("--how", nargs="+", default=["kill"], choices=["kill", "stop"])
-    parser.add_argument("--modules", nargs="+", default=["haptics", "collision", "deformation"])
+    parser.add_argument("--modules", nargs="+", default=["haptics", "collision", "deformation", "recorder"])
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for how in options.how:
             for module in options.modules:
-                times = measure(module, how, options.repeats, folder)
-                runs, back = np.median(times, axis=0)
-                worst_runs, worst_back = np.max(times, axis=0)
-                print(f"{how:5} {module:12} {len(times):4} times: runs again after {runs:.2f} s (at most {worst_runs:.2f}),"
-                      f" force back after {back:.2f} s (at most {worst_back:.2f})", flush=True)
+                times, (files, read, missing) = measure(module, how, options.repeats, folder)
+                middle, worst = np.median(times, axis=0), np.max(times, axis=0)
+                print(
+                    f"{how:5} {module:12} {len(times):4} times: runs again after {middle[0]:.2f} s (at most {worst[0]:.2f}),"
+                    f" force back after {middle[1]:.2f} s (at most {worst[1]:.2f}); from its restart {middle[2]:.2f} s"
+                    f" ({worst[2]:.2f}) and {middle[3]:.2f} s ({worst[3]:.2f}); {files} files recorded, {read} read, {missing} samples missing",
+                    flush=True,
+                )
     print("left of all processes: none")
 
 

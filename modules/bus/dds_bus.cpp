@@ -11,6 +11,7 @@
 #include "modules/bus/clock_exchange.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
+#include "modules/bus/wall_clock_shift.h"
 #include "modules/messages/message_types.h"
 
 namespace palpate::bus {
@@ -31,11 +32,6 @@ WriterId writer_of(const dds::SampleInfo& info) {
 template <class Clock>
 std::int64_t ns_of() {
   return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
-}
-
-// DDS stamps arrivals with the wall clock; everything else here runs on the monotonic one.
-std::int64_t monotonic(const eprosima::fastrtps::rtps::Time_t& wall) {
-  return wall.to_ns() + ns_of<std::chrono::steady_clock>() - ns_of<std::chrono::system_clock>();
 }
 
 class DdsWriter : public RawWriter {
@@ -106,10 +102,17 @@ class DdsReader : public RawReader {
       if (!info.valid_data) continue;  // a writer has left
       if (!participant_.admit(sample.payload)) continue;
       sample.writer = writer_of(info);
-      sample.received_time_ns = monotonic(info.reception_timestamp);
+      sample.received_time_ns = monotonic(info.reception_timestamp.to_ns());
       return true;
     }
     return false;
+  }
+
+  /// DDS stamps arrivals with the wall clock; everything else here runs on the monotonic one.
+  std::int64_t monotonic(std::int64_t wall_ns) {
+    const std::int64_t before = ns_of<std::chrono::steady_clock>();
+    const std::int64_t wall_now = ns_of<std::chrono::system_clock>();
+    return wall_ns + wall_shift_.take(before, wall_now, ns_of<std::chrono::steady_clock>());
   }
 
   bool put_on_this_clock(RawSample& sample) const {
@@ -141,6 +144,7 @@ class DdsReader : public RawReader {
   HostClocks* clocks_;
   dds::DataReader* reader_;
   PayloadType::Sample sample_;
+  WallClockShift wall_shift_;
   std::deque<RawSample> waiting_;
 };
 

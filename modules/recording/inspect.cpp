@@ -196,6 +196,7 @@ void print_json(const RecordingSummary& summary, std::ostream& out) {
   value["recording"] = summary.file.string();
   value["bytes"] = Json::UInt64(summary.file_bytes);
   value["torn"] = summary.torn;
+  value["parts"] = summary.parts;
   for (const auto& [key, text] : summary.session) value["session"][key] = text;
   for (const auto& [key, text] : summary.scene) value["scene"][key] = text;
   for (const auto& [key, text] : summary.cost) value["recorder"][key] = text;

@@ -74,7 +74,8 @@ SampleFile::SampleFile(const std::filesystem::path& file) : writer_(file) {
 }
 
 bool SampleFile::takes(const TopicSample& sample) {
-  count_lost(sample, messages::header_of(sample.payload).sequence);
+  const std::uint64_t sequence = messages::header_of(sample.payload).sequence;
+  gaps_[{sample.topic, sample.writer}].count(sample.writer, sequence);
   return topics_.takes(sample);
 }
 
@@ -93,10 +94,10 @@ void SampleFile::write(const TopicSample& sample) {
   if (sample.topic->name == bus::kScene.name) note_scene(sample);
 }
 
-void SampleFile::count_lost(const TopicSample& sample, std::uint64_t sequence) {
-  const auto [place, first] = newest_.try_emplace({sample.topic, sample.writer}, sequence);
-  if (!first && sequence > place->second) lost_ += sequence - place->second - 1;
-  place->second = std::max(place->second, sequence);
+std::uint64_t SampleFile::lost() const {
+  std::uint64_t sum = lost_;
+  for (const auto& [writer, gaps] : gaps_) sum += gaps.dropped();
+  return sum;
 }
 
 std::uint16_t SampleFile::channel_of(const TopicSample& sample) {

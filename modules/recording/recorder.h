@@ -66,11 +66,10 @@ class SampleFile {
   const McapStatistics& statistics() const { return writer_.statistics(); }
   std::uint64_t bytes_written() const { return writer_.bytes_written(); }
   /// Gaps in the sequence numbers of what was to be added, selected or not.
-  std::uint64_t lost() const { return lost_; }
+  std::uint64_t lost() const;
   void add_lost() { ++lost_; }
 
  private:
-  void count_lost(const TopicSample& sample, std::uint64_t sequence);
   std::uint16_t channel_of(const TopicSample& sample);
   void note_scene(const TopicSample& sample);
   void attach_files(const SceneDescription& scene, std::uint64_t log_time_ns);
@@ -80,8 +79,8 @@ class SampleFile {
   std::int64_t to_time_of_day_ns_ = 0;
   std::map<std::string_view, std::uint16_t> schemas_;  ///< by type name
   std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, std::uint16_t> channels_;
-  std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, std::uint64_t> newest_;
-  std::uint64_t lost_ = 0;
+  std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, bus::SequenceGaps> gaps_;
+  std::uint64_t lost_ = 0;  ///< beside them
   std::string scene_digest_;
 };
 

@@ -1,5 +1,6 @@
 #include "modules/recording/recorder.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "modules/recording/sample_reader.h"
@@ -177,6 +178,23 @@ TEST_CASE("recorder: what was not asked for is left out, what was lost is counte
   int count = 0;
   for (; const auto sample = reader.next(); ++count) CHECK(sample->thinned);
   CHECK(count == 20);
+}
+
+TEST_CASE("recorder: what comes late is not lost") {
+  // Oracle: all numbers from 1 to 100 are there, every tenth behind the three after it.
+  const ScratchFolder folder;
+  SampleFile file(folder / "a.mcap", {});
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = 1; i <= 100; ++i) numbers.push_back(i);
+  for (std::size_t i = 9; i + 3 < 100; i += 10) {
+    std::rotate(numbers.begin() + std::ptrdiff_t(i), numbers.begin() + std::ptrdiff_t(i) + 1,
+                numbers.begin() + std::ptrdiff_t(i) + 4);
+  }
+  for (const std::uint64_t i : numbers) {
+    file.add(raw_sample(bus::kNodePositions, node_positions(i, 1e-3, 0), 1'000'000));
+  }
+  file.close();
+  CHECK(file.lost() == 0);
 }
 
 TEST_CASE("recorder: a full disk is reported") {
