@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
@@ -45,7 +46,9 @@ Module::Module(const ModuleOptions& options, const scene::Scene& scene, std::str
       bus_(named(options.bus, name_)),
       session_(bus_, scene::scene_digest(scene)),
       loop_(rate_hz),
-      status_(bus_, name_, rate_hz, realtime_.priority) {}
+      status_(bus_, name_, rate_hz, realtime_.priority) {
+  if (realtime_.priority) give_up_realtime();
+}
 
 Module::~Module() {
   const std::int64_t now = monotonic_now_ns();
@@ -70,9 +73,17 @@ bool Module::next_cycle() {
   while (!loop_.wait_for_period() && !stop_.requested()) {
   }
   session_.poll();
+  if (session_.running()) run_with_priority();
   report_state();
   if (status_.poll(now_ns(), time(), loop_.statistics())) give_way_if_busy();
   return !stop_.requested() && session_.phase() != SessionPhase::kStopped;
+}
+
+/// The bus' threads have had it since they were made; who loads or waits would keep other sessions
+/// from starting.
+void Module::run_with_priority() {
+  if (std::exchange(ran_, true) || !realtime_.priority) return;
+  resume_realtime(priority_ == Priority::kRealtime ? kRealtimeFifo : kPreferredFifo);
 }
 
 void Module::report_state() {

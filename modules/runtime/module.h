@@ -61,6 +61,7 @@ class Module {
  private:
   void report_state();
   void give_way_if_busy();
+  void run_with_priority();
 
   std::string name_;
   Priority priority_;
@@ -73,6 +74,7 @@ class Module {
   const char* guard_ = "";
   std::int64_t guard_since_ns_ = 0;
   bool ready_ = false;
+  bool ran_ = false;  ///< the session has
 };
 
 }  // namespace palpate::runtime

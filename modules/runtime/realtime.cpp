@@ -52,6 +52,12 @@ void give_up_realtime() {
   sched_setscheduler(0, SCHED_OTHER, &none);
 }
 
+void resume_realtime(int fifo_priority) {
+  sched_param parameters{};
+  parameters.sched_priority = fifo_priority;
+  sched_setscheduler(0, SCHED_FIFO, &parameters);
+}
+
 void lower_priority(int steps) {
   errno = 0;
   const int ignored = nice(steps);

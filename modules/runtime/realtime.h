@@ -18,6 +18,8 @@ Realtime request_realtime(int fifo_priority, bool lock_memory);
 
 /// Puts the calling thread back to normal scheduling.
 void give_up_realtime();
+/// What was granted before, for the calling thread.
+void resume_realtime(int fifo_priority);
 
 /// Gives way to everybody else. @param steps  of niceness, 0 … 19
 void lower_priority(int steps);

@@ -1,9 +1,12 @@
 #include "modules/runtime/module.h"
 
+#include <sched.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 
 #include "modules/runtime/clock.h"
+#include "modules/runtime/realtime.h"
 #include "modules/scene/scene_reader.h"
 #include "tests/modules/runtime/own_bus.h"
 
@@ -15,10 +18,13 @@ namespace {
 
 /// A module of a scene that nobody loads meshes for, with someone who gives it commands.
 struct Played {
-  ModuleOptions options = [] {
+  explicit Played(bool with_priority = false) : realtime(with_priority) {}
+
+  bool realtime;
+  ModuleOptions options = [this] {
     ModuleOptions made;
     made.bus = own_bus_options();
-    made.realtime = false;
+    made.realtime = realtime;
     return made;
   }();
   scene::Scene scene;
@@ -80,6 +86,21 @@ TEST_CASE("module: a stop of the session or a signal ends the loop") {
   bool going = true;
   while (going && monotonic_now_ns() < deadline) going = played.module.next_cycle();
   CHECK_FALSE(going);
+}
+
+TEST_CASE("module: real-time priority is that of who runs, not of who loads or waits") {
+  // Oracle: the kernel's word; where it grants none, none is taken.
+  const bool granted = request_realtime(20, false).priority;
+  give_up_realtime();
+  Played played(true);
+  CHECK(sched_getscheduler(0) == SCHED_OTHER);
+  played.module.ready();
+  REQUIRE(played.cycle_until(ModuleState::kReady));
+  CHECK(sched_getscheduler(0) == SCHED_OTHER);
+  played.command(SessionCommand::kStart);
+  REQUIRE(played.cycle_until(ModuleState::kRunning));
+  CHECK(sched_getscheduler(0) == (granted ? SCHED_FIFO : SCHED_OTHER));
+  give_up_realtime();
 }
 
 TEST_CASE("module: says goodbye") {
