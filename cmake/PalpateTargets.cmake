@@ -134,11 +134,16 @@ function(palpate_program name)
   endif()
 endfunction()
 
-# palpate_tests(NAME [RECURSE] [SOURCES … | EXCEPT pattern …] DEPENDS … [LABELS …, else unit] [TIMEOUT seconds] [SERIAL] [DRAWS])
-# One Catch2 program, each case one ctest test. SERIAL: cases that start real processes or load
-# both cores do not run beside each other. DRAWS: with OpenGL.
+# What a test has that starts real processes. Begun first, they wait while others compute.
+set(PALPATE_PROCESSES COST 100 RESOURCE_LOCK palpate_session)
+
+# palpate_tests(NAME [RECURSE] [SOURCES … | EXCEPT pattern …] DEPENDS … [LABELS …, else unit] [TIMEOUT seconds]
+#               [PROCESSES [HOSTS]] [ALONE regex] [DRAWS])
+# One Catch2 program, each case one ctest test. PROCESSES: its cases start real processes, mostly to wait
+# for them; one such case runs at a time, and one with HOSTS of its own, beside others that compute. ALONE:
+# names of cases that judge times; nothing runs beside them. DRAWS: with OpenGL.
 function(palpate_tests name)
-  cmake_parse_arguments(ARG "RECURSE;SERIAL;DRAWS" "TIMEOUT" "SOURCES;EXCEPT;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RECURSE;PROCESSES;HOSTS;DRAWS" "TIMEOUT;ALONE" "SOURCES;EXCEPT;DEPENDS;LABELS" ${ARGN})
   if(NOT ARG_SOURCES)
     palpate_sources(ARG_SOURCES ${ARG_RECURSE} ${ARG_EXCEPT})
   endif()
@@ -171,9 +176,22 @@ function(palpate_tests name)
     endif()
     list(APPEND properties ENVIRONMENT "ASAN_OPTIONS=${options}")
   endif()
-  if(ARG_SERIAL)
-    list(APPEND properties RUN_SERIAL TRUE)
+  if(ARG_PROCESSES)
+    list(APPEND properties ${PALPATE_PROCESSES})
+    if(ARG_HOSTS)
+      list(TRANSFORM properties REPLACE "^palpate_session$" palpate_hosts)
+    endif()
   endif()
   # NoTests: a name that ctest cannot hand over (it splits at ';') fails instead of matching nothing.
   catch_discover_tests(${name}_tests TEST_PREFIX "${name}: " EXTRA_ARGS -w NoTests PROPERTIES ${properties})
+  if(ARG_ALONE)
+    set(script ${CMAKE_CURRENT_BINARY_DIR}/${name}_alone.cmake)
+    file(WRITE ${script} "foreach(test IN LISTS ${name}_tests_TESTS)
+  if(test MATCHES \"${ARG_ALONE}\")
+    set_tests_properties(\"\${test}\" PROPERTIES RUN_SERIAL TRUE)
+  endif()
+endforeach()
+")
+    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
+  endif()
 endfunction()

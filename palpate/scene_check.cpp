@@ -13,7 +13,6 @@
 #include "modules/core/units.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/runtime/clock.h"
-#include "modules/runtime/thread_time.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/key_list.h"

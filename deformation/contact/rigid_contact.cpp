@@ -99,22 +99,29 @@ RigidContact::Point RigidContact::evaluate(std::size_t obstacle, std::size_t can
   return result;
 }
 
-void RigidContact::add_residual(std::size_t element, const SolidState& state,
-                                ElementVector& residual) const {
+template <class F>
+void RigidContact::for_touching(std::size_t element, const SolidState& state, const F& f) const {
   for (const std::size_t c : of_element_[element]) {
     const BoundaryFace& face = solid_.mesh().faces[faces_[c]];
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
       for (int q = 0; q < kPoints; ++q) {
         const Point at = evaluate(o, c, q, state);
         if (at.traction == 0) continue;
-        const auto shape = face_shape(six_point_rule()[q].barycentric);
-        for (int a = 0; a < kFaceNodes; ++a) {
-          residual.segment<3>(Eigen::Index{3} * face.local[a]) -=
-              (areas_[c][q] * at.traction * shape[a]) * at.gap.normal;
-        }
+        f(at, areas_[c][q], face.local, face_shape(six_point_rule()[q].barycentric));
       }
     }
   }
+}
+
+void RigidContact::add_residual(std::size_t element, const SolidState& state,
+                                ElementVector& residual) const {
+  for_touching(element, state,
+               [&](const Point& at, double area, const auto& local, const auto& shape) {
+                 for (int a = 0; a < kFaceNodes; ++a) {
+                   residual.segment<3>(Eigen::Index{3} * local[a]) -=
+                       (area * at.traction * shape[a]) * at.gap.normal;
+                 }
+               });
 }
 
 void RigidContact::add_tangent(std::size_t element, const SolidState& state, ElementMatrix& tangent,
@@ -123,26 +130,18 @@ void RigidContact::add_tangent(std::size_t element, const SolidState& state, Ele
   // turning of the normal would make the tangent indefinite.
   const double most_bending = positive ? kMostBending * solid_.tissue().shear_modulus()
                                        : std::numeric_limits<double>::infinity();
-  for (const std::size_t c : of_element_[element]) {
-    const BoundaryFace& face = solid_.mesh().faces[faces_[c]];
-    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-      for (int q = 0; q < kPoints; ++q) {
-        const Point at = evaluate(o, c, q, state);
-        if (at.traction == 0) continue;
-        const auto shape = face_shape(six_point_rule()[q].barycentric);
+  for_touching(
+      element, state, [&](const Point& at, double area, const auto& local, const auto& shape) {
         const double bending = std::min(at.traction, most_bending);
-        const Mat3 stiffness =
-            areas_[c][q] * (penalty_ * at.gap.normal * at.gap.normal.transpose() -
-                            bending * at.gap.normal_derivative);
+        const Mat3 stiffness = area * (penalty_ * at.gap.normal * at.gap.normal.transpose() -
+                                       bending * at.gap.normal_derivative);
         for (int a = 0; a < kFaceNodes; ++a) {
           for (int b = 0; b < kFaceNodes; ++b) {
-            tangent.block<3, 3>(Eigen::Index{3} * face.local[a], Eigen::Index{3} * face.local[b]) +=
+            tangent.block<3, 3>(Eigen::Index{3} * local[a], Eigen::Index{3} * local[b]) +=
                 shape[a] * shape[b] * stiffness;
           }
         }
-      }
-    }
-  }
+      });
 }
 
 void RigidContact::augment(const SolidState& state) {

@@ -85,6 +85,10 @@ class RigidContact : public ElementContact {
   Vec3 position(const BoundaryFace& face, int point, const SolidState& state) const;
   Point evaluate(std::size_t obstacle, std::size_t candidate, int point,
                  const SolidState& state) const;
+  /// Calls f(point, its area at rest, nodes of its face in the element, their shape there) for
+  /// every point of the element that bears traction.
+  template <class F>
+  void for_touching(std::size_t element, const SolidState& state, const F& f) const;
   std::size_t index(std::size_t obstacle, std::size_t candidate, int point) const {
     return (obstacle * faces_.size() + candidate) * kPoints + static_cast<std::size_t>(point);
   }

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <optional>
 
+#include "modules/bus/authentication_words.h"
 #include "modules/bus/byte_cursor.h"
 #include "modules/bus/secured_words.h"
 #include "modules/messages/message_types.h"
@@ -114,6 +115,9 @@ PacketFault check_payload(const Submessage& message, std::uint32_t writer, Bytes
   if (!built_in(writer) && message.has(kPayload) &&
       messages::token_of(payload) != message.rules.token) {
     return PacketFault::kToken;
+  }
+  if (writer == kAuthenticationWriter) {
+    return is_generic_message(payload) ? PacketFault::kNone : PacketFault::kParameters;
   }
   if (!carries_parameters(writer)) return PacketFault::kNone;
   const std::uint8_t encapsulation = payload[1];

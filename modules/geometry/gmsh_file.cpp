@@ -55,7 +55,6 @@ class LineReader {
   }
 
   std::size_t number() const { return number_; }
-  std::size_t word_count() const { return words_.size(); }
   std::string word(std::size_t i) const { return i < words_.size() ? words_[i] : ""; }
 
   double real(std::size_t i) const {

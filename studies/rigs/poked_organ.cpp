@@ -40,10 +40,6 @@ double front_of(const geometry::TriangleSurface& surface, double x, double z) {
   return *front;
 }
 
-void add_poker(scene::Scene& scene) {
-  scene.probes.push_back({"tip", scene::SphereShape{kPokerRadius}, 0.0, scene::ScriptedDevice{}});
-}
-
 Vec3 poker_at(const geometry::TriangleSurface& surface, const PokedPlace& place, double depth) {
   return {place.x, front_of(surface, place.x, place.z) - kPokerRadius + depth, place.z};
 }

@@ -30,8 +30,6 @@ std::optional<double> find_front(const geometry::TriangleSurface& surface, doubl
 /// The same; it must.
 double front_of(const geometry::TriangleSurface& surface, double x, double z);
 
-/// Adds the sphere as a probe, without friction.
-void add_poker(scene::Scene& scene);
 /// Where the sphere's middle is `depth` after it touched the surface at rest [m].
 Vec3 poker_at(const geometry::TriangleSurface& surface, const PokedPlace& place, double depth);
 

@@ -37,13 +37,6 @@ std::vector<Pose> add_plates(scene::Scene& scene) {
   return {plate_pose(kBallRadius, false), plate_pose(-kBallRadius, true)};
 }
 
-scene::Scene plate_scene(const scene::Organ& organ) {
-  scene::Scene scene;
-  scene.organs.push_back(organ);
-  add_plates(scene);
-  return scene;
-}
-
 double minimum_jerk(double t) {
   t = std::clamp(t, 0.0, 1.0);
   return t * t * t * (10 + t * (6 * t - 15));

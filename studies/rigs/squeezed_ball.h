@@ -21,8 +21,6 @@ geometry::OrganShape filled_ball(int levels);
 
 /// Adds the plates as probes, the upper one first, without friction. @returns their poses, touching
 std::vector<Pose> add_plates(scene::Scene& scene);
-/// The organ between plates.
-scene::Scene plate_scene(const scene::Organ& organ);
 
 /// A plane, solid on the side that `facing_up` (±z) does not point to.
 Pose plate_pose(double height, bool facing_up);

@@ -153,8 +153,8 @@ TEST_CASE("following: on tissue that is the same everywhere a slide feels no cha
 
 TEST_CASE("following: a probe that circles without end gains an organ no energy") {
   // Oracle: every turn is as the one before: its energy does not drift, in the middle or at most,
-  // nor does volume. A hundred changes of the mesh and more. Linear ones at 75 mm/s, quadratic ones
-  // at 38, as fast as docs/accuracy.md has them even.
+  // nor does volume. Scores of changes of the mesh; thousands: palpate-bench-following. Linear ones
+  // at 75 mm/s, quadratic ones at 38, as fast as docs/accuracy.md has them even.
   const char* model = GENERATE(kLinearModel, kQuadraticModel);
   const int steps = std::string_view(model) == kLinearModel ? 100 : 200;  // a turn
   Following block(following_scene(model));
@@ -166,7 +166,7 @@ TEST_CASE("following: a probe that circles without end gains an organ no energy"
   std::vector<double> middles, mosts;
   int changes = 0;
   std::size_t nodes = 0;
-  for (int turn = 0; turn < 6; ++turn) {
+  for (int turn = 0; turn < 4; ++turn) {
     std::vector<double> energies;
     for (int k = 1; k <= steps; ++k) {
       block.pressed.advance({{on_circle(k), Quat::Identity()}});
@@ -178,7 +178,7 @@ TEST_CASE("following: a probe that circles without end gains an organ no energy"
     mosts.push_back(std::ranges::max(energies));
   }
   INFO(changes << " changes");
-  CHECK(changes > 100);
+  CHECK(changes > 60);
   for (std::size_t turn = 2; turn < middles.size(); ++turn) {
     CHECK(middles[turn] == Approx(middles[1]).epsilon(0.01));
     CHECK(mosts[turn] == Approx(mosts[1]).epsilon(0.01));

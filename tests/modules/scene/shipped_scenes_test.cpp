@@ -115,29 +115,21 @@ TEST_CASE("shipped scenes: are the ones promised, and every one loads") {
                                        "stomach_probe_refined"});
 }
 
-TEST_CASE("shipped scenes: each probe starts clear of the organ and presses 10 to 25 mm deep") {
-  // Oracle: brute-force signed distance of the path to the rest surface.
+TEST_CASE("shipped scenes: each probe starts clear, presses 10 to 25 mm deep, and slides") {
+  // Oracle: brute-force signed distance of the path to the rest surface, and the length of its part
+  // that is deeper than 5 mm.
   for (const std::string& name : kOneProbeScenes) {
     INFO(name);
     const Scene scene = load_scene(kScenes / (name + ".yaml"));
     REQUIRE(scene.organs.size() == 1);
     REQUIRE(scene.probes.size() == 1);
+    const auto path = path_of(scene.probes[0]);
     const auto depth = depths(scene.probes[0], load_organ(scene.organs[0]).surface);
     CHECK(depth.front() < -0.005);
     CHECK(depth.back() < 0);
     const double deepest = *std::max_element(depth.begin(), depth.end());
     CHECK(deepest > 0.010);
     CHECK(deepest < 0.025);
-  }
-}
-
-TEST_CASE("shipped scenes: each probe slides over the organ while it presses") {
-  // Oracle: length of the part of the path that is deeper than 5 mm, by brute force.
-  for (const std::string& name : kOneProbeScenes) {
-    INFO(name);
-    const Scene scene = load_scene(kScenes / (name + ".yaml"));
-    const auto path = path_of(scene.probes[0]);
-    const auto depth = depths(scene.probes[0], load_organ(scene.organs[0]).surface);
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) {
       if (depth[i] > 0.005) length += (path[i].point - path[i - 1].point).norm();

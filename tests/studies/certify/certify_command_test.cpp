@@ -27,15 +27,13 @@ CertifyOptions options_for(const BallScene& scene, const char* folder) {
 
 }  // namespace
 
-TEST_CASE("certify command: in lockstep it writes the same bytes each time") {
-  // Oracle: the promise of docs/certify.md.
+TEST_CASE("certify command: in lockstep it writes a certificate and its tables") {
+  // Oracle: the promise of docs/certify.md; that its bytes are the same each time shows the next.
   const BallScene scene(kFingerFromAbove);
   std::ostringstream out, log;
   const auto go_on = [] { return false; };
   const int code = run_certify(options_for(scene, "one"), go_on, out, log);
-  CHECK(run_certify(options_for(scene, "two"), go_on, out, log) == code);
   const std::string one = text_in(scene.folder() / "one/certificate.json");
-  CHECK(one == text_in(scene.folder() / "two/certificate.json"));
   CHECK((one.find("\"verdict\" : \"fail\"") != std::string::npos) == (code == kExitFailed));
   CHECK(one.find("\"complete\" : true") != std::string::npos);
   for (const char* table : {"law.csv", "force.csv", "press.csv", "held.csv", "slide.csv"}) {

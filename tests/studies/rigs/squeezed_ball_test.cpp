@@ -18,7 +18,10 @@ TEST_CASE("squeezed ball: plates face each other") {
 TEST_CASE("squeezed ball: a plate has one contact with each node near it") {
   // Oracle: brute force over the rest positions, which float32 rounds by no more than 4e-9 m.
   const auto ball = geometry::make_ball(kBallRadius, 2);
-  const deformation::DeformationWorld world(plate_scene(ball_organ()), {ball});
+  scene::Scene scene;
+  scene.organs.push_back(ball_organ());
+  add_plates(scene);
+  const deformation::DeformationWorld world(scene, {ball});
   constexpr double kHeight = 0.045, kMargin = 2e-3;
   for (const int side : {1, -1}) {
     const ContactSet contacts = plate_contacts(world, 0, side * kHeight, side, kMargin);
