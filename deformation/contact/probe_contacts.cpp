@@ -137,7 +137,8 @@ void ProbeContacts::note_begun() {
 
 /// Bounds how fast an organ's penetration is undone if it was not seen coming: all rows together
 /// push as one motion would, along their mean normal. Velocities come to it within kGentleRise:
-/// tissue that swings is not stopped at a blow. Where the probe itself moves on, tissue goes along.
+/// tissue that swings is not stopped at a blow. Where the probe itself moves on, tissue goes along;
+/// a probe that comes and goes, as encoders' steps make it, does not bring tissue in anew.
 /// @param rows  of the organ, at the beginning of a sub-step of h
 void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, double h,
                               std::span<ContactRow> rows) {
@@ -148,8 +149,17 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
     outward += std::max(-row.gap, 0.0) * row.normal;
   }
   auto gentle = std::ranges::find(gentle_, organ, &GentleOrgan::organ);
+  const auto approach_of = [&](const ContactRow& row) {
+    Vec3 velocity = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
+    const double tissue = row.normal.dot(velocity), probe = row.normal.dot(row.probe_velocity);
+    return std::min(tissue, tissue - probe);
+  };
   if (std::erase(begun_, organ) > 0 && gentle == gentle_.end() && deepest > kSeenDepth + way()) {
     gentle = gentle_.insert(gentle_.end(), GentleOrgan{organ});
+    for (const ContactRow& row : rows) {
+      gentle->approach = std::max(gentle->approach, approach_of(row));
+    }
   }
   if (gentle == gentle_.end()) return;
   gentle->time += h;
@@ -161,13 +171,11 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
   const Vec3 push = std::min(kGentleSpeed, deepest / kGentleEnd) * outward.normalized();
   const double change = std::min(1.0, h / kGentleRise);
   for (ContactRow& row : rows) {
-    Vec3 velocity = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
     const double speed = std::max(0.0, row.normal.dot(push));
-    const double tissue = row.normal.dot(velocity), probe = row.normal.dot(row.probe_velocity);
-    const double approach = std::max(std::min(tissue, tissue - probe), -speed);
+    const double approach = std::max(std::min(approach_of(row), gentle->approach), -speed);
     row.gap = std::max(row.gap, h * (approach - change * (approach + speed)));
   }
+  gentle->approach *= std::max(0.0, 1 - h / kGentleEnd);
 }
 
 bool ProbeContacts::begin(double period) {

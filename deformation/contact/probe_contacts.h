@@ -161,7 +161,8 @@ class ProbeContacts {
   std::vector<std::uint32_t> seeds_;  ///< buffer
   struct GentleOrgan {
     std::uint32_t organ = 0;
-    double time = 0;           ///< since the first contact [s]
+    double time = 0;      ///< since the first contact [s]
+    double approach = 0;  ///< at most, of its tissue: as it was first, then less and less [m/s]
     bool core_inside = false;  ///< at the start of a sub-step since then
     void exchange(StateArchive& archive) { archive(organ, time, core_inside); }
   };

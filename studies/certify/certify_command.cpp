@@ -18,12 +18,11 @@
 #include "studies/certify/hands.h"
 #include "studies/certify/law.h"
 #include "studies/certify/press.h"
-#include "studies/certify/release.h"
+#include "studies/certify/real_processes.h"
 #include "studies/certify/slide.h"
 #include "studies/certify/stability.h"
 #include "studies/certify/still_force.h"
 #include "studies/certify/tables.h"
-#include "studies/certify/timing.h"
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
 #include "studies/report/plot_script.h"
@@ -32,8 +31,6 @@
 namespace palpate::certify {
 namespace {
 
-constexpr double kPressed = 0.3;  // of the force at rest, that the real processes must give
-constexpr double kFeltWithin = 60, kPress = 0.5, kHoldFor = 5.1;  // [s]
 constexpr double kWallShare = 0.5;  // of the formula's stiffness: well within
 
 constexpr std::chrono::milliseconds kLookAgain{500};
@@ -57,23 +54,36 @@ class Certifying {
 
   void measure() {
     // What the organ holds is needed by the others: a shard waits for whoever measures it.
-    const auto alone = group("organ alone", [&] { organ_alone(); });
-    while (measure_groups({alone}).elsewhere > 0) {
-      keep_going_();
-      std::this_thread::sleep_for(kLookAgain);
+    push_ = options_.push;
+    if (push_ == 0 || options_.wants("law")) {
+      const auto alone = group("organ alone", [&] { organ_alone(); });
+      while (measure_groups({alone}).elsewhere > 0) {
+        keep_going_();
+        std::this_thread::sleep_for(kLookAgain);
+      }
     }
-    std::vector<report::Point> points{group("walls", [&] { walls(); }),
-                                      group("pressed", [&] { pressed(); }),
-                                      group("slid", [&] { slid(); })};
+    std::vector<report::Point> points;
+    const auto add_group = [&](const char* word, const std::string& name,
+                               std::function<void()> measure) {
+      if (options_.wants(word)) points.push_back(group(name, std::move(measure)));
+    };
+    add_group("walls", "walls", [&] { walls(); });
+    add_group("press", "pressed", [&] { pressed(); });
+    add_group("held", "held", [&] { held(); });
+    add_group("slide", "slid", [&] { slid(); });
     for (const Disturbance& d : disturbances(options_.quick)) {
-      points.push_back(group("link " + d.name(), [this, d] {
+      add_group("link", "link " + d.name(), [this, d] {
         begin("link: " + d.name());
         add(disturbance_lines(subject_, d, push_, keep_going_, now_.troubles));
-      }));
+      });
     }
     if (!options_.lockstep) {
-      points.push_back(group("real processes", [&] { real_processes(); }));
-      points.push_back(group("beside others", [&] { beside_others(); }));
+      const auto real = [&] { now_.troubles += measure_real_processes(real_run()); };
+      if (options_.wants("timing") || options_.wants("held") || options_.wants("released")) {
+        points.push_back(group("real processes", real));
+      }
+      add_group("beside", "beside others",
+                [&] { now_.troubles += measure_beside_others(real_run()); });
     }
     measure_groups(points);
     contacts();
@@ -104,9 +114,10 @@ class Certifying {
  private:
   /// What its results depend on.
   static std::string told(const CertifyOptions& options, const Subject& subject) {
-    std::string text = fmt::format("{} {} depth {} speed {} {} quick {}", runtime::version_text(),
-                                   scene::scene_digest(subject.scene), options.depth, options.speed,
-                                   options.lockstep, options.quick);
+    std::string text =
+        fmt::format("{} {} depth {} speed {} push {} {} quick {}", runtime::version_text(),
+                    scene::scene_digest(subject.scene), options.depth, options.speed, options.push,
+                    options.lockstep, options.quick);
     for (const auto& organ : subject.assets.organs) {
       for (const Vec3& node : organ.surface.nodes) {
         for (const double x : node) text += fmt::format(" {}", x);
@@ -135,7 +146,7 @@ class Certifying {
   }
 
   void take(const GroupResult& result, bool printed) {
-    if (result.push > 0) push_ = result.push;
+    if (result.push > 0 && options_.push == 0) push_ = result.push;
     troubles_ += result.troubles;
     for (const Line& line : result.lines) {
       if (!printed) out_ << text_of(line) << std::endl;
@@ -185,11 +196,13 @@ class Certifying {
     add({energy_line("energy", "of a press and release, on the organ", press, subject_),
          first_contact_line("steps", "first contact", press),
          largest_step_line("steps", "largest of a press", press)});
+  }
+
+  void held() {
     begin("held");
-    const auto held = hold(loop, subject_, push_, keep_going_);
+    const auto held = hold(loop_on_organ(subject_, &now_.troubles), subject_, push_, keep_going_);
     write_ticks(held, options_.out / "held.csv");
-    add({swing_line("stability", "swing of a held contact", held),
-         limit_cycle_line("stability", held)});
+    add(held_lines("stability", held));
   }
 
   void slid() {
@@ -210,85 +223,14 @@ class Certifying {
     line("steps not solved", troubles_.unsolved);
   }
 
-  void real_processes() {
-    begin("timing");
+  RealRun real_run() {
     certificate_.machine = report::machine_name();
-    Processes processes(subject_, options_.bus, options_.out, keep_going_);
-    measure_alone(processes);
-    now_.troubles += processes.contact_troubles();
-  }
-
-  void measure_alone(Processes& processes) {
-    const double pressed = kPressed * push_;
-    const bool ready = processes.start();
-    processes.hold(pressing_hand());
-    const auto feels = [&](const Heard& heard) { return heard.force.force.norm() > pressed; };
-    if (!ready || !processes.wait(feels, kFeltWithin)) {
-      add({not_measured("timing", "the real processes", "they did not press within a minute")});
-      return;
-    }
-    const auto timing = measure_timing(processes, options_.quick ? 10 : 60);
-    write_timing(timing, options_.out);
-    add(timing_lines("timing", timing, 1 / subject_.scene.rates.haptics));
-    hold_over_dds(processes);
-    release(processes, pressed);
-  }
-
-  /// The same times, a session of their own with pictures and something else that wants to run.
-  void beside_others() {
-    const std::string group = "timing with pictures and a CPU hog";
-    begin(group);
-    if (!std::filesystem::exists(program_folder() / "palpate-visualizer")) {
-      add({not_measured(group, "the real processes", "no visualizer is installed")});
-      return;
-    }
-    bus::BusOptions bus = options_.bus;
-    bus.session += "_beside";
-    Processes processes(subject_, bus, options_.out, keep_going_, Beside::kPicturesAndHog);
-    measure_beside(processes, group);
-    now_.troubles += processes.contact_troubles();
-  }
-
-  void measure_beside(Processes& processes, const std::string& group) {
-    const bool ready = processes.start();
-    processes.hold(pressing_hand());
-    const auto feels = [&](const Heard& heard) {
-      const auto pictures = heard.modules.find("visualizer");
-      return heard.force.force.norm() > kPressed * push_ && pictures != heard.modules.end() &&
-             pictures->second.state >= ModuleState::kRunning;
-    };
-    if (!ready || !processes.wait(feels, kFeltWithin)) {
-      add({not_measured(group, "the real processes", "they did not press within a minute")});
-      return;
-    }
-    add(timing_lines(group, measure_timing(processes, options_.quick ? 10 : 60),
-                     1 / subject_.scene.rates.haptics));
-  }
-
-  scene::EmulatedDevice pressing_hand() const {
-    const Vec3 deep = pose_below(subject_.place, subject_.depth).position;
-    return firm_hand(subject_.device, subject_.place, {{deep, kPress}});
-  }
-
-  void hold_over_dds(Processes& processes) {
-    begin("held over DDS");
-    processes.hold(pushing_hand(subject_.device, subject_.place, push_));
-    processes.wait([](const Heard&) { return false; }, kHoldFor);
-    const auto& held = processes.heard().held;
-    add({swing_line("over DDS", "swing of a held contact", held),
-         limit_cycle_line("over DDS", held)});
-  }
-
-  void release(Processes& processes, double pressed) {
-    begin("released");
-    processes.hold(pressing_hand());
-    const auto told = [&](const Release& r) {
-      log_ << fmt::format("  {}: let go after {:.1f} ms{}", r.who, 1e3 * r.took,
-                          r.back ? "" : ", did not press again")
-           << std::endl;
-    };
-    add(release_lines(measure_releases(processes, pressed, options_.quick ? 2 : 10, told),
-                      subject_.scene));
+    return {options_,
+            subject_,
+            push_,
+            keep_going_,
+            [this](const std::vector<Line>& lines) { add(lines); },
+            log_};
   }
 
   void begin(const std::string& what) { log_ << what << " …" << std::endl; }

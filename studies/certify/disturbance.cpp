@@ -78,10 +78,11 @@ std::vector<Line> disturbance_lines(const Subject& subject, const Disturbance& d
   const Loop loop = disturbed(loop_on_organ(subject, &troubles), disturbance);
   const auto press = press_and_release(loop, subject, keep_going);
   const auto held = hold(loop, subject, push, keep_going);
-  return {first_contact_line(group, "step of first contact", press),
-          largest_step_line(group, "largest step of a press", press),
-          energy_line(group, "energy of a press and release", press, subject),
-          swing_line(group, "swing of a held contact", held), limit_cycle_line(group, held)};
+  std::vector<Line> lines{first_contact_line(group, "step of first contact", press),
+                          largest_step_line(group, "largest step of a press", press),
+                          energy_line(group, "energy of a press and release", press, subject)};
+  for (Line& line : held_lines(group, held)) lines.push_back(std::move(line));
+  return lines;
 }
 
 }  // namespace palpate::certify

@@ -20,6 +20,10 @@ int main(int argc, char** argv) {
   program.add("--speed", options.speed, "Of presses in the mean, of slides [m/s]")
       .range(0.005, 0.5)
       .shows_default();
+  program
+      .add("--push", options.push, "Of held contacts [N]; else what the organ holds at the depth")
+      .range(1e-3, 100);
+  program.add("--only", options.only, "Parts of the certificate; else all").one_of(certify::kParts);
   program.flag("--lockstep", options.lockstep,
                "Only what runs in one process: the same numbers every time");
   program.flag("--quick", options.quick, "Fewer disturbances, one row of slides: a minute or so");

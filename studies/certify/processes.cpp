@@ -43,10 +43,7 @@ struct Processes::Bus {
         forces(bus.reader(bus::kHapticForce)),
         laws(bus.reader(bus::kContactModel)),
         contacts(bus.reader(bus::kContacts)),
-        statuses(bus.reader(bus::kModuleStatus)) {
-    SceneDescription description = runtime::scene_description(scene);
-    scenes.write(description);
-  }
+        statuses(bus.reader(bus::kModuleStatus)) {}
   ~Bus() { runtime::give_up_realtime(); }
 
   runtime::Realtime realtime;  // before the bus, whose threads inherit
@@ -84,6 +81,7 @@ Processes::Processes(const Subject& subject, const bus::BusOptions& bus,
         "/bin/sh", std::vector<std::string>{"-c", "while :; do :; done"});
   }
   bus_ = std::make_unique<Bus>(options_, scene_);
+  tell_scene("");
   hold(firm_hand(subject.device, subject.place, {}));
   began_ns_ = 0;
 }
@@ -119,7 +117,7 @@ bool Processes::start() {
           kReady)) {
     return false;
   }
-  bus_->conductor.command(bus_->session.state(), SessionCommand::kStart);
+  command(SessionCommand::kStart);
   return true;
 }
 
@@ -213,5 +211,16 @@ void Processes::kill(const std::string& module) {
 void Processes::start_again(const std::string& module) { start_module(module); }
 
 void Processes::drive(bool on) { driving_ = on; }
+
+void Processes::command(SessionCommand wanted) {
+  bus_->session.poll();
+  bus_->conductor.command(bus_->session.state(), wanted);
+}
+
+void Processes::tell_scene(const std::string& another) {
+  SceneDescription description = runtime::scene_description(scene_);
+  if (!another.empty()) description.digest = description.name = another;
+  bus_->scenes.write(description);
+}
 
 }  // namespace palpate::certify

@@ -60,6 +60,9 @@ class Processes {
   void kill(const std::string& module);
   void start_again(const std::string& module);
   void drive(bool on);
+  void command(SessionCommand wanted);
+  /// That the session plays another scene than this one: it is at fault. "": the true one again.
+  void tell_scene(const std::string& another);
 
   Heard& heard() { return heard_; }
   /// Of all modules as they said last, those that were killed too.

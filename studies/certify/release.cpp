@@ -13,8 +13,39 @@ namespace {
 constexpr double kOnTheWay = 0.010;  // the last sample's way and a late tick [s]
 constexpr double kTouchWithin = 20, kReleased = 5, kCalm = 1;  // [s]
 constexpr double kStill = 0.2;                                 // a force may pass through zero [s]
-const std::string kDriver = "driver", kHaptics = "haptics";
-const std::string kAll[] = {kDriver, "deformation", "collision", kHaptics};
+
+using Word = std::int64_t (*)(const Heard&);
+
+/// What falls silent: how, by whose last word it counts, and how it is put right.
+struct Silence {
+  const char* who;
+  void (*begin)(Processes&);
+  void (*end)(Processes&);
+  Word last_word;
+  bool guarded = false;  ///< by the driver alone
+};
+
+std::int64_t last_law(const Heard& heard) { return heard.last_law_ns; }
+
+const Silence kAll[] = {
+    {"driver killed", [](Processes& p) { p.drive(false); }, [](Processes& p) { p.drive(true); },
+     [](const Heard& heard) { return heard.last_driven_ns; }},
+    {"deformation killed", [](Processes& p) { p.kill("deformation"); },
+     [](Processes& p) { p.start_again("deformation"); }, last_law},
+    {"collision killed", [](Processes& p) { p.kill("collision"); },
+     [](Processes& p) { p.start_again("collision"); },
+     [](const Heard& heard) { return heard.last_contacts_ns; }},
+    {"haptics killed", [](Processes& p) { p.kill("haptics"); },
+     [](Processes& p) { p.start_again("haptics"); },
+     [](const Heard& heard) { return heard.force.header.source_time_ns; }, true},
+    // A deformation that does not advance gives no law.
+    {"paused", [](Processes& p) { p.command(SessionCommand::kPause); },
+     [](Processes& p) { p.command(SessionCommand::kStart); }, last_law},
+    {"at fault", [](Processes& p) { p.tell_scene("another"); },
+     [](Processes& p) { p.tell_scene(""); }, last_law},
+    {"reset", [](Processes& p) { p.command(SessionCommand::kReset); },
+     [](Processes& p) { p.command(SessionCommand::kStart); }, last_law},
+};
 
 /// It presses, and still does so a while later.
 bool presses(Processes& processes, double pressed, double longest) {
@@ -24,39 +55,25 @@ bool presses(Processes& processes, double pressed, double longest) {
   return force && processes.wait(feels, kCalm);
 }
 
-std::int64_t last_word_ns(const std::string& who, const Heard& heard) {
-  if (who == kDriver) return heard.last_driven_ns;
-  if (who == kHaptics) return heard.force.header.source_time_ns;
-  return who == "deformation" ? heard.last_law_ns : heard.last_contacts_ns;
-}
-
 /// Nobody has been pushed for a while; of a dead haptics nothing is heard, and the driver is asked.
-bool is_let_go(const std::string& who, const Heard& heard) {
-  const std::int64_t still_ns = who == kHaptics
+bool is_let_go(const Silence& silence, const Heard& heard) {
+  const std::int64_t still_ns = silence.guarded
                                     ? heard.last_driven_ns - heard.last_motor_ns
                                     : heard.force.header.source_time_ns - heard.last_pushed_ns;
   return still_ns > ns_from_seconds(kStill);
 }
 
-Release release(Processes& processes, const std::string& who, double pressed) {
-  Release found{who};
+Release release(Processes& processes, const Silence& silence, double pressed) {
+  Release found{silence.who};
   found.came = presses(processes, pressed, kTouchWithin);
   processes.heard().largest_step = 0;
-  if (who == kDriver) {
-    processes.drive(false);
-  } else {
-    processes.kill(who);
-  }
-  const auto let_go = [&](const Heard& heard) { return is_let_go(who, heard); };
+  silence.begin(processes);
+  const auto let_go = [&](const Heard& heard) { return is_let_go(silence, heard); };
   found.came &= processes.wait(let_go, kReleased);
   const Heard& heard = processes.heard();
-  const std::int64_t last_ns = who == kHaptics ? heard.last_motor_ns : heard.last_pushed_ns;
-  found.took = seconds_from_ns(last_ns - last_word_ns(who, heard));
-  if (who == kDriver) {
-    processes.drive(true);
-  } else {
-    processes.start_again(who);
-  }
+  const std::int64_t last_ns = silence.guarded ? heard.last_motor_ns : heard.last_pushed_ns;
+  found.took = seconds_from_ns(last_ns - silence.last_word(heard));
+  silence.end(processes);
   found.back = presses(processes, pressed, kTouchWithin);
   found.step = heard.largest_step;
   return found;
@@ -67,9 +84,9 @@ Release release(Processes& processes, const std::string& who, double pressed) {
 std::vector<Release> measure_releases(Processes& processes, double pressed, int times,
                                       const std::function<void(const Release&)>& told) {
   std::vector<Release> found;
-  for (const auto& who : kAll) {
+  for (const Silence& silence : kAll) {
     for (int i = 0; i < times; ++i) {
-      found.push_back(release(processes, who, pressed));
+      found.push_back(release(processes, silence, pressed));
       told(found.back());
     }
   }
@@ -81,12 +98,12 @@ std::vector<Line> release_lines(const std::vector<Release>& releases, const scen
   const double limit = scene.haptics.stale_after + scene.haptics.fade_time + kOnTheWay;
   const double slew = scene.haptics.max_force_rate / scene.rates.haptics * (1 + 1e-9);
   std::vector<Line> lines;
-  for (const auto& who : kAll) {
-    const std::string name = who + " killed, ";
+  for (const Silence& silence : kAll) {
+    const std::string name = std::string(silence.who) + ", ";
     double took = 0, step = 0;
     int count = 0, back = 0;
     for (const Release& r : releases) {
-      if (r.who != who) continue;
+      if (r.who != silence.who) continue;
       ++count;
       back += r.back;
       took = std::max(took, r.came ? r.took : HUGE_VAL);
@@ -94,11 +111,11 @@ std::vector<Line> release_lines(const std::vector<Release>& releases, const scen
     }
     if (count == 0) continue;
     const std::string note = fmt::format("{} times", count);
-    const bool guarded = who == kHaptics;
-    const double let_go = guarded ? launcher::EmulatedDriver::kForceHolds + kOnTheWay : limit;
+    const double let_go =
+        silence.guarded ? launcher::EmulatedDriver::kForceHolds + kOnTheWay : limit;
     lines.push_back(at_most(group, {name + "force zero after", 1e3 * took, 1e3 * let_go, "ms",
-                                    guarded ? "0.1 s, the driver's own guard, + 10 ms"
-                                            : "stale_after_s + fade_time_s + 10 ms",
+                                    silence.guarded ? "0.1 s, the driver's own guard, + 10 ms"
+                                                    : "stale_after_s + fade_time_s + 10 ms",
                                     note}));
     lines.push_back(at_most(group, {name + "largest step until it is back", step, slew, "N",
                                     "max_force_rate_n_per_s", note}));

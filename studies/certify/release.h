@@ -1,6 +1,9 @@
-// Who dies while a hand presses lets go of it: the driver, or a process that is killed. Of haptics
-// itself it is the driver's own guard that does.
+// Whoever falls silent while a hand presses lets go of it: the driver or a process that is killed,
+// a session that pauses, is at fault or is reset. Of haptics itself it is the driver's own guard
+// that lets go.
 #pragma once
+
+#include <string>
 
 #include "studies/certify/line.h"
 #include "studies/certify/processes.h"
@@ -8,8 +11,8 @@
 namespace palpate::certify {
 
 struct Release {
-  std::string who;   ///< "driver", "deformation", "collision"
-  double took = 0;   ///< from its last word to the last force that was not zero [s]
+  std::string who;   ///< "driver killed", "paused"
+  double took = 0;   ///< from the last word that gave a force to the last one that was not zero [s]
   double step = 0;   ///< largest change of the force in a tick, until it was back [N]
   bool came = true;  ///< it had pressed, and was let go
   bool back = true;  ///< started again, it pressed again within 20 s

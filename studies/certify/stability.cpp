@@ -102,13 +102,11 @@ Line swing_after(const std::string& group, const std::string& name, const std::s
 
 }  // namespace
 
-Line swing_line(const std::string& group, const std::string& name, const std::vector<Tick>& ticks) {
-  return swing_after(group, name, "at rest within 2 s, docs/certify.md", kAtRest, ticks);
-}
-
-Line limit_cycle_line(const std::string& group, const std::vector<Tick>& ticks) {
-  return swing_after(group, "limit cycle of a held contact, swing in the fifth second",
-                     "docs/certify.md", kLast, ticks);
+std::vector<Line> held_lines(const std::string& group, const std::vector<Tick>& ticks) {
+  return {swing_after(group, "swing of a held contact", "at rest within 2 s, docs/certify.md",
+                      kAtRest, ticks),
+          swing_after(group, "limit cycle of a held contact, swing in the fifth second",
+                      "docs/certify.md", kLast, ticks)};
 }
 
 }  // namespace palpate::certify

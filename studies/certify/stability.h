@@ -26,7 +26,6 @@ Line stiff_wall_line(const Subject& subject, const KeepGoing& keep_going);
 std::vector<Tick> hold(const Loop& loop, const Subject& subject, double push,
                        const KeepGoing& keep_going);
 /// Swing of the device after the first two of these; and in the last: what never ends.
-Line swing_line(const std::string& group, const std::string& name, const std::vector<Tick>& ticks);
-Line limit_cycle_line(const std::string& group, const std::vector<Tick>& ticks);
+std::vector<Line> held_lines(const std::string& group, const std::vector<Tick>& ticks);
 
 }  // namespace palpate::certify

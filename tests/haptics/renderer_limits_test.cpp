@@ -221,9 +221,9 @@ TEST_CASE("haptic renderer: of what is stiffer than the device can hold the chan
   CHECK(bench.hold(wall_model(kPressed), held, 40).limits == kForceNotLimited);
 }
 
-TEST_CASE("haptic renderer: a held device is damped in contact, by half of the force at most") {
-  // Oracle: analytic, 0.3 N·s/m: at 10 mm/s inwards 2 N and 3 mN; at 20 m/s outwards half
-  // of it, never a pull; across the force, or where nobody holds the device, nothing.
+TEST_CASE("haptic renderer: a held device is damped in contact, by a fifth of the force at most") {
+  // Oracle: analytic, 1 N·s/m: at 10 mm/s inwards 2 N and 10 mN; at 20 m/s a fifth more;
+  // across the force, or where nobody holds the device, nothing.
   RendererBench bench;
   const LocalLaw model = wall_model(kPressed);
   DeviceSample held = resting_at(kPressed);
@@ -234,7 +234,7 @@ TEST_CASE("haptic renderer: a held device is damped in contact, by half of the f
     moving.twist.linear = velocity;
     return bench.tick(moving).force.z();
   };
-  CHECK(at_speed(Vec3(0, 0, -0.01)) == Approx(2.003));
+  CHECK(at_speed(Vec3(0, 0, -0.01)) == Approx(2.01));
   CHECK(at_speed(Vec3(0.01, 0, 0)) == Approx(2));
   held.delay.reset();
   CHECK(at_speed(Vec3(0, 0, -0.01)) == Approx(2));
@@ -244,7 +244,7 @@ TEST_CASE("haptic renderer: a held device is damped in contact, by half of the f
   held.delay = 0;
   unslewed.hold(wall_model(kPressed, 100), held, 400);
   held.twist.linear.z() = -20;
-  CHECK(unslewed.tick(held).force.z() == Approx(1 + 0.5));
+  CHECK(unslewed.tick(held).force.z() == Approx(1 + 0.2));
 }
 
 TEST_CASE("haptic renderer: a device that gives NaN gets a force going to zero, said so") {

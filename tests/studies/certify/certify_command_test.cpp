@@ -79,6 +79,26 @@ TEST_CASE("certify command: stopped, it leaves what is done, marked incomplete")
   CHECK(json.find("\"group\" : \"sliding\"") == std::string::npos);
 }
 
+TEST_CASE("certify command: one part alone, pushed as hard as it is told") {
+  // Oracle: the groups that are written; at rest the hand's force is the organ's, in the mean.
+  const BallScene scene(kFingerFromAbove);
+  auto options = options_for(scene, "part");
+  options.only = {"held"};
+  options.push = 0.04;
+  std::ostringstream out, log;
+  run_certify(
+      options, [] { return false; }, out, log);
+  const std::string json = text_in(scene.folder() / "part/certificate.json");
+  CHECK(json.find("\"group\" : \"stability\"") != std::string::npos);
+  for (const char* other : {"law", "force", "energy", "steps", "sliding", "link: 20 ms late"}) {
+    CHECK(json.find("\"group\" : \"" + std::string(other) + '"') == std::string::npos);
+  }
+  const report::ReferenceTable held(scene.folder() / "part/held.csv");
+  double sum = 0;
+  for (std::size_t i = held.size() - 1000; i < held.size(); ++i) sum += held.at("force_n", i);
+  CHECK(sum / 1000 == Approx(options.push).epsilon(0.02));
+}
+
 TEST_CASE("certify command: a scene that is none is bad input") {
   // Oracle: the error families.
   CertifyOptions options;
