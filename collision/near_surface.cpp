@@ -99,15 +99,27 @@ bool NearSurface::comes_near(const OrganStep& step, const geometry::Triangle& no
   return wanted.core_W.squared_distance(box) <= wanted.reach_squared;
 }
 
+void NearSurface::find_blocks(const OrganStep& step, const Wanted& wanted) {
+  blocks_.clear();
+  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
+  for (std::size_t block = 0; block < ends.size(); ++block) {
+    if (wanted.may_hold(step.motion, starts[block], ends[block])) {
+      blocks_.push_back(static_cast<std::uint32_t>(block));
+    }
+  }
+}
+
 void NearSurface::gather(const OrganStep& step, const Bounds& core, double reach) {
   const Wanted wanted(step.motion, core, reach);
+  find_blocks(step, wanted);
+  gather_from_blocks(step, wanted);
+}
+
+void NearSurface::gather_from_blocks(const OrganStep& step, const Wanted& wanted) {
   nodes_.clear();
   near_.clear();
   triangles_.clear();
-  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
-  for (std::size_t block = 0; block < ends.size(); ++block) {
-    if (wanted.may_hold(step.motion, starts[block], ends[block])) open(step, block, wanted);
-  }
+  for (const std::uint32_t block : blocks_) open(step, block, wanted);
   std::sort(near_.begin(), near_.end(),
             [](const Near& a, const Near& b) { return a.triangle < b.triangle; });
   for (const Near& near : near_) {
@@ -125,13 +137,69 @@ void NearSurface::gather(const OrganStep& step, const Bounds& core, double reach
   }
 }
 
+/// The nearest node of each cell, of all within reach at the step's end.
+/// @returns how many triangles begin at such nodes
+std::size_t NearSurface::find_places(const OrganStep& step, const Core& core,
+                                     const Wanted& wanted) {
+  places_.fill({std::numeric_limits<double>::infinity(), 0});
+  const Vec3 a = step.motion.to_world_at_end(core.a);
+  const Vec3 along = step.motion.to_world_at_end(core.b) - a;
+  const double per_length = core.is_point() ? 0 : 1 / along.squaredNorm();
+  const Vec3 lower = a.cwiseMin(a + along) - Vec3::Constant(wanted.reach);
+  const Vec3 per_size = kCells / (along.cwiseAbs() + Vec3::Constant(2 * wanted.reach)).array();
+  std::size_t count = 0;
+  for (const std::uint32_t block : blocks_) {
+    within_.clear();
+    for (const std::uint32_t node : step.organ.blocks().nodes_of(block)) {
+      const Vec3 x = step.organ.positions()[node], from_a = x - a;
+      const double at = std::clamp(per_length * from_a.dot(along), 0.0, 1.0);
+      const double squared = (from_a - at * along).squaredNorm();
+      within_.push_back(squared <= wanted.reach_squared);
+      if (!within_.back()) continue;
+      const Vec3 cell = (x - lower).cwiseProduct(per_size);
+      std::size_t place = 0;
+      for (const double along_axis : cell) {
+        place = kCells * place + std::min(static_cast<std::size_t>(along_axis), kCells - 1);
+      }
+      Place& nearest = places_[place];
+      if (std::pair(squared, node) < std::pair(nearest.squared, nearest.node)) {
+        nearest = {squared, node};
+      }
+    }
+    for (const auto& corners : step.organ.blocks().corners_of(block)) count += within_[corners[0]];
+  }
+  return count;
+}
+
+void NearSurface::gather_front(const OrganStep& step, const Core& core, double reach) {
+  const Bounds hull{core.a.cwiseMin(core.b), core.a.cwiseMax(core.b)};
+  const Wanted wanted(step.motion, hull, core.radius + reach);
+  find_blocks(step, wanted);
+  if (find_places(step, core, wanted) <= kManyTriangles) return gather_from_blocks(step, wanted);
+  const Wanted touching(step.motion, hull, core.radius);
+  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
+  std::erase_if(blocks_, [&](std::uint32_t block) {
+    return !touching.may_hold(step.motion, starts[block], ends[block]);
+  });
+  gather_from_blocks(step, touching);
+  const auto nearest = std::ranges::min_element(places_, {}, &Place::squared);
+  at_places_.clear();
+  for (const Place& place : places_) {
+    if (!(place.squared <= wanted.reach_squared)) continue;
+    const auto around = step.organ.triangles_of_node(place.node);
+    const std::size_t of_nearest = &place == &*nearest ? around.size() : 1;
+    at_places_.insert(at_places_.end(), around.begin(),
+                      around.begin() + static_cast<std::ptrdiff_t>(of_nearest));
+  }
+  add(step, at_places_);
+}
+
 void NearSurface::gather_nodes(const OrganStep& step, const Bounds& core, double reach,
                                std::vector<std::uint32_t>& nodes) {
   const Wanted wanted(step.motion, core, reach);
-  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
+  find_blocks(step, wanted);
   seen_.assign(step.organ.node_count(), false);
-  for (std::size_t block = 0; block < ends.size(); ++block) {
-    if (!wanted.may_hold(step.motion, starts[block], ends[block])) continue;
+  for (const std::uint32_t block : blocks_) {
     for (const std::uint32_t node : step.organ.blocks().nodes_of(block)) {
       if (seen_[node]) continue;
       seen_[node] = true;

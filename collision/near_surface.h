@@ -9,16 +9,24 @@
 #include <span>
 #include <vector>
 
-#include "collision/relative_motion.h"
+#include "collision/core_sweep.h"
 
 namespace palpate::collision {
 
 class NearSurface {
  public:
+  /// Of more triangles near a round core some stand for others.
+  static constexpr std::size_t kManyTriangles = 512;
+  static constexpr std::size_t kCells = 4;  ///< along each axis of their grid
+
   void clear() { triangles_.clear(); }
   /// @param core   in P; may be without end
   /// @param reach  beside the chord's error (RelativeMotion::chord_error()) [m]
   void gather(const OrganStep& step, const Bounds& core, double reach);
+  /// The same for a round core that is behind no wall. Where very many triangles are so near
+  /// (kManyTriangles), only those that may come within its radius in the step, and of the others
+  /// one at the nearest node of each cell of a grid around the core: they say where tissue is.
+  void gather_front(const OrganStep& step, const Core& core, double reach);
   /// The nodes that come so near instead, each once, in no useful order. Of a core without end they
   /// are far fewer than the triangles' worth.
   void gather_nodes(const OrganStep& step, const Bounds& core, double reach,
@@ -46,15 +54,26 @@ class NearSurface {
 
   struct Wanted;
 
+  void find_blocks(const OrganStep& step, const Wanted& wanted);
+  void gather_from_blocks(const OrganStep& step, const Wanted& wanted);
   void open(const OrganStep& step, std::size_t block, const Wanted& wanted);
+  std::size_t find_places(const OrganStep& step, const Core& core, const Wanted& wanted);
   static bool comes_near(const OrganStep& step, const geometry::Triangle& nodes,
                          const Wanted& wanted);
 
   std::vector<SweptTriangle> triangles_;
   // Kept between calls for their memory only.
-  std::vector<SweptNode> nodes_;  ///< of all opened blocks
+  std::vector<std::uint32_t> blocks_;  ///< that may come near
+  std::vector<SweptNode> nodes_;       ///< of all opened blocks
   std::vector<Near> near_;
   std::vector<bool> seen_;  ///< by node
+  struct Place {
+    double squared = 0;  ///< distance from the core at the step's end [m²]
+    std::uint32_t node = 0;
+  };
+  std::array<Place, kCells * kCells * kCells> places_;
+  std::vector<std::uint8_t> within_;  ///< by node of a block
+  std::vector<std::uint32_t> at_places_;
 };
 
 }  // namespace palpate::collision

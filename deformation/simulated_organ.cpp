@@ -145,6 +145,22 @@ void SimulatedOrgan::end_step(double h, std::span<const ContactRow> rows, double
   advances_ = kThoroughCheckEvery;
 }
 
+void SimulatedOrgan::keep(Mark& mark) const {
+  mark.state = state_;
+  mark.target_volume = target_volume_;
+  mark.energy = detector_->ledger();
+  mark.collapsed_time = collapsed_time_;
+  mark.advances = advances_;
+}
+
+void SimulatedOrgan::go_back(const Mark& mark) {
+  state_ = mark.state;
+  target_volume_ = mark.target_volume;
+  detector_->put_back(mark.energy);
+  collapsed_time_ = mark.collapsed_time;
+  advances_ = mark.advances;
+}
+
 void SimulatedOrgan::correct_step(double h, std::span<const Vec3> surface, double volume_impulse,
                                   std::span<const ContactRow> rows) {
   for (std::size_t i = 0; i < surface.size(); ++i) {

@@ -80,6 +80,17 @@ class SimulatedOrgan {
   bool step(double time, double h, std::vector<ContactRow>& rows, const Revise& revise,
             bool last_resort, AdvanceReport& report);
 
+  /// What steps can be taken back to, within an advance.
+  struct Mark {
+    OrganState state;
+    TargetVolume target_volume{scene::Filling()};
+    DivergenceDetector::Ledger energy;
+    double collapsed_time = 0;
+    int advances = 0;
+  };
+  void keep(Mark& mark) const;
+  void go_back(const Mark& mark);
+
   /// Changes the end of the last step, of h [s], as if contacts with organs had been in it: the
   /// velocities with the surface's way.
   /// @param surface         where its nodes come to [m]  (surface_node_count)

@@ -92,20 +92,74 @@ struct DeformationWorld::Impl {
     }
   }
 
+  bool any_may_cross() const {
+    return std::ranges::any_of(probes, [&](const ProbeContacts& probe) {
+      for (std::uint32_t i = 0; i < organs.size(); ++i) {
+        if (probe.may_cross(i)) return true;
+      }
+      return false;
+    });
+  }
+
+  /// Did what organs do to each other take one through a probe that its own step had held?
+  bool crossed_together(double h, double to) {
+    bool any = false;
+    for (std::uint32_t i = 0; i < organs.size(); ++i) {
+      WorldOrgan& organ = organs[i];
+      if (organ.simulated.contacts_suspended()) continue;
+      for (auto& probe : probes) {
+        any |= probe.hold_crossed(i, *organ.surface, organ.start.state.positions,
+                                  organ.simulated.state().positions, h, to, organ.rows);
+      }
+    }
+    return any;
+  }
+
+  /// All organs from one fraction of the advance to another, then their contacts with each other.
+  /// @returns false if a probe was not held: the organs are as before, but not as a last resort
+  bool try_together(double from, double to, bool last_resort, AdvanceReport& report) {
+    const bool may_cross = any_may_cross();
+    if (may_cross) {
+      for (WorldOrgan& organ : organs) organ.simulated.keep(organ.start);
+    }
+    organ_contacts->begin_step();
+    const double h = (to - from) * period;
+    AdvanceReport tried = report;
+    std::vector<std::span<ContactRow>> rows;
+    bool held = true;
+    for (std::uint32_t i = 0; i < organs.size() && held; ++i) {
+      held = step_organ(i, from, to, last_resort, tried);
+      rows.emplace_back(organs[i].rows);
+    }
+    if (held) organ_contacts->end_step(h, rows, tried);
+    if (held && may_cross) held = !crossed_together(h, to) || last_resort;
+    if (!held) {
+      for (WorldOrgan& organ : organs) organ.simulated.go_back(organ.start);
+      return false;
+    }
+    report = tried;
+    return true;
+  }
+
+  /// The same; where rows do not hold a probe, in halves.
+  void step_together(double from, double to, int splits, AdvanceReport& report) {
+    if (try_together(from, to, splits == 0, report)) {
+      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i, (to - from) * period);
+      return;
+    }
+    const double middle = (from + to) / 2;
+    step_together(from, middle, splits - 1, report);
+    step_together(middle, to, splits - 1, report);
+  }
+
   /// Organs that may touch each other or themselves, all in the same steps.
   void advance_together(AdvanceReport& report) {
     int substeps = 1;
     for (const auto& organ : organs)
       substeps = std::max(substeps, organ.simulated.substeps(period));
-    std::vector<std::span<ContactRow>> rows(organs.size());
     for (int step = 1; step <= substeps; ++step) {
-      organ_contacts->begin_step();
-      for (std::uint32_t i = 0; i < organs.size(); ++i) {
-        step_organ(i, (step - 1.0) / substeps, static_cast<double>(step) / substeps, true, report);
-        rows[i] = organs[i].rows;
-      }
-      organ_contacts->end_step(period / substeps, rows, report);
-      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i, period / substeps);
+      step_together((step - 1.0) / substeps, static_cast<double>(step) / substeps, kMostSplits,
+                    report);
     }
   }
 

@@ -78,7 +78,8 @@ void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, do
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
     energy_budget_ += impulse.dot(velocity);
     const Vec3 parting = velocity - row.probe_velocity;
-    if (-row.normal.dot(parting) > kPushedSpeed)
+    const double pushed = -row.normal.dot(parting);
+    if (pushed > kPushedSpeed && pushed > row.probe_velocity.norm())
       injected_energy_ += std::max(0.0, impulse.dot(parting));
   }
   energy_budget_ += state.pressure * volume_change;
@@ -94,7 +95,8 @@ Violation DivergenceDetector::check_bounds(const OrganState& state, double perio
   const double far = largest_distance_ * largest_distance_;
   const double fast = kMaxNodeSpeed * kMaxNodeSpeed;
   const Vec3 first = state.positions[0];
-  double twice_energy = 0;
+  double twice_energy = 0, squares = 0;
+  Vec3 sum = Vec3::Zero();
   bool sound = is_finite(state);
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     const double speed = state.velocities[i].squaredNorm();
@@ -102,11 +104,16 @@ Violation DivergenceDetector::check_bounds(const OrganState& state, double perio
     const double moved = (state.positions[i] - seen_[i]).squaredNorm();
     sound &= (speed <= fast) & (moved <= way) & (distance <= far);  // false for NaN
     twice_energy += body_.masses[i] * speed;
+    if (i >= body_.surface_node_count) continue;
+    squares += moved;
+    sum += state.positions[i] - seen_[i];
   }
   suspicious_ = false;
   if (!sound) return explain(state, period);
   seen_ = state.positions;
   kinetic_energy_ = twice_energy / 2;
+  const auto count = static_cast<double>(body_.surface_node_count);
+  shaking_squared_ = (squares / count - (sum / count).squaredNorm()) / (period * period);
   if (!body_.gravity.isZero(0)) {
     const Vec3 moment = first_moment(body_, state.positions);
     energy_budget_ += body_.gravity.dot(moment - first_moment_);
@@ -135,7 +142,8 @@ Violation DivergenceDetector::judge_energy(double energy) {
   if (!knows_energy_) return Violation::kNone;
   const double may_hold = std::max(energy_budget_, 0.0) + calm_energy_;
   suspicious_ = energy > kSuspiciousGain * may_hold;
-  const bool shaken = injected_energy_ > largest_injected_energy_ && kinetic_energy_ > calm_energy_;
+  const bool shaken =
+      injected_energy_ > largest_injected_energy_ && shaking_squared_ > kShakenSpeed * kShakenSpeed;
   return shaken || energy > kEnergyGain * may_hold ? Violation::kEnergyGrew : Violation::kNone;
 }
 

@@ -15,7 +15,9 @@
 // that appeared inside an organ may push it out once; a wall caught on a thin probe, pushed to this
 // side and that in turns, would be shaken by it forever. Only pushes faster than kPushedSpeed
 // count: below 0.05 m/s those of an organ pressed flat with 1 kN add up to as much, and it is as
-// healthy as can be.
+// healthy as can be. And only those faster than the probe's surface moves: what it crosses unseen
+// it would have pushed away itself, with the same work. An organ is shaken once so much was
+// injected and its surface moves about its mean faster than one push can make it.
 #pragma once
 
 #include <span>
@@ -37,8 +39,10 @@ inline constexpr double kSuspiciousGain = 2.0;
 inline constexpr double kCalmSpeed = 0.05;
 
 /// Injected energy is forgotten by 1/e in this time [s]; no more is plausible at a time than pushes
-/// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed², unless the organ is calm.
+/// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed².
 inline constexpr double kInjectionMemory = 10.0;
+/// Root mean square of how a surface's nodes moved since the last check, about their mean [m/s].
+inline constexpr double kShakenSpeed = kMaxSeparationSpeed;
 /// Tissue parts from the probe faster than this where a penetration is undone in a hurry [m/s].
 inline constexpr double kPushedSpeed = 0.2;
 
@@ -74,7 +78,18 @@ class DivergenceDetector {
   double energy_budget() const { return energy_budget_; }  ///< what it may hold [J]
 
   void exchange(StateArchive& archive) {
-    archive(energy_budget_, injected_energy_, kinetic_energy_, first_moment_, seen_, suspicious_);
+    archive(energy_budget_, injected_energy_, kinetic_energy_, shaking_squared_, first_moment_, seen_,
+            suspicious_);
+  }
+
+  /// What add_work() changes, for steps that are taken back.
+  struct Ledger {
+    double energy_budget = 0, injected_energy = 0;  ///< [J]
+  };
+  Ledger ledger() const { return {energy_budget_, injected_energy_}; }
+  void put_back(const Ledger& ledger) {
+    energy_budget_ = ledger.energy_budget;
+    injected_energy_ = ledger.injected_energy;
   }
 
  private:
@@ -86,6 +101,7 @@ class DivergenceDetector {
   bool knows_energy_;
   double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_injected_energy_ = 0;
   double energy_budget_ = 0, injected_energy_ = 0, kinetic_energy_ = 0;  ///< [J]
+  double shaking_squared_ = 0;        ///< kShakenSpeed's, now [m²/s²]
   Vec3 first_moment_ = Vec3::Zero();  ///< Σ m x, under gravity [kg·m]
   std::vector<Vec3> seen_;            ///< positions of the last check [m]
   bool suspicious_ = false;

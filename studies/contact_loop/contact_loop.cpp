@@ -234,7 +234,7 @@ Tool make_tool(const std::string& name, double radius) {
 
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
                     const LoopCase& loop) {
-  session::InProcess session(scene_of(scene, loop), {{assets.organs[0]}, {loop.tool.mesh}},
+  session::InProcess session(scene_of(scene, loop), {assets.organs, {loop.tool.mesh}},
                              options_of(loop.loss));
   const Vec3 skin(place.x(), rigs::front_of(assets.organs[0].surface, place.x(), place.z()),
                   place.z());

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "collision/probe_model.h"
+#include "modules/geometry/primitives.h"
 #include "modules/scene/probe_shape.h"
 #include "tests/collision/random_shapes.h"
 
@@ -82,6 +83,73 @@ TEST_CASE("near surface: the same triangles whatever the blocks, and none within
   }
   CHECK(near > 500);
   CHECK(found < 8 * near);
+}
+
+TEST_CASE(
+    "near surface: of very many triangles all that may be touched are there, and some of the "
+    "others all around") {
+  // Oracle: brute force over all triangles at points of time of the step; one block of all. A wall
+  // of 81,920 triangles, a ball and a needle that slide over it, into it and off it.
+  geometry::TriangleSurface ball = geometry::make_ball(0.05, 6);
+  RandomShapes random(5);
+  std::vector<OrganSurface> organs;
+  for (const std::size_t most : {std::size_t{40}, ball.triangles.size()}) {
+    organs.emplace_back(ball.triangles,
+                        geometry::SurfaceBlocks::split(ball.nodes, ball.triangles, most));
+    organs.back().update(ball.nodes);
+    organs.back().mark_found();
+  }
+  const std::uint64_t before = organs[0].version();
+  for (Vec3& x : ball.nodes) x += 3e-4 * std::sin(90 * x.x()) * Vec3(0.6, 0, 0.8);
+  for (OrganSurface& organ : organs) organ.update(ball.nodes);
+  std::size_t touched = 0;
+  for (const double height : {0.0475, 0.0505, 0.056}) {
+    for (const auto& form : {scene::form_of(scene::SphereShape{0.008}),
+                             scene::form_of(scene::CapsuleShape{0.006, 0.02})}) {
+      const ProbeModel probe(form);
+      const Pose start{height * random.direction() + 0.008 * Vec3::UnitZ(), random.rotation()};
+      const ProbeMotion way{start, {start.position + random.point(0.001), start.rotation}};
+      const RelativeMotion motion(way, probe.reach, probe.is_round);
+      std::array<NearSurface, 2> near;
+      for (std::size_t i = 0; i < 2; ++i) {
+        near[i].gather_front({0, organs[i], motion, before, 0.005, 1}, probe.cores[0], 0.005);
+      }
+      const auto& found = near[1].triangles();
+      CHECK(same_triangles(near[0].triangles(), found));
+      const OrganStep step{0, organs[1], motion, before, 0.005, 1};
+      SweptTriangle triangle;
+      std::size_t all = 0;
+      std::pair nearest(1.0, 0u);
+      for (std::uint32_t t = 0; t < ball.triangles.size(); ++t) {
+        REQUIRE(step.sweep(t, triangle));
+        const double at_end = closest(probe.cores[0], triangle.end).distance;
+        nearest = std::min(nearest, std::pair(at_end, t));
+        all += at_end <= probe.hull_radius + 0.005;
+        bool touches = false;
+        for (const double at : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+          touches |= closest(probe.cores[0], triangle.at(at)).distance <= probe.hull_radius;
+        }
+        touched += touches;
+        if (touches) CHECK(std::ranges::binary_search(found, t, {}, &SweptTriangle::index));
+      }
+      if (all == 0) continue;
+      CHECK(std::ranges::any_of(found, [&](const SweptTriangle& t) {
+        return closest(probe.cores[0], t.end).distance <= nearest.first + 1e-4;
+      }));
+      if (all > 2 * NearSurface::kManyTriangles) CHECK(found.size() < 0.8 * double(all));
+      Bounds there, those;
+      for (const SweptTriangle& t : found) there.add(t.end[0]);
+      for (std::uint32_t t = 0; t < ball.triangles.size(); ++t) {
+        REQUIRE(step.sweep(t, triangle));
+        const double at_end = closest(probe.cores[0], triangle.end).distance;
+        if (at_end <= probe.hull_radius + 0.005) those.add(triangle.end[0]);
+      }
+      const double cell = (2 * (probe.hull_radius + 0.005) + 0.02) / double(NearSurface::kCells);
+      CHECK((there.lower - those.lower).maxCoeff() < cell);
+      CHECK((those.upper - there.upper).maxCoeff() < cell);
+    }
+  }
+  CHECK(touched > 1000);
 }
 
 TEST_CASE("near surface: nodes near a half-space, each once") {

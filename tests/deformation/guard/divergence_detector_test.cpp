@@ -88,6 +88,34 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("divergence detector: what a probe crosses late is its own work, and injects nothing") {
+  // Oracle: the same push by a probe at rest is work that nobody did; and an organ that flies as a
+  // whole is not shaken, whatever was injected.
+  const auto model = testing::ball_model(2);
+  for (const bool moving : {false, true}) {
+    for (const bool shakes : {false, true}) {
+      DivergenceDetector detector(model, true);
+      OrganState state = rest_state(model);
+      detector.begin(state, 0);
+      for (std::size_t i = 0; i < model.node_count(); ++i) {
+        const int side = shakes && model.rest_positions[i].x() < 0 ? -1 : 1;
+        state.velocities[i] = Vec3(1.5 * side * kShakenSpeed, 0, -0.9);
+        state.positions[i] += kWatchedStep * state.velocities[i];
+      }
+      ContactRow row;
+      row.weights = Vec3(1, 0, 0);
+      row.normal_impulse = 20;  // times 0.9 m/s: more than the ball's mass times 1 m²/s²
+      if (moving) {
+        row.probe_velocity = Vec3(0, 0, -1);
+        for (Vec3& v : state.velocities) v += row.probe_velocity;
+      }
+      detector.add_work(kWatchedStep, std::span(&row, 1), 0, state);
+      CHECK(detector.check_bounds(state, kWatchedStep) ==
+            (shakes && !moving ? Violation::kEnergyGrew : Violation::kNone));
+    }
+  }
+}
+
 TEST_CASE("divergence detector: a pressure that moves the volume does work") {
   // Oracle: p dV.
   const auto model = testing::ball_model(1);
