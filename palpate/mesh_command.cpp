@@ -11,6 +11,7 @@
 #include "modules/core/units.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/organ_shape.h"
 #include "modules/geometry/shells.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "palpate/scene_doubts.h"
@@ -238,6 +239,11 @@ TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostrea
   TetMesh mesh = read_tetrahedra(options.input);
   const double scale = metres_per_unit(options.unit);
   for (Vec3& node : mesh.nodes) node *= scale;
+  try {
+    shape_of(mesh);
+  } catch (const InputError& error) {
+    throw InputError(options.input.string() + ": " + error.what());
+  }
   out << options.input.string() << " (" << options.unit << ")\n";
   return mesh;
 }

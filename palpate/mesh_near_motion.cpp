@@ -89,7 +89,11 @@ TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion,
   touched.refine.near = {balls.begin(), balls.end()};
   touched.refine.edge_length = motion.edge.value_or(radius / 2);
   touched.refine.growth = motion.growth.value_or(scene::Refinement::kGrowth);
-  touched.mesh = scene::refined(mesh, touched.refine, {});
+  try {
+    touched.mesh = scene::refined(mesh, touched.refine, {});
+  } catch (const InputError& error) {
+    throw InputError(std::string("--edge-m, --growth: ") + error.what());
+  }
   return touched;
 }
 

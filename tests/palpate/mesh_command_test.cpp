@@ -230,7 +230,18 @@ TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothi
   CHECK_THAT(refused(options), Contains("--near-columns must name four"));
   options = given.near(8e-3);
   options.near.edge = 2e-4;
-  CHECK_THAT(refused(options), Contains("more than 50000 nodes; allow longer edges"));
+  CHECK_THAT(refused(options), Contains("--edge-m, --growth: refined, it would have more than "
+                                        "50000 nodes; allow longer edges"));
+  options = given.near(8e-3);
+  TetMesh apart = testing::block(Vec3::Constant(0.06), 1, 1, 1);
+  for (const Vec3& node : std::vector(apart.nodes)) apart.nodes.push_back(node + Vec3(1, 0, 0));
+  for (auto corners : std::vector(apart.tetrahedra)) {
+    for (auto& node : corners) node += 8;
+    apart.tetrahedra.push_back(corners);
+  }
+  options.input = given.folder / "apart.msh";
+  write_tetrahedra(apart, options.input);
+  CHECK_THAT(refused(options), Contains("apart.msh: "));
   options = given.near(8e-3);
   options.node_count = 300;
   CHECK_THAT(refused(options), Contains("--nodes, --largest and --fill-holes are of surfaces"));
