@@ -8,9 +8,12 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/units.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/organ_shape.h"
 #include "modules/geometry/shells.h"
+#include "modules/geometry/tools/gmsh_tool.h"
 #include "palpate/scene_doubts.h"
 
 namespace palpate::geometry {
@@ -115,13 +118,42 @@ TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOption
   }
 }
 
-/// What it holds are tetrahedra, which no surface tool reads.
-void refuse_tetrahedra(const std::filesystem::path& file) {
-  if (file.extension() != ".msh" && file.extension() != ".vtk") return;
-  throw InputError(file.string() +
-                   ": holds tetrahedra; this command prepares surfaces. A scene takes them as they "
-                   "are: organs: [{mesh: {file: " +
-                   file.filename().string() + "}, model: nodal_pressure}]");
+/// No surface tool reads them.
+bool holds_tetrahedra(const std::filesystem::path& file) {
+  return file.extension() == ".msh" || file.extension() == ".vtk";
+}
+
+/// Of tetrahedra.
+std::string scene_hint(const std::filesystem::path& file) {
+  return "A scene takes them as they are: organs: [{mesh: {file: " + file.filename().string() +
+         "}, model: nodal_pressure}]";
+}
+
+void check_options(const MeshCommandOptions& options) {
+  const NearMotion& near = options.near;
+  const bool is_filled = holds_tetrahedra(options.input);
+  if (near.file.empty()) {
+    if (near.radius || near.edge || near.growth) {
+      throw InputError("--radius-m, --edge-m and --growth are of --near TRAJECTORY");
+    }
+    if (is_filled) {
+      throw InputError(options.input.string() +
+                       ": holds tetrahedra; this command prepares surfaces, and halves tetrahedra "
+                       "with --near alone. " +
+                       scene_hint(options.input));
+    }
+    if (!options.output.empty()) check_can_write(options.output);
+    return;
+  }
+  if (!near.columns.empty() && near.columns.size() != 4) {
+    throw InputError("--near-columns must name four: time, x, y, z");
+  }
+  if (!near.radius) throw InputError("--near needs --radius-m, of the sphere that moves so");
+  if (is_filled && (options.node_count > 0 || options.largest || options.fill_holes)) {
+    throw InputError(options.input.string() +
+                     ": holds tetrahedra; --nodes, --largest and --fill-holes are of surfaces");
+  }
+  if (!options.output.empty()) check_can_write_tetrahedra(options.output);
 }
 
 /// What was asked for beside the usual repairs.
@@ -199,9 +231,56 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
   return surface;
 }
 
+TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
+  if (!holds_tetrahedra(options.input)) {
+    const TriangleSurface surface = prepare(options, json, out);
+    return fill_surface(surface, mean_edge_length(surface));
+  }
+  TetMesh mesh = read_tetrahedra(options.input);
+  const double scale = metres_per_unit(options.unit);
+  for (Vec3& node : mesh.nodes) node *= scale;
+  try {
+    shape_of(mesh);
+  } catch (const InputError& error) {
+    throw InputError(options.input.string() + ": " + error.what());
+  }
+  out << options.input.string() << " (" << options.unit << ")\n";
+  return mesh;
+}
+
+/// The tetrahedra that were asked for, step by step told to `out`.
+TetMesh refine(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
+  const TetMesh coarse = filled(options, json, out);
+  const auto counts = [](const TetMesh& mesh) {
+    return std::to_string(mesh.nodes.size()) + ", " + std::to_string(mesh.tetrahedra.size());
+  };
+  out << "filled\n";
+  print_line(out, "nodes, tetrahedra", counts(coarse));
+  std::vector<std::string> notes;
+  const auto [mesh, refinement] = refined_near(coarse, options.near, notes);
+  out << "near " << options.near.file.string() << '\n';
+  for (const std::string& note : notes) {
+    out << "warning: " << note << '\n';
+    json["warnings"].append(note);
+  }
+  print_line(out, "touched",
+             std::to_string(refinement.near.size()) + " places, each within " +
+                 number(1e3 * *options.near.radius) + " mm");
+  print_line(out, "edges there",
+             "at most " + number(1e3 * *refinement.edge_length) + " mm, and " +
+                 number(*refinement.growth) + " of the distance longer");
+  print_line(out, "nodes, tetrahedra", counts(mesh));
+  Json::Value& near = json["near"];
+  near["places"] = Json::UInt64(refinement.near.size());
+  near["edge_m"] = *refinement.edge_length;
+  near["growth"] = *refinement.growth;
+  near["nodes"] = Json::UInt64(mesh.nodes.size());
+  near["tetrahedra"] = Json::UInt64(mesh.tetrahedra.size());
+  return mesh;
+}
+
 void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
-  refuse_tetrahedra(options.input);
-  if (!options.output.empty()) check_can_write(options.output);
+  check_options(options);
   Json::Value json;
   json["file"] = options.input.string();
   std::ostringstream unheard;
@@ -210,10 +289,19 @@ void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
     if (options.json) out << Json::writeString(Json::StreamWriterBuilder(), json) << '\n';
   };
   try {
-    const TriangleSurface surface = prepare(options, json, text);
+    const bool is_near = !options.near.file.empty();
+    TriangleSurface surface;
+    TetMesh tetrahedra;
+    if (is_near) {
+      tetrahedra = refine(options, json, text);
+    } else {
+      surface = prepare(options, json, text);
+    }
     if (!options.output.empty()) {
-      write_surface(surface, options.output);
+      is_near ? write_tetrahedra(tetrahedra, options.output)
+              : write_surface(surface, options.output);
       text << "written: " << options.output.string() << " (m)\n";
+      if (is_near) text << scene_hint(options.output) << '\n';
       json["written"] = options.output.string();
     }
   } catch (const InputError&) {

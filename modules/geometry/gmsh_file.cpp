@@ -195,6 +195,22 @@ void check_shape(const LineReader& lines, const FileTetrahedron& tetrahedron,
                   "the tetrahedron is flat or inside out; allowed: positive volume");
 }
 
+template <class Element>
+void write(const std::vector<Vec3>& nodes, int kind, const std::vector<Element>& elements,
+           std::ostream& out) {
+  out.precision(17);
+  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << nodes.size() << '\n';
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    out << i + 1 << ' ' << nodes[i].transpose() << '\n';
+  out << "$EndNodes\n$Elements\n" << elements.size() << '\n';
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    out << k + 1 << ' ' << kind << " 2 1 1";
+    for (const std::uint32_t node : elements[k]) out << ' ' << node + 1;
+    out << '\n';
+  }
+  out << "$EndElements\n";
+}
+
 }  // namespace
 
 TetMesh read_gmsh(const std::filesystem::path& file) {
@@ -224,19 +240,13 @@ TetMesh read_gmsh(const std::filesystem::path& file) {
 
 void write_gmsh(const TriangleSurface& surface, const std::filesystem::path& file) {
   std::ofstream out(file);
-  out.precision(17);
-  out << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << surface.nodes.size() << '\n';
-  for (std::size_t i = 0; i < surface.nodes.size(); ++i) {
-    out << i + 1 << ' ' << surface.nodes[i].transpose() << '\n';
-  }
-  out << "$EndNodes\n$Elements\n" << surface.triangles.size() << '\n';
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    out << t + 1 << " 2 2 1 1 " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << '\n';
-  }
-  out << "$EndElements\n";
+  write(surface.nodes, kTriangle, surface.triangles, out);
   out.flush();
   if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void write_gmsh(const TetMesh& mesh, std::ostream& out) {
+  write(mesh.nodes, kTetrahedron, mesh.tetrahedra, out);
 }
 
 }  // namespace palpate::geometry

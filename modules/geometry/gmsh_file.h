@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 
 #include "modules/geometry/tet_mesh.h"
 
@@ -19,5 +20,7 @@ TetMesh read_gmsh(const std::filesystem::path& file);
 /// Writes the triangles of a surface, nodes numbered from 1 in their order.
 /// @throws std::runtime_error if writing fails
 void write_gmsh(const TriangleSurface& surface, const std::filesystem::path& file);
+/// Writes tetrahedra, numbered alike, every bit of their nodes' places kept.
+void write_gmsh(const TetMesh& mesh, std::ostream& out);
 
 }  // namespace palpate::geometry

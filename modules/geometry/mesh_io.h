@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "modules/geometry/triangle_surface.h"
+#include "modules/geometry/tet_mesh.h"
 
 namespace palpate::geometry {
 
@@ -16,9 +16,13 @@ TriangleSurface read_surface(const std::filesystem::path& file, std::string_view
 
 /// @throws InputError for an extension write_surface() does not know
 void check_can_write(const std::filesystem::path& file);
+/// The same of write_tetrahedra().
+void check_can_write_tetrahedra(const std::filesystem::path& file);
 
 /// Writes by file extension (ply, stl, obj, off), in metres; whole file or nothing.
 /// @throws InputError for an extension not known; std::runtime_error if writing fails.
 void write_surface(const TriangleSurface& surface, const std::filesystem::path& file);
+/// The same of tetrahedra: msh (MSH 2.2, text) alone.
+void write_tetrahedra(const TetMesh& mesh, const std::filesystem::path& file);
 
 }  // namespace palpate::geometry

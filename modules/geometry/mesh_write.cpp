@@ -8,6 +8,7 @@
 #include <string>
 
 #include "modules/core/error.h"
+#include "modules/geometry/gmsh_file.h"
 #include "modules/geometry/mesh_io.h"
 
 namespace palpate::geometry {
@@ -71,6 +72,11 @@ void write_off(const TriangleSurface& surface, std::ostream& out) {
   }
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& allowed) {
+  throw InputError(file.string() + ": cannot write the format '" + file.extension().string() +
+                   "'; allowed: " + allowed);
+}
+
 using Writer = void (*)(const TriangleSurface&, std::ostream&);
 
 Writer writer_for(const std::filesystem::path& file) {
@@ -79,23 +85,18 @@ Writer writer_for(const std::filesystem::path& file) {
   if (extension == ".stl") return write_stl;
   if (extension == ".obj") return write_obj;
   if (extension == ".off") return write_off;
-  throw InputError(file.string() + ": cannot write the format '" + extension +
-                   "'; allowed: .ply, .stl, .obj, .off");
+  refuse(file, ".ply, .stl, .obj, .off");
 }
 
-}  // namespace
-
-void check_can_write(const std::filesystem::path& file) { writer_for(file); }
-
-void write_surface(const TriangleSurface& surface, const std::filesystem::path& file) {
-  const Writer writer = writer_for(file);
+template <class Write>
+void write_whole(const std::filesystem::path& file, const Write& write) {
   std::filesystem::path temporary = file;
   temporary += ".part";
   temporary += std::to_string(::getpid());  // two writers of one file do not meet
   std::error_code error;
   {
     std::ofstream out(temporary, std::ios::binary);
-    if (out) writer(surface, out);
+    if (out) write(out);
     out.close();
     if (!out) {
       std::filesystem::remove(temporary, error);
@@ -108,6 +109,24 @@ void write_surface(const TriangleSurface& surface, const std::filesystem::path& 
     std::filesystem::remove(temporary, error);
     throw std::runtime_error(file.string() + ": cannot be written: " + reason);
   }
+}
+
+}  // namespace
+
+void check_can_write(const std::filesystem::path& file) { writer_for(file); }
+
+void check_can_write_tetrahedra(const std::filesystem::path& file) {
+  if (file.extension() != ".msh") refuse(file, ".msh");
+}
+
+void write_surface(const TriangleSurface& surface, const std::filesystem::path& file) {
+  const Writer writer = writer_for(file);
+  write_whole(file, [&](std::ostream& out) { writer(surface, out); });
+}
+
+void write_tetrahedra(const TetMesh& mesh, const std::filesystem::path& file) {
+  check_can_write_tetrahedra(file);
+  write_whole(file, [&](std::ostream& out) { write_gmsh(mesh, out); });
 }
 
 }  // namespace palpate::geometry

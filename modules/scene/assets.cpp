@@ -70,20 +70,24 @@ void check_size(const geometry::OrganShape& shape, const std::string& owner) {
 
 }  // namespace
 
-geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
-  const Refinement& refine = organ.solid.refine;
+geometry::TetMesh refined(const geometry::TetMesh& mesh, const Refinement& refine,
+                          const Pose& pose) {
   if (refine.near.empty()) return mesh;
   const double edge = refine.edge_length.value_or(Refinement::kRegionEdge);
   const double growth = refine.growth.value_or(Refinement::kGrowth);
   const auto longest_edge = [&](const Vec3& x) {
     double least = std::numeric_limits<double>::infinity();
     for (const Region& region : refine.near) {
-      least = std::min(least, distance(region, organ.pose.to_world(x)));
+      least = std::min(least, distance(region, pose.to_world(x)));
     }
     return edge + growth * least;
   };
+  return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);
+}
+
+geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
   try {
-    return geometry::bisected(mesh, longest_edge, kMostRefinedNodes);
+    return refined(mesh, organ.solid.refine, organ.pose);
   } catch (const InputError& error) {
     throw InputError(std::string("key 'solid.refine': ") + error.what());
   }

@@ -17,9 +17,12 @@ geometry::OrganShape load_organ(const Organ& organ);
 /// @throws InputError naming organ, file and problem
 geometry::TriangleSurface load_skin(const Organ& organ);
 
-/// `mesh`, in the organ's own frame, with smaller tetrahedra near the regions of its
-/// `solid.refine`.
-/// @throws InputError naming the key if it would have too many nodes
+/// `mesh` with smaller tetrahedra near the regions of W.
+/// @param pose  of the mesh's frame
+/// @throws InputError if it would have too many nodes
+geometry::TetMesh refined(const geometry::TetMesh& mesh, const Refinement& refine,
+                          const Pose& pose);
+/// The same of an organ, in its own frame. @throws InputError naming the key
 geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ);
 
 /// Surface of a probe whose shape names a mesh, in its own frame [m]; empty for every other.

@@ -29,6 +29,7 @@ std::vector<Case> wanted_cases(const ChartOptions& options, std::ostream& log) {
     return true;
   };
   wanted.erase(std::remove_if(wanted.begin(), wanted.end(), without_data), wanted.end());
+  for (Case& each : wanted) each.truth_count = std::min(each.truth_count, options.places);
   return wanted;
 }
 

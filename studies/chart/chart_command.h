@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "studies/chart/reference_solutions.h"
 #include "studies/chart/sweep.h"
 
 namespace palpate::chart {
@@ -18,6 +19,7 @@ struct ChartOptions {
   Extent extent = Extent::kUsual;
   std::filesystem::path bullet_program;  ///< palpate-bench-bullet, if it was built
   bool peers = true;
+  int places = kPlaces;                     ///< of organs, the first so many
   bool again = false;                       ///< measures anew what has been measured
   std::optional<report::Shard> shard = {};  ///< measures what no other does, writes no tables
 };

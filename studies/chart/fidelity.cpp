@@ -35,7 +35,8 @@ std::string Setting::name() const {
 std::string Setting::key() const {
   return fmt::format("{}-{}-{:g}", model, level, rate) +
          (iterations > 0 ? fmt::format("-{}", iterations) : "") +
-         (small != Small::kNowhere ? fmt::format("-{}", word_of(small)) : "");
+         (small != Small::kNowhere ? fmt::format("-{}", word_of(small)) : "") +
+         (places > 0 ? fmt::format("-{}places", places) : "");
 }
 
 SmallTetrahedra small_tetrahedra(const Setting& setting) {

@@ -26,6 +26,7 @@ struct Setting {
   double rate = 250;           ///< steps asked for per simulated second [Hz]; a model may sub-step
   std::size_t iterations = 0;  ///< scene key of this name; 0: as many as the model has
   Small small = Small::kNowhere;  ///< then the level is that of these tetrahedra
+  int places = 0;                 ///< of an organ pressed at many, the first so many; 0: at all
 
   std::string name() const;  ///< "corotational, level 1, 250 Hz, 10 iterations"
   std::string key() const;   ///< the same for file names: "corotational-1-250-10"

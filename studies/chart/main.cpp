@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
               "Only these models: " + listed(chart::model_hierarchy()));
   const auto coarse = program.flag("--quick", quick, "Coarse meshes, one step: under 2 minutes");
   program.flag("--full", full, "Fine meshes, four steps: hours").excludes(coarse);
+  program.add("--places", options.places, "Of organs, the first so many of 22").range(1, 22);
   const auto again =
       program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
   std::string shard;

@@ -13,7 +13,8 @@ Measurement press_all(const rigs::PokedPlace& organ, double radius, const Settin
                       const KeepGoing& keep_going) {
   const OrganSites sites(organ, radius);
   std::vector<Measurement> places;
-  for (const Site& site : sites.random(kPlaces, kSeed)) {
+  const int count = setting.places > 0 ? setting.places : kPlaces;
+  for (const Site& site : sites.random(static_cast<std::size_t>(count), kSeed)) {
     places.push_back(sites.press(site, setting, keep_going));
   }
   return joined(places);

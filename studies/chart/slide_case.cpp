@@ -15,6 +15,7 @@ namespace {
 constexpr double kSlideSpeed = 10e-3, kApproach = 20e-3;  // [m/s]
 constexpr double kHalfWay = 20e-3, kStride = 1e-3;        // ±, and between samples [m]
 constexpr double kSlideDrag = 40;                         // [1/s]
+constexpr std::size_t kRoom = 20'000;                     // nodes; so that no edge is longer
 constexpr std::array kTruePlaces{0.0, 10e-3, 20e-3};      // from the middle [m]
 
 constexpr rigs::BlockSlide kSlide;
@@ -46,6 +47,7 @@ Measurement measure_slide(const Setting& setting, const KeepGoing& keep_going) {
       organ.solid.refine.follow = true;
       organ.solid.refine.edge_length = wanted.edge * slide.radius;
       organ.solid.refine.growth = wanted.growth;
+      organ.solid.refine.nodes = kRoom;
     }
   }
   rigs::SlidBlock block(slide, organ);

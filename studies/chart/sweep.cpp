@@ -171,7 +171,11 @@ SweepResult sweep(const std::vector<Case>& of, Extent extent,
   SweepResult result;
   for (const Case& each : of) {
     for (const Setting& setting : settings_of(each, extent)) {
-      if (is_wanted(models, setting.model)) result.points.push_back({each, setting, {}});
+      if (!is_wanted(models, setting.model)) continue;
+      result.points.push_back({each, setting, {}});
+      if (each.truth_count > 1 && each.truth_count < kPlaces) {
+        result.points.back().setting.places = each.truth_count;
+      }
     }
     if (each.reference != Reference::kTable && extent != Extent::kQuick) {
       result.references.push_back(

@@ -8,14 +8,12 @@
 
 #include "haptics/devices/device.h"
 #include "modules/core/error.h"
-#include "modules/geometry/closest_points.h"
-#include "modules/geometry/winding_number.h"
+#include "modules/scene/touched_places.h"
 
 namespace palpate::plan {
 namespace {
 
 constexpr double kLeastDepth = 0.05;  // radii, of what counts as touching
-constexpr double kSpacing = 0.75;     // radii, between regions
 
 geometry::RoundedSegment moved(const geometry::RoundedSegment& probe, const Vec3& by) {
   return {probe.a + by, probe.b + by, probe.radius};
@@ -54,38 +52,14 @@ geometry::RoundedSegment ProbePaths::probe_at(std::size_t probe, double time) co
   return {pose.to_world(form.a), pose.to_world(form.b), form.radius};
 }
 
-ProbePaths::Near ProbePaths::near(const geometry::RoundedSegment& probe) const {
-  geometry::SegmentAndTriangle nearest;
-  nearest.distance = std::numeric_limits<double>::infinity();
-  for (const auto& [a, b, c] : skin_.triangles) {
-    const geometry::TriangleCorners corners{skin_.nodes[a], skin_.nodes[b], skin_.nodes[c]};
-    const auto found = geometry::closest_of_segment_and_triangle(probe.a, probe.b, corners);
-    if (found.distance < nearest.distance) nearest = found;
-  }
-  Near near{nearest.on_triangle.point, Vec3::Zero(), 0};
-  // Of all triangles the probe would dent: one alone may lean away.
-  for (const auto& [a, b, c] : skin_.triangles) {
-    const geometry::TriangleCorners corners{skin_.nodes[a], skin_.nodes[b], skin_.nodes[c]};
-    const double away =
-        (geometry::closest_on_triangle(near.place, corners).point - near.place).norm();
-    if (away < probe.radius) {
-      near.outward += (probe.radius - away) * geometry::unit_normal(corners);
-    }
-  }
-  near.outward.normalize();
-  const bool is_inside =
-      geometry::winding_number(nearest.on_segment, skin_.nodes, skin_.triangles) > 0.5;
-  near.depth = probe.radius - (is_inside ? -nearest.distance : nearest.distance);
-  return near;
-}
-
 std::vector<double> ProbePaths::touching(std::size_t count) const {
   std::vector<double> times;
   for (std::size_t k = 0; k < poses_.at(0).size(); ++k) {
     const double time = static_cast<double>(k) / kRate;
     bool touches = false;
     for (std::size_t i = 0; i < forms_.size(); ++i) {
-      touches = touches || near(probe_at(i, time)).depth > kLeastDepth * forms_[i].radius;
+      touches = touches ||
+                scene::touch_of(skin_, probe_at(i, time)).depth > kLeastDepth * forms_[i].radius;
     }
     if (touches) times.push_back(time);
   }
@@ -101,9 +75,9 @@ std::vector<double> ProbePaths::touching(std::size_t count) const {
 truth::Station ProbePaths::freed(const truth::Station& station) const {
   truth::Station free;
   for (const auto& probe : station) {
-    const Vec3 outward = near(probe).outward;
+    const Vec3 outward = scene::touch_of(skin_, probe).outward;
     geometry::RoundedSegment away = probe;
-    for (int steps = 1; near(away).depth > 0; ++steps) {
+    for (int steps = 1; scene::touch_of(skin_, away).depth > 0; ++steps) {
       if (steps > 40) throw std::runtime_error("a probe finds no straight way out of the organ");
       away = moved(probe, steps * probe.radius / 4 * outward);
     }
@@ -118,7 +92,7 @@ truth::Question ProbePaths::question_at(double time, std::vector<std::uint32_t>&
   probes.clear();
   for (std::uint32_t i = 0; i < forms_.size(); ++i) {
     const auto probe = probe_at(i, time);
-    if (near(probe).depth < (1 - kNear) * probe.radius) continue;
+    if (scene::touch_of(skin_, probe).depth < (1 - kNear) * probe.radius) continue;
     station.push_back(probe);
     probes.push_back(i);
   }
@@ -131,13 +105,7 @@ std::vector<scene::Region> ProbePaths::regions() const {
   std::vector<scene::SphereRegion> balls;
   for (std::size_t i = 0; i < forms_.size(); ++i) {
     for (std::size_t k = 0; k < poses_[i].size(); ++k) {
-      const auto probe = probe_at(i, static_cast<double>(k) / kRate);
-      const Near at = near(probe);
-      if (at.depth < 0) continue;
-      const bool is_covered = std::any_of(balls.begin(), balls.end(), [&](const auto& ball) {
-        return (ball.center - at.place).norm() < kSpacing * probe.radius;
-      });
-      if (!is_covered) balls.push_back({at.place, probe.radius});
+      scene::add_touched(skin_, probe_at(i, static_cast<double>(k) / kRate), balls);
     }
   }
   return {balls.begin(), balls.end()};

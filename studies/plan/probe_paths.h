@@ -29,12 +29,7 @@ class ProbePaths {
   double smallest_radius() const;
 
  private:
-  struct Near {
-    Vec3 place = Vec3::Zero(), outward = Vec3::UnitZ();  ///< on the skin, and its normal there
-    double depth = 0;                                    ///< of the probe in the organ at rest [m]
-  };
   geometry::RoundedSegment probe_at(std::size_t probe, double time) const;
-  Near near(const geometry::RoundedSegment& probe) const;
   truth::Station freed(const truth::Station& station) const;
 
   static constexpr double kRate = 50;  // [Hz]

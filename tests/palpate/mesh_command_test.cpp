@@ -1,10 +1,17 @@
 #include "palpate/mesh_command.h"
 
+#include <json/json.h>
+
+#include <sstream>
+
 #include "modules/core/error.h"
+#include "modules/geometry/gmsh_file.h"
 #include "modules/geometry/mesh_check.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
+#include "modules/scene/assets.h"
 #include "tests/modules/geometry/scratch.h"
+#include "tests/modules/geometry/tetrahedra.h"
 
 using namespace palpate;
 using namespace palpate::geometry;
@@ -94,4 +101,157 @@ TEST_CASE("mesh command: every bad option is exit code 2, a failed write exit co
   CHECK_THAT(format.err, Contains("allowed: .ply"));
   CHECK(format.out.empty());  // before any work
   CHECK(run({folder / "in.ply", folder / "no" / "out.ply", 0, "m"}).code == kExitFailed);
+}
+
+namespace {
+
+/// A block of 60 mm, edges of 15 to 26 mm, and a motion down onto the middle of its top, in
+/// millimetres: a sphere of 8 mm ends 4 mm deep.
+struct BlockAndMotion {
+  BlockAndMotion() {
+    write_tetrahedra(testing::block(Vec3::Constant(0.06), 4, 4, 4), folder / "in.msh");
+    folder.write("way.csv", "s px py pz\n0 30 30 90\n1 30 30 64\n2 30 30 90\n");
+  }
+  MeshCommandOptions near(double radius) const {
+    MeshCommandOptions options{folder / "in.msh", folder / "out.msh"};
+    options.near.file = folder / "way.csv";
+    options.near.columns = {"s", "px", "py", "pz"};
+    options.near.unit = "mm";
+    options.near.radius = radius;
+    return options;
+  }
+  ScratchFolder folder;
+};
+
+}  // namespace
+
+TEST_CASE("mesh command: near a motion tetrahedra are small, as those of a scene that says where") {
+  // Oracle: the sizes by hand, edges of R/2 within R of the touched place and 0.5 longer per
+  // distance, those far off unhalved; the scene's key, which makes the same mesh bit by bit.
+  const BlockAndMotion given;
+  MeshCommandOptions options = given.near(8e-3);
+  const Outcome outcome = run(options);
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.code == kExitDone);
+  CHECK_THAT(outcome.out, Contains("touched                 1 places, each within 8 mm") &&
+                              Contains("at most 4 mm") && Contains("mesh: {file: out.msh}"));
+  const TetMesh mesh = read_gmsh(given.folder / "out.msh");
+  CHECK(testing::volume_of(mesh) == Approx(216e-6));
+  const Vec3 place(0.03, 0.03, 0.06);
+  double longest = 0;
+  for (const auto& corners : mesh.tetrahedra) {
+    for (const auto& [i, k] : kTetrahedronEdges) {
+      const Vec3 a = mesh.nodes[corners[i]], b = mesh.nodes[corners[k]];
+      const double away = ((a + b) / 2 - place).norm();
+      CHECK((a - b).norm() <= 4e-3 + 0.5 * std::max(0.0, away - 8e-3) + 1e-12);
+      longest = std::max(longest, (a - b).norm());
+    }
+  }
+  CHECK(longest > 15e-3);
+
+  scene::Organ organ;
+  organ.mesh.file = given.folder / "in.msh";
+  organ.model = "nodal_pressure";
+  organ.solid.refine = {{scene::SphereRegion{place, 8e-3}}, 4e-3, 0.5};
+  const auto keyed = scene::load_organ(organ);
+  organ.mesh.file = given.folder / "out.msh";
+  organ.solid.refine = {};
+  const auto made = scene::load_organ(organ);
+  CHECK(made.surface.nodes == keyed.surface.nodes);
+  CHECK(made.inner_nodes == keyed.inner_nodes);
+  CHECK(made.tetrahedra == keyed.tetrahedra);
+
+  // The same way, recorded in another frame: a quarter turn about x, then 1 m off.
+  given.folder.write("way.csv", "s px py pz\n0 30 90 -30\n1 30 64 -30\n2 30 90 -30\n");
+  options.near.position = {1, 0, 0};
+  options.near.rotation = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
+  CHECK_THAT(run(options).err, Contains("touches nothing"));
+  options.near.position = {0, 0, 0};
+  REQUIRE(run(options).code == kExitDone);
+  CHECK(read_gmsh(given.folder / "out.msh").nodes.size() == mesh.nodes.size());
+
+  options.near.edge = 6e-3;
+  options.near.growth = 1;
+  options.json = true;
+  Json::Value json;
+  std::istringstream(run(options).out) >> json;
+  CHECK(json["near"]["edge_m"].asDouble() == 6e-3);
+  CHECK(json["near"]["nodes"].asUInt64() < mesh.nodes.size());
+}
+
+TEST_CASE("mesh command: a surface near a motion is filled first") {
+  // Oracle: the organ's surface as it was, its nodes first, and a mesh that a scene reads.
+  if (testing::without_gmsh()) return;
+  const ScratchFolder folder;
+  const TriangleSurface ball = make_ball(0.05, 2);
+  write_surface(ball, folder / "in.ply");
+  folder.write(
+      "way.csv",
+      "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.07,0,0,0,1\n1,0,0,0.055,0,0,0,1\n2,0.02,0,0.055,0,0,0,1\n");
+  MeshCommandOptions options{folder / "in.ply", folder / "out.msh"};
+  options.near.file = folder / "way.csv";
+  options.near.radius = 0.01;
+  const Outcome outcome = run(options);
+  INFO(outcome.out << outcome.err);
+  REQUIRE(outcome.code == kExitDone);
+  const TetMesh mesh = read_gmsh(folder / "out.msh");
+  REQUIRE(mesh.nodes.size() > ball.nodes.size());
+  for (std::size_t i = 0; i < ball.nodes.size(); ++i) {
+    CHECK((mesh.nodes[i] - ball.nodes[i]).norm() < 1e-8);  // a file of single precision
+  }
+  CHECK(testing::volume_of(mesh) == Approx(volume_of(ball)).epsilon(1e-5));
+}
+
+TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothing written") {
+  // Oracle: the contract: exit code 2, one line, no file.
+  const BlockAndMotion given;
+  const auto refused = [&](const MeshCommandOptions& options) {
+    const Outcome outcome = run(options);
+    CHECK(outcome.code == kExitBadInput);
+    CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+    CHECK_FALSE(std::filesystem::exists(given.folder / "out.msh"));
+    return outcome.err;
+  };
+  MeshCommandOptions options = given.near(8e-3);
+  options.near.position = {0, 1};
+  CHECK_THAT(refused(options), Contains("--near-position-m must be x, y, z"));
+  options = given.near(8e-3);
+  options.near.unit = "m";
+  CHECK_THAT(refused(options), Contains("way.csv: a sphere of 8 mm touches nothing") &&
+                                   Contains("read in m") && Contains("--near-unit"));
+  options = given.near(8e-3);
+  options.near.radius.reset();
+  CHECK_THAT(refused(options), Contains("--near needs --radius-m"));
+  options = given.near(8e-3);
+  options.near.rotation = {0, 0, 0, 2};
+  CHECK_THAT(refused(options), Contains("--near-rotation-xyzw must be a unit quaternion"));
+  options = given.near(8e-3);
+  options.near.columns = {"s"};
+  CHECK_THAT(refused(options), Contains("--near-columns must name four"));
+  options = given.near(8e-3);
+  options.near.edge = 2e-4;
+  CHECK_THAT(refused(options), Contains("--edge-m, --growth: refined, it would have more than "
+                                        "50000 nodes; allow longer edges"));
+  options = given.near(8e-3);
+  TetMesh apart = testing::block(Vec3::Constant(0.06), 1, 1, 1);
+  for (const Vec3& node : std::vector(apart.nodes)) apart.nodes.push_back(node + Vec3(1, 0, 0));
+  for (auto corners : std::vector(apart.tetrahedra)) {
+    for (auto& node : corners) node += 8;
+    apart.tetrahedra.push_back(corners);
+  }
+  options.input = given.folder / "apart.msh";
+  write_tetrahedra(apart, options.input);
+  CHECK_THAT(refused(options), Contains("apart.msh: "));
+  options = given.near(8e-3);
+  options.node_count = 300;
+  CHECK_THAT(refused(options), Contains("--nodes, --largest and --fill-holes are of surfaces"));
+  options = given.near(8e-3);
+  options.output = given.folder / "out.ply";
+  CHECK_THAT(refused(options), Contains("allowed: .msh"));
+  options = given.near(8e-3);
+  options.near.file = given.folder / "none.csv";
+  CHECK_THAT(refused(options), Contains("none.csv"));
+  options = given.near(8e-3);
+  options.near.file.clear();
+  CHECK_THAT(refused(options), Contains("--radius-m, --edge-m and --growth are of --near"));
 }

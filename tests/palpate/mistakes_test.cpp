@@ -120,6 +120,9 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {{"mesh", desk.file("open.ply")}, "--fill-holes closes 1 hole"},
       {{"mesh", desk.file("two.ply")}, "--largest keeps the shell with"},
       {{"mesh", desk.file("tetrahedra.msh")}, "holds tetrahedra"},
+      {{"mesh", desk.file("in_mm.stl"), "--near", desk.file("good.csv")}, "needs --radius-m"},
+      {{"mesh", desk.file("in_mm.stl"), "--near", desk.file("good.csv"), "--radius-m", "8"},
+       "--radius-m"},
       {{"new", desk.file("in_mm.stl"), "-o", scene}, "is there already"},
       {{"new", desk.file("huge.stl"), "-o", desk.file("h.yaml")}, "say --unit"},
       // scene files

@@ -1,6 +1,7 @@
 #include <cstring>
 
 #include "modules/core/error.h"
+#include "modules/geometry/gmsh_file.h"
 #include "modules/geometry/mesh_check.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
@@ -80,5 +81,20 @@ TEST_CASE("write: a place that cannot be written gives an error and leaves nothi
   const auto taken = message_of<std::runtime_error>(
       [&] { write_surface(make_tetrahedron(1), folder / "taken.ply"); });
   CHECK_THAT(taken, Contains("cannot be written"));
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("write: tetrahedra come back bit by bit, and only as msh") {
+  // Oracle: what was written; thirds and a tenth have no short decimals.
+  const ScratchFolder folder;
+  TetMesh mesh;
+  mesh.nodes = {{0, 0, 0}, {1.0 / 3, 0, 0}, {0, 0.1, 1e-17}, {0, 2e-5 / 3, 1e-3}, {0, 1, 1.0 / 7}};
+  mesh.tetrahedra = {{0, 1, 2, 3}, {3, 1, 2, 4}};
+  write_tetrahedra(mesh, folder / "a.msh");
+  const TetMesh read = read_gmsh(folder / "a.msh");
+  CHECK(read.nodes == mesh.nodes);
+  CHECK(read.tetrahedra == mesh.tetrahedra);
+  const auto message = message_of<InputError>([&] { write_tetrahedra(mesh, folder / "a.ply"); });
+  CHECK_THAT(message, Contains("'.ply'") && Contains("allowed: .msh"));
   CHECK(folder.file_count() == 1);
 }

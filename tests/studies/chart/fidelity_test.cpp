@@ -19,9 +19,11 @@ TEST_CASE("fidelity: each is there once, and settings have names of their own") 
   CHECK(Setting{"corotational", 1, 250}.name() == "corotational, level 1, 250 Hz");
   CHECK(Setting{"corotational", 1, 250}.key() == "corotational-1-250");
   CHECK(Setting{"corotational", 1, 250, 5}.key() == "corotational-1-250-5");
-  const Setting follows{"nodal_pressure", 0, 100, 0, Small::kFollowing};
+  Setting follows{"nodal_pressure", 0, 100, 0, Small::kFollowing};
   CHECK(follows.name() == "nodal_pressure, level 0 following, 100 Hz");
   CHECK(follows.key() == "nodal_pressure-0-100-follow");
+  follows.places = 8;
+  CHECK(follows.key() == "nodal_pressure-0-100-follow-8places");
 }
 
 TEST_CASE("fidelity: the page's table of models names every model charted, once") {

@@ -22,7 +22,8 @@ namespace palpate::plan {
 namespace {
 
 std::filesystem::path write_scene(const std::filesystem::path& folder, const std::string& needs,
-                                  const std::string& more_organs = "", int nodes = 250) {
+                                  const std::string& more_organs = "", int nodes = 250,
+                                  const std::string& down_to_m = "0.052") {
   std::filesystem::copy_file(data_file("scenes/meshes/ball.ply"), folder / "ball.ply");
   std::ofstream(folder / "scene.yaml") << R"(palpate_scene: 1
 organs:
@@ -38,7 +39,8 @@ organs:
       scripted:
         start_m: [0, 0, 0.062]
         moves:
-          - {to_m: [0, 0, 0.052], duration_s: 0.5}
+          - {to_m: [0, 0, )" << down_to_m
+                                       << R"(], duration_s: 0.5}
 )" << needs;
   return folder / "scene.yaml";
 }
@@ -122,15 +124,17 @@ TEST_CASE("plan command: forces of probes that do not touch yet are not judged")
 
 TEST_CASE("plan command: what it promises of a solid an independent finer solution finds, too") {
   // Oracle: the truth on meshes with edges 0.75 times as long, and the chosen scene run anew: its
-  // error against that lies within the promised error and its bar, and within the need.
+  // error against that lies within the promised error and its bar, and within the need. Of
+  // --verify the same need, at the two of three instants that the plan did not look at.
   if (geometry::testing::without_gmsh()) return;
   const chart::testing::WorkFolder folder;
   PlanOptions options;
   options.seconds = 0.5;
   options.touches = 1;
   options.json = true;
-  options.scene = write_scene(folder.path,
-                              "needs: {contents: solid, force_error: 0.35, step_hz: 50}\n", "", 80);
+  options.verify = true;
+  options.scene = write_scene(
+      folder.path, "needs: {contents: solid, force_error: 0.35, step_hz: 50}\n", "", 80, "0.056");
   std::ostringstream out, log;
   REQUIRE(run_plan(options, out, log) == kExitDone);
   INFO(out.str() << log.str());
@@ -159,6 +163,13 @@ TEST_CASE("plan command: what it promises of a solid an independent finer soluti
   const double found = compare(course, std::vector{touch}).force;
   CHECK(std::abs(found - promised) <= bar);
   CHECK(found <= 0.35);
+  REQUIRE(said["verified"].size() == 1);
+  const Json::Value& verified = said["verified"][0];
+  CHECK(verified["organ"] == "ball");
+  CHECK(verified["instants"].asUInt64() == 2);
+  CHECK(verified["force_error_bar"].asDouble() > 0);
+  CHECK(verified["force_error"].asDouble() + verified["force_error_bar"].asDouble() <= 0.35);
+  CHECK(verified["force_error"].asDouble() != found);  // of other instants
 }
 
 TEST_CASE("plan command: several organs get a model each, and one rate") {

@@ -1,0 +1,38 @@
+// `palpate mesh … --near TRAJECTORY`: tetrahedra that are small where a recorded motion touches.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "modules/geometry/tet_mesh.h"
+#include "modules/scene/scene.h"
+
+namespace palpate::geometry {
+
+struct NearMotion {
+  std::filesystem::path file;        ///< as the device `trajectory` takes it; empty: none
+  std::string unit = "m";            ///< of its positions, see metres_per_unit()
+  std::vector<std::string> columns;  ///< of a table: time, x, y, z; empty: by its header
+  /// Of the recording's frame in the mesh's, as the device's keys: x, y, z [m] and a unit
+  /// quaternion; empty: none.
+  std::vector<double> position, rotation;
+  std::optional<double> radius;  ///< of the sphere that moves so; needed [m]
+  std::optional<double> edge;    ///< longest where it touches; none: half its radius [m]
+  std::optional<double> growth;  ///< per metre of distance; none: as the scene's key
+};
+
+/// A mesh that was halved near the places that were touched.
+struct TouchedMesh {
+  TetMesh mesh;
+  scene::Refinement refine;  ///< by which
+};
+
+/// @param notes  out: what is said of the recording
+/// @throws InputError naming the file that cannot be read, a motion that touches nothing, or a
+/// place that is none
+TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion,
+                         std::vector<std::string>& notes);
+
+}  // namespace palpate::geometry
