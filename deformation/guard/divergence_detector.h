@@ -78,8 +78,8 @@ class DivergenceDetector {
   double energy_budget() const { return energy_budget_; }  ///< what it may hold [J]
 
   void exchange(StateArchive& archive) {
-    archive(energy_budget_, injected_energy_, kinetic_energy_, shaking_squared_, first_moment_, seen_,
-            suspicious_);
+    archive(energy_budget_, injected_energy_, kinetic_energy_, shaking_squared_, first_moment_,
+            seen_, suspicious_);
   }
 
   /// What add_work() changes, for steps that are taken back.
