@@ -164,7 +164,7 @@ class ProbeContacts {
     double time = 0;      ///< since the first contact [s]
     double approach = 0;  ///< at most, of its tissue: as it was first, then less and less [m/s]
     bool core_inside = false;  ///< at the start of a sub-step since then
-    void exchange(StateArchive& archive) { archive(organ, time, core_inside); }
+    void exchange(StateArchive& archive) { archive(organ, time, approach, core_inside); }
   };
   std::vector<GentleOrgan> gentle_;
   std::vector<std::uint32_t> begun_;  ///< organs first touched by the newest contacts
