@@ -141,11 +141,8 @@ class ProbeSearch {
     // Behind a wall nothing else is touched; what a core goes through is met whatever the reach.
     if (!all_behind) reach = std::max(reach, model_.hull_radius + step.margin);
     const bool in_front = !model_.cores.empty() && triangle_list_.empty();
-    if (in_front) {
-      near_.gather_front(step, model_.cores[0], step.margin);
-    } else {
-      near_.gather(step, model_.hull, reach);
-    }
+    if (in_front) near_.gather_front(step, model_.cores[0], step.margin);
+    if (!in_front) near_.gather(step, model_.hull, reach);
     held_.clear();
     if (model_.sharp) cores_.append_held(step.organ_index, held_);
     wall_pairs_.clear();

@@ -28,9 +28,9 @@ struct WorldOrgan {
   std::uint32_t generation = 1;
   std::vector<ContactRow> rows = {};
   SimulatedOrgan::Mark start = {};  ///< of a step with other organs that may be taken back
-  double mean_edge = 0;       ///< of the surface at rest [m]
-  bool keeps_volume = false;  ///< by springs' contents: at once, wherever it is touched
-  bool replaced = false;      ///< its state, at the end of the last advance
+  double mean_edge = 0;             ///< of the surface at rest [m]
+  bool keeps_volume = false;        ///< by springs' contents: at once, wherever it is touched
+  bool replaced = false;            ///< its state, at the end of the last advance
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
   std::unique_ptr<SurfaceWalk> surface = nullptr;
