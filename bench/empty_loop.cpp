@@ -1,11 +1,27 @@
 // What the machine itself keeps of 1 kHz: a loop as haptics has it, with its priority and nothing
-// in it. Runs beside a session; prints the part of its periods that had their cycle.
+// in it. Runs beside a session; prints the part of its periods that had their cycle, and of the
+// others why: the loop was awake in time and waited for a processor, which the kernel or somebody
+// of its priority held, or its timer came late, for the host had taken the processor away.
 #include <cstdio>
+#include <fstream>
 
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/realtime.h"
 #include "modules/runtime/stop_signal.h"
+
+namespace {
+
+/// How long this thread has been ready and not running, in all [ns]; 0 where the kernel does not
+/// say.
+std::int64_t waited_ns() {
+  std::ifstream file("/proc/thread-self/schedstat");
+  std::int64_t ran = 0, waited = 0;
+  file >> ran >> waited;
+  return waited;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace palpate::runtime;
@@ -18,8 +34,22 @@ int main(int argc, char** argv) {
     const Realtime granted = request_realtime(kPriority, /*lock_memory=*/true);
     const StopSignal stop;
     PeriodicLoop loop(kRateHz);
-    while (!stop.requested()) loop.wait_for_period();
-    std::printf("%.3f %% on time%s\n", 100 * loop.statistics().on_time_fraction(),
+    std::int64_t waited_before_ns = waited_ns();
+    std::uint64_t missed = 0, waiting = 0;
+    while (!stop.requested()) {
+      loop.wait_for_period();
+      const std::int64_t now_ns = waited_ns(),
+                         overslept_ns = loop.woke_ns() - loop.period_began_ns();
+      const std::uint64_t more = loop.statistics().overruns - missed;
+      missed += more;
+      const std::int64_t late_ns =
+          overslept_ns + static_cast<std::int64_t>(more) * loop.period_ns();
+      if (2 * (now_ns - waited_before_ns) > late_ns) waiting += more;
+      waited_before_ns = now_ns;
+    }
+    std::printf("%.3f %% on time, of %llu missed %llu waiting for a processor%s\n",
+                100 * loop.statistics().on_time_fraction(), static_cast<unsigned long long>(missed),
+                static_cast<unsigned long long>(waiting),
                 granted.priority ? "" : ", without priority");
     return 0;
   });

@@ -24,7 +24,7 @@ class HapticRenderer {
   /// Of a held device in contact [N·s/m]. With it 0.1 kg on 0.2 N·s/m loses a swing by exp(−6 t/s);
   /// a hand that holds it has 3 N·s/m and more.
   static constexpr double kContactDamping = 1;
-  static constexpr double kMostDamped = 0.2;  ///< of a force, at most
+  static constexpr double kMostDamped = 0.3;  ///< of a force, at most
   /// A torque is limited to what the limited force gives at this arm [m].
   static constexpr double kTorqueArm = 0.1;
 

@@ -225,10 +225,10 @@ double swing_of_push(Mass mass, double push, double stiffness, int law_ticks, in
 TEST_CASE("closed loop: a held device comes to rest on soft tissue") {
   // Oracle: analytic. Pushed by 0.16 N from rest at the skin of 8 N/m it comes to rest 20 mm deep.
   // Not held it swings by 20 mm exp(−t b/2m) to either side: after 2 s 2.7 mm, of which half at
-  // least must be there. Held, damping that is a fifth of the force makes the spring stiffer by
-  // that on the way in and softer on the way out: it turns at 2/1.2, then at 2/0.8 − 2/1.2 = 1/1.2
-  // of the depth, and there the way in is at rest. So after one period at most what is left is
-  // damped as exp(−t (b + B)/2m), B = 1 N·s/m. 10 % for the hand-over and the tick.
+  // least must be there. Held, damping that is 0.3 of the force makes the spring stiffer by that on
+  // the way in and softer on the way out: it turns at 2/1.3 of the depth, then between 1/1.3 and
+  // 1/0.7, where either way stops. So after one period at most what is left is damped as
+  // exp(−t (b + B)/2m), B = 1 N·s/m. 10 % for the hand-over and the tick.
   for (const bool held : {true, false}) {
     Mass mass{0.2};
     mass.held = held;

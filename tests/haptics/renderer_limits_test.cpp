@@ -221,8 +221,8 @@ TEST_CASE("haptic renderer: of what is stiffer than the device can hold the chan
   CHECK(bench.hold(wall_model(kPressed), held, 40).limits == kForceNotLimited);
 }
 
-TEST_CASE("haptic renderer: a held device is damped in contact, by a fifth of the force at most") {
-  // Oracle: analytic, 1 N·s/m: at 10 mm/s inwards 2 N and 10 mN; at 20 m/s a fifth more;
+TEST_CASE("haptic renderer: a held device is damped in contact, by 0.3 of the force at most") {
+  // Oracle: analytic, 1 N·s/m: at 10 mm/s inwards 2 N and 10 mN; at 20 m/s 0.3 N more;
   // across the force, or where nobody holds the device, nothing.
   RendererBench bench;
   const LocalLaw model = wall_model(kPressed);
@@ -244,7 +244,7 @@ TEST_CASE("haptic renderer: a held device is damped in contact, by a fifth of th
   held.delay = 0;
   unslewed.hold(wall_model(kPressed, 100), held, 400);
   held.twist.linear.z() = -20;
-  CHECK(unslewed.tick(held).force.z() == Approx(1 + 0.2));
+  CHECK(unslewed.tick(held).force.z() == Approx(1 + 0.3));
 }
 
 TEST_CASE("haptic renderer: a device that gives NaN gets a force going to zero, said so") {
