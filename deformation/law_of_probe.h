@@ -12,7 +12,7 @@ namespace palpate::deformation {
 /// factorisation.
 /// @param period  of the advance [s]; 0, before the first: no rows
 /// @param bounded  out, if not null: its stiffness was bounded, or not found (contact_law.h)
-LocalLaw law_of_probe(std::span<WorldOrgan> organs, const ProbeContacts& probe, double period,
-                      bool* bounded);
+LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContacts> probes,
+                      std::size_t index, double period, bool* bounded);
 
 }  // namespace palpate::deformation

@@ -40,6 +40,9 @@ struct ModelRow {
   /// elastic_energy() is all it stores and its contacts' impulses all it is given. Not so where the
   /// contents store energy, or nodes are moved by no force.
   bool knows_energy = true;
+  /// The matrix of a touched patch does not tell what its steps answer a press by: a law is pressed
+  /// on copies (pressed_copy.h) every so many periods. 0: the matrix tells.
+  int press_every = 0;
   double step_cost = 1;  ///< of a node's step, over one of springs; measured, to one digit
   /// κ/μ it computes with at most, whatever Poisson's ratio it is asked for.
   double largest_bulk_over_shear = std::numeric_limits<double>::infinity();

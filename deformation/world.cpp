@@ -302,6 +302,7 @@ AdvanceReport DeformationWorld::advance(double period) {
   for (auto& probe : impl_->probes) probe.end();
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
     if (impl_->organs[i].replaced) impl_->drop_contacts(i);
+    if (impl_->organs[i].copy) impl_->organs[i].copy->note_advance();
   }
   for (std::size_t i = 0; i < impl_->probes.size(); ++i) {
     impl_->forces[i].note(impl_->probes[i].impulse() / period);
@@ -380,10 +381,11 @@ double DeformationWorld::estimated_force_error(std::size_t probe) const {
 }
 
 LocalLaw DeformationWorld::local_law(std::size_t probe, bool* bounded) const {
-  LocalLaw law = law_of_probe(impl_->organs, impl_->probes.at(probe), impl_->period, bounded);
+  const ForceHistory& forces = impl_->forces.at(probe);
+  LocalLaw law = law_of_probe(impl_->organs, impl_->probes, probe, impl_->period, bounded);
   double yielding = 0;
   for (const LawRow& row : law.rows) yielding -= row.force.dot(row.velocity);
-  law.growth = impl_->forces[probe].growth(impl_->period, yielding);
+  law.growth = forces.growth(impl_->period, yielding);
   return law;
 }
 

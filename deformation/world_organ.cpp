@@ -111,6 +111,7 @@ void WorldOrgan::reset() {
   if (following) take(following->begin(generation));
   simulated.reset();
   compliance->forget();
+  if (copy) copy->forget();
 }
 
 WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
@@ -145,6 +146,8 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
   if (!kept.is_solid()) {
     made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
   }
+  const int press_every = row_of(organ.model).press_every;
+  if (press_every > 0) made.copy = std::make_unique<PressedCopy>(press_every);
   made.following = std::move(following);
   made.parents = std::move(refined.parents);
   made.halvings = std::move(refined.halvings);

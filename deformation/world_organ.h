@@ -12,6 +12,7 @@
 #include "deformation/contact/surface_walk.h"
 #include "deformation/following_organ.h"
 #include "deformation/models.h"
+#include "deformation/pressed_copy.h"
 #include "deformation/simulated_organ.h"
 #include "deformation/springs/patch_springs.h"
 #include "deformation/springs/spring_forces.h"
@@ -34,6 +35,7 @@ struct WorldOrgan {
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
   std::unique_ptr<SurfaceWalk> surface = nullptr;
+  std::unique_ptr<PressedCopy> copy = nullptr;  ///< none: its matrix tells what it resists
   // Buffers of contact_compliance():
   VolumeGradient volume = {};
   std::vector<Vec3> positions_ahead = {};

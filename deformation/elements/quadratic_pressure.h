@@ -28,7 +28,6 @@ namespace palpate::deformation {
 
 class QuadraticPressure : public ElasticForceElements {
  public:
-  static constexpr int kIterations = 40;
   /// κ/μ is not taken above this: 100 is ν = 0.495.
   static constexpr double kLargestBulkModulus = 100;
   /// α/μ ≥ 1/3, the part of the bulk modulus that each point keeps for itself. More of it lets the
