@@ -3,12 +3,14 @@
 namespace palpate::deformation {
 
 std::optional<double> PressedCopy::kept(std::size_t probe) const {
-  const auto found = kept_.find(probe);
-  if (found == kept_.end() || advances_ - found->second.at >= every_) return {};
-  return found->second.scale;
+  if (probe >= kept_.size() || !kept_[probe] || advances_ - kept_[probe]->at >= every_) return {};
+  return kept_[probe]->scale;
 }
 
-void PressedCopy::keep(std::size_t probe, double scale) { kept_[probe] = {scale, advances_}; }
+void PressedCopy::keep(std::size_t probe, double scale) {
+  if (probe >= kept_.size()) kept_.resize(probe + 1);
+  kept_[probe] = {scale, advances_};
+}
 
 double PressedCopy::stiffness(const SimulatedOrgan& simulated, SurfaceWalk& surface,
                               std::uint32_t organ, std::span<const ProbeContacts> probes,

@@ -5,7 +5,6 @@
 // goes, give the stiffness along the press. Nothing of the organ or of its steps is changed.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "deformation/contact/probe_contacts.h"
 #include "deformation/contact/surface_walk.h"
 #include "deformation/simulated_organ.h"
+#include "modules/core/state_archive.h"
 
 namespace palpate::deformation {
 
@@ -28,6 +28,7 @@ class PressedCopy {
   void keep(std::size_t probe, double scale);
   void note_advance() { ++advances_; }
   void forget() { kept_.clear(); }
+  void exchange(StateArchive& archive) { archive(advances_, kept_); }
 
   /// @param organ   which of those that the probes touch
   /// @param into    unit, which way is pressed
@@ -47,9 +48,10 @@ class PressedCopy {
   struct Kept {
     double scale = 1;
     int at = 0;  ///< advances there had been
+    void exchange(StateArchive& archive) { archive(scale, at); }
   };
   int every_, advances_ = 0;
-  std::map<std::size_t, Kept> kept_;  ///< by probe
+  std::vector<std::optional<Kept>> kept_;  ///< by probe, as far as there were any
   OrganState state_;
   std::vector<ProbeContacts> probes_;
   std::vector<ContactRow> rows_;

@@ -104,6 +104,7 @@ void WorldOrgan::exchange(StateArchive& archive) {
     if (archive.reads()) take(following->present(generation));
   }
   archive(simulated, replaced, *compliance);
+  if (copy) archive(*copy);
 }
 
 void WorldOrgan::reset() {
