@@ -157,9 +157,6 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
   };
   if (std::erase(begun_, organ) > 0 && gentle == gentle_.end() && deepest > kSeenDepth + way()) {
     gentle = gentle_.insert(gentle_.end(), GentleOrgan{organ});
-    for (const ContactRow& row : rows) {
-      gentle->approach = std::max(gentle->approach, approach_of(row));
-    }
   }
   if (gentle == gentle_.end()) return;
   gentle->time += h;
@@ -168,6 +165,13 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
     gentle_.erase(gentle);
     return;
   }
+  if (gentle->time < kGentleEnd) {
+    for (const ContactRow& row : rows) {
+      gentle->approach = std::max(gentle->approach, approach_of(row));
+    }
+  } else {
+    gentle->approach *= std::max(0.0, 1 - h / kGentleEnd);
+  }
   const Vec3 push = std::min(kGentleSpeed, deepest / kGentleEnd) * outward.normalized();
   const double change = std::min(1.0, h / kGentleRise);
   for (ContactRow& row : rows) {
@@ -175,7 +179,6 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
     const double approach = std::max(std::min(approach_of(row), gentle->approach), -speed);
     row.gap = std::max(row.gap, h * (approach - change * (approach + speed)));
   }
-  gentle->approach *= std::max(0.0, 1 - h / kGentleEnd);
 }
 
 bool ProbeContacts::begin(double period) {

@@ -162,7 +162,7 @@ class ProbeContacts {
   struct GentleOrgan {
     std::uint32_t organ = 0;
     double time = 0;      ///< since the first contact [s]
-    double approach = 0;  ///< at most, of its tissue: as it was first, then less and less [m/s]
+    double approach = 0;  ///< of its tissue, at most: as in the first kGentleEnd, then less [m/s]
     bool core_inside = false;  ///< at the start of a sub-step since then
     void exchange(StateArchive& archive) { archive(organ, time, approach, core_inside); }
   };
