@@ -35,7 +35,7 @@ HapticRenderer::HapticRenderer(const scene::Haptics& limits, double period, std:
 
 void HapticRenderer::reset() {
   for (HeldLaw& law : laws_) law.clear();
-  passivity_.clear();
+  passivity_ = PassivityControl(limits_.device_damping, period_);
   pressed_ = 0;
   refused_laws_ = 0;
   refused_since_tick_ = false;
@@ -174,6 +174,7 @@ Wrench HapticRenderer::passive(const Wrench& wanted, const DeviceSample& device,
   const bool apart = wanted.is_zero() && force_limiter_.output().isZero(0);
   if (apart || !is_finite(device)) {
     passivity_.clear();
+    if (is_finite(device)) passivity_.watch(device.pose);
     pressed_ = 0;
     pressed_at_ = device.pose.position;
     return wanted;

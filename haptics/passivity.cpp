@@ -10,8 +10,27 @@ namespace {
 
 /// Slower than this there is no power to speak of: 3 N give 3 µW [m/s].
 constexpr double kStandstill = 1e-6;
+/// Of readings; reached after 0.92 kRestTime of standing still.
+constexpr double kMost = 0.6;
+
+/// How far apart, a turn counted at the arm [m].
+double way(const Pose& a, const Pose& b) {
+  const Vec3 turned = vector_from_rotation(a.rotation * b.rotation.conjugate());
+  return std::hypot((a.position - b.position).stableNorm(),
+                    PassivityControl::kArm * turned.stableNorm());
+}
 
 }  // namespace
+
+void PassivityControl::watch(const Pose& pose) {
+  if (!(way(pose, rest_pose_) <= kRestWay)) {
+    rest_pose_ = pose;
+    stillness_ = 0;
+  }
+  const bool still = pose.position == pose_.position && pose.rotation == pose_.rotation;
+  stillness_ += ((still ? 1.0 : 0.0) - stillness_) * std::min(1.0, period_ / kRestTime);
+  pose_ = pose;
+}
 
 void PassivityControl::observe(const Pose& pose, double returnable) {
   if (has_pose_) {
@@ -20,9 +39,11 @@ void PassivityControl::observe(const Pose& pose, double returnable) {
     const double gained = -held_.force.dot(moved) - held_.torque.dot(turned) +
                           damping_ * moved.squaredNorm() / period_;
     if (std::isfinite(gained)) energy_ += gained;
-    energy_ = std::clamp(energy_, -kMaxDebt, returnable);
   }
-  pose_ = pose;
+  watch(pose);
+  const double strength = held_.force.stableNorm() + held_.torque.stableNorm() / kArm;
+  if (stillness_ > kMost && energy_ <= strength * kRestWay) energy_ = returnable;
+  energy_ = std::clamp(energy_, -kMaxDebt, returnable);
   has_pose_ = true;
 }
 

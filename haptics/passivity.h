@@ -12,6 +12,12 @@
 //
 // E is kept within [−debt, W], W what the contact could return at most. The rest was lost in tissue
 // or friction and must not pay for a later leak.
+//
+// A device at rest keeps nothing of what was generated, and tissue that appears around it brings W
+// with it: where it rests – most readings equal the one before, none is farther than r from the
+// first – and E is less than a way of r takes, E becomes W. In debt it would be damped after each
+// encoder's step, which is past, as if it went on, and so be kept from rest: debt would make debt.
+// A vibration that is read exactly never rests.
 #pragma once
 
 #include "haptics/wrench.h"
@@ -24,7 +30,9 @@ class PassivityControl {
  public:
   static constexpr double kMaxAddedDamping = 10;  ///< α_max [N·s/m]; T α_max/2 ≪ any device's mass
   static constexpr double kMaxDebt = 0.01;        ///< [J]; 10 mJ: a 10 mm press at 200 N/m
-  static constexpr double kArm = 0.1;             ///< [m]; a turn of 10° counts as 17 mm
+  static constexpr double kRestWay = 1e-4;   ///< r [m]; 55 µm on three axes at once are 95 µm
+  static constexpr double kRestTime = 0.05;  ///< that who stands still takes to rest [s]
+  static constexpr double kArm = 0.1;        ///< [m]; a turn of 10° counts as 17 mm
 
   /// @param device_damping  b [N·s/m] ≥ 0   @param period  T [s] > 0
   PassivityControl(double device_damping, double period)
@@ -41,18 +49,25 @@ class PassivityControl {
   /// `wrench` is what the device is really given from now to the next observe().
   void held(const Wrench& wrench) { held_ = wrench; }
 
-  /// Contact is over, or the pose is not known: forget energy and pose.
+  /// The device has come to `pose`: does it rest? For ticks without contact; observe() does so.
+  void watch(const Pose& pose);
+
+  /// Contact is over, or the pose is not known: forget energy and pose, not whether it rests.
   void clear();
 
   double energy() const { return energy_; }  ///< E [J]
 
-  void exchange(StateArchive& archive) { archive(energy_, has_pose_, pose_, held_); }
+  void exchange(StateArchive& archive) {
+    archive(energy_, has_pose_, pose_, rest_pose_, stillness_, held_);
+  }
 
  private:
   double damping_, period_;
   double energy_ = 0;
   bool has_pose_ = false;
   Pose pose_;
+  Pose rest_pose_;        ///< no reading since was farther than r from it
+  double stillness_ = 0;  ///< share of readings since equal to the one before, the newest most
   Wrench held_;
 };
 

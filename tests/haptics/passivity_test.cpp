@@ -93,6 +93,55 @@ TEST_CASE("passivity: energy is bounded by what the contact can return, and by t
   CHECK(passivity.energy() == 0);
 }
 
+namespace {
+
+/// In debt, and for a quarter of a second where `z_at(tick)` says [m]; E after that [J].
+template <typename Path>
+double energy_after(Path z_at, double returnable) {
+  PassivityControl passivity(0, kTick);
+  passivity.observe(at(-0.001), returnable);
+  passivity.held(force(0, 0, 2));
+  passivity.observe(at(0), returnable);
+  REQUIRE(passivity.energy() == Approx(-0.002));
+  passivity.held({});
+  for (int i = 0; i < 250; ++i) passivity.observe(at(z_at(i)), returnable);
+  return passivity.energy();
+}
+
+}  // namespace
+
+TEST_CASE("passivity: a device at rest owes nothing, an encoder's steps to and fro included") {
+  // Oracle: the stated rule. One step in seven readings is rest; as fast as 5 mm/s, or a vibration
+  // of a tenth of an encoder step at 50 Hz, read exactly, is none.
+  constexpr double kStep = 5.5e-5, kReturnable = 0.003;
+  CHECK(energy_after([](int) { return 0.; }, kReturnable) == kReturnable);
+  CHECK(energy_after([](int i) { return i % 14 < 4 ? kStep : 0; }, kReturnable) == kReturnable);
+  CHECK(energy_after([](int i) { return std::floor(i * 5e-6 / kStep) * kStep; }, kReturnable) < 0);
+  CHECK(energy_after([](int i) { return 0.1 * kStep * std::sin(0.1 * M_PI * i + 1); },
+                     kReturnable) < 0);
+}
+
+TEST_CASE("passivity: a device at rest that has put energy in gets no more than that back") {
+  // Oracle: the stated rule. 1 mJ put in is more than 2 N over 0.1 mm, and stays; 0.1 mJ is not.
+  for (const double way : {5e-4, 5e-5}) {
+    PassivityControl passivity(0, kTick);
+    passivity.observe(at(way), 0.003);
+    passivity.held(force(0, 0, 2));
+    for (int i = 0; i < 100; ++i) passivity.observe(at(0), 0.003);
+    CHECK(passivity.energy() == Approx(way > 1e-4 ? 2 * way : 0.003));
+  }
+}
+
+TEST_CASE("passivity: who rested before a contact appears begins with what it can return") {
+  // Oracle: the stated rule, either way.
+  for (const bool rested : {true, false}) {
+    PassivityControl passivity(0, kTick);
+    for (int i = -100; i < 0; ++i) passivity.watch(at(rested ? 0 : 1e-5 * i));
+    passivity.observe(at(0), 0.003);
+    CHECK(passivity.energy() == (rested ? 0.003 : 0));
+  }
+}
+
 TEST_CASE("passivity: a turn against a torque counts, and a torque that leaks is cut") {
   // Oracle: analytic. 0.02 N·m turned back by 0.1 rad takes in 2 mJ; at 4 rad/s, that is 0.4 m/s at
   // the arm, it may give back 2 mJ/(1 ms · 4 rad/s) = 0.5 N·m in a tick, not 0.6.
