@@ -1,6 +1,7 @@
 #include "studies/contact_loop/contact_loop.h"
 
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
@@ -63,16 +64,15 @@ TEST_CASE("contact loop: no other tool is inside the stomach without a contact e
   for (const char* name : {"needle", "box", "blade", "mesh", "cone", "grasper"}) {
     const Tool tool = make_tool(name, 0);
     long inside = 0;
-    for (const double rate : {50.0, 250.0}) {
-      for (const double speed : {0.1, 2.5}) {
-        const LoopResult result =
-            run_loop(scene, assets, {0.022, 0, -0.004}, {tool, speed, rate, 250});
-        INFO(name << " at " << speed << " m/s, " << rate << " Hz");
-        CHECK(result.lost == 0);
-        CHECK(result.crossings == 0);
-        CHECK(result.troubles.lost == 0);
-        inside += result.inside;
-      }
+    // Slow at 250 Hz is left to the ball above: it takes as long as the other three together.
+    for (const auto& [rate, speed] : {std::pair{50.0, 0.1}, {50.0, 2.5}, {250.0, 2.5}}) {
+      const LoopResult result =
+          run_loop(scene, assets, {0.022, 0, -0.004}, {tool, speed, rate, 250});
+      INFO(name << " at " << speed << " m/s, " << rate << " Hz");
+      CHECK(result.lost == 0);
+      CHECK(result.crossings == 0);
+      CHECK(result.troubles.lost == 0);
+      inside += result.inside;
     }
     CHECK(inside > 100);  // else nothing was tried
   }
