@@ -13,6 +13,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/geometry/bounding_box.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/value_text.h"
@@ -22,14 +23,8 @@
 namespace palpate::launcher {
 namespace {
 
-constexpr double kSmallestOrgan = 0.03, kLargestOrgan = 0.5;  // usual longest side [m]
+constexpr double kUsualSmallestOrgan = 0.03, kUsualLargestOrgan = 0.5;  // longest side [m]
 constexpr std::size_t kUsualNodes = 1000, kMostUsualNodes = 2000;
-
-Eigen::AlignedBox3d box_of(const geometry::TriangleSurface& surface) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& node : surface.nodes) box.extend(node);
-  return box;
-}
 
 /// Units in which the mesh would have an organ's size; the likelier first, for scanners and
 /// modellers write millimetres.
@@ -37,7 +32,7 @@ std::vector<std::string> possible_units(double longest_side_in_file) {
   std::vector<std::string> units;
   for (const char* unit : {"mm", "m", "cm"}) {
     const double size = longest_side_in_file * metres_per_unit(unit);
-    if (size >= kSmallestOrgan && size <= kLargestOrgan) units.push_back(unit);
+    if (size >= kUsualSmallestOrgan && size <= kUsualLargestOrgan) units.push_back(unit);
   }
   return units;
 }
@@ -49,7 +44,7 @@ struct Guess {
 Guess unit_of(const NewOptions& options) {
   if (!options.unit.empty()) return {options.unit, "as told"};
   const auto raw = geometry::load_organ_surface(options.mesh, "m", 0);
-  const double longest = box_of(raw).sizes().maxCoeff();
+  const double longest = geometry::bounding_box(raw.nodes).sizes().maxCoeff();
   const auto units = possible_units(longest);
   if (units.empty()) {
     throw InputError(
@@ -100,7 +95,7 @@ Vec3 front_of(const geometry::TriangleSurface& surface, const Eigen::AlignedBox3
 
 Layout layout_of(const geometry::TriangleSurface& surface) {
   Layout layout;
-  layout.box = box_of(surface);
+  layout.box = geometry::bounding_box(surface.nodes);
   const Vec3 size = layout.box.sizes();
   std::vector<double> along;
   for (const Vec3& node : surface.nodes) along.push_back(node.y());
@@ -184,7 +179,7 @@ int new_command(const NewOptions& options, std::ostream& out) {
   const Guess guess = unit_of(options);
   auto surface = geometry::load_organ_surface(options.mesh, guess.unit, 0);
   check_organ_size(options.mesh.string(), {options.mesh, guess.unit},
-                   box_of(surface).sizes().maxCoeff());
+                   geometry::bounding_box(surface.nodes).sizes().maxCoeff());
   const std::size_t nodes = surface.nodes.size() > kMostUsualNodes ? kUsualNodes : 0;
   const std::size_t found = surface.nodes.size();
   if (nodes > 0) surface = geometry::load_organ_surface(options.mesh, guess.unit, nodes);
@@ -194,7 +189,7 @@ int new_command(const NewOptions& options, std::ostream& out) {
   scene::parse_scene(text, folder / output.filename());  // what we write can be read
   std::ofstream stream(output);
   if (!(stream << text << std::flush)) throw std::runtime_error("cannot write " + output.string());
-  const Vec3 size = 1e3 * box_of(surface).sizes();
+  const Vec3 size = 1e3 * geometry::bounding_box(surface.nodes).sizes();
   out << fmt::format("{}: {:.0f} x {:.0f} x {:.0f} mm in {} ({}), {} nodes{}\n",
                      options.mesh.string(), size.x(), size.y(), size.z(), guess.unit, guess.said,
                      found,

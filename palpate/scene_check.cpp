@@ -11,6 +11,7 @@
 #include "deformation/organ_messages.h"
 #include "haptics/devices/placed_device.h"
 #include "modules/core/units.h"
+#include "modules/geometry/bounding_box.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/worker_team.h"
@@ -40,8 +41,7 @@ void doubt_springs(const scene::Organ& organ, std::vector<std::string>& doubts) 
 OrganCheck check_of(const scene::Organ& organ, const geometry::OrganShape& shape,
                     const deformation::DeformationWorld& world, std::size_t index, double period) {
   const SurfaceTopology& topology = deformation::surface_message(world, index);
-  Eigen::AlignedBox3d box;
-  for (const Vec3& node : shape.surface.nodes) box.extend(node);
+  const auto box = geometry::bounding_box(shape.surface.nodes);
   std::array<std::size_t, 3> springs{};
   for (const auto& spring : topology.springs) ++springs[static_cast<std::size_t>(spring.family)];
   OrganCheck check;

@@ -13,6 +13,7 @@
 #include "haptics/devices/device.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/geometry/bounding_box.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/probe_shape.h"
 #include "modules/scene/region.h"
@@ -29,12 +30,6 @@ constexpr double kHandReach = 3.0;     // extent of a hand's motion [m]
 constexpr double kHandSpeed = 3.0;     // [m/s]
 constexpr double kSlowestHand = 1e-4;  // mean speed of a recording that does move [m/s]
 constexpr double kLongestLook = 120;   // of a probe's way [s]
-
-Eigen::AlignedBox3d box_of(const geometry::TriangleSurface& surface) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& node : surface.nodes) box.extend(node);
-  return box;
-}
 
 std::string length_text(double metres) {
   if (metres >= 1) return fmt::format("{:.3g} m", metres);
@@ -88,7 +83,7 @@ class Doubts {
  private:
   void organ(const scene::Organ& organ, const geometry::TriangleSurface& skin) {
     const std::string owner = "organ '" + organ.name + "'";
-    const double size = box_of(skin).sizes().maxCoeff();
+    const double size = geometry::bounding_box(skin.nodes).sizes().maxCoeff();
     check_organ_size(owner, organ.mesh, size);
     if (size < kUsualSmallest / 2 || size > 2 * kUsualLargest) {
       say("{} is {} long, read in {}: is its mesh in another unit?", owner, length_text(size),
@@ -100,7 +95,7 @@ class Doubts {
           std::count_if(skin.nodes.begin(), skin.nodes.end(),
                         [&](const Vec3& node) { return scene::contains(organ.fixed[k], node); }));
       if (caught == 0) {
-        const auto box = box_of(skin);
+        const auto box = geometry::bounding_box(skin.nodes);
         say("{}: fixed[{}] holds no node of its surface, which lies in [{:.3f}, {:.3f}, {:.3f}] to "
             "[{:.3f}, {:.3f}, {:.3f}] m",
             owner, k, box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(),
@@ -134,7 +129,8 @@ class Doubts {
     const scene::Probe& probe = scene_.probes[index];
     const std::string owner = "probe '" + probe.name + "'";
     if (const scene::Mesh* mesh = scene::mesh_of(probe.shape)) {
-      const double size = box_of(scene::load_probe_mesh(probe)).sizes().maxCoeff();
+      const double size =
+          geometry::bounding_box(scene::load_probe_mesh(probe).nodes).sizes().maxCoeff();
       check_size(owner, *mesh, size, kSmallestTool, kLargestTool);
     }
     constexpr double kThickestInstrument = 0.1;

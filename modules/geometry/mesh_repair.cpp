@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "modules/geometry/bounding_box.h"
 #include "modules/geometry/edge_uses.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/orientation.h"
@@ -15,9 +16,7 @@ namespace {
 constexpr double kCrackWidth = 1e-6;
 
 double extent_of(const TriangleSurface& surface) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& node : surface.nodes) box.extend(node);
-  return surface.nodes.empty() ? 0 : box.diagonal().norm();
+  return surface.nodes.empty() ? 0 : bounding_box(surface.nodes).diagonal().norm();
 }
 
 bool has_repeated_node(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "modules/geometry/bounding_box.h"
 #include "modules/geometry/edge_uses.h"
 #include "modules/geometry/mesh_check.h"
 
@@ -11,9 +12,7 @@ namespace {
 constexpr int kMostPasses = 8;  // a flipped sliver may leave another one next to it
 
 double squared_extent(std::span<const Vec3> nodes) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& node : nodes) box.extend(node);
-  return nodes.empty() ? 0 : box.diagonal().squaredNorm();
+  return nodes.empty() ? 0 : bounding_box(nodes).diagonal().squaredNorm();
 }
 
 /// Index of the corner opposite to the longest side.

@@ -8,6 +8,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/geometry/bounding_box.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/session/contact_line.h"
 #include "studies/contact_loop/contact_loop.h"
@@ -28,8 +29,7 @@ std::vector<T> or_else(const std::vector<T>& given, std::vector<T> usual) {
 /// same each time.
 std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3& first,
                             int count) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& x : surface.nodes) box.extend(x);
+  const auto box = geometry::bounding_box(surface.nodes);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> share;
   std::vector<Vec3> places{first};
