@@ -16,7 +16,7 @@ namespace palpate::certify {
 namespace {
 
 constexpr double kPressed = 0.3;  // of the push, that the real processes must give
-constexpr double kFeltWithin = 60, kPress = 0.5, kApart = 2, kHoldFor = 5.1;  // [s]
+constexpr double kFeltWithin = 60, kPress = 0.5, kCalmFor = 2, kHoldFor = 5.1;  // [s]
 
 scene::EmulatedDevice pressing_hand(const RealRun& run) {
   const Vec3 deep = pose_below(run.subject.place, run.subject.depth).position;
@@ -48,7 +48,7 @@ void hold_over_dds(const RealRun& run, Processes& processes) {
   run.log << "held over DDS …" << std::endl;
   const auto never = [](const Heard&) { return false; };
   processes.hold(firm_hand(run.subject.device, run.subject.place, {}));
-  processes.wait(never, kApart);
+  processes.wait(never, kCalmFor);
   processes.hold(pushing_hand(run.subject.device, run.subject.place, run.push));
   processes.wait(never, kHoldFor);
   run.add(held_lines("over DDS", processes.heard().held));
