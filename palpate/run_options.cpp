@@ -1,8 +1,6 @@
 #include "palpate/run_options.h"
-#include "modules/runtime/snapshot.h"
 
 #include <spdlog/fmt/fmt.h>
-
 #include <stdlib.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/topic_selection.h"
+#include "modules/runtime/snapshot.h"
 #include "modules/runtime/wiring.h"
 #include "palpate/hosts_file.h"
 
@@ -128,9 +127,17 @@ void check_snapshots(const RunOptions& options) {
   if (!options.hosts.empty() && options.snapshot_at) {
     throw InputError("--snapshot-at: not with --hosts; its parts would lie on several hosts");
   }
-  if (!options.overwrite && std::filesystem::exists(options.snapshot)) {
-    throw InputError(options.snapshot.string() +
-                     ": is there already; give another name, or --overwrite");
+  if (!options.snapshot_at) return;
+  runtime::check_snapshot_name(options.snapshot, options.overwrite);
+  if (!options.lockstep) return;
+  // Parts are taken away in the end: none may be a file that somebody keeps.
+  const auto folder = std::filesystem::absolute(options.snapshot).parent_path();
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string module = entry.path().extension().string();
+    if (module.size() < 2 || !runtime::module_named(module.substr(1))) continue;
+    if (entry.path() == snapshot_part(options, module.substr(1))) {
+      runtime::check_snapshot_name(entry.path(), true);
+    }
   }
 }
 

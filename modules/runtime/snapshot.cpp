@@ -1,5 +1,7 @@
 #include "modules/runtime/snapshot.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -52,7 +54,31 @@ std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
   return bytes.subspan(kWords.size(), bytes.size() - kWords.size() - sizeof crc);
 }
 
+bool begins_as_snapshot(const std::filesystem::path& file) {
+  std::string words(kWords.size(), ' ');
+  return std::ifstream(file, std::ios::binary).read(words.data(), std::ssize(words)) &&
+         words == kWords;
+}
+
 }  // namespace
+
+void check_snapshot_name(const std::filesystem::path& file, bool overwrite) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = fs::absolute(file).parent_path();
+  if (!fs::is_directory(folder, error) || access(folder.c_str(), W_OK) != 0) {
+    throw InputError(file.string() + ": there is no such folder, or it cannot be written in");
+  }
+  const fs::file_type type = fs::symlink_status(file, error).type();
+  if (type == fs::file_type::not_found) return;
+  if (type == fs::file_type::none) throw InputError(file.string() + ": " + error.message());
+  if (type != fs::file_type::regular || !begins_as_snapshot(file)) {
+    throw InputError(file.string() + ": is no snapshot, and is not replaced by one");
+  }
+  if (!overwrite) {
+    throw InputError(file.string() + ": is there already; give another name, or --overwrite");
+  }
+}
 
 bool remembers(std::string_view module) {
   const std::string_view job = module_named(module).value().job;

@@ -32,6 +32,11 @@ void go_on_from(const Snapshot& snapshot, const std::filesystem::path& file,
 void add_to(Snapshot& snapshot, const std::string& module, LockstepCursor& cursor, Stage& stage,
             std::span<bus::Output* const> outputs);
 
+/// Whether a snapshot may be written there: a folder that is there, and nothing of that name but,
+/// to be replaced, a snapshot.
+/// @throws InputError if not
+void check_snapshot_name(const std::filesystem::path& file, bool overwrite);
+
 /// Appears whole or not at all.
 /// @throws std::runtime_error if it cannot be written
 void write_snapshot(const std::filesystem::path& file, const scene::Scene& scene,

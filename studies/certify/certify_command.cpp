@@ -264,6 +264,12 @@ class Certifying {
 
 int run_certify(const CertifyOptions& options, const std::function<bool()>& stop, std::ostream& out,
                 std::ostream& log) {
+  for (const char* part : {"timing", "released", "beside"}) {
+    if (options.lockstep && std::ranges::find(options.only, part) != options.only.end()) {
+      throw InputError(std::string("--only ") + part +
+                       ": is of the real processes; without --lockstep");
+    }
+  }
   if (options.shard && !options.lockstep) {
     throw InputError("--shard needs --lockstep: times are of one machine");
   }

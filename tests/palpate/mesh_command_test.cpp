@@ -109,7 +109,8 @@ namespace {
 /// millimetres: a sphere of 8 mm ends 4 mm deep.
 struct BlockAndMotion {
   BlockAndMotion() {
-    write_tetrahedra(testing::block(Vec3::Constant(0.06), 4, 4, 4), folder / "in.msh");
+    write_tetrahedra(palpate::geometry::testing::block(Vec3::Constant(0.06), 4, 4, 4),
+                     folder / "in.msh");
     folder.write("way.csv", "s px py pz\n0 30 30 90\n1 30 30 64\n2 30 30 90\n");
   }
   MeshCommandOptions near(double radius) const {
@@ -136,7 +137,7 @@ TEST_CASE("mesh command: near a motion tetrahedra are small, as those of a scene
   CHECK_THAT(outcome.out, Contains("touched                 1 places, each within 8 mm") &&
                               Contains("at most 4 mm") && Contains("mesh: {file: out.msh}"));
   const TetMesh mesh = read_gmsh(given.folder / "out.msh");
-  CHECK(testing::volume_of(mesh) == Approx(216e-6));
+  CHECK(palpate::geometry::testing::volume_of(mesh) == Approx(216e-6));
   const Vec3 place(0.03, 0.03, 0.06);
   double longest = 0;
   for (const auto& corners : mesh.tetrahedra) {
@@ -181,7 +182,7 @@ TEST_CASE("mesh command: near a motion tetrahedra are small, as those of a scene
 
 TEST_CASE("mesh command: a surface near a motion is filled first") {
   // Oracle: the organ's surface as it was, its nodes first, and a mesh that a scene reads.
-  if (testing::without_gmsh()) return;
+  if (palpate::geometry::testing::without_gmsh()) return;
   const ScratchFolder folder;
   const TriangleSurface ball = make_ball(0.05, 2);
   write_surface(ball, folder / "in.ply");
@@ -199,7 +200,7 @@ TEST_CASE("mesh command: a surface near a motion is filled first") {
   for (std::size_t i = 0; i < ball.nodes.size(); ++i) {
     CHECK((mesh.nodes[i] - ball.nodes[i]).norm() < 1e-8);  // a file of single precision
   }
-  CHECK(testing::volume_of(mesh) == Approx(volume_of(ball)).epsilon(1e-5));
+  CHECK(palpate::geometry::testing::volume_of(mesh) == Approx(volume_of(ball)).epsilon(1e-5));
 }
 
 TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothing written") {
@@ -233,7 +234,7 @@ TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothi
   CHECK_THAT(refused(options), Contains("--edge-m, --growth: refined, it would have more than "
                                         "50000 nodes; allow longer edges"));
   options = given.near(8e-3);
-  TetMesh apart = testing::block(Vec3::Constant(0.06), 1, 1, 1);
+  TetMesh apart = palpate::geometry::testing::block(Vec3::Constant(0.06), 1, 1, 1);
   for (const Vec3& node : std::vector(apart.nodes)) apart.nodes.push_back(node + Vec3(1, 0, 0));
   for (auto corners : std::vector(apart.tetrahedra)) {
     for (auto& node : corners) node += 8;

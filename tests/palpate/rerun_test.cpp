@@ -18,7 +18,7 @@ using Catch::Contains;
 
 namespace {
 
-constexpr const char* kPress =
+constexpr const char* kPressAndSlide =
     "scripted: {start_m: [0, 0, 0.065], moves: [{to_m: [0.01, 0, 0.045], duration_s: 0.3}]}";
 
 /// Some stages of a recording again; "" or what is wrong.
@@ -53,7 +53,7 @@ std::filesystem::path recorded(const palpate::testing::BallScene& scene) {
 
 TEST_CASE("rerun: any stages of a recording in lockstep leave its bytes again") {
   // Oracle: the recording itself.
-  const palpate::testing::BallScene scene(kPress,
+  const palpate::testing::BallScene scene(kPressAndSlide,
                                           "rates: {collision_hz: 300, deformation_hz: 100}\n");
   const auto run = recorded(scene);
   const std::string expected = text_in(run);
@@ -73,7 +73,7 @@ TEST_CASE("rerun: any stages of a recording in lockstep leave its bytes again") 
 
 TEST_CASE("rerun: with another setting only what is computed anew differs") {
   // Oracle: forces no larger than the setting's; poses and laws as they were recorded.
-  const palpate::testing::BallScene scene(kPress);
+  const palpate::testing::BallScene scene(kPressAndSlide);
   const auto run = recorded(scene), again = scene.folder() / "again.mcap";
   REQUIRE(rerun(run, {"haptics"}, again, {"haptics.max_force_n=0.1"}) == "");
   std::map<std::string, std::vector<std::vector<std::uint8_t>>> before, after;
@@ -104,7 +104,7 @@ TEST_CASE("rerun: with another setting only what is computed anew differs") {
 
 TEST_CASE("rerun: what cannot be computed anew is refused by name") {
   // Oracle: the messages.
-  const palpate::testing::BallScene scene(kPress);
+  const palpate::testing::BallScene scene(kPressAndSlide);
   const auto run = recorded(scene), again = scene.folder() / "again.mcap";
   CHECK_THAT(rerun(run, {"visualizer"}, again), Contains("there is no stage 'visualizer'"));
   CHECK_THAT(rerun(run, {"haptics"}, {}), Contains("Give --record FILE"));

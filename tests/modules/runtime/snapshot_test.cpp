@@ -22,6 +22,37 @@ std::string refusal(const std::filesystem::path& file, const scene::Scene& scene
   }
 }
 
+/// What is said of a name to write to; "" if it is taken.
+std::string name_refusal(const std::filesystem::path& file, bool overwrite) {
+  try {
+    check_snapshot_name(file, overwrite);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST_CASE("snapshot: nothing but a snapshot is replaced by one, and that only if asked") {
+  // Oracle: the definition.
+  const scene::Scene scene = scene::load_scene(scene::scene_file("ball_squeeze"));
+  const ScratchFolder folder;
+  write_snapshot(folder / "old", scene, {});
+  CHECK(name_refusal(folder / "old", true) == "");
+  CHECK(name_refusal(folder / "old", false).find("is there already") != std::string::npos);
+  CHECK(name_refusal(folder / "new", false) == "");
+  const auto text = folder.write("text", "palpate snaps");
+  std::filesystem::create_symlink(folder / "nowhere", folder / "link");
+  std::filesystem::create_symlink(folder / "old", folder / "linked");
+  for (const std::filesystem::path& kept : {text, folder / "link", folder / "linked", folder.path(),
+                                            std::filesystem::path("/dev/full")}) {
+    INFO(kept.string());
+    CHECK(name_refusal(kept, true).find("is no snapshot, and is not replaced") !=
+          std::string::npos);
+  }
+  CHECK(name_refusal(folder / "no/new", true).find("no such folder") != std::string::npos);
+  CHECK(name_refusal(folder / std::string(300, 'n'), true).find("too long") != std::string::npos);
+}
+
 TEST_CASE("snapshot: one that is torn, damaged, of another scene or no snapshot is refused") {
   // Oracle: what was written; every byte of it counts.
   const auto shipped = scene::scene_file("ball_squeeze");

@@ -109,6 +109,20 @@ TEST_CASE("certify command: a scene that is none is bad input") {
                   InputError);
 }
 
+TEST_CASE("certify command: what needs the real processes is not certified in lockstep") {
+  // Oracle: definition; it would be a certificate of nothing.
+  const BallScene scene(kFingerFromAbove);
+  for (const char* part : {"timing", "released", "beside"}) {
+    auto options = options_for(scene, "nothing");
+    options.lockstep = true;
+    options.only = {"held", part};
+    std::ostringstream out, log;
+    CHECK_THROWS_AS(run_certify(
+                        options, [] { return false; }, out, log),
+                    InputError);
+  }
+}
+
 TEST_CASE("certify tables: columns name their unit") {
   // Oracle: what is read back.
   const BallScene scene;
