@@ -14,6 +14,7 @@ namespace {
 TEST_CASE("truth cube: beads stand in a grid of 10 mm in the cube and sink under the plate") {
   // Oracle: the experiment's description, 7 × 7 × 7 beads 10 mm apart in a cube of 80 mm; tracking
   // was said to be good to some tenths of a millimetre.
+  setenv("PALPATE_DATA", PALPATE_SOURCE_DIR "/../shared/data", 0);
   const auto folder = truth_cube_folder();
   if (!folder) {
     std::printf("SKIPPED: no truthcube in PALPATE_DATA\n");
