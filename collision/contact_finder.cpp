@@ -18,7 +18,7 @@ namespace palpate::collision {
 namespace {
 
 /// A vertex of the probe and a candidate triangle near it.
-using VertexPair = std::pair<std::uint32_t, std::size_t>;
+using VertexPair = PairSorter::Pair;
 
 /// One probe and what it remembers of its last step.
 class ProbeSearch {
@@ -173,7 +173,7 @@ class ProbeSearch {
     const std::vector<SweptTriangle>& triangles = near_.triangles();
     vertex_pairs_.clear();
     edge_pairs_.clear();
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
       Bounds box = triangles[i].bounds();
       box.inflate(step.margin + step.motion.chord_error());
       model_.sharp->features_near(box, near_vertices_, near_edges_);
@@ -189,12 +189,12 @@ class ProbeSearch {
           std::lower_bound(triangles.begin(), triangles.end(), t,
                            [](const SweptTriangle& s, std::uint32_t k) { return s.index < k; });
       if (at != triangles.end() && at->index == t) {
-        vertex_pairs_.push_back({vertex, static_cast<std::size_t>(at - triangles.begin())});
+        vertex_pairs_.push_back({vertex, static_cast<std::uint32_t>(at - triangles.begin())});
       }
     }
     edges_.append_remembered(step.organ_index, edge_pairs_);
-    sort_unique(vertex_pairs_);
-    sort_unique(edge_pairs_);
+    sorter_.sort_unique(vertex_pairs_, model_.sharp->vertices().size());
+    sorter_.sort_unique(edge_pairs_, model_.sharp->edges().size());
   }
 
   void find_vertices(const OrganStep& step) {
@@ -222,6 +222,7 @@ class ProbeSearch {
   std::vector<VertexPair> vertex_pairs_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> wall_pairs_;  ///< held vertex, triangle
   std::vector<EdgePair> edge_pairs_;
+  PairSorter sorter_;
 };
 
 }  // namespace

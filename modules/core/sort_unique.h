@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -12,5 +14,36 @@ void sort_unique(std::vector<T>& items) {
   std::sort(items.begin(), items.end());
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
+
+/// sort_unique() of many pairs that share few first members: each of those gets a bucket, so that
+/// only short lists are sorted.
+class PairSorter {
+ public:
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
+
+  /// @param count  first members are below this
+  void sort_unique(std::vector<Pair>& pairs, std::size_t count) {
+    ends_.assign(count, 0);
+    for (const Pair& pair : pairs) ++ends_[pair.first];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& end : ends_) end = std::exchange(sum, sum + end);
+    seconds_.resize(pairs.size());
+    for (const Pair& pair : pairs) seconds_[ends_[pair.first]++] = pair.second;
+    pairs.clear();
+    auto first = seconds_.begin();
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const auto last = seconds_.begin() + ends_[k];
+      std::sort(first, last);
+      for (const auto end = std::unique(first, last); first != end; ++first) {
+        pairs.push_back({k, *first});
+      }
+      first = last;
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> ends_;     ///< of each bucket, in seconds_
+  std::vector<std::uint32_t> seconds_;  ///< by first member
+};
 
 }  // namespace palpate
