@@ -6,10 +6,10 @@
 namespace palpate::testing {
 
 Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b) {
-  return A.fullPivLu().solve(b);
+  return A.partialPivLu().solve(b);
 }
 
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A) { return A.fullPivLu().inverse(); }
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A) { return A.partialPivLu().inverse(); }
 
 Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& A) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(A, Eigen::EigenvaluesOnly).eigenvalues();
@@ -19,5 +19,7 @@ Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
   return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(A, B, Eigen::EigenvaluesOnly)
       .eigenvalues();
 }
+
+Eigen::VectorXcd roots_of(const Eigen::MatrixXd& A) { return A.eigenvalues(); }
 
 }  // namespace palpate::testing

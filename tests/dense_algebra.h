@@ -6,7 +6,7 @@
 
 namespace palpate::testing {
 
-/// A⁻¹ b, by LU with full pivoting. @param A  regular
+/// A⁻¹ b, by LU with partial pivoting. @param A  regular
 Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b);
 
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A);
@@ -15,5 +15,8 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A);
 Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& A);
 /// λ of A x = λ B x, B positive definite.
 Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// Of any square matrix.
+Eigen::VectorXcd roots_of(const Eigen::MatrixXd& A);
 
 }  // namespace palpate::testing

@@ -1,10 +1,10 @@
 #include "deformation/world_organ.h"
 
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 #include "modules/core/error.h"
 #include "organs.h"
+#include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
@@ -50,7 +50,7 @@ TEST_CASE("world organ: the compliance of rows over a period is symmetric and po
   }
   const Eigen::MatrixXd W = organ.contact_compliance(rows, 4e-3);
   CHECK((W - W.transpose()).norm() <= 1e-6 * W.norm());
-  CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(W).eigenvalues().minCoeff() > 0);
+  CHECK(palpate::testing::eigenvalues_of(W).minCoeff() > 0);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #include "deformation/contact/contact_solve.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <random>
 
 #include "tests/deformation/organs.h"
+#include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
@@ -258,7 +259,7 @@ TEST_CASE("contact solve: with all rows active it agrees with a dense KKT solve"
     }
     right[n + 1 + r] = row.normal.dot(row.probe_velocity) + row.gap / h;
   }
-  const Eigen::VectorXd solution = kkt.fullPivLu().solve(right);
+  const Eigen::VectorXd solution = palpate::testing::solved(kkt, right);
 
   auto velocities = c.free_velocities;
   const VolumeRow volume{c.at, rate};

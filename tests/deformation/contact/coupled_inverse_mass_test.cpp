@@ -1,9 +1,10 @@
 #include "deformation/contact/coupled_inverse_mass.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <random>
+
+#include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
@@ -42,7 +43,7 @@ TEST_CASE("coupled inverse mass: no step down the gradient overshoots, however m
     for (std::uint32_t i = 0; i + 1 < kNodes; ++i) {
       rest.block<3, 3>(3 * i, 3 * i) += inverse[i].inverse() - without[i].inverse();
     }
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(rest).eigenvalues()[0];
+    return palpate::testing::eigenvalues_of(rest)[0];
   };
   CHECK(least(blocks) > -1e-5 * coupled.norm());  // arms are floats
   CHECK(least(without) < -0.1 * coupled.norm());

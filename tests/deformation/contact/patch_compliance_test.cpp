@@ -1,12 +1,13 @@
 #include "deformation/contact/patch_compliance.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "deformation/springs/patch_springs.h"
 #include "deformation/springs/spring_forces.h"
 #include "tests/deformation/organs.h"
 #include "tests/deformation/steppers/tetrahedral_solids.h"
+#include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
@@ -117,12 +118,13 @@ TEST_CASE("patch compliance: of a patch that is the whole organ it is C A⁻¹ C
       bordered.block<3, 1>(static_cast<Eigen::Index>(3 * i), size) = volume.gradient[i];
       bordered.block<1, 3>(size, static_cast<Eigen::Index>(3 * i)) = volume.gradient[i].transpose();
     }
-    const Eigen::MatrixXd free = C * A.inverse() * C.transpose();
-    const Eigen::MatrixXd kept = C * bordered.inverse().topLeftCorner(size, size) * C.transpose();
+    const Eigen::MatrixXd free = C * palpate::testing::inverse_of(A) * C.transpose();
+    const Eigen::MatrixXd kept =
+        C * palpate::testing::inverse_of(bordered).topLeftCorner(size, size) * C.transpose();
     const auto found_free = compliance.solve(ball.state.positions, rows, steps, {}, ball.add());
     const auto found_kept =
         compliance.solve(ball.state.positions, rows, steps, volume.gradient, ball.add());
-    const Eigen::VectorXd modes = A.selfadjointView<Eigen::Lower>().eigenvalues();
+    const Eigen::VectorXd modes = palpate::testing::eigenvalues_of(A);
     const double tolerance = std::numeric_limits<float>::epsilon() * modes.maxCoeff() /
                              modes.minCoeff() * free.cwiseAbs().maxCoeff();
     const auto scale = [&](const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) {

@@ -1,10 +1,11 @@
 #include "deformation/contact/solid_answers.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/deformation/steppers/tetrahedral_solids.h"
+#include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
@@ -59,7 +60,7 @@ struct SteppedCube {
             weight / static_cast<double>(rows.size()) * Mat3::Identity();
       }
     }
-    return A.ldlt().solve(push);
+    return palpate::testing::solved(A, push);
   }
   Patch near() const {
     Patch patch;

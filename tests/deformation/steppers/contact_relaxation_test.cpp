@@ -1,11 +1,12 @@
 #include "deformation/steppers/contact_relaxation.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include "deformation/springs/projected_spring_stiffness.h"
 #include "studies/rigs/pressed_organ.h"
 #include "tests/deformation/organs.h"
+#include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
@@ -64,7 +65,7 @@ TEST_CASE("contact relaxation: solves A Δ + Bᵀ λ = r, B Δ = 0 of the nodes 
     residual[i] = 1e-4 * positions[i].cross(Vec3(1, 2, 3));
     right.segment<3>(static_cast<Eigen::Index>(3 * i)) = residual[i];
   }
-  const Eigen::VectorXd exact = bordered.fullPivLu().solve(right);
+  const Eigen::VectorXd exact = palpate::testing::solved(bordered, right);
 
   std::vector<Mat3> inverse_blocks;
   for (const Mat3& block : springs.diagonal()) inverse_blocks.push_back(block.inverse());

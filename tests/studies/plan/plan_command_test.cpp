@@ -23,7 +23,7 @@ namespace {
 
 std::filesystem::path write_scene(const std::filesystem::path& folder, const std::string& needs,
                                   const std::string& more_organs = "", int nodes = 250,
-                                  const std::string& down_to_m = "0.052") {
+                                  const std::string& down_to_m = "0.052", double tip_m = 0.01) {
   std::filesystem::copy_file(data_file("scenes/meshes/ball.ply"), folder / "ball.ply");
   std::ofstream(folder / "scene.yaml") << R"(palpate_scene: 1
 organs:
@@ -34,10 +34,12 @@ organs:
       - box: {min_m: [-1, -1, -1], max_m: [1, 1, -0.03]}
 )" << more_organs << R"(probes:
   - name: tip
-    shape: {sphere: {radius_m: 0.01}}
+    shape: {sphere: {radius_m: )" << tip_m
+                                       << R"(}}
     device:
       scripted:
-        start_m: [0, 0, 0.062]
+        start_m: [0, 0, )" << 0.052 + tip_m
+                                       << R"(]
         moves:
           - {to_m: [0, 0, )" << down_to_m
                                        << R"(], duration_s: 0.5}
@@ -133,8 +135,9 @@ TEST_CASE("plan command: what it promises of a solid an independent finer soluti
   options.touches = 1;
   options.json = true;
   options.verify = true;
-  options.scene = write_scene(
-      folder.path, "needs: {contents: solid, force_error: 0.35, step_hz: 50}\n", "", 80, "0.056");
+  options.scene =
+      write_scene(folder.path, "needs: {contents: solid, force_error: 0.35, step_hz: 50}\n", "", 80,
+                  "0.060", 0.014);
   std::ostringstream out, log;
   REQUIRE(run_plan(options, out, log) == kExitDone);
   INFO(out.str() << log.str());

@@ -1,11 +1,12 @@
 #include "studies/stability/predicted_step.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 
 #include "deformation/springs/spring_forces.h"
 #include "deformation/volume/volume_constraint.h"
 #include "tests/deformation/organs.h"
+#include "tests/dense_algebra.h"
 
 namespace palpate::stability {
 namespace {
@@ -69,11 +70,7 @@ double by_eigenvalues(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& d
   while (high / low > 1 + 1e-6) {
     const double h = std::sqrt(low * high);
     const Eigen::MatrixXd sum = h * h * stiffness + 2 * h * damping;
-    const double largest =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum, Eigen::EigenvaluesOnly)
-            .eigenvalues()
-            .maxCoeff();
-    (largest < 4 ? low : high) = h;
+    (palpate::testing::eigenvalues_of(sum).maxCoeff() < 4 ? low : high) = h;
   }
   return low;
 }
