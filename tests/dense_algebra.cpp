@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-namespace palpate::testing {
+namespace palpate {
 
 Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b) {
   return A.partialPivLu().solve(b);
@@ -22,4 +22,4 @@ Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 
 Eigen::VectorXcd roots_of(const Eigen::MatrixXd& A) { return A.eigenvalues(); }
 
-}  // namespace palpate::testing
+}  // namespace palpate

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace palpate::testing {
+namespace palpate {
 
 /// A⁻¹ b, by LU with partial pivoting. @param A  regular
 Eigen::MatrixXd solved(const Eigen::MatrixXd& A, const Eigen::MatrixXd& b);
@@ -19,4 +19,4 @@ Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& A, const Eigen::MatrixXd& 
 /// Of any square matrix.
 Eigen::VectorXcd roots_of(const Eigen::MatrixXd& A);
 
-}  // namespace palpate::testing
+}  // namespace palpate

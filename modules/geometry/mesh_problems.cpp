@@ -7,7 +7,7 @@
 namespace palpate::geometry {
 namespace {
 
-std::string place_of(const Vec3& point) {
+std::string written(const Vec3& point) {
   std::ostringstream text;
   text << std::setprecision(4) << "(" << point.x() << ", " << point.y() << ", " << point.z()
        << ") m";
@@ -21,17 +21,17 @@ std::string counted(std::size_t count, const std::string& one, const std::string
 
 std::string edge_place(const std::array<std::uint32_t, 2>& edge, const TriangleSurface& surface) {
   return " nodes " + std::to_string(edge[0]) + "–" + std::to_string(edge[1]) + " at " +
-         place_of((surface.nodes[edge[0]] + surface.nodes[edge[1]]) / 2);
+         written((surface.nodes[edge[0]] + surface.nodes[edge[1]]) / 2);
 }
 
 std::string node_place(std::uint32_t node, const TriangleSurface& surface) {
-  return " node " + std::to_string(node) + " at " + place_of(surface.nodes[node]);
+  return " node " + std::to_string(node) + " at " + written(surface.nodes[node]);
 }
 
 std::string triangle_place(std::uint32_t index, const TriangleSurface& surface) {
   const auto& [a, b, c] = surface.triangles[index];
   return " triangle " + std::to_string(index) + " at " +
-         place_of((surface.nodes[a] + surface.nodes[b] + surface.nodes[c]) / 3);
+         written((surface.nodes[a] + surface.nodes[b] + surface.nodes[c]) / 3);
 }
 
 void describe_topology(const MeshReport& report, const TriangleSurface& surface,

@@ -72,7 +72,7 @@ void write_off(const TriangleSurface& surface, std::ostream& out) {
   }
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& allowed) {
+[[noreturn]] void refuse_format(const std::filesystem::path& file, const std::string& allowed) {
   throw InputError(file.string() + ": cannot write the format '" + file.extension().string() +
                    "'; allowed: " + allowed);
 }
@@ -85,7 +85,7 @@ Writer writer_for(const std::filesystem::path& file) {
   if (extension == ".stl") return write_stl;
   if (extension == ".obj") return write_obj;
   if (extension == ".off") return write_off;
-  refuse(file, ".ply, .stl, .obj, .off");
+  refuse_format(file, ".ply, .stl, .obj, .off");
 }
 
 template <class Write>
@@ -116,7 +116,7 @@ void write_whole(const std::filesystem::path& file, const Write& write) {
 void check_can_write(const std::filesystem::path& file) { writer_for(file); }
 
 void check_can_write_tetrahedra(const std::filesystem::path& file) {
-  if (file.extension() != ".msh") refuse(file, ".msh");
+  if (file.extension() != ".msh") refuse_format(file, ".msh");
 }
 
 void write_surface(const TriangleSurface& surface, const std::filesystem::path& file) {

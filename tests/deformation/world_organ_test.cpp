@@ -50,7 +50,7 @@ TEST_CASE("world organ: the compliance of rows over a period is symmetric and po
   }
   const Eigen::MatrixXd W = organ.contact_compliance(rows, 4e-3);
   CHECK((W - W.transpose()).norm() <= 1e-6 * W.norm());
-  CHECK(palpate::testing::eigenvalues_of(W).minCoeff() > 0);
+  CHECK(eigenvalues_of(W).minCoeff() > 0);
 }
 
 }  // namespace

@@ -227,7 +227,7 @@ Vec3 force_by_trial(const LocalLaw& law, const Vec3& away) {
       for (Eigen::Index j = 0; j < count; ++j) system(i, j) = (set >> j & 1u) ? W(i, j) : 0;
       load[i] = -gaps[i];
     }
-    const Eigen::VectorXd trial = testing::solved(system, load);
+    const Eigen::VectorXd trial = solved(system, load);
     const Eigen::VectorXd apart = gaps + W * trial;
     if (trial.minCoeff() < -1e-12 || apart.minCoeff() < -1e-12) continue;
     Vec3 sum = Vec3::Zero();

@@ -14,11 +14,11 @@ namespace {
 
 constexpr double kBallRadius = 0.05, kTip = 0.008;
 
-struct Fixture {
+struct SeenBall {
   SceneView view{two_probe_scene()};
   Camera camera = frontal_camera(Vec3::Zero(), 0.1, 900, 700);
 
-  Fixture() { view.receive(topology_of(geometry::make_ball(kBallRadius, 3))); }
+  SeenBall() { view.receive(topology_of(geometry::make_ball(kBallRadius, 3))); }
   SurfacePress press(const Vec3& from, const ProbeBody& body = ProbeBody(kTip)) const {
     return {0, body, {from, Quat::Identity()}, *pick_surface(view, camera, 450, 350), view, camera};
   }
@@ -40,7 +40,7 @@ std::vector<Vec3> travel(SurfacePress& press, Vec3 at) {
 TEST_CASE("surface press: the tip goes under the pointer, as deep as said",
           "[visualizer][analytic]") {
   // Oracle: geometry: the origin is the tip's radius less the depth above the place.
-  const Fixture f;
+  const SeenBall f;
   SurfacePress press = f.press(Vec3(0, -0.1, 0));
   const auto height = [&] {
     const Vec3 at = travel(press, Vec3(0, -0.1, 0)).back();
@@ -64,7 +64,7 @@ TEST_CASE("surface press: the tip goes under the pointer, as deep as said",
 
 TEST_CASE("surface press: the way there passes through no organ", "[visualizer]") {
   // Oracle: the segments of the way against the surface, but for the last, which presses.
-  const Fixture f;
+  const SeenBall f;
   for (const Vec3& from : {Vec3(0, -0.1, 0), Vec3(0.1, 0, 0), Vec3(0, 0.1, 0),
                            Vec3(0.02, 0.09, 0.01), Vec3(-0.03, 0.02, 0.08), Vec3(0, 0.08, -0.3)}) {
     SurfacePress press = f.press(from);
@@ -83,7 +83,7 @@ TEST_CASE(
     "surface press: a plane is turned to face the organ, a body presses with what is foremost",
     "[visualizer][analytic]") {
   // Oracle: geometry.
-  const Fixture f;
+  const SeenBall f;
   ProbeBody plane;
   plane.plane = true;
   SurfacePress flat = f.press(Vec3(0, -0.2, 0), plane);

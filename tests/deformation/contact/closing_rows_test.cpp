@@ -3,12 +3,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "tests/deformation/organs.h"
 #include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
 namespace {
 
-constexpr double kPeriod = 4e-3;
+using testing::kPeriod;
 
 /// The mean force [N] on a plate that moves evenly by `way` in kPeriod, from `gap` before a free
 /// mass of 1 kg at rest: n steps, in each the mass gets what it needs not to be inside.
@@ -70,13 +71,12 @@ TEST_CASE("closing rows: what they give way by themselves is divided, the rest s
   const double stiffer[] = {1, 4};  // of two rows with two directions each
   stiffen_closing_rows(stiffer, W);
   const auto own = [](const Eigen::MatrixXd& M) -> Eigen::MatrixXd {
-    return M.bottomRightCorner(2, 2) - M.bottomLeftCorner(2, 2) *
-                                           palpate::testing::inverse_of(M.topLeftCorner(2, 2)) *
-                                           M.topRightCorner(2, 2);
+    return M.bottomRightCorner(2, 2) -
+           M.bottomLeftCorner(2, 2) * inverse_of(M.topLeftCorner(2, 2)) * M.topRightCorner(2, 2);
   };
   CHECK((own(W) - own(before) / 4).norm() < 1e-12 * before.norm());
   CHECK((W.topRows(2) - before.topRows(2)).norm() < 1e-12 * before.norm());
-  CHECK(palpate::testing::eigenvalues_of(W)[0] > 0);
+  CHECK(eigenvalues_of(W)[0] > 0);
   // Two rows on one place: W is not regular and stays.
   Eigen::MatrixXd same = Eigen::MatrixXd::Ones(2, 2);
   stiffen_closing_rows(stiffer, same);

@@ -90,7 +90,7 @@ TEST_CASE("constraint projection: agrees with dense linear algebra") {
     w.block<3, 3>(at, at) = f.inverse_mass_blocks[i];
   }
   const Eigen::MatrixXd b = f.dense_rows();
-  const Eigen::VectorXd mu = palpate::testing::solved(b * w * b.transpose(), b * w * flat(f.r));
+  const Eigen::VectorXd mu = solved(b * w * b.transpose(), b * w * flat(f.r));
   const Eigen::VectorXd expected = w * (flat(f.r) - b.transpose() * mu);
   CHECK((flat(z) - expected).norm() < 1e-5 * expected.norm());
 

@@ -270,7 +270,7 @@ TEST_CASE("contact law: no friction makes a law stiffer than rows that stick, an
       if (random() % 4 != 0) row.force += law.friction_coefficient * basis.col(1);
     }
     W.diagonal() *= 1 + 1e-6;
-    const Mat3 sticking = axes.transpose() * palpate::testing::inverse_of(W) * axes;
+    const Mat3 sticking = axes.transpose() * inverse_of(W) * axes;
     const RowStiffness found = stiffness_of(law);
     const double most = std::hypot(1, law.friction_coefficient) * sticking.operatorNorm();
     REQUIRE(found.matrix.allFinite());

@@ -259,7 +259,7 @@ TEST_CASE("contact solve: with all rows active it agrees with a dense KKT solve"
     }
     right[n + 1 + r] = row.normal.dot(row.probe_velocity) + row.gap / h;
   }
-  const Eigen::VectorXd solution = palpate::testing::solved(kkt, right);
+  const Eigen::VectorXd solution = solved(kkt, right);
 
   auto velocities = c.free_velocities;
   const VolumeRow volume{c.at, rate};

@@ -43,7 +43,7 @@ TEST_CASE("coupled inverse mass: no step down the gradient overshoots, however m
     for (std::uint32_t i = 0; i + 1 < kNodes; ++i) {
       rest.block<3, 3>(3 * i, 3 * i) += inverse[i].inverse() - without[i].inverse();
     }
-    return palpate::testing::eigenvalues_of(rest)[0];
+    return eigenvalues_of(rest)[0];
   };
   CHECK(least(blocks) > -1e-5 * coupled.norm());  // arms are floats
   CHECK(least(without) < -0.1 * coupled.norm());

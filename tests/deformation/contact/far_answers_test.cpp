@@ -49,13 +49,13 @@ TEST_CASE("far answers: A⁻¹ of a push along each axis, and what couples it to
       X.row(at + k) = far.load(node, Vec3::Unit(k)).cast<double>().transpose();
     }
   }
-  const Eigen::MatrixXd exact = palpate::testing::solved(A, push);
+  const Eigen::MatrixXd exact = solved(A, push);
   CHECK(X.topRows(3 * kNear).isZero(0));
   Eigen::MatrixXd lack = X - exact;
   lack.topRows(3 * kNear).setZero();
   Eigen::MatrixXd D = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index at = 0; at < size; at += 3) D.block<3, 3>(at, at) = A.block<3, 3>(at, at);
-  const Eigen::VectorXd modes = palpate::testing::eigenvalues_of(A, D);
+  const Eigen::VectorXd modes = eigenvalues_of(A, D);
   const double enough = 1e-3 * modes.maxCoeff() / modes.minCoeff();
   CHECK(enough < 0.1);  // else the next line says nothing
   CHECK((lack.transpose() * A * lack).trace() < enough * (exact.transpose() * A * exact).trace());

@@ -9,13 +9,13 @@ namespace {
 constexpr double kMass = 2e-3;  // of each node [kg]
 
 /// A row on three free nodes of equal mass.
-struct Fixture {
+struct SlidingRow {
   std::vector<Mat3> inverse_mass_blocks = std::vector<Mat3>(3, Mat3::Identity() / kMass);
   std::vector<Vec3> velocities = std::vector<Vec3>(3, Vec3::Zero());
   std::vector<ContactRow> rows = std::vector<ContactRow>(1);
   LaggedFriction friction;
 
-  Fixture() {
+  SlidingRow() {
     rows[0].nodes = {0, 1, 2};
     rows[0].weights = Vec3(0.2, 0.3, 0.5);
     rows[0].friction = 0.3;
@@ -35,7 +35,7 @@ struct Fixture {
 
 TEST_CASE("lagged friction: what slides is dragged by μ j against its way, whatever its speed") {
   // Oracle: Coulomb's law.
-  Fixture f;
+  SlidingRow f;
   for (const double speed : {0.01, 1.0}) {
     f.rows[0].tangential_impulse.setZero();
     f.velocities.assign(3, speed * Vec3(0.6, -0.8, 5));  // along the normal as well
@@ -46,7 +46,7 @@ TEST_CASE("lagged friction: what slides is dragged by μ j against its way, what
 
 TEST_CASE("lagged friction: what sticks keeps its friction while it rests") {
   // Oracle: definition; a probe that moves along changes nothing.
-  Fixture f;
+  SlidingRow f;
   const Vec3 held = 0.5 * f.cone() * Vec3(0, 1, 0);
   f.rows[0].tangential_impulse = held;
   f.rows[0].probe_velocity = Vec3(0.1, 0.2, 0.3);
@@ -59,7 +59,7 @@ TEST_CASE("lagged friction: what sticks keeps its friction while it rests") {
 
 TEST_CASE("lagged friction: its couplings are how it changes with the velocities") {
   // Oracle: finite differences of apply() of a row that sticks, by random velocities.
-  Fixture f;
+  SlidingRow f;
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(-1, 1);
   f.linearise();
@@ -91,7 +91,7 @@ TEST_CASE("lagged friction: its couplings are how it changes with the velocities
 TEST_CASE("lagged friction: stays in its cone and never drives what slides") {
   // Oracle: Coulomb's law and energy, for random velocities before and after the solve. From no
   // friction before.
-  Fixture f;
+  SlidingRow f;
   std::mt19937 random(6);
   std::normal_distribution<double> normal;
   const auto disturb = [&] {
@@ -113,7 +113,7 @@ TEST_CASE("lagged friction: stays in its cone and never drives what slides") {
 
 TEST_CASE("lagged friction: nodes take what the cone cuts of the linear law") {
   // Oracle: impulse over mass. With a tenth of the force that it was linearised at.
-  Fixture f;
+  SlidingRow f;
   f.velocities.assign(3, Vec3(0.02, 0, 0));
   f.linearise();
   const Vec3 linear = f.rows[0].tangential_impulse;
@@ -130,7 +130,7 @@ TEST_CASE("lagged friction: nodes take what the cone cuts of the linear law") {
 
 TEST_CASE("lagged friction: none of a row that does not press, or holds what is fixed") {
   // Oracle: definition.
-  Fixture f;
+  SlidingRow f;
   std::vector<ContactCoupling> couplings;
   f.velocities.assign(3, Vec3(0.05, 0.02, 0));
   SECTION("no force") { f.rows[0].normal_impulse = 0; }

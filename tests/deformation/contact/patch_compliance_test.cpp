@@ -118,13 +118,12 @@ TEST_CASE("patch compliance: of a patch that is the whole organ it is C A⁻¹ C
       bordered.block<3, 1>(static_cast<Eigen::Index>(3 * i), size) = volume.gradient[i];
       bordered.block<1, 3>(size, static_cast<Eigen::Index>(3 * i)) = volume.gradient[i].transpose();
     }
-    const Eigen::MatrixXd free = C * palpate::testing::inverse_of(A) * C.transpose();
-    const Eigen::MatrixXd kept =
-        C * palpate::testing::inverse_of(bordered).topLeftCorner(size, size) * C.transpose();
+    const Eigen::MatrixXd free = C * inverse_of(A) * C.transpose();
+    const Eigen::MatrixXd kept = C * inverse_of(bordered).topLeftCorner(size, size) * C.transpose();
     const auto found_free = compliance.solve(ball.state.positions, rows, steps, {}, ball.add());
     const auto found_kept =
         compliance.solve(ball.state.positions, rows, steps, volume.gradient, ball.add());
-    const Eigen::VectorXd modes = palpate::testing::eigenvalues_of(A);
+    const Eigen::VectorXd modes = eigenvalues_of(A);
     const double tolerance = std::numeric_limits<float>::epsilon() * modes.maxCoeff() /
                              modes.minCoeff() * free.cwiseAbs().maxCoeff();
     const auto scale = [&](const Eigen::MatrixXd& found, const Eigen::MatrixXd& expected) {

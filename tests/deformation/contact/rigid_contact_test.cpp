@@ -81,7 +81,7 @@ TEST_CASE(
       ElementMatrix derivative = ElementMatrix::Zero(), downhill = derivative;
       contact.add_tangent(e, solid.rest_state(), derivative, false);
       contact.add_tangent(e, solid.rest_state(), downhill, true);
-      const Eigen::VectorXd more = palpate::testing::eigenvalues_of(downhill - derivative);
+      const Eigen::VectorXd more = eigenvalues_of(downhill - derivative);
       CHECK(more[0] >= -1e-12 * derivative.norm());
       largest = std::max(largest, more[kElementDofs - 1]);
     }

@@ -60,7 +60,7 @@ struct SteppedCube {
             weight / static_cast<double>(rows.size()) * Mat3::Identity();
       }
     }
-    return palpate::testing::solved(A, push);
+    return solved(A, push);
   }
   Patch near() const {
     Patch patch;

@@ -91,8 +91,7 @@ TEST_CASE("average nodal pressure: the matrix is no smaller than the forces' der
         }
         excess(k, k) -= model.masses[node];
       }
-      const Eigen::VectorXd values =
-          palpate::testing::eigenvalues_of(0.5 * (excess + excess.transpose()));
+      const Eigen::VectorXd values = eigenvalues_of(0.5 * (excess + excess.transpose()));
       CAPTURE(size, by, values.maxCoeff());
       double largest = 0;
       for (const Mat3& block : elements.diagonal()) largest = std::max(largest, block.trace());

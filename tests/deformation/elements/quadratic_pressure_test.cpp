@@ -59,7 +59,7 @@ Excess excess_over_derivative(QuadraticPressure& elements, const OrganModel& mod
     excess(k, k) -= model.masses[node];
   }
   const Eigen::MatrixXd even = 0.5 * (excess + excess.transpose());
-  return {palpate::testing::eigenvalues_of(even).minCoeff(), matrix.cwiseAbs().maxCoeff()};
+  return {eigenvalues_of(even).minCoeff(), matrix.cwiseAbs().maxCoeff()};
 }
 
 }  // namespace

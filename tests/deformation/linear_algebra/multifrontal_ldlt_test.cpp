@@ -59,7 +59,7 @@ TEST_CASE("multifrontal LDLᵀ: solves what a dense factorisation solves, severa
   }
   Eigen::MatrixXd x = b;
   factor.solve(x);
-  const Eigen::MatrixXd exact = palpate::testing::solved(system.dense, b);
+  const Eigen::MatrixXd exact = solved(system.dense, b);
   CHECK((x - exact).norm() < 1e-8 * exact.norm());
   CHECK((system.dense * x - b).norm() < 1e-9 * b.norm());
 }
@@ -73,7 +73,7 @@ TEST_CASE("multifrontal LDLᵀ: pivots count negative eigenvalues, one per press
     system.solid.tangent(e, system.state, matrix);
     return matrix;
   }));
-  const Eigen::VectorXd values = palpate::testing::eigenvalues_of(system.dense);
+  const Eigen::VectorXd values = eigenvalues_of(system.dense);
   CHECK(factor.negative_pivots() == static_cast<std::size_t>((values.array() < 0).count()));
   CHECK(factor.negative_pivots() == system.solid.mesh().corner_count);
   matrix.setZero();

@@ -79,7 +79,7 @@ TEST_CASE("stable step: Gershgorin's bound lies above the largest eigenvalue, by
   // Oracle: dense eigenvalues. The bound sums stiffness whatever its direction; a mode moves along
   // one of three, which at most costs the factor 3.
   const auto model = ball_model(2);
-  const double largest = palpate::testing::eigenvalues_of(dense_dynamic_matrix(model)).maxCoeff();
+  const double largest = eigenvalues_of(dense_dynamic_matrix(model)).maxCoeff();
   const double bound = highest_squared_frequency_bound(model);
   CHECK(bound >= largest);
   CHECK(bound < 3 * largest);
@@ -131,8 +131,7 @@ TEST_CASE("stable step: plain springs hold just below 2/ω_max and blow up just 
   organ.tissue.damping_ratio = 0;
   organ.tissue.drag = 0;
   const auto model = ball_model(2, organ);
-  const double omega =
-      std::sqrt(palpate::testing::eigenvalues_of(dense_dynamic_matrix(model)).maxCoeff());
+  const double omega = std::sqrt(eigenvalues_of(dense_dynamic_matrix(model)).maxCoeff());
   CHECK(excursion(model, 0.97 * 2 / omega, 4000, {.is_kept = false}) < 1e-4);
   CHECK_FALSE(excursion(model, 1.03 * 2 / omega, 4000, {.is_kept = false}) < 1e-4);
 }

@@ -65,7 +65,7 @@ TEST_CASE("contact relaxation: solves A Δ + Bᵀ λ = r, B Δ = 0 of the nodes 
     residual[i] = 1e-4 * positions[i].cross(Vec3(1, 2, 3));
     right.segment<3>(static_cast<Eigen::Index>(3 * i)) = residual[i];
   }
-  const Eigen::VectorXd exact = palpate::testing::solved(bordered, right);
+  const Eigen::VectorXd exact = solved(bordered, right);
 
   std::vector<Mat3> inverse_blocks;
   for (const Mat3& block : springs.diagonal()) inverse_blocks.push_back(block.inverse());

@@ -22,7 +22,7 @@ YieldingDevice yielding() {
   return YieldingDevice(std::make_unique<ScriptedDevice>(forth_and_back()));
 }
 
-DeviceSample at(const Vec3& place) {
+DeviceSample sampled_at(const Vec3& place) {
   DeviceSample said;
   said.pose.position = place;
   return said;
@@ -33,7 +33,7 @@ double play(YieldingDevice& device, double& time, double duration, const Vec3* p
   double longest = 0;
   Vec3 before = device.read(time).pose.position;
   for (const double end = time + duration; time < end; time += kTick) {
-    if (place != nullptr) device.hear(at(*place), 0, 0);
+    if (place != nullptr) device.hear(sampled_at(*place), 0, 0);
     const Vec3 now = device.read(time).pose.position;
     longest = std::max(longest, (now - before).norm());
     before = now;
@@ -90,7 +90,7 @@ TEST_CASE(
   YieldingDevice device = yielding();
   ScriptedDevice script(forth_and_back());
   device.read(0.5);
-  device.hear(at(Vec3(std::nan(""), 0, 0)), 0, 0);
+  device.hear(sampled_at(Vec3(std::nan(""), 0, 0)), 0, 0);
   device.refuse();
   CHECK(device.read(0.6).pose.position == script.read(0.6).pose.position);
   CHECK(device.read(0.7).limits == kForceNotLimited);

@@ -70,7 +70,7 @@ double by_eigenvalues(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& d
   while (high / low > 1 + 1e-6) {
     const double h = std::sqrt(low * high);
     const Eigen::MatrixXd sum = h * h * stiffness + 2 * h * damping;
-    (palpate::testing::eigenvalues_of(sum).maxCoeff() < 4 ? low : high) = h;
+    (eigenvalues_of(sum).maxCoeff() < 4 ? low : high) = h;
   }
   return low;
 }

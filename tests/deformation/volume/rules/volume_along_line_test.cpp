@@ -26,7 +26,7 @@ TEST_CASE("volume along a line: the cubic is the enclosed volume everywhere on i
 double nearest_eigenvalue(const std::array<double, 4>& c) {
   Eigen::MatrixXd companion(3, 3);
   companion << 0, 0, -c[0] / c[3], 1, 0, -c[1] / c[3], 0, 1, -c[2] / c[3];
-  const Eigen::VectorXcd roots = palpate::testing::roots_of(companion);
+  const Eigen::VectorXcd roots = roots_of(companion);
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& root : roots) {
     if (std::abs(root.imag()) > 1e-9 * std::abs(root)) continue;
