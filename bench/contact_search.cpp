@@ -92,6 +92,7 @@ class OurSearch {
     finder_.reset();
     height_ = kRadius + 2e-3;
     k_ = 0;
+    before_ = {centre_at(site, height_, k_), Quat::Identity()};
     while (height_ > height) {
       height_ = std::max(height, height_ - 1e-3);
       period(site, frames);

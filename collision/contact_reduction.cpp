@@ -88,31 +88,37 @@ Iterator thin(Iterator first, Iterator last) {
 Iterator spread(Iterator first, Iterator last) {
   if (last - first <= static_cast<std::ptrdiff_t>(kMostOfRound)) return last;
   std::sort(first, last, deeper);
-  struct Place {
-    Vec3 tissue;
-    double apart = std::numeric_limits<double>::infinity();  ///< from what is kept, squared [m²]
+  // Coordinates by themselves: what is done with them vectorizes.
+  using Numbers =
+      Eigen::Array<double, kThinnedDeepest + kThinnedCells * kThinnedCells * kThinnedCells, 1>;
+  const Eigen::Index count = last - first;
+  Numbers x, y, z,
+      apart = Numbers::Constant(
+          std::numeric_limits<double>::infinity());  // from what is kept, squared [m²]
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Vec3 tissue = tissue_of(first[i]);
+    x[i] = tissue[0];
+    y[i] = tissue[1];
+    z[i] = tissue[2];
+  }
+  constexpr Eigen::Index kMost{kMostOfRound};
+  Eigen::Index kept = kMost / 2;
+  const auto rest = [&](Numbers& numbers) { return numbers.segment(kept, count - kept); };
+  const auto note = [&](Eigen::Index other) {
+    const double ox = x[other], oy = y[other], oz = z[other];
+    rest(apart) = rest(apart).min((rest(x) - ox).square() +
+                                  ((rest(y) - oy).square() + (rest(z) - oz).square()));
   };
-  std::array<Place, kThinnedDeepest + kThinnedCells * kThinnedCells * kThinnedCells> places;
-  const auto count = static_cast<std::size_t>(last - first);
-  for (std::size_t i = 0; i < count; ++i) places[i] = {tissue_of(first[std::ptrdiff_t(i)])};
-  std::size_t kept = kMostOfRound / 2;
-  const auto note = [&](std::size_t other) {
-    const Vec3 x = places[other].tissue;
-    for (std::size_t i = kept; i < count; ++i) {
-      places[i].apart = std::min(places[i].apart, (places[i].tissue - x).squaredNorm());
-    }
-  };
-  for (std::size_t i = 0; i < kept; ++i) note(i);
-  for (; kept < kMostOfRound; note(kept - 1)) {
-    const auto from = places.begin() + kept;
-    const auto farthest = std::max_element(
-        from, places.begin() + count,
-        [](const Place& one, const Place& other) { return one.apart < other.apart; });
-    std::swap(first[std::ptrdiff_t(kept)], first[farthest - places.begin()]);
-    std::swap(*from, *farthest);
+  for (Eigen::Index i = 0; i < kept; ++i) note(i);
+  for (; kept < kMost; note(kept - 1)) {
+    const double most = rest(apart).maxCoeff();
+    const Eigen::Index farthest =
+        std::find(apart.data() + kept, apart.data() + count, most) - apart.data();
+    std::swap(first[kept], first[farthest]);
+    for (Numbers* along : {&x, &y, &z, &apart}) std::swap((*along)[kept], (*along)[farthest]);
     ++kept;
   }
-  return first + std::ptrdiff_t(kept);
+  return first + kept;
 }
 
 /// Keeps of each organ's contacts what `keep` does. @param found  sorted by organ

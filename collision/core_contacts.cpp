@@ -120,7 +120,7 @@ void CoreContacts::append_near_wall(const OrganStep& step, const Core& core,
   const auto before = remembered(step.organ_index, core.index);
   if (before.empty()) return;
   const double reach = wall_reach(step, core);
-  marks_.begin(step.organ.triangles().size());
+  marks_.begin();
   waiting_.clear();
   append_remembered(step, core, waiting_);
   for (const std::uint32_t triangle : waiting_) marks_.set(triangle, 0);
@@ -200,8 +200,8 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
     find_behind(step, core, inside, depth_limit, found);
     return;
   }
-  node_marks_.begin(step.organ.node_count());
-  edge_marks_.begin(step.organ.edges().size());
+  node_marks_.begin();
+  edge_marks_.begin();
   for (const CoreCandidate& c : near_) {
     if (c.side > 0 && c.gap(core) <= step.margin) {
       if (is_new_place(step, core, c)) append_front(step, core, c, found);

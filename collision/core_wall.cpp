@@ -75,7 +75,7 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
   Vec3 outward = Vec3::Zero();
   auto& [marks, waiting] = buffers;
   waiting.clear();
-  marks.begin(organ.triangles().size());
+  marks.begin();
   for (CoreCandidate& c : candidates) {
     marks.set(c.triangle.index, static_cast<std::uint32_t>(&c - candidates.data()));
     if (!c.crossing && !c.remembered) continue;

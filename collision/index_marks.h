@@ -1,8 +1,10 @@
-// A number for some of many triangles, nodes or edges, forgotten all at once: its cost is what is
-// marked, not the mesh.
+// A number for some of many triangles, nodes or edges, forgotten all at once: its cost, in time and
+// in memory, is what is marked, not the mesh.
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace palpate::collision {
@@ -11,27 +13,50 @@ class IndexMarks {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// Forgets all. @param count  indices are below this
-  void begin(std::size_t count) {
-    if (marks_.size() < count) marks_.resize(count);
+  /// Forgets all.
+  void begin() {
     ++walk_;
+    used_ = 0;
   }
   std::uint32_t at(std::uint32_t index) const {
-    const Mark& mark = marks_[index];
+    const Mark& mark = marks_[place_of(index)];
     return mark.walk == walk_ ? mark.value : kNone;
   }
-  void set(std::uint32_t index, std::uint32_t value) { marks_[index] = {walk_, value}; }
+  void set(std::uint32_t index, std::uint32_t value) {
+    std::size_t place = place_of(index);
+    if (marks_[place].walk != walk_ && 2 * ++used_ > marks_.size()) {
+      grow();
+      place = place_of(index);
+    }
+    marks_[place] = {walk_, index, value};
+  }
 
  private:
+  /// Free unless of this walk.
   struct Mark {
     std::uint64_t walk = 0;
-    std::uint32_t value = 0;
-
-    Mark() = default;
-    Mark(std::uint64_t in, std::uint32_t number) : walk(in), value(number) {}
+    std::uint32_t index = 0, value = 0;
   };
-  std::vector<Mark> marks_;
-  std::uint64_t walk_ = 0;
+
+  /// Where the index is, or would be: the next free place after one that looks random.
+  std::size_t place_of(std::uint32_t index) const {
+    std::size_t place = (index * 0x9e3779b97f4a7c15u) >> (64 - std::bit_width(marks_.size() - 1));
+    while (marks_[place].walk == walk_ && marks_[place].index != index) {
+      place = (place + 1) & (marks_.size() - 1);
+    }
+    return place;
+  }
+  void grow() {
+    const std::vector<Mark> before(std::move(marks_));
+    marks_.assign(2 * before.size(), {});
+    for (const Mark& mark : before) {
+      if (mark.walk == walk_) marks_[place_of(mark.index)] = mark;
+    }
+  }
+
+  std::vector<Mark> marks_ = std::vector<Mark>(256);  ///< a power of two, at most half of it used
+  std::uint64_t walk_ = 1;
+  std::size_t used_ = 0;
 };
 
 }  // namespace palpate::collision

@@ -10,6 +10,8 @@
 namespace palpate::collision {
 namespace {
 
+Bounds box_of(const Vec3& a, const Vec3& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
+
 bool is_bounded(const Bounds& box) { return (box.upper - box.lower).maxCoeff() < 2 * kWorldReach; }
 
 }  // namespace
@@ -44,6 +46,12 @@ struct NearSurface::Wanted {
     return core_P.squared_distance(in_P) <= reach_squared;
   }
 
+  /// A triangle; judged by its way through the world, too, as its block was.
+  bool may_hold(const SweptNode& x, const SweptNode& y, const SweptNode& z) const {
+    return squared_distance(core_P, x.box, y.box, z.box) <= reach_squared &&
+           (!bounded || squared_distance(core_W, x.box_W, y.box_W, z.box_W) <= reach_squared);
+  }
+
  private:
   /// Most blocks are far away: this costs a few instructions each.
   bool overlaps(const geometry::BlockBox& start, const geometry::BlockBox& end) const {
@@ -53,6 +61,14 @@ struct NearSurface::Wanted {
     const Eigen::Array4f lowest(wide_.upper[0], wide_.upper[1], wide_.upper[2], kFar);
     const Eigen::Array4f highest(-kFar, wide_.lower[0], wide_.lower[1], wide_.lower[2]);
     return (lower <= lowest).all() && (upper >= highest).all();
+  }
+
+  /// From what holds three boxes.
+  static double squared_distance(const Bounds& from, const Bounds& x, const Bounds& y,
+                                 const Bounds& z) {
+    const auto below = from.lower - x.upper.cwiseMax(y.upper).cwiseMax(z.upper);
+    const auto above = x.lower.cwiseMin(y.lower).cwiseMin(z.lower) - from.upper;
+    return below.cwiseMax(above).cwiseMax(0).squaredNorm();
   }
 
   static constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -66,11 +82,12 @@ void NearSurface::open(const OrganStep& step, std::size_t block, const Wanted& w
   const auto first = static_cast<std::uint32_t>(nodes_.size());
   Bounds all;
   for (const std::uint32_t node : blocks.nodes_of(block)) {
-    const Vec3 start = step.motion.start(starts[node]), end = step.motion.end(ends[node]);
-    nodes_.push_back(
-        {start, end, start.cwiseMin(end), start.cwiseMax(end), (end - start).squaredNorm()});
-    all.add(nodes_.back().lower);
-    all.add(nodes_.back().upper);
+    const Vec3 start_W = starts[node], end_W = ends[node];
+    const Vec3 start = step.motion.start(start_W), end = step.motion.end(end_W);
+    const SweptNode& swept = nodes_.emplace_back(SweptNode{
+        start, end, box_of(start, end), box_of(start_W, end_W), (end - start).squaredNorm()});
+    all.add(swept.box.lower);
+    all.add(swept.box.upper);
   }
   if (wanted.core_P.squared_distance(all) > wanted.reach_squared) {
     nodes_.resize(first);
@@ -81,32 +98,21 @@ void NearSurface::open(const OrganStep& step, std::size_t block, const Wanted& w
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto [a, b, c] = corners[i];
     const SweptNode &x = nodes_[first + a], &y = nodes_[first + b], &z = nodes_[first + c];
-    const Bounds box{x.lower.cwiseMin(y.lower).cwiseMin(z.lower),
-                     x.upper.cwiseMax(y.upper).cwiseMax(z.upper)};
-    if (wanted.core_P.squared_distance(box) > wanted.reach_squared) continue;
+    if (!wanted.may_hold(x, y, z)) continue;
     near_.push_back({triangles[i], {first + a, first + b, first + c}});
   }
 }
 
-/// By its own way through the world, as its block was judged.
-bool NearSurface::comes_near(const OrganStep& step, const geometry::Triangle& nodes,
-                             const Wanted& wanted) {
-  Bounds box;
-  for (const std::uint32_t node : nodes) {
-    box.add(step.start_positions()[node]);
-    box.add(step.organ.positions()[node]);
-  }
-  return wanted.core_W.squared_distance(box) <= wanted.reach_squared;
-}
-
 void NearSurface::find_blocks(const OrganStep& step, const Wanted& wanted) {
   blocks_.clear();
-  const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
-  for (std::size_t block = 0; block < ends.size(); ++block) {
-    if (wanted.may_hold(step.motion, starts[block], ends[block])) {
-      blocks_.push_back(static_cast<std::uint32_t>(block));
-    }
-  }
+  const OrganSurface& organ = step.organ;
+  const auto may_hold = [&](const OrganSurface::Boxes& starts, const OrganSurface::Boxes& ends) {
+    return [&](std::size_t i) { return wanted.may_hold(step.motion, starts[i], ends[i]); };
+  };
+  geometry::visit_blocks(
+      organ.blocks().count(), may_hold(organ.groups_at(step.start_version), organ.groups()),
+      may_hold(organ.boxes_at(step.start_version), organ.boxes()),
+      [&](std::size_t block) { blocks_.push_back(static_cast<std::uint32_t>(block)); });
 }
 
 void NearSurface::gather(const OrganStep& step, const Bounds& core, double reach) {
@@ -124,7 +130,6 @@ void NearSurface::gather_from_blocks(const OrganStep& step, const Wanted& wanted
             [](const Near& a, const Near& b) { return a.triangle < b.triangle; });
   for (const Near& near : near_) {
     const geometry::Triangle& nodes = step.organ.triangles()[near.triangle];
-    if (wanted.bounded && !comes_near(step, nodes, wanted)) continue;
     SweptTriangle& swept = triangles_.emplace_back();
     double squared = 0;
     for (int k = 0; k < 3; ++k) {

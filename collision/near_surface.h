@@ -42,9 +42,10 @@ class NearSurface {
   double travel() const;
 
  private:
-  /// A node over the step, in P.
+  /// A node over the step, in P but for its box in W.
   struct SweptNode {
-    Vec3 start, end, lower, upper;
+    Vec3 start, end;
+    Bounds box, box_W;
     double travel_squared = 0;
   };
   struct Near {
@@ -58,8 +59,6 @@ class NearSurface {
   void gather_from_blocks(const OrganStep& step, const Wanted& wanted);
   void open(const OrganStep& step, std::size_t block, const Wanted& wanted);
   std::size_t find_places(const OrganStep& step, const Core& core, const Wanted& wanted);
-  static bool comes_near(const OrganStep& step, const geometry::Triangle& nodes,
-                         const Wanted& wanted);
 
   std::vector<SweptTriangle> triangles_;
   // Kept between calls for their memory only.

@@ -84,6 +84,7 @@ void OrganSurface::update(std::span<const Vec3> positions) {
   newest_.positions.assign(positions);
   if (blocks_.count() == 0) split();
   blocks_.bound(positions, newest_.boxes);
+  geometry::bound_groups(newest_.boxes, newest_.groups);
 }
 
 void OrganSurface::take(std::vector<float>& positions, Boxes& boxes) {
@@ -91,13 +92,18 @@ void OrganSurface::take(std::vector<float>& positions, Boxes& boxes) {
   const bool told = blocks_.count() > 0 && boxes.size() == blocks_.count();
   const auto end = positions.begin() + 3 * static_cast<std::ptrdiff_t>(node_count_);
   begin_update(told
-                   ? geometry::are_finite(boxes)
+                   ? geometry::bound_groups(boxes, groups_)
                    : std::all_of(positions.begin(), end, [](float x) { return std::isfinite(x); }));
   if (!present_) return;
   newest_.positions.swap_in(positions);
-  if (told) return newest_.boxes.swap(boxes);
+  if (told) {
+    newest_.boxes.swap(boxes);
+    newest_.groups.swap(groups_);
+    return;
+  }
   if (blocks_.count() == 0) split();
   blocks_.bound(newest_.positions.floats(), newest_.boxes);
+  geometry::bound_groups(newest_.boxes, newest_.groups);
 }
 
 void OrganSurface::split() {
@@ -108,20 +114,23 @@ void OrganSurface::split() {
 
 Bounds OrganSurface::bounds() const {
   Bounds bounds;
-  for (const geometry::BlockBox& box : newest_.boxes) bounds.add(box);
+  for (const geometry::BlockBox& group : newest_.groups) bounds.add(group);
   return bounds;
 }
 
 void OrganSurface::append_overlapping(const Bounds& box,
                                       std::vector<std::uint32_t>& triangles) const {
-  for (std::size_t block = 0; block < newest_.boxes.size(); ++block) {
-    if (!box.overlaps(newest_.boxes[block])) continue;
+  const auto overlap = [&](const Boxes& boxes) {
+    return [&](std::size_t i) { return box.overlaps(boxes[i]); };
+  };
+  const auto append = [&](std::size_t block) {
     for (const std::uint32_t t : blocks_.triangles_of(block)) {
       const auto [a, b, c] = corners(t);
       if (box.overlaps({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)}))
         triangles.push_back(t);
     }
-  }
+  };
+  geometry::visit_blocks(blocks_.count(), overlap(newest_.groups), overlap(newest_.boxes), append);
 }
 
 std::span<const std::uint32_t> OrganSurface::triangles_of_node(std::uint32_t node) const {

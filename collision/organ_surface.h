@@ -45,6 +45,9 @@ class OrganSurface {
   const NodeArray& positions_at(std::uint64_t version) const { return at(version).positions; }
   const Boxes& boxes() const { return newest_.boxes; }
   const Boxes& boxes_at(std::uint64_t version) const { return at(version).boxes; }
+  /// See geometry::bound_groups().
+  const Boxes& groups() const { return newest_.groups; }
+  const Boxes& groups_at(std::uint64_t version) const { return at(version).groups; }
   const geometry::SurfaceBlocks& blocks() const { return blocks_; }
 
   /// Of all triangles.
@@ -72,8 +75,8 @@ class OrganSurface {
  private:
   struct Shape {
     NodeArray positions;
-    Boxes boxes;  ///< by block
-    void exchange(StateArchive& archive) { archive(positions, boxes); }
+    Boxes boxes, groups;  ///< by block, and of blocks
+    void exchange(StateArchive& archive) { archive(positions, boxes, groups); }
   };
 
   void build_node_triangles();
@@ -94,6 +97,7 @@ class OrganSurface {
   bool present_ = false, found_ = false;
   std::uint64_t version_ = 0, previous_version_ = 0;
   Shape newest_, previous_;
+  Boxes groups_;  ///< buffer
 };
 
 }  // namespace palpate::collision

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "modules/core/tolerances.h"
 
@@ -31,6 +32,11 @@ double turning_radius(const CarriedContact& contact, double radius) {
 
 bool presses(const CondensedContact& contact) { return !contact.row.force.isZero(0); }
 
+bool is_pushed(const CarriedContact& contact) {
+  const double pushed = contact.pushed.norm();
+  return pushed > 0 && std::isfinite(pushed);
+}
+
 CondensedContact one_of(const CarriedContact& contact, const Pose& probe, const Body& body,
                         const OrganState& state, double radius, double period) {
   CondensedContact one;
@@ -46,9 +52,8 @@ CondensedContact one_of(const CarriedContact& contact, const Pose& probe, const 
     tissue += weight * state.positions[node];
   }
   one.row.point_P = contact.point_P;
-  const double pushed = contact.pushed.norm();
-  if (pushed > 0 && std::isfinite(pushed)) {
-    one.row.normal = contact.pushed / pushed;
+  if (is_pushed(contact)) {
+    one.row.normal = contact.pushed / contact.pushed.norm();
     one.row.force = (contact.pushed + contact.dragged) / period;
     return one;
   }
@@ -70,14 +75,16 @@ bool are_one_place(const CondensedContact& a, const CondensedContact& b) {
   return apart < kSameWeight;
 }
 
-void leave_out_same_places(std::vector<CondensedContact>& contacts) {
-  std::vector<CondensedContact> others;
-  for (CondensedContact& contact : contacts) {
+/// Appends contacts, each place once, until there are kMaxLawRows.
+void fill_up(std::vector<CondensedContact>& contacts, std::vector<CondensedContact>& with) {
+  const std::size_t before = contacts.size();
+  for (CondensedContact& contact : with) {
+    if (contacts.size() >= kMaxLawRows) return;
+    const std::span others(contacts.begin() + static_cast<std::ptrdiff_t>(before), contacts.end());
     const bool told = std::ranges::any_of(
         others, [&](const CondensedContact& c) { return are_one_place(c, contact); });
-    if (!told) others.push_back(std::move(contact));
+    if (!told) contacts.push_back(std::move(contact));
   }
-  contacts = std::move(others);
 }
 
 /// Places of contacts that are far from each other: the one that presses most, then always the one
@@ -154,29 +161,33 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
                                                 const std::vector<const OrganState*>& states,
                                                 double period) {
   std::vector<CondensedContact> pressing, near;
-  for (const CarriedContact& contact : probe.contacts()) {
-    if (contact.row == CarriedContact::kNoRow && contact.pushed.isZero(0)) continue;
+  const auto take = [&](const CarriedContact& contact) {
     CondensedContact one = one_of(contact, probe.pose(), *bodies[contact.organ],
                                   *states[contact.organ], probe.radius(), period);
     const bool held = std::ranges::all_of(one.weights, [&](const auto& w) {
       return bodies[contact.organ]->inverse_masses[w.first] == 0;
     });
-    if (!is_unit(one.row.normal) || !std::isfinite(one.row.gap)) continue;  // says nothing
-    if (held && !presses(one)) continue;
+    if (!is_unit(one.row.normal) || !std::isfinite(one.row.gap)) return;  // says nothing
+    if (held && !presses(one)) return;
     (presses(one) ? pressing : near).push_back(std::move(one));
+  };
+  for (const CarriedContact& contact : probe.contacts()) {
+    if (is_pushed(contact)) take(contact);
   }
   std::ranges::stable_sort(pressing, std::greater{},
                            [](const CondensedContact& c) { return c.row.force.dot(c.row.normal); });
+  if (pressing.size() > kMaxLawRows) pressing = take_together(pressing);
+  if (pressing.size() >= kMaxLawRows) return pressing;
+  for (const CarriedContact& contact : probe.contacts()) {
+    const bool says = contact.row != CarriedContact::kNoRow || !contact.pushed.isZero(0);
+    if (says && !is_pushed(contact)) take(contact);
+  }
   // Those first that would be the first to press if probe and tissue went on.
   const auto gap_ahead = [&](const CondensedContact& c) {
     return c.row.gap + c.row.normal.dot(probe.went() - period * c.row.velocity);
   };
   std::ranges::stable_sort(near, std::less{}, gap_ahead);
-  leave_out_same_places(near);
-  if (pressing.size() > kMaxLawRows) pressing = take_together(pressing);
-  for (std::size_t i = 0; i < near.size() && pressing.size() < kMaxLawRows; ++i) {
-    pressing.push_back(std::move(near[i]));
-  }
+  fill_up(pressing, near);
   return pressing;
 }
 

@@ -55,10 +55,11 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
                                        std::span<const ComplianceRow> rows,
                                        const PeriodSteps& steps, std::span<const Vec3> gradient,
                                        const AddStiffness& add_stiffness, const StepMatrix& last) {
+  const SpringShares shares = shares_of(steps, model_.drag);
+  if (!(shares.stiffness > 0)) return answers_of_masses(rows, gradient) / shares.mass;
   const Vec3 centre = find_touched(positions, rows);
   const std::size_t most = near_nodes(last);
   grow_patch(model_, neighbours_, positions, touched_, centre, most, patch_);
-  const SpringShares shares = shares_of(steps, model_.drag);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
   Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
   const bool is_explicit = !model_.is_solid() && !steps.implicit && steps.count > 1;
@@ -68,7 +69,7 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
     add_stiffness(patch_, 0, 1, pressed_.damping);
     A = static_cast<float>(shares.stiffness) * pressed_.stiffness +
         static_cast<float>(shares.damping) * pressed_.damping;
-  } else if (shares.stiffness > 0) {
+  } else {
     add_stiffness(patch_, shares.stiffness, shares.damping, A);
   }
   double mass = 0;
@@ -84,11 +85,44 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   return shortfall(evenly, rows, steps, gradient) * evenly;
 }
 
+Eigen::MatrixXd PatchCompliance::answers_of_masses(std::span<const ComplianceRow> rows,
+                                                   std::span<const Vec3> gradient) {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd answers = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd volume = Eigen::VectorXd::Zero(count);
+  pushes_.clear();
+  for (Eigen::Index r = 0; r < count; ++r) {
+    const ComplianceRow& row = rows[static_cast<std::size_t>(r)];
+    for (const auto& [node, weight] : row.weights) {
+      pushes_.push_back({node, r, weight * row.axis});
+      if (node >= gradient.size()) continue;
+      volume[r] += model_.inverse_masses[node] * gradient[node].dot(pushes_.back().push);
+    }
+  }
+  std::ranges::stable_sort(pushes_, {}, &Push::node);
+  for (auto first = pushes_.begin(); first != pushes_.end();) {
+    const auto last = std::find_if(first, pushes_.end(),
+                                   [&](const Push& push) { return push.node != first->node; });
+    const double inverse_mass = model_.inverse_masses[first->node];
+    for (auto a = first; a != last; ++a) {
+      for (auto b = first; b != last; ++b) {
+        answers(a->row, b->row) += inverse_mass * a->push.dot(b->push);
+      }
+    }
+    first = last;
+  }
+  double inverse_mass = 0;  // gᵀM⁻¹g
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    inverse_mass += gradient[i].squaredNorm() * model_.inverse_masses[i];
+  }
+  if (inverse_mass > 0) answers -= volume * volume.transpose() / inverse_mass;
+  return answers;
+}
+
 Eigen::Index PatchCompliance::extend(const std::vector<Vec3>& positions, const Vec3& centre,
                                      double stiffness, std::span<const ComplianceRow> rows,
                                      const SpringShares& shares, const StepMatrix& last,
                                      Eigen::MatrixXf& A) {
-  if (!(shares.stiffness > 0)) return 0;
   const Eigen::Index size = A.rows();
   const auto take = [&](const Eigen::MatrixXf& near_block, const Eigen::Matrix3f& own_block) {
     // Nothing goes along, or a bad state's matrix: as if held.

@@ -61,6 +61,9 @@ class PatchCompliance {
  private:
   /// @returns the middle of the rows [m]
   Vec3 find_touched(const std::vector<Vec3>& positions, std::span<const ComplianceRow> rows);
+  /// C M⁻¹ Cᵀ, the volume kept: in a single explicit step no spring has a share [1/kg].
+  Eigen::MatrixXd answers_of_masses(std::span<const ComplianceRow> rows,
+                                    std::span<const Vec3> gradient);
   /// How many nodes answer each by itself, once touched_ is found.
   std::size_t near_nodes(const StepMatrix& last) const;
   /// Adds the directions in which the body goes along beyond the patch to A.
@@ -83,12 +86,20 @@ class PatchCompliance {
   double shortfall(const Eigen::MatrixXd& evenly, std::span<const ComplianceRow> rows,
                    const PeriodSteps& steps, std::span<const Vec3> gradient);
 
+  /// Of a row's force of 1 N, on one of its nodes.
+  struct Push {
+    std::uint32_t node = 0;
+    Eigen::Index row = 0;
+    Vec3 push;
+  };
+
   const OrganModel& model_;
   Neighbours neighbours_;
   std::size_t nodes_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
-  PressedPatch pressed_;  ///< K and D in explicit steps
+  std::vector<Push> pushes_;  ///< buffer
+  PressedPatch pressed_;      ///< K and D in explicit steps
   std::optional<SolidAnswers> solid_;
   std::optional<FarAnswers> far_;  ///< of springs, once they reach beyond the patch
 };

@@ -65,16 +65,25 @@ void BlockBox::add(const Vec3& point) {
   }
 }
 
-bool are_finite(std::span<const BlockBox> boxes) {
-  // Counted, not sought: this loop vectorizes.
-  std::uint32_t bad = 0;
-  for (const BlockBox& box : boxes) {
-    for (int k = 0; k < 3; ++k) {
-      bad += std::abs(box.lower[k]) <= std::numeric_limits<float>::max() ? 0u : 1u;
-      bad += std::abs(box.upper[k]) <= std::numeric_limits<float>::max() ? 0u : 1u;
+bool bound_groups(std::span<const BlockBox> boxes, std::vector<BlockBox>& groups) {
+  using Four = Eigen::Map<const Eigen::Array4f>;  // a box is six floats in a row
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  groups.resize((boxes.size() + kBlocksOfGroup - 1) / kBlocksOfGroup);
+  Eigen::Array4f rest = Eigen::Array4f::Zero();  // of what is not finite, no number
+  for (BlockBox& group : groups) {
+    const auto own = boxes.first(std::min(kBlocksOfGroup, boxes.size()));
+    boxes = boxes.subspan(own.size());
+    Eigen::Array4f lower = Eigen::Array4f::Constant(kFar), upper = -lower;
+    for (const BlockBox& box : own) {
+      const Four first(box.lower.data()), last(box.lower.data() + 2);
+      lower = lower.min(first);
+      upper = upper.max(last);
+      rest += (first - first) + (last - last);
     }
+    std::copy_n(lower.data(), 3, group.lower.data());
+    std::copy_n(upper.data() + 1, 3, group.upper.data());
   }
-  return bad == 0;
+  return (rest == 0).all();
 }
 
 std::vector<std::uint32_t> SurfaceBlocks::split(std::span<const Vec3> nodes,

@@ -2,6 +2,7 @@
 // block without a look at its nodes.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -27,7 +28,25 @@ struct BlockBox {
   void exchange(StateArchive& archive) { archive(lower, upper); }
 };
 
-bool are_finite(std::span<const BlockBox> boxes);
+/// So many blocks in a row: SurfaceBlocks::split() puts neighbours there.
+inline constexpr std::size_t kBlocksOfGroup = 16;
+/// The box of every kBlocksOfGroup boxes in a row.
+/// @returns whether all are finite; otherwise the groups are of no use
+bool bound_groups(std::span<const BlockBox> boxes, std::vector<BlockBox>& groups);
+
+/// Visits the wanted blocks, ascending; those of a group that is not wanted are not asked about.
+/// @param wants_group, wants_block  by index
+template <class Group, class Block, class Visit>
+void visit_blocks(std::size_t count, const Group& wants_group, const Block& wants_block,
+                  const Visit& visit) {
+  for (std::size_t first = 0; first < count; first += kBlocksOfGroup) {
+    if (!wants_group(first / kBlocksOfGroup)) continue;
+    const std::size_t end = std::min(count, first + kBlocksOfGroup);
+    for (std::size_t block = first; block < end; ++block) {
+      if (wants_block(block)) visit(block);
+    }
+  }
+}
 
 /// Which triangles and nodes belong to each block.
 class SurfaceBlocks {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "modules/geometry/primitives.h"
 
@@ -82,17 +83,47 @@ TEST_CASE("surface blocks: boxes hold their nodes, of doubles and of floats, and
   }
 }
 
-TEST_CASE("surface blocks: a number that is not finite shows in the boxes' check") {
+TEST_CASE("surface blocks: groups hold their blocks' boxes, tightly") {
   // Oracle: definition.
-  std::vector<BlockBox> boxes(3);
-  CHECK_FALSE(are_finite(boxes));  // empty ones have no end
+  const TriangleSurface ball = make_ball(1, 4);
+  const SurfaceBlocks blocks(ball.triangles, SurfaceBlocks::split(ball.nodes, ball.triangles, 40));
+  std::vector<BlockBox> boxes, groups;
+  blocks.bound(ball.nodes, boxes);
+  REQUIRE(boxes.size() % kBlocksOfGroup == 0);
+  boxes.pop_back();  // the last group need not be full
+  CHECK(bound_groups(boxes, groups));
+  REQUIRE(groups.size() == boxes.size() / kBlocksOfGroup + 1);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    Eigen::AlignedBox3f all;
+    for (std::size_t b = g * kBlocksOfGroup; b < std::min(boxes.size(), (g + 1) * kBlocksOfGroup);
+         ++b) {
+      all.extend(Eigen::Map<const Eigen::Vector3f>(boxes[b].lower.data()));
+      all.extend(Eigen::Map<const Eigen::Vector3f>(boxes[b].upper.data()));
+    }
+    CHECK(Eigen::Map<const Eigen::Vector3f>(groups[g].lower.data()) == all.min());
+    CHECK(Eigen::Map<const Eigen::Vector3f>(groups[g].upper.data()) == all.max());
+    CHECK(all.sizes().maxCoeff() < 1.5);  // neighbours
+  }
+}
+
+TEST_CASE("surface blocks: a number that is not finite shows as boxes are grouped") {
+  // Oracle: definition.
+  std::vector<BlockBox> boxes(3), groups;
+  CHECK_FALSE(bound_groups(boxes, groups));  // empty ones have no end
   for (BlockBox& box : boxes) box.add(Vec3(1, 2, 3));
-  CHECK(are_finite(boxes));
-  boxes[2].lower[1] = kNoNumber;
-  CHECK_FALSE(are_finite(boxes));
-  boxes[2].lower[1] = 0;
-  boxes[1].upper[2] = std::numeric_limits<float>::infinity();
-  CHECK_FALSE(are_finite(boxes));
+  CHECK(bound_groups(boxes, groups));
+  for (BlockBox& box : boxes) {
+    for (float* const side : {box.lower.data(), box.upper.data()}) {
+      for (int k = 0; k < 3; ++k) {
+        for (const float wrong : {kNoNumber, std::numeric_limits<float>::infinity(),
+                                  -std::numeric_limits<float>::infinity()}) {
+          const float right = std::exchange(side[k], wrong);
+          CHECK_FALSE(bound_groups(boxes, groups));
+          side[k] = right;
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("surface blocks: none of no triangles") {
