@@ -77,7 +77,7 @@ void add_run_options(Options& command, RunOptions& options) {
   const Option frames = command.add("--frames", options.frames, "Folder for a PNG sequence");
   add_view_options(command, options);
   command.add("--duration", options.duration, "Seconds to run; else the scene's duration_s")
-      .range(0.0, 1e6);
+      .range(0.001, 1e6);
   command.add_output("--record", options.record,
                      "Recording to write (MCAP); one that is there is replaced only with "
                      "--overwrite");
@@ -98,7 +98,7 @@ void add_run_options(Options& command, RunOptions& options) {
                     "--in-process");
   command
       .add("--snapshot-at", options.snapshot_at,
-           "Simulated seconds at which a snapshot is written; the same")
+           "Simulated seconds at which a snapshot is written, at the next cycle; the same")
       .range(0.0, 1e6);
   command.add_output("--snapshot", options.snapshot, "File for it");
   command.add("--only", options.only, "Start only these modules, joining a running session")
@@ -118,6 +118,9 @@ void add_run_options(Options& command, RunOptions& options) {
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
   command.flag_off("--no-restart", options.restart,
                    "Leave processes that die or hang as they are; else they are started again");
+  command.footer(
+      "Exit code: 0 if it ran to its end or was stopped, 1 if something failed, or it was stopped "
+      "before its snapshot, 2 for bad input.");
 }
 
 /// By the environment: each process of the session inherits it.
@@ -143,7 +146,8 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
                 RunOptions& options) {
   Options command = program.command(
       "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion",
-      [&recording, &playing, &options] {
+      [&program, &recording, &playing, &options] {
+        check_replay_options(program.given(), playing, options);
         use_keys(options.secure);
         options.headless |= no_display();
         options.scene = scene::scene_file(options.scene);
