@@ -159,17 +159,8 @@ TEST_CASE("rerun: a recording that is no stand-in is refused by name, and nothin
   const auto forces = recorded(scene, selected);
   CHECK_THAT(rerun(forces, {"haptics"}, again), Contains("holds no contact_model, which haptics"));
   CHECK_THAT(rerun(forces, {"deformation"}, again), Contains("holds no contacts, which deform"));
-  const auto run = recorded(scene);
-  for (const char* setting : {"organs[0].tissue.youngs_modulus_pa=8e3", "gravity_m_per_s2=[0,0,1]",
-                              "probes[0].friction=0.3", "rates.deformation_hz=100"}) {
-    INFO(setting);
-    CHECK_THAT(rerun(run, {"haptics"}, again, {setting}), Contains("in what other stages than"));
-    CHECK(rerun(run, {"deformation"}, scene.folder() / "new.mcap", {setting}) == "");
-  }
-  const char* const mesh = "organs[0].mesh.nodes=200";
-  CHECK_THAT(rerun(run, {"deformation"}, again, {mesh}), Contains("in what other stages than"));
-  CHECK_THAT(rerun(run, {"deformation"}, again, {"haptics.max_force_n=1"}),
-             Contains("in what other stages than"));
+  CHECK_THAT(rerun(recorded(scene), {"haptics"}, again, {"gravity_m_per_s2=[0, 0, -1]"}),
+             Contains("in what other stages than haptics read"));
   CHECK_FALSE(std::filesystem::exists(again));
 }
 
