@@ -242,6 +242,24 @@ void add_token(Program& program, bus::BusOptions& session) {
   runtime::add_bus_options(command, session);
 }
 
+void add_near(Options& command, geometry::NearMotion& near) {
+  const Option file =
+      command.add_input("--near", near.file,
+                        "Recorded motion (table, ROS bag): fill the surface with "
+                        "tetrahedra, small where a sphere that moves so touches it");
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    return command.add(name, value, help).needs(file);
+  };
+  add("--radius-m", near.radius, "Of that sphere").range(1e-4, 0.5);
+  add("--near-columns", near.columns,
+      "Of a table: names or numbers of time, x, y, z; else by its header");
+  add("--near-unit", near.unit, "Unit of the motion's positions").shows_default();
+  add("--near-position-m", near.position, "Of the motion's origin in the mesh's frame");
+  add("--near-rotation-xyzw", near.rotation, "Unit quaternion, of the motion's frame");
+  add("--edge-m", near.edge, "Longest edge there; else half the radius").range(1e-4, 1);
+  add("--growth", near.growth, "How much longer edges may be per metre; else 0.5").range(0.05, 100);
+}
+
 void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   Options command = program.command("mesh", "Check, repair, decimate or refine a mesh", [&options] {
     return geometry::run_mesh_command(options, std::cout, std::cerr);
@@ -257,19 +275,8 @@ void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   command.add("--unit", options.unit, "Unit of the input: m, dm, cm, mm, um, in").shows_default();
   command.flag("--largest", options.largest, "Keep only the shell that encloses most");
   command.flag("--fill-holes", options.fill_holes, "Close what is open");
-  geometry::NearMotion& near = options.near;
-  command.add_input("--near", near.file,
-                    "Recorded motion (table, ROS bag): fill the surface with "
-                    "tetrahedra, small where a sphere that moves so touches it");
-  command.add("--radius-m", near.radius, "Of that sphere").range(1e-4, 0.5);
-  command.add("--near-columns", near.columns,
-              "Of a table: names or numbers of time, x, y, z; else by its header");
-  command.add("--near-unit", near.unit, "Unit of the motion's positions").shows_default();
-  command.add("--near-position-m", near.position, "Of the motion's origin in the mesh's frame");
-  command.add("--near-rotation-xyzw", near.rotation, "Unit quaternion, of the motion's frame");
-  command.add("--edge-m", near.edge, "Longest edge there; else half the radius").range(1e-4, 1);
-  command.add("--growth", near.growth, "How much longer edges may be per metre; else 0.5")
-      .range(0.05, 100);
+  command.flag("--overwrite", options.overwrite, "Replace a file that is there already");
+  add_near(command, options.near);
   command.flag("--json", options.json, "Print JSON");
 }
 

@@ -55,8 +55,12 @@ TEST_CASE("command line: what is not a command or option is bad input") {
       {"run", "a.yaml", "--lockstep", "--only", "haptics"},
       {"run", "a.yaml", "--in-process", "--frames", "f"},
       {"check"},
+      {"mesh", "a.ply", "--near-unit", "mm"},
+      {"mesh", "a.ply", "--radius-m", "0.01"},
       {"mesh"}};
   for (const auto& arguments : wrong) CHECK(type("palpate", arguments).code == kExitBadInput);
+  CHECK_THAT(type("palpate", {"mesh", "a.ply", "--near-unit", "mm"}).said,
+             Contains("--near-unit requires --near"));
   CHECK_THAT(type("palpate", {"rum"}).said, Contains("no command 'rum'; there are run replay"));
   CHECK_THAT(type("palpate", {"mesh", "a.ply", "--nodes", "-5"}).said, Contains("-5 not in range"));
   CHECK_THAT(type("palpate", {"run", "a.yaml", "--duration", "nan"}).said,
