@@ -1,5 +1,6 @@
 #include "palpate/replay_command.h"
 
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -24,6 +25,11 @@ namespace {
 
 int show(const std::filesystem::path& recording, const Playing& playing, const RunOptions& run,
          std::ostream& out, std::ostream& log) {
+  if (std::getenv("PALPATE_KEYS") != nullptr) {
+    throw InputError(
+        "--secure, or PALPATE_KEYS: no key lets one process say what all have said; a recording is "
+        "shown without, in a session of its own");
+  }
   // Samples of then among those of now would move a running session's organs.
   const SessionClaim claim(run.bus.session, run.bus.domain);
   const runtime::StopSignal stop;
@@ -33,7 +39,6 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   viewing.only = {"visualizer"};
   viewing.record.clear();
   const auto commands = module_commands(viewing, program_folder());
-  check_keys_of(commands);
   ModuleGroup visualizer(commands, log);
   const bool shown = visualizer.any_running();
   if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
