@@ -77,7 +77,7 @@ void add_run_options(Options& command, RunOptions& options) {
   const Option frames = command.add("--frames", options.frames, "Folder for a PNG sequence");
   add_view_options(command, options);
   command.add("--duration", options.duration, "Seconds to run; else the scene's duration_s")
-      .range(0.0, 1e6);
+      .range(0.001, 1e6);
   command.add_output("--record", options.record,
                      "Recording to write (MCAP); one that is there is replaced only with "
                      "--overwrite");
@@ -98,7 +98,7 @@ void add_run_options(Options& command, RunOptions& options) {
                     "--in-process");
   command
       .add("--snapshot-at", options.snapshot_at,
-           "Simulated seconds at which a snapshot is written; the same")
+           "Simulated seconds at which a snapshot is written, at the next cycle; the same")
       .range(0.0, 1e6);
   command.add_output("--snapshot", options.snapshot, "File for it");
   command.add("--only", options.only, "Start only these modules, joining a running session")
@@ -118,6 +118,9 @@ void add_run_options(Options& command, RunOptions& options) {
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
   command.flag_off("--no-restart", options.restart,
                    "Leave processes that die or hang as they are; else they are started again");
+  command.footer(
+      "Exit code: 0 if it ran to its end or was stopped, 1 if something failed, or it was stopped "
+      "before its snapshot, 2 for bad input.");
 }
 
 /// By the environment: each process of the session inherits it.
@@ -143,7 +146,8 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
                 RunOptions& options) {
   Options command = program.command(
       "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion",
-      [&recording, &playing, &options] {
+      [&program, &recording, &playing, &options] {
+        check_replay_options(program.given(), playing, options);
         use_keys(options.secure);
         options.headless |= no_display();
         options.scene = scene::scene_file(options.scene);
@@ -238,6 +242,24 @@ void add_token(Program& program, bus::BusOptions& session) {
   runtime::add_bus_options(command, session);
 }
 
+void add_near(Options& command, geometry::NearMotion& near) {
+  const Option file =
+      command.add_input("--near", near.file,
+                        "Recorded motion (table, ROS bag): fill the surface with "
+                        "tetrahedra, small where a sphere that moves so touches it");
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    return command.add(name, value, help).needs(file);
+  };
+  add("--radius-m", near.radius, "Of that sphere").range(1e-4, 0.5);
+  add("--near-columns", near.columns,
+      "Of a table: names or numbers of time, x, y, z; else by its header");
+  add("--near-unit", near.unit, "Unit of the motion's positions").shows_default();
+  add("--near-position-m", near.position, "Of the motion's origin in the mesh's frame");
+  add("--near-rotation-xyzw", near.rotation, "Unit quaternion, of the motion's frame");
+  add("--edge-m", near.edge, "Longest edge there; else half the radius").range(1e-4, 1);
+  add("--growth", near.growth, "How much longer edges may be per metre; else 0.5").range(0.05, 100);
+}
+
 void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   Options command = program.command("mesh", "Check, repair, decimate or refine a mesh", [&options] {
     return geometry::run_mesh_command(options, std::cout, std::cerr);
@@ -253,19 +275,8 @@ void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   command.add("--unit", options.unit, "Unit of the input: m, dm, cm, mm, um, in").shows_default();
   command.flag("--largest", options.largest, "Keep only the shell that encloses most");
   command.flag("--fill-holes", options.fill_holes, "Close what is open");
-  geometry::NearMotion& near = options.near;
-  command.add_input("--near", near.file,
-                    "Recorded motion (table, ROS bag): fill the surface with "
-                    "tetrahedra, small where a sphere that moves so touches it");
-  command.add("--radius-m", near.radius, "Of that sphere").range(1e-4, 0.5);
-  command.add("--near-columns", near.columns,
-              "Of a table: names or numbers of time, x, y, z; else by its header");
-  command.add("--near-unit", near.unit, "Unit of the motion's positions").shows_default();
-  command.add("--near-position-m", near.position, "Of the motion's origin in the mesh's frame");
-  command.add("--near-rotation-xyzw", near.rotation, "Unit quaternion, of the motion's frame");
-  command.add("--edge-m", near.edge, "Longest edge there; else half the radius").range(1e-4, 1);
-  command.add("--growth", near.growth, "How much longer edges may be per metre; else 0.5")
-      .range(0.05, 100);
+  command.flag("--overwrite", options.overwrite, "Replace a file that is there already");
+  add_near(command, options.near);
   command.flag("--json", options.json, "Print JSON");
 }
 

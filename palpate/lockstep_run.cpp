@@ -1,5 +1,4 @@
 #include "palpate/lockstep_run.h"
-#include "modules/runtime/snapshot.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -15,12 +14,14 @@
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
+#include "modules/runtime/snapshot.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/module_group.h"
+#include "palpate/run_snapshot.h"
 #include "palpate/session/in_process.h"
 #include "palpate/session_monitor.h"
 #include "palpate/session_text.h"
@@ -112,6 +113,7 @@ class LockstepRun {
     SceneDescription description = runtime::scene_description(scene_);
     description.header.source_time_ns = runtime::CycleGrid::kSetUp;
     scenes_.write(description);
+    remove_snapshot_parts(options_, names_);
     log_ << fmt::format("palpate: session {} of scene {}, in lockstep\n", options_.bus.session,
                         scene_.name);
     if (!wait_until_ready()) return end(false);
@@ -204,7 +206,7 @@ class LockstepRun {
       exit_code_ = kExitFailed;
     }
     modules_.stop();
-    if (complete && options_.snapshot_at) unite_snapshot();
+    if (options_.snapshot_at) unite_parts();
     monitor_.poll();
     if (wall_time > 0) {
       SessionEnd said{scene_.name, seconds_from_ns(slowest_ns() - start_ns_),
@@ -216,19 +218,15 @@ class LockstepRun {
     return failures_.empty() ? kExitDone : kExitFailed;
   }
 
-  /// Of the parts that the modules have written.
-  void unite_snapshot() {
-    runtime::Snapshot whole;
-    std::vector<std::filesystem::path> parts;
-    for (const std::string& name : names_) {
-      if (!runtime::remembers(name)) continue;
-      parts.push_back(snapshot_part(options_, name));
-      runtime::Snapshot part = runtime::read_snapshot(parts.back(), scene_);
-      whole.time_ns = part.time_ns;
-      whole.modules.merge(part.modules);
+  /// A part may be there before the others have come so far.
+  void unite_parts() {
+    const double reached = seconds_from_ns(slowest_ns());
+    const bool passed = slowest_ns() >= ns_from_seconds(*options_.snapshot_at);
+    if (!passed || !unite_snapshot(options_, names_, scene_, log_)) {
+      const int code = tell_no_snapshot(options_, reached, log_);
+      if (exit_code_ == kExitDone) exit_code_ = code;
     }
-    runtime::write_snapshot(options_.snapshot, scene_, whole);
-    for (const auto& part : parts) std::filesystem::remove(part);
+    remove_snapshot_parts(options_, names_);
   }
 
   void write_summary(const SessionEnd& said) {
@@ -316,7 +314,9 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   const double save_at = options.snapshot_at.value_or(0);
   const auto save_if_due = [&] {
     if (!save || ns_from_seconds(session.time()) < ns_from_seconds(save_at)) return;
-    runtime::write_snapshot(options.snapshot, scene, session.snapshot());
+    const runtime::Snapshot snapshot = session.snapshot();
+    runtime::write_snapshot(options.snapshot, scene, snapshot);
+    tell_snapshot(options, snapshot.time_ns, log);
     save = false;
   };
   while (session.time() < duration && !stop.requested()) {
@@ -332,7 +332,7 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   const SessionEnd said{
       scene.name, reached - seconds_from_ns(start.time_ns), progress.wall_time(), {}, {}, true};
   write_run_summary(options, summary(monitor.tally(), said), out);
-  return kExitDone;
+  return save ? tell_no_snapshot(options, reached, log) : kExitDone;
 }
 
 }  // namespace palpate::launcher

@@ -8,7 +8,9 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/units.h"
+#include "modules/geometry/bounding_box.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/organ_shape.h"
@@ -129,20 +131,26 @@ std::string scene_hint(const std::filesystem::path& file) {
          "}, model: nodal_pressure}]";
 }
 
+void check_output(const MeshCommandOptions& options) {
+  if (options.output.empty()) return;
+  options.near.file.empty() ? check_can_write(options.output)
+                            : check_can_write_tetrahedra(options.output);
+  check_writable(options.output);
+  if (options.overwrite || !std::filesystem::exists(options.output)) return;
+  throw InputError(options.output.string() +
+                   ": is there already; give another name, or --overwrite");
+}
+
 void check_options(const MeshCommandOptions& options) {
   const NearMotion& near = options.near;
   const bool is_filled = holds_tetrahedra(options.input);
   if (near.file.empty()) {
-    if (near.radius || near.edge || near.growth) {
-      throw InputError("--radius-m, --edge-m and --growth are of --near TRAJECTORY");
-    }
     if (is_filled) {
       throw InputError(options.input.string() +
                        ": holds tetrahedra; this command prepares surfaces, and halves tetrahedra "
                        "with --near alone. " +
                        scene_hint(options.input));
     }
-    if (!options.output.empty()) check_can_write(options.output);
     return;
   }
   if (!near.columns.empty() && near.columns.size() != 4) {
@@ -153,7 +161,6 @@ void check_options(const MeshCommandOptions& options) {
     throw InputError(options.input.string() +
                      ": holds tetrahedra; --nodes, --largest and --fill-holes are of surfaces");
   }
-  if (!options.output.empty()) check_can_write_tetrahedra(options.output);
 }
 
 /// What was asked for beside the usual repairs.
@@ -192,19 +199,24 @@ Json::Value json_of(const MeshReport& report) {
   return value;
 }
 
+/// A mesh may be of something else than an organ; a scene refuses it.
+void doubt_size(const MeshCommandOptions& options, double size, Json::Value& json,
+                std::ostream& out) {
+  try {
+    launcher::check_organ_size("the surface", {options.input, options.unit}, size);
+  } catch (const InputError& doubt) {
+    out << "warning: " << doubt.what() << '\n';
+    json["warnings"].append(doubt.what());
+  }
+}
+
 /// The surface that was asked for, step by step told to `out`.
 TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
   TriangleSurface surface = read_surface(options.input, options.unit);
   const MeshReport found = check_surface(surface);
   out << options.input.string() << " (" << options.unit << ")\n";
   print_measures(found, out);
-  try {
-    launcher::check_organ_size("the surface", {options.input, options.unit},
-                               (found.max_corner - found.min_corner).maxCoeff());
-  } catch (const InputError& doubt) {  // a mesh may be of something else; a scene refuses it
-    out << "warning: " << doubt.what() << '\n';
-    json["warnings"].append(doubt.what());
-  }
+  doubt_size(options, (found.max_corner - found.min_corner).maxCoeff(), json, out);
   RepairLog log = repair_surface(surface);
   if (options.fill_holes || options.largest) {
     for (auto& action : mend(surface, options)) log.actions.push_back(std::move(action));
@@ -239,27 +251,27 @@ TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostrea
   TetMesh mesh = read_tetrahedra(options.input);
   const double scale = metres_per_unit(options.unit);
   for (Vec3& node : mesh.nodes) node *= scale;
+  out << options.input.string() << " (" << options.unit << ")\n";
   try {
-    shape_of(mesh);
+    doubt_size(options, bounding_box(shape_of(mesh).surface.nodes).sizes().maxCoeff(), json, out);
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }
-  out << options.input.string() << " (" << options.unit << ")\n";
   return mesh;
 }
 
 /// The tetrahedra that were asked for, step by step told to `out`.
 TetMesh refine(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
+  const SphereWay way = read_way(options.near);  // first: what is wrong with it is soon told
   const TetMesh coarse = filled(options, json, out);
   const auto counts = [](const TetMesh& mesh) {
     return std::to_string(mesh.nodes.size()) + ", " + std::to_string(mesh.tetrahedra.size());
   };
   out << "filled\n";
   print_line(out, "nodes, tetrahedra", counts(coarse));
-  std::vector<std::string> notes;
-  const auto [mesh, refinement] = refined_near(coarse, options.near, notes);
+  const auto [mesh, refinement] = refined_near(coarse, options.near, way);
   out << "near " << options.near.file.string() << '\n';
-  for (const std::string& note : notes) {
+  for (const std::string& note : way.notes) {
     out << "warning: " << note << '\n';
     json["warnings"].append(note);
   }
@@ -281,6 +293,7 @@ TetMesh refine(const MeshCommandOptions& options, Json::Value& json, std::ostrea
 
 void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
   check_options(options);
+  check_output(options);
   Json::Value json;
   json["file"] = options.input.string();
   std::ostringstream unheard;

@@ -18,13 +18,15 @@ struct MeshCommandOptions {
   std::string unit = "m";      ///< of the input's numbers, see metres_per_unit()
   bool largest = false;        ///< keep the shell that encloses most
   bool fill_holes = false;     ///< close what is open
+  bool overwrite = false;      ///< a file that is there already
   bool json = false;           ///< the report as JSON
   NearMotion near = {};        ///< fills it with tetrahedra, small where this touches
 };
 
 /// Reads, repairs, resamples and refines where asked, and prints a one-screen report to `out`;
 /// writes the result only if it holds a volume. What is wrong goes to `err`.
-/// @return kExitDone, kExitBadInput (not written), or kExitFailed if writing failed
+/// @return kExitDone, kExitBadInput (not written, or not replaced), or kExitFailed if writing
+/// failed
 int run_mesh_command(const MeshCommandOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace palpate::geometry

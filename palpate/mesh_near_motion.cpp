@@ -11,6 +11,7 @@
 #include "modules/scene/assets.h"
 #include "modules/scene/touched_places.h"
 #include "modules/trajectories/trajectory_file.h"
+#include "palpate/scene_doubts.h"
 
 namespace palpate::geometry {
 namespace {
@@ -35,31 +36,27 @@ Pose place_of(const NearMotion& motion) {
   return place;
 }
 
-/// Where the sphere was, a stride apart at most, and no nearer while it stays about.
-std::vector<Vec3> way_of(const NearMotion& motion, std::vector<std::string>& notes) {
-  scene::TrajectoryDevice device;
-  device.file = motion.file;
-  device.length_unit = motion.unit;
-  device.columns = motion.columns;
-  const Pose place = place_of(motion);
-  const double stride = kStride * *motion.radius;
-  std::vector<Vec3> way;
-  for (const auto& [time, pose] : trajectories::read_trajectory(device, notes)) {
-    const Vec3 to = place.to_world(pose.position);
-    if (way.empty()) way.push_back(to);
-    const Vec3 from = way.back();
+/// Calls `look` with places a stride apart at most, and no nearer while the sphere stays about;
+/// where it cannot touch none.
+template <class Look>
+void walk(const SphereWay& way, const Eigen::AlignedBox3d& reach, double stride, const Look& look) {
+  Vec3 from = way.places.front();
+  look(from);
+  for (const Vec3& to : way.places) {
     const double distance = (to - from).norm();
     if (distance < stride) continue;
-    const int parts = static_cast<int>(std::ceil(distance / stride));
-    for (int k = 1; k <= parts; ++k) way.push_back(from + (to - from) * k / parts);
+    Eigen::AlignedBox3d passed(from);
+    const auto parts = std::llround(std::ceil(distance / stride));
+    for (long long k = 1; passed.extend(to).intersects(reach) && k <= parts; ++k) {
+      look(Vec3(from + (to - from) * double(k) / double(parts)));
+    }
+    from = to;
   }
-  return way;
 }
 
-InputError untouched(const NearMotion& motion, const std::vector<Vec3>& way,
-                     const TriangleSurface& skin) {
+InputError untouched(const NearMotion& motion, const SphereWay& way, const TriangleSurface& skin) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Vec3& x : way) {
+  for (const Vec3& x : way.places) {
     for (const Vec3& node : skin.nodes) nearest = std::min(nearest, (node - x).norm());
   }
   return InputError(fmt::format(
@@ -71,19 +68,35 @@ InputError untouched(const NearMotion& motion, const std::vector<Vec3>& way,
 
 }  // namespace
 
-TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion,
-                         std::vector<std::string>& notes) {
+SphereWay read_way(const NearMotion& motion) {
+  scene::TrajectoryDevice device;
+  device.file = motion.file;
+  device.length_unit = motion.unit;
+  device.columns = motion.columns;
+  const Pose place = place_of(motion);
+  SphereWay way;
+  Eigen::AlignedBox3d box;
+  for (const auto& [time, pose] : trajectories::read_trajectory(device, way.notes)) {
+    way.places.push_back(place.to_world(pose.position));
+    box.extend(way.places.back());
+  }
+  const std::string doubt =
+      launcher::doubt_about_extent(motion.file.string(), box.diagonal().norm());
+  if (!doubt.empty()) way.notes.push_back(doubt + " Then say --near-unit mm");
+  return way;
+}
+
+TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion, const SphereWay& way) {
   const TriangleSurface skin = shape_of(mesh).surface;
   const double radius = *motion.radius;
   Eigen::AlignedBox3d reach;
   for (const Vec3& node : skin.nodes) reach.extend(node);
   reach.min().array() -= radius;
   reach.max().array() += radius;
-  const std::vector<Vec3> way = way_of(motion, notes);
   std::vector<scene::SphereRegion> balls;
-  for (const Vec3& x : way) {
+  walk(way, reach, kStride * radius, [&](const Vec3& x) {
     if (reach.contains(x)) scene::add_touched(skin, {x, x, radius}, balls);
-  }
+  });
   if (balls.empty()) throw untouched(motion, way, skin);
   TouchedMesh touched;
   touched.refine.near = {balls.begin(), balls.end()};

@@ -29,10 +29,16 @@ struct TouchedMesh {
   scene::Refinement refine;  ///< by which
 };
 
-/// @param notes  out: what is said of the recording
-/// @throws InputError naming the file that cannot be read, a motion that touches nothing, or a
-/// place that is none
-TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion,
-                         std::vector<std::string>& notes);
+/// Where the sphere was, sample by sample, in the mesh's frame.
+struct SphereWay {
+  std::vector<Vec3> places;
+  std::vector<std::string> notes;  ///< what is to be said of the recording
+};
+
+/// @throws InputError naming the file that cannot be read, or an option that is wrong
+SphereWay read_way(const NearMotion& motion);
+
+/// @throws InputError for a way that touches nothing, or a mesh that gets too large
+TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion, const SphereWay& way);
 
 }  // namespace palpate::geometry

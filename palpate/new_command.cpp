@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/units.h"
 #include "modules/geometry/bounding_box.h"
 #include "modules/geometry/mesh_prepare.h"
@@ -173,9 +174,7 @@ int new_command(const NewOptions& options, std::ostream& out) {
   if (std::filesystem::exists(output)) {
     throw InputError(output.string() + ": is there already; --output names another");
   }
-  if (!std::filesystem::is_directory(std::filesystem::absolute(output).parent_path())) {
-    throw InputError(output.string() + ": its folder does not exist");
-  }
+  check_writable(output);
   const Guess guess = unit_of(options);
   auto surface = geometry::load_organ_surface(options.mesh, guess.unit, 0);
   check_organ_size(options.mesh.string(), {options.mesh, guess.unit},

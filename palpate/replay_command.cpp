@@ -1,19 +1,21 @@
 #include "palpate/replay_command.h"
 
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <set>
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/recording/commands.h"
 #include "modules/recording/player.h"
-#include "modules/recording/sample_reader.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/module_group.h"
+#include "palpate/recorded_scene.h"
 #include "palpate/rerun.h"
 #include "palpate/run_command.h"
 #include "palpate/session_claim.h"
@@ -21,30 +23,22 @@
 namespace palpate::launcher {
 namespace {
 
-/// The resolved text of the scene that was recorded.
-std::string recorded_scene(const std::filesystem::path& recording) {
-  recording::SampleReader reader(recording);
-  while (const auto sample = reader.next()) {
-    messages::AnyMessage message;
-    if (sample->topic->name != bus::kScene.name) continue;
-    if (sample->topic->type->decode(sample->payload, message) != nullptr) continue;
-    if (const auto* scene = std::get_if<SceneDescription>(&message)) return scene->resolved_text;
-  }
-  throw InputError(recording.string() + ": holds no scene: it began after the session or is torn");
-}
-
 int show(const std::filesystem::path& recording, const Playing& playing, const RunOptions& run,
          std::ostream& out, std::ostream& log) {
+  if (std::getenv("PALPATE_KEYS") != nullptr) {
+    throw InputError(
+        "--secure, or PALPATE_KEYS: no key lets one process say what all have said; a recording is "
+        "shown without, in a session of its own");
+  }
   // Samples of then among those of now would move a running session's organs.
   const SessionClaim claim(run.bus.session, run.bus.domain);
   const runtime::StopSignal stop;
   const TemporaryFolder folder;
   RunOptions viewing = run;
-  viewing.scene = folder.write("scene.yaml", recorded_scene(recording));
+  viewing.scene = folder.write("scene.yaml", recorded_scene(recording).resolved_text);
   viewing.only = {"visualizer"};
   viewing.record.clear();
   const auto commands = module_commands(viewing, program_folder());
-  check_keys_of(commands);
   ModuleGroup visualizer(commands, log);
   const bool shown = visualizer.any_running();
   if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
@@ -80,6 +74,25 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
 
 }  // namespace
 
+void check_replay_options(const std::vector<std::string>& given, const Playing& playing,
+                          const RunOptions& run) {
+  static const std::set<std::string> kShowing{
+      "--start",       "--rate",   "--step",     "--session",          "--domain",
+      "--secure",      "--frames", "--headless", "--frame-interval-s", "--no-visualizer",
+      "--no-realtime", "--close"};
+  static const std::set<std::string> kRerun{
+      "--rerun",         "--set",      "--duration",   "--record", "--overwrite",
+      "--record-topics", "--headless", "--in-process", "--domain"};  // the last by the environment
+  const bool rerun = !playing.rerun.empty();
+  if (!rerun && !run.scene.empty()) return;
+  for (const std::string& option : given) {
+    if ((rerun ? kRerun : kShowing).contains(option)) continue;
+    throw InputError(option + (rerun ? ": does not go together with --rerun"
+                                     : ": of a replay with SCENE; without, the recording is shown "
+                                       "as it was"));
+  }
+}
+
 int replay_command(const std::filesystem::path& recording, const Playing& playing,
                    const RunOptions& run, std::ostream& out, std::ostream& log) {
   if (run.scene.empty() && playing.rerun.empty()) return show(recording, playing, run, out, log);
@@ -92,10 +105,11 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
   const TemporaryFolder folder;
   RunOptions again = run;
   if (!playing.rerun.empty()) {
-    if (run.scene.empty()) again.scene = folder.write("recorded.yaml", recorded_scene(recording));
+    if (run.scene.empty())
+      again.scene = folder.write("recorded.yaml", recorded_scene(recording).resolved_text);
     const scene::Scene scene = scene::load_scene_with(again.scene, run.settings);
     again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
-    return rerun(recording, playing.rerun, again, out, log);
+    return rerun(recording, playing.rerun, again, !run.scene.empty(), out, log);
   }
   const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),
                                                   recording, folder.path(), log);

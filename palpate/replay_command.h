@@ -2,6 +2,8 @@
 #pragma once
 
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 #include "palpate/run_options.h"
 
@@ -13,6 +15,13 @@ struct Playing {
   bool step = false;                    ///< a picture for each press of Enter
   std::vector<std::string> rerun = {};  ///< stages that are computed anew (rerun.h); empty: none
 };
+
+/// A recording that is only shown, or of which some stages are computed anew, takes few of the
+/// options of a run.
+/// @param given  names of options
+/// @throws InputError naming one that would do nothing
+void check_replay_options(const std::vector<std::string>& given, const Playing& playing,
+                          const RunOptions& run);
 
 /// Without a scene in `run`: plays every sample into the session, with a visualizer that shows it
 /// (unless run.headless without frames). With one: runs that scene, every probe of the recording

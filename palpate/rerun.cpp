@@ -8,14 +8,15 @@
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
-#include "modules/recording/mcap_writer.h"
 #include "modules/recording/recorder_stage.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/session_samples.h"
+#include "modules/runtime/session.h"
 #include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/scene_reader.h"
+#include "palpate/recorded_scene.h"
 #include "palpate/session/in_process.h"
 
 namespace palpate::launcher {
@@ -25,37 +26,85 @@ namespace {
 /// of their source times.
 constexpr std::int64_t kAheadNs = kNanosecondsPerSecond / 4;
 
-/// When a session in real time began, on the clock of source times; 0 of one in lockstep, whose
-/// source times are simulated [ns].
-/// @throws InputError if it was paused or reset: there is no one time to compute it in
-std::int64_t start_of(const std::filesystem::path& recording) {
-  recording::SampleReader reader(recording);
+/// What is known of a session once all of its recording is read.
+struct Recorded {
+  /// When it began in real time, on the clock of source times; 0 of one in lockstep, whose source
+  /// times are simulated [ns].
   std::int64_t start_ns = 0;
+  std::optional<std::int64_t> first_ns;  ///< earliest of its streams, simulated
+  std::set<std::string_view> topics;     ///< that have samples
+  std::vector<std::string> warnings;
+};
+
+/// @throws InputError if it was paused or reset: there is no one time to compute it in
+void note_command(const SessionControl& control, const std::filesystem::path& recording,
+                  Recorded& recorded) {
+  const bool goes_on = recorded.start_ns != 0 && control.command == SessionCommand::kStart &&
+                       control.start_time_ns != recorded.start_ns;
+  if (goes_on || control.reset_count > 0 || control.command == SessionCommand::kPause) {
+    throw InputError(recording.string() +
+                     ": its session was paused or reset; --rerun takes one that went on");
+  }
+  if (control.command == SessionCommand::kStart) recorded.start_ns = control.start_time_ns;
+}
+
+Recorded read_through(const std::filesystem::path& recording) {
+  recording::SampleReader reader(recording);
+  Recorded recorded;
   messages::AnyMessage message;
   while (const auto sample = reader.next()) {
+    recorded.topics.insert(sample->topic->name);
+    const runtime::Wire* wire = runtime::find_wire(sample->topic->name);
+    if (wire != nullptr && wire->every_cycle) {
+      const std::int64_t time_ns = messages::header_of(sample->payload).sim_time_ns;
+      recorded.first_ns = std::min(recorded.first_ns.value_or(time_ns), time_ns);
+    }
     if (sample->topic->name != bus::kSessionControl.name) continue;
     if (sample->topic->type->decode(sample->payload, message) != nullptr) continue;
-    const auto& control = std::get<SessionControl>(message);
-    const bool goes_on = start_ns != 0 && control.command == SessionCommand::kStart &&
-                         control.start_time_ns != start_ns;
-    if (goes_on || control.reset_count > 0 || control.command == SessionCommand::kPause) {
-      throw InputError(recording.string() +
-                       ": its session was paused or reset; --rerun takes one that went on");
-    }
-    if (control.command == SessionCommand::kStart) start_ns = control.start_time_ns;
+    note_command(std::get<SessionControl>(message), recording, recorded);
   }
-  return start_ns;
+  recorded.warnings = reader.warnings();
+  return recorded;
+}
+
+/// @throws InputError if it is not there from the session's start on, or if what the stages read of
+///         the others is not there
+void check_inputs(const std::filesystem::path& recording, const Recorded& recorded,
+                  const std::set<std::string>& stages, const scene::Scene& scene) {
+  if (!recorded.first_ns) {
+    throw InputError(recording.string() + ": holds no sample of a session's topics");
+  }
+  const std::int64_t late_ns = recorded.start_ns == 0 ? 0 : kAheadNs;
+  if (*recorded.first_ns > late_ns) {
+    throw InputError(fmt::format(
+        "{}: begins {:g} s after its session, or at a snapshot; --rerun needs all before, too",
+        recording.string(), seconds_from_ns(*recorded.first_ns)));
+  }
+  const bool driven = std::ranges::any_of(scene.probes, [](const scene::Probe& probe) {
+    return std::holds_alternative<scene::TopicDevice>(probe.device);
+  });
+  for (const runtime::Wire& wire : runtime::session_wires()) {
+    const bool needed = wire.writer.empty() ? wire.topic == bus::kProbeInput.name && driven
+                                            : !stages.contains(std::string(wire.writer));
+    if (!needed || recorded.topics.contains(wire.topic)) continue;
+    for (const std::string_view reader : wire.readers) {
+      if (!stages.contains(std::string(reader))) continue;
+      throw InputError(fmt::format("{}: holds no {}, which {} reads (--record-topics all)",
+                                   recording.string(), wire.topic, reader));
+    }
+  }
 }
 
 /// Says what others said when they were recorded, on the session's clock.
 class RecordedInputs {
  public:
   /// @param stages  that say what they say themselves
-  RecordedInputs(const std::filesystem::path& recording, const std::set<std::string>& stages,
-                 bus::Bus& bus)
-      : reader_(recording), session_(bus), start_ns_(start_of(recording)) {
+  RecordedInputs(const std::filesystem::path& recording, std::int64_t start_ns,
+                 const std::set<std::string>& stages, bus::Bus& bus)
+      : reader_(recording), session_(bus), start_ns_(start_ns) {
     for (const runtime::Wire& wire : runtime::session_wires()) {
-      if (!stages.contains(std::string(wire.writer))) topics_.insert(wire.topic);
+      const bool anew = stages.contains(std::string(wire.writer));
+      if (!anew && wire.topic != bus::kScene.name) topics_.insert(wire.topic);
     }
     next_ = reader_.next();
   }
@@ -66,7 +115,6 @@ class RecordedInputs {
   }
   /// Nothing is left, and the newest sample was said before `time_ns`.
   bool at_end(std::int64_t time_ns) const { return !next_ && newest_ns_ < time_ns; }
-  bool empty() const { return newest_ns_ < 0; }
   /// Of topics that were read, those of which only some samples are there.
   const std::set<std::string>& thinned() const { return thinned_; }
 
@@ -121,18 +169,34 @@ void check_stages(const std::vector<std::string>& stages, const RunOptions& run)
 }  // namespace
 
 int rerun(const std::filesystem::path& recording, const std::vector<std::string>& names,
-          const RunOptions& run, std::ostream& out, std::ostream& log) {
+          const RunOptions& run, bool another_scene, std::ostream& out, std::ostream& log) {
   check_stages(names, run);
   const runtime::StopSignal stop;
   const std::set<std::string> stages(names.begin(), names.end());
   const scene::Scene scene = scene::load_scene(run.scene);
+  const SceneDescription told = recorded_scene(recording);
+  check_scene_of_rerun(recording, told, scene, stages, another_scene);
+  const Recorded recorded = read_through(recording);
+  for (const std::string& line : recorded.warnings) log << "palpate: warning: " << line << '\n';
+  check_inputs(recording, recorded, stages, scene);
+  const std::string anew = fmt::format("{}", fmt::join(stages, ", "));
   runtime::WorkerTeam team(scene.deformation_threads);
   session::InProcess session(scene, session::load_assets(scene), options_for(stages, team));
+  auto scenes = session.bus().writer(bus::kScene);
+  SceneDescription description = runtime::scene_description(scene);
+  description.header.source_time_ns = runtime::CycleGrid::kSetUp;
+  scenes.write(description);
   session.add("recorder", [&](bus::Bus& bus) {
-    return std::make_unique<recording::RecorderStage>(bus, run.record,
-                                                      recording::TopicSelection(run.record_topics));
+    auto recorder = std::make_unique<recording::RecorderStage>(
+        bus, run.record, recording::TopicSelection(run.record_topics));
+    recorder->add_metadata({recording::kRerunMetadata,
+                            {{"stages", anew},
+                             {"recording", recording.filename().string()},
+                             {"scene", told.name},
+                             {"digest", told.digest}}});
+    return recorder;
   });
-  RecordedInputs inputs(recording, stages, session.bus());
+  RecordedInputs inputs(recording, recorded.start_ns, stages, session.bus());
   const std::int64_t end_ns =
       run.duration > 0 ? ns_from_seconds(run.duration) : std::numeric_limits<std::int64_t>::max();
   std::int64_t now_ns = 0;
@@ -141,16 +205,13 @@ int rerun(const std::filesystem::path& recording, const std::vector<std::string>
     inputs.say_until(now_ns);
     if (inputs.at_end(now_ns) || now_ns >= end_ns) break;
   }
-  if (inputs.empty()) {
-    throw InputError(recording.string() + ": holds no sample of a session's topics");
-  }
   session.finish(seconds_from_ns(now_ns));
   for (const std::string& topic : inputs.thinned()) {
     log << "palpate: warning: of " << topic
         << " only some samples were recorded (--record-topics all has them all)\n";
   }
-  out << fmt::format("scene {}: {} computed anew for {:g} s on {}\n", scene.name,
-                     fmt::join(names, ", "), seconds_from_ns(now_ns), recording.string());
+  out << fmt::format("scene {}: {} computed anew for {:g} s on {}\n", scene.name, anew,
+                     seconds_from_ns(now_ns), recording.string());
   return kExitDone;
 }
 

@@ -13,9 +13,10 @@ namespace palpate::launcher {
 
 /// @param stages  haptics, collision, deformation: which are computed anew
 /// @param run     its scene; `record` gets what was recorded of the others and what these say
-/// @throws InputError for a recording that cannot stand in: of a session that was reset, without a
-///         topic that is needed
+/// @param another_scene  than the recorded one, be it with other settings
+/// @throws InputError for a recording that cannot stand in: of a session that was reset, or from
+///         later than its start, without a topic that is needed, of another organ
 int rerun(const std::filesystem::path& recording, const std::vector<std::string>& stages,
-          const RunOptions& run, std::ostream& out, std::ostream& log);
+          const RunOptions& run, bool another_scene, std::ostream& out, std::ostream& log);
 
 }  // namespace palpate::launcher

@@ -10,6 +10,7 @@
 #include "modules/bus/dds_bus.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/core/units.h"
 #include "modules/recording/mcap_writer.h"
@@ -23,6 +24,7 @@
 #include "palpate/hang_watch.h"
 #include "palpate/lockstep_run.h"
 #include "palpate/module_group.h"
+#include "palpate/run_snapshot.h"
 #include "palpate/scene_doubts.h"
 #include "palpate/session_claim.h"
 #include "palpate/session_monitor.h"
@@ -281,6 +283,7 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   RunOptions options = asked;
   check_recording(options);
   check_snapshots(options);
+  if (!options.summary.empty()) check_writable(options.summary);
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const runtime::StopSignal stop;  // or a signal would leave the folder

@@ -16,6 +16,7 @@
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/wiring.h"
 #include "palpate/hosts_file.h"
+#include "palpate/run_snapshot.h"
 
 namespace palpate::launcher {
 namespace {
@@ -110,39 +111,6 @@ std::vector<std::string> participants_of(const RunOptions& options,
     if (wanted(options, module)) all.push_back(module);
   }
   return all;
-}
-
-void check_snapshots(const RunOptions& options) {
-  const bool from = !options.from_snapshot.empty();
-  if (!options.snapshot_at && options.snapshot.empty() && !from) return;
-  if (options.snapshot_at.has_value() == options.snapshot.empty()) {
-    throw InputError(options.snapshot_at ? "--snapshot-at: where to? Give --snapshot FILE, too"
-                                         : "--snapshot: when? Give --snapshot-at SECONDS, too");
-  }
-  if (!options.lockstep && !options.in_process) {
-    throw InputError(fmt::format(
-        "{}: of --lockstep and --in-process; in real time no two processes are at the same instant",
-        from ? "--from-snapshot" : "--snapshot-at"));
-  }
-  if (!options.hosts.empty() && options.snapshot_at) {
-    throw InputError("--snapshot-at: not with --hosts; its parts would lie on several hosts");
-  }
-  if (!options.snapshot_at) return;
-  runtime::check_snapshot_name(options.snapshot, options.overwrite);
-  if (!options.lockstep) return;
-  // Parts are taken away in the end: none may be a file that somebody keeps.
-  const auto folder = std::filesystem::absolute(options.snapshot).parent_path();
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string module = entry.path().extension().string();
-    if (module.size() < 2 || !runtime::module_named(module.substr(1))) continue;
-    if (entry.path() == snapshot_part(options, module.substr(1))) {
-      runtime::check_snapshot_name(entry.path(), true);
-    }
-  }
-}
-
-std::filesystem::path snapshot_part(const RunOptions& options, const std::string& module) {
-  return std::filesystem::absolute(options.snapshot).string() + "." + module;
 }
 
 void apply_hosts(RunOptions& options) {

@@ -49,12 +49,6 @@ struct ModuleCommand {
   bool reports_status = true;  ///< publishes module_status: the session waits until it is ready
 };
 
-/// @throws InputError where what it says of snapshots and recordings does not go together, or a
-/// file is there already
-void check_snapshots(const RunOptions& options);
-/// Where a module of a lockstep writes its part of options.snapshot.
-std::filesystem::path snapshot_part(const RunOptions& options, const std::string& module);
-
 /// Fills in what `hosts` says: modules and participants, and for this process and its children
 /// PALPATE_INTERFACES and PALPATE_PEERS. Without `hosts`: nothing.
 /// @throws InputError as load_hosts() does; for --hosts without --host or beside --only; where a

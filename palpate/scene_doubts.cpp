@@ -152,10 +152,8 @@ class Doubts {
     const bool recorded = std::holds_alternative<scene::TrajectoryDevice>(probe.device);
     const bool scripted = std::holds_alternative<scene::ScriptedDevice>(probe.device);
     if (!recorded && !scripted) return;
-    if (approach.extent > kHandReach) {
-      say("{} moves over {}: are its positions in millimetres? {}", owner,
-          length_text(approach.extent),
-          recorded ? "Then say length_unit: mm" : "They must be metres");
+    if (const auto doubt = doubt_about_extent(owner, approach.extent); !doubt.empty()) {
+      say("{} {}", doubt, recorded ? "Then say length_unit: mm" : "They must be metres");
     }
     if (approach.fastest > kHandSpeed) {
       say("{} moves at up to {:.3g} m/s, faster than a hand: are positions in millimetres, or "
@@ -209,6 +207,12 @@ ProbeMotion motion_of(const scene::Scene& scene, std::size_t index,
       scene::form_of(probe.shape, scene::load_probe_mesh(probe)), skins,
       [&](double time) { return device->read(time).pose; }, duration_of(scene));
   return motion;
+}
+
+std::string doubt_about_extent(const std::string& owner, double extent) {
+  if (!(extent > kHandReach)) return "";
+  return fmt::format("{} moves over {}: are its positions in millimetres?", owner,
+                     length_text(extent));
 }
 
 void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size) {

@@ -48,6 +48,10 @@ trajectories::Progress progress_on(std::ostream& log);
 /// @throws InputError for a size that no organ has, naming the likely unit
 void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size);
 
+/// "OWNER moves over 120 m: are its positions in millimetres?", where a hand would not; else empty.
+/// @param extent  [m]
+std::string doubt_about_extent(const std::string& owner, double extent);
+
 /// The skins of all organs.
 /// @throws InputError as scene::load_skin() does
 std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene);

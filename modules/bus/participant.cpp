@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "modules/bus/addresses.h"
+#include "modules/bus/dds_words.h"
 #include "modules/bus/filtered_transport.h"
 #include "modules/bus/keys.h"
 #include "modules/bus/packet_filter.h"
@@ -57,6 +58,7 @@ Entity* demand_created(Entity* entity, const std::string& what) {
 
 Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
   check(options);
+  tell_plainly();
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
   addresses_ = addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS"));
   dds::DomainParticipantQos qos;

@@ -12,6 +12,7 @@
 #include "modules/core/units.h"
 #include "modules/messages/csv.h"
 #include "modules/messages/values.h"
+#include "modules/recording/recorder.h"
 
 namespace palpate::recording {
 namespace {
@@ -166,6 +167,36 @@ void check_names(const DiffOptions& options) {
   }
 }
 
+/// When the streams of a session in lockstep begin, simulated [ns]; none of one in real time.
+std::optional<std::int64_t> beginning_of(const std::filesystem::path& file) {
+  SampleReader reader(file);
+  while (const auto sample = reader.next()) {
+    if (sample->topic->delivery != bus::Delivery::kStream) continue;
+    const McapMap session = reader.metadata(kSessionMetadata);
+    const auto clock = session.find("clock");
+    if (clock == session.end() || clock->second != kSimulated) break;
+    return sample->received_time_ns;
+  }
+  return std::nullopt;
+}
+
+/// Since when both sessions were heard, where one began later.
+std::optional<std::int64_t> common_beginning(const DiffOptions& options) {
+  const auto a = beginning_of(options.a), b = beginning_of(options.b);
+  return a && b && *a != *b ? std::optional(std::max(*a, *b)) : std::nullopt;
+}
+
+/// Said at `from_ns` or later; the scene, told before all, is compared in any case.
+std::optional<RecordedSample> next_since(const std::optional<std::int64_t>& from_ns,
+                                         SampleReader& reader) {
+  auto sample = reader.next();
+  while (sample && from_ns && sample->received_time_ns < *from_ns &&
+         sample->topic->name != bus::kScene.name) {
+    sample = reader.next();
+  }
+  return sample;
+}
+
 }  // namespace
 
 bool RecordingDifference::equal() const {
@@ -177,18 +208,20 @@ bool RecordingDifference::equal() const {
 
 RecordingDifference compare(const DiffOptions& options, std::size_t most_waiting) {
   check_names(options);
+  const auto from_ns = common_beginning(options);
   SampleReader a(options.a), b(options.b);
   Comparison comparison(options, most_waiting);
   // In turns: of recordings of one session little waits for the other.
   for (bool more_a = true, more_b = true; more_a || more_b;) {
-    auto sample_a = more_a ? a.next() : std::nullopt;
-    auto sample_b = more_b ? b.next() : std::nullopt;
+    auto sample_a = more_a ? next_since(from_ns, a) : std::nullopt;
+    auto sample_b = more_b ? next_since(from_ns, b) : std::nullopt;
     more_a = sample_a.has_value();
     more_b = sample_b.has_value();
     if (more_a) comparison.add_a(std::move(*sample_a));
     if (more_b) comparison.add_b(std::move(*sample_b));
   }
   RecordingDifference difference = comparison.finish();
+  difference.from_ns = from_ns;
   for (const SampleReader* file : {&a, &b}) {
     for (std::string& line : file->warnings()) difference.warnings.push_back(std::move(line));
   }
@@ -196,6 +229,10 @@ RecordingDifference compare(const DiffOptions& options, std::size_t most_waiting
 }
 
 void print_difference(const RecordingDifference& difference, std::ostream& out) {
+  if (difference.from_ns) {
+    out << "compared from " << seconds_from_ns(*difference.from_ns)
+        << " s of the session on, where one of them begins\n\n";
+  }
   if (difference.first) {
     const Difference& first = *difference.first;
     out << "first difference at " << seconds_from_ns(first.sim_time_ns)

@@ -47,9 +47,13 @@ struct RecordingDifference {
   std::optional<Difference> first;  ///< earliest in simulated time
   std::map<std::string, TopicDifference> topics;
   std::vector<std::string> warnings;  ///< SampleReader::warnings() of both
+  /// Of two in lockstep, one of which goes on from a snapshot: since when they are compared.
+  std::optional<std::int64_t> from_ns;
   bool equal() const;
 };
 
+/// Of two sessions in lockstep that begin at different times what was said before the later one is
+/// left out: one that goes on from a snapshot is compared with one never interrupted.
 /// @throws InputError as SampleReader does, for a name to ignore that is none, or where more than
 /// `most_waiting` bytes of one would have to wait for the other;
 /// std::runtime_error if the CSV file cannot be written

@@ -19,13 +19,29 @@
 namespace palpate::recording {
 namespace {
 
-// Sequence numbers of one writer.
-struct WriterSequence {
+std::string entry(const McapMap& map, const std::string& key) {
+  const auto found = map.find(key);
+  return found == map.end() ? "?" : printable(found->second);
+}
+
+// Sequence numbers.
+struct Sequence {
   std::uint64_t first = 0, last = 0, samples = 0;
+  void add(std::uint64_t number) {
+    if (samples++ == 0) first = last = number;
+    first = std::min(first, number);
+    last = std::max(last, number);
+  }
   std::uint64_t missing() const {
     const std::uint64_t expected = last - first + 1;
     return expected > samples ? expected - samples : 0;
   }
+};
+
+// Of one writer; and of what it said once the session ran: one that goes on from a snapshot begins
+// with the states of then, told again.
+struct WriterSequence {
+  Sequence all, running;
 };
 
 class Summarizer {
@@ -49,10 +65,13 @@ class Summarizer {
   }
 
   void finish(RecordingSummary& summary) {
+    const bool goes_on =
+        entry(summary.session, "clock") == kSimulated && first_sim_ns_.value_or(0) > 0;
     for (const auto& [channel, writer] : writers_) {
       TopicSummary& topic = topics_[channel.first];
       ++topic.writers;
-      if (!topic.thinned) topic.missing += writer.missing();
+      const Sequence& counted = goes_on ? writer.running : writer.all;
+      if (!topic.thinned && counted.samples > 0) topic.missing += counted.missing();
     }
     summary.first_ns = topics_.empty() ? 0 : std::numeric_limits<std::int64_t>::max();
     for (const auto& [name, topic] : topics_) {
@@ -64,25 +83,21 @@ class Summarizer {
 
  private:
   void add_sequence(const RecordedSample& sample, const McapMap& about_channel) {
-    const std::uint64_t sequence = messages::header_of(sample.payload).sequence;
+    const Header header = messages::header_of(sample.payload);
     const auto named = about_channel.find("writer");
     const std::string name =
         named == about_channel.end() ? std::to_string(sample.channel) : named->second;
     WriterSequence& writer = writers_[{sample.topic->name, name}];
-    if (writer.samples == 0) writer.first = writer.last = sequence;
-    writer.first = std::min(writer.first, sequence);
-    writer.last = std::max(writer.last, sequence);
-    ++writer.samples;
+    writer.all.add(header.sequence);
+    if (header.sim_time_ns > 0) writer.running.add(header.sequence);
+    const bool stream = sample.topic->delivery == bus::Delivery::kStream;
+    if (stream && !first_sim_ns_) first_sim_ns_ = header.sim_time_ns;
   }
 
   std::map<std::string_view, TopicSummary> topics_;
   std::map<std::pair<std::string_view, std::string>, WriterSequence> writers_;
+  std::optional<std::int64_t> first_sim_ns_;  ///< of streams
 };
-
-std::string entry(const McapMap& map, const std::string& key) {
-  const auto found = map.find(key);
-  return found == map.end() ? "?" : printable(found->second);
-}
 
 std::string fixed(double value, int decimals) {
   std::ostringstream stream;
@@ -155,6 +170,7 @@ RecordingSummary summarize(const std::filesystem::path& recording,
   summary.session = reader.metadata(kSessionMetadata);
   summary.scene = reader.metadata(kSceneMetadata);
   summary.cost = reader.metadata(kCostMetadata);
+  summary.rerun = reader.metadata(kRerunMetadata);
   summarizer.finish(summary);
   return summary;
 }
@@ -182,6 +198,11 @@ void print_summary(const RecordingSummary& summary, std::ostream& out) {
     out << "scene      " << entry(summary.scene, "name") << ", digest "
         << entry(summary.scene, "digest") << '\n';
   }
+  if (!summary.rerun.empty()) {
+    out << "rerun      " << entry(summary.rerun, "stages") << " computed anew; the rest is of "
+        << entry(summary.rerun, "recording") << ", scene " << entry(summary.rerun, "scene")
+        << ", digest " << entry(summary.rerun, "digest") << '\n';
+  }
   out << "duration   " << fixed(seconds_from_ns(summary.last_ns - summary.first_ns), 3) << " s\n";
   if (!summary.cost.empty()) {
     out << "recorder   " << cost_text(summary.cost, summary.file_bytes) << '\n';
@@ -200,6 +221,7 @@ void print_json(const RecordingSummary& summary, std::ostream& out) {
   for (const auto& [key, text] : summary.session) value["session"][key] = text;
   for (const auto& [key, text] : summary.scene) value["scene"][key] = text;
   for (const auto& [key, text] : summary.cost) value["recorder"][key] = text;
+  for (const auto& [key, text] : summary.rerun) value["rerun"][key] = text;
   value["duration_s"] = seconds_from_ns(summary.last_ns - summary.first_ns);
   value["topics"] = Json::arrayValue;
   for (const TopicSummary& topic : summary.topics) {

@@ -35,6 +35,7 @@ struct RecordingSummary {
   McapMap cost;                       ///< recorder.h: kCostMetadata; empty if torn, or in lockstep
   McapMap session;                    ///< recorder.h: kSessionMetadata
   McapMap scene;                      ///< recorder.h: kSceneMetadata; empty if no scene was heard
+  McapMap rerun;                      ///< recorder.h: kRerunMetadata; empty of a session's own
   std::int64_t first_ns = 0, last_ns = 0;  ///< receive times over all topics
   std::vector<TopicSummary> topics;        ///< those with samples, in the order of their names
 };

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_codec.h"
 
@@ -43,18 +44,15 @@ void check_recording_target(const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& why) {
     throw InputError(file.string() + ": cannot be recorded to: " + why);
   };
-  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
   std::error_code none;
-  if (!std::filesystem::is_directory(folder, none)) {
-    refuse("there is no folder " + folder.string());
+  const auto type = std::filesystem::symlink_status(file, none).type();
+  if (type != std::filesystem::file_type::not_found &&
+      !std::filesystem::is_regular_file(file, none))
+    refuse("it is there and no regular file");
+  // Not only what the file's mode says: parts may come beside it.
+  for (const auto& name : {file, std::filesystem::path(file.string() + ".part")}) {
+    if (const std::string why = why_not_writable(name); !why.empty()) refuse(why);
   }
-  // Not what the file's mode says: parts may come beside it.
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    refuse("the folder " + folder.string() + " may not be written to");
-  }
-  if (!std::filesystem::exists(std::filesystem::symlink_status(file, none))) return;
-  if (!std::filesystem::is_regular_file(file, none)) refuse("it is there and no regular file");
-  if (::access(file.c_str(), W_OK) != 0) refuse("it may not be written to");
   refuse_to_replace_what_is_no_recording(file);
 }
 

@@ -21,6 +21,9 @@ namespace palpate::recording {
 inline constexpr const char* kSessionMetadata = "palpate session";  ///< first record of the file
 inline constexpr const char* kCostMetadata = "palpate recorder";    ///< last: what it took
 inline constexpr const char* kSceneMetadata = "palpate scene";      ///< name, digest; once known
+/// Where only some stages were computed: `stages`; the rest is of `recording`, whose scene was
+/// `scene` with `digest`.
+inline constexpr const char* kRerunMetadata = "palpate rerun";
 
 /// Metadata `clock` of a session: the file's times are nanoseconds since 1970. Before, they were of
 /// the monotonic clock, and the entry was missing.

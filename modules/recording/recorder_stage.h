@@ -22,6 +22,7 @@ class RecorderStage : public runtime::Stage {
   runtime::Health cycle(const runtime::Cycle& now) override;
   void finish(const runtime::Cycle& now) override;
 
+  void add_metadata(const McapMetadata& metadata) { file_.add_metadata(metadata); }
   const SampleFile& file() const { return file_; }
 
  private:

@@ -25,6 +25,23 @@ void refuse_nan(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) refuse_nan(*command);
 }
 
+/// "a,,b": the parser passes over what is not there.
+/// @throws InputError for an empty entry of a list
+void refuse_empty_entries(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::Option* list = nullptr;
+  for (const std::string& word : words) {
+    const std::size_t sign = word.find('=');
+    const CLI::Option* option = app.get_option_no_throw(word.substr(0, sign));
+    if (option != nullptr && word.starts_with('-')) list = option;
+    if (list == nullptr || list->get_delimiter() != ',') continue;
+    if (option != nullptr && sign == std::string::npos) continue;
+    const std::string entries = "," + (option == nullptr ? word : word.substr(sign + 1)) + ",";
+    if (entries.find(",,") == std::string::npos) continue;
+    throw InputError(list->get_name() + " " + entries.substr(1, entries.size() - 2) +
+                     ": an entry between its commas is empty");
+  }
+}
+
 std::string refuse_empty(const std::string& path) {
   return path.empty() ? "an empty path names no file" : "";
 }
@@ -80,6 +97,8 @@ Option& Option::one_of(const std::vector<std::string>& words) {
 Option& Option::environment(const char* variable) { return option_->envname(variable), *this; }
 
 Option& Option::excludes(const Option& other) { return option_->excludes(other.option_), *this; }
+
+Option& Option::needs(const Option& other) { return option_->needs(other.option_), *this; }
 
 template <class T>
 Option Options::add(const char* names, T& value, const std::string& help) {
@@ -206,6 +225,16 @@ std::vector<std::string> Program::completions(const std::vector<std::string>& ty
   return words;
 }
 
+std::vector<std::string> Program::given() const {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app_->get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0 && !option->get_positional()) names.push_back(option->get_name());
+    }
+  }
+  return names;
+}
+
 std::vector<std::string> Program::typed(int argc, char** argv) const {
   std::vector<std::string> words(argv + 1, argv + argc);
   const bool has_commands = !app_->get_subcommands([](const CLI::App*) { return true; }).empty();
@@ -220,6 +249,10 @@ int Program::run(int argc, char** argv, const std::function<int()>& body) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   if (refuse_unknown(words)) return kExitBadInput;
   try {
+    for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
+      if (!words.empty() && command->get_name() == words[0]) refuse_empty_entries(*command, words);
+    }
+    refuse_empty_entries(*app_, words);
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // it takes the last first
     refuse_nan(*app_);
     refuse_overwriting(*files_);

@@ -30,6 +30,7 @@ class Option {
   Option& one_of(const std::vector<std::string>& words);
   Option& environment(const char* variable);  ///< whose value is the default
   Option& excludes(const Option& other);
+  Option& needs(const Option& other);
 
  private:
   CLI::Option* option_;
@@ -46,7 +47,8 @@ class Options {
   explicit Options(CLI::App& app) : app_(&app) {}
 
   /// An option ("-o,--out") or, without dashes, an argument ("SCENE"). NaN and empty paths are
-  /// refused; lists are separated by commas or spaces, arguments and paths by spaces alone.
+  /// refused, and so are empty entries of lists, which are separated by commas or spaces, arguments
+  /// and paths by spaces alone.
   /// @param value  what it sets: a number, text or path, an optional, vector or set of these
   template <class T>
   Option add(const char* names, T& value, const std::string& help);
@@ -83,6 +85,8 @@ class Program : public Options {
   /// Which words may stand last in what was typed behind the program's name: commands, or options
   /// of the command that was given.
   std::vector<std::string> completions(const std::vector<std::string>& typed) const;
+  /// Names of the options that were given behind the command, "--frames", when its job runs.
+  std::vector<std::string> given() const;
   /// Where what is thrown goes, in one line. Else to stderr, led by the program's name.
   void report_to(std::function<void(const std::string&)> report) { report_ = std::move(report); }
 

@@ -1,7 +1,5 @@
 #include "modules/runtime/snapshot.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstring>
 #include <fstream>
@@ -10,6 +8,7 @@
 
 #include "modules/core/crc32.h"
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/state_archive.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_reader.h"
@@ -65,10 +64,8 @@ bool begins_as_snapshot(const std::filesystem::path& file) {
 void check_snapshot_name(const std::filesystem::path& file, bool overwrite) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path folder = fs::absolute(file).parent_path();
-  if (!fs::is_directory(folder, error) || access(folder.c_str(), W_OK) != 0) {
-    throw InputError(file.string() + ": there is no such folder, or it cannot be written in");
-  }
+  const std::string why = why_not_writable(file.string() + ".part");  // what it is at first
+  if (!why.empty()) throw InputError(file.string() + ": cannot be written: " + why);
   const fs::file_type type = fs::symlink_status(file, error).type();
   if (type == fs::file_type::not_found) return;
   if (type == fs::file_type::none) throw InputError(file.string() + ": " + error.message());

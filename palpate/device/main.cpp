@@ -1,7 +1,10 @@
 // palpate-emulated-device: moves one probe of a session as a haptic device in a hand would, until
 // the session ends or it is told to stop (Ctrl-C, SIGTERM, SIGHUP).
+#include <algorithm>
 #include <fstream>
 #include <iostream>
+#include <limits>
+#include <stdexcept>
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
@@ -12,6 +15,7 @@
 #include "modules/runtime/realtime.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/stop_signal.h"
+#include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/device/device_log.h"
 #include "palpate/device/emulated_driver.h"
@@ -22,12 +26,14 @@ using namespace palpate;
 
 constexpr const char* kName = "palpate-emulated-device";
 constexpr int kFifo = 60;  // below haptics, above collision and deformation
+constexpr std::int64_t kWaitingLineEveryNs = 2 * kNanosecondsPerSecond;
+constexpr double kShortestWait = 10;  // for a session that starts on a busy machine [s]
 
 struct Options {
   std::filesystem::path scene;
   bus::BusOptions bus;
   std::string probe, device;
-  double duration = 0;  // of the hand's [s]; 0: until the session ends
+  double duration = 0;  // of the hand's, and to wait for it [s]; 0: until the session ends
   std::filesystem::path table;
   bool realtime = true;
 };
@@ -49,6 +55,33 @@ std::uint32_t probe_of(const scene::Scene& scene, const std::string& name) {
                    (name.empty() ? "with device topic" : "'" + name + "'"));
 }
 
+/// Says what is waited for.
+/// @throws std::runtime_error where that took too long
+class Waiting {
+ public:
+  explicit Waiting(const Options& options)
+      : what_("session " + options.bus.session + " in domain " +
+              std::to_string(options.bus.domain)),
+        longest_ns_(options.duration > 0
+                        ? ns_from_seconds(std::max(options.duration, kShortestWait))
+                        : std::numeric_limits<std::int64_t>::max()) {}
+
+  void look(std::int64_t now_ns) {
+    if (began_ns_ == 0) began_ns_ = line_ns_ = now_ns;
+    if (now_ns - began_ns_ >= longest_ns_) {
+      throw std::runtime_error(what_ + " has not begun within " +
+                               std::to_string(longest_ns_ / kNanosecondsPerSecond) + " s");
+    }
+    if (now_ns - line_ns_ < kWaitingLineEveryNs) return;
+    line_ns_ = now_ns;
+    std::cerr << kName << ": waiting for " << what_ << " to begin" << std::endl;
+  }
+
+ private:
+  std::string what_;
+  std::int64_t longest_ns_, began_ns_ = 0, line_ns_ = 0;
+};
+
 /// Until the session ends, a signal comes or time is up; the hand takes the device as the session
 /// begins to run, and holds it while it pauses.
 void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDriver& driver,
@@ -57,6 +90,7 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
   runtime::Session session(bus, scene::scene_digest(scene));
   runtime::PeriodicLoop loop(1 / driver.device().period());
   std::int64_t began_ns = 0;
+  Waiting waiting(options);
   while (!stop.requested() && session.phase() != runtime::SessionPhase::kStopped) {
     if (!loop.wait_for_period()) continue;
     session.poll();
@@ -65,6 +99,7 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
     if (began_ns == 0 && session.running()) began_ns = now_ns;
     if (began_ns == 0) {
       driver.cycle(now_ns, std::nullopt);
+      waiting.look(now_ns);
       continue;
     }
     const std::int64_t period = (now_ns - began_ns) / loop.period_ns();
@@ -79,7 +114,7 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
 }
 
 void attach(const Options& options) {
-  const scene::Scene scene = scene::load_scene(options.scene);
+  const scene::Scene scene = scene::load_scene(scene::scene_file(options.scene));
   const std::uint32_t probe = probe_of(scene, options.probe);
   const scene::EmulatedDevice device = scene::parse_emulated_device(
       options.device, "--device", std::get<scene::TopicDevice>(scene.probes[probe].device));
@@ -106,14 +141,19 @@ int main(int argc, char** argv) {
                            kName);
   Options options;
   options.bus.participant_name = "emulated_device";
-  program.add_input("SCENE", options.scene, "Scene of the session; the probe's device is topic")
+  program
+      .add_input("SCENE", options.scene,
+                 "Scene of the session, file or name of a shipped one; the probe's device is topic")
       .required();
   program.add("--probe", options.probe, "Name of the probe; else the first with device topic");
   program.add("--device", options.device,
               "Device and hand: the keys of a scene's `emulated`, such as "
               "'{kind: omega, hand: {push_n: [0, 0, -0.2]}}'");
   runtime::add_bus_options(program, options.bus);
-  program.add("--duration", options.duration, "Seconds; else until the session ends").range(0, 1e6);
+  program
+      .add("--duration", options.duration,
+           "Seconds of the session, which is waited for as long, or 10 s; else until it ends")
+      .range(0.001, 1e6);
   program.add_output("--csv", options.table,
                      "Place and force of each period; an existing one is replaced");
   program.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Pictures of what `palpate certify` measures.
 
-  plot_certify.py FOLDER   draws FOLDER/certify_*.png from the tables that are there
+  plot_certify.py FOLDER [TABLE ...]   draws FOLDER/certify_*.png from these tables (law, force,
+                                       press, held, slide, timing), else from those that are there
 """
 
 import argparse
@@ -23,7 +24,7 @@ def columns(rows, name, scale=1.0):
     return [scale * row[name] for row in rows]
 
 
-def draw_law(axis, folder):
+def draw_law(axis, folder, tables):
     rows = rows_of(folder / "law.csv", set())
     axis.plot(columns(rows, "depth_m", 1e3), columns(rows, "organ_n_per_m"), "k.-", label="organ, finite differences")
     axis.plot(columns(rows, "depth_m", 1e3), columns(rows, "law_n_per_m"), "C1.--", label="the hand's law")
@@ -31,24 +32,25 @@ def draw_law(axis, folder):
     axis.legend(fontsize=8)
 
 
-def draw_press(axis, folder):
+def draw_press(axis, folder, tables):
     rows = rows_of(folder / "press.csv", set())
     axis.plot(columns(rows, "depth_m", 1e3), columns(rows, "motor_n"), label="pressed and let go")
-    still = rows_of(folder / "force.csv", set())
-    axis.plot(columns(still, "depth_m", 1e3), columns(still, "organ_n"), "ko", label="organ at rest")
-    axis.plot(columns(still, "depth_m", 1e3), columns(still, "felt_n"), "C1x", label="held")
+    if "force" in tables:
+        still = rows_of(folder / "force.csv", set())
+        axis.plot(columns(still, "depth_m", 1e3), columns(still, "organ_n"), "ko", label="organ at rest")
+        axis.plot(columns(still, "depth_m", 1e3), columns(still, "felt_n"), "C1x", label="held")
     axis.set(xlabel="depth [mm]", ylabel="force of the motors [N]", title="press and release")
     axis.legend(fontsize=8)
 
 
-def draw_held(axis, folder):
+def draw_held(axis, folder, tables):
     rows = rows_of(folder / "held.csv", set())
     axis.plot(columns(rows, "time_s"), columns(rows, "depth_m", 1e3))
     axis.axvline(2, color="#999", linewidth=0.8)
     axis.set(xlabel="time [s]", ylabel="depth [mm]", title="held by a constant push")
 
 
-def draw_slide(axis, folder):
+def draw_slide(axis, folder, tables):
     rows = rows_of(folder / "slide.csv", set())
     axis.plot(columns(rows, "time_s"), columns(rows, "force_n"), linewidth=0.8)
     axis.set(xlabel="time [s]", ylabel="force [N]", title="sliding over the organ", ylim=(0, None))
@@ -59,7 +61,7 @@ def draw_slide(axis, folder):
     steps.set_ylim(0, None)
 
 
-def draw_timing(axis, folder):
+def draw_timing(axis, folder, tables):
     rows = rows_of(folder / "timing.csv", set())
     left = [1 - share + 1 / len(rows) for share in columns(rows, "share")]
     axis.loglog(columns(rows, "period_s", 1e3), left, label="loop period")
@@ -74,13 +76,16 @@ PICTURES = {"law": draw_law, "press": draw_press, "held": draw_held, "slide": dr
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    folder = parser.parse_args().folder
-    drawn = [name for name in PICTURES if (folder / f"{name}.csv").exists()]
+    parser.add_argument("tables", nargs="*")
+    arguments = parser.parse_args()
+    folder = arguments.folder
+    tables = [name for name in arguments.tables or [*PICTURES, "force"] if (folder / f"{name}.csv").exists()]
+    drawn = [name for name in PICTURES if name in tables]
     if not drawn:
         sys.exit(f"error: {folder} holds none of the tables")
     for name in drawn:
         figure, axis = plt.subplots(figsize=(8, 3.2))
-        PICTURES[name](axis, folder)
+        PICTURES[name](axis, folder, tables)
         figure.tight_layout()
         figure.savefig(folder / f"certify_{name}.png", dpi=100)
         plt.close(figure)

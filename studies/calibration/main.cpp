@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
       "palpate calibrate");
   Options options;
   add_options(program, options);
+  program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
     try {
       return run(options);

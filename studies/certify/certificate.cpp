@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/core/data_folder.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/certify/hands.h"
+#include "studies/report/plot_script.h"
 #include "studies/report/whole_file.h"
 
 namespace palpate::certify {
@@ -136,6 +138,11 @@ void write_json(const Certificate& certificate, const Subject& subject,
   style["precision"] = kDigits;
   style["emitUTF8"] = true;
   report::write_whole_file(folder / "certificate.json", Json::writeString(style, json) + "\n");
+}
+
+void draw_pictures(const std::vector<std::string>& tables, const std::filesystem::path& folder) {
+  for (const auto& picture : pictures_in(folder)) std::filesystem::remove(folder / picture);
+  if (!tables.empty()) report::draw_figures(data_file("plots/plot_certify.py"), folder, tables);
 }
 
 void write_page(const Certificate& certificate, const Subject& subject,

@@ -20,6 +20,10 @@ struct Certificate {
 void write_json(const Certificate& certificate, const Subject& subject,
                 const std::filesystem::path& folder);
 
+/// Of the tables named alone, in place of those that are there: an earlier certificate's are gone.
+/// @throws std::runtime_error as report::draw_figures() does
+void draw_pictures(const std::vector<std::string>& tables, const std::filesystem::path& folder);
+
 /// certificate.html, with the pictures (certify_*.png) that the folder holds.
 void write_page(const Certificate& certificate, const Subject& subject,
                 const std::filesystem::path& folder);

@@ -8,9 +8,9 @@
 #include <thread>
 #include <utility>
 
-#include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/runtime/program.h"
+#include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/certify/certificate.h"
 #include "studies/certify/disturbance.h"
@@ -25,7 +25,6 @@
 #include "studies/certify/tables.h"
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
-#include "studies/report/plot_script.h"
 #include "studies/report/progress.h"
 
 namespace palpate::certify {
@@ -97,7 +96,7 @@ class Certifying {
     certificate_.lines.insert(certificate_.lines.end(), now_.lines.begin(), now_.lines.end());
     write_json(certificate_, subject_, options_.out);
     try {
-      report::draw_figures(data_file("plots/plot_certify.py"), options_.out);
+      draw_pictures(tables_, options_.out);
     } catch (const std::runtime_error& error) {
       log_ << error.what() << std::endl;
     }
@@ -134,7 +133,7 @@ class Certifying {
       const bool is_here = here != measured_.end();
       if (is_here) result = here->second;
       if (!is_here && !store_.read(name, result)) return false;
-      take(result, is_here);
+      take(name, result, is_here);
       return true;
     };
     return {store_.key(name), read, [this, name, measure = std::move(measure)] {
@@ -145,7 +144,17 @@ class Certifying {
             }};
   }
 
-  void take(const GroupResult& result, bool printed) {
+  void take(const std::string& group, const GroupResult& result, bool printed) {
+    static const std::map<std::string, std::vector<std::string>> kTables{
+        {"organ alone", {"law", "force"}},
+        {"pressed", {"press"}},
+        {"held", {"held"}},
+        {"slid", {"slide"}},
+        {"real processes", {"timing"}}};
+    const bool timed = group != "real processes" || options_.wants("timing");
+    if (const auto own = kTables.find(group); own != kTables.end() && timed) {
+      tables_.insert(tables_.end(), own->second.begin(), own->second.end());
+    }
     if (result.push > 0 && options_.push == 0) push_ = result.push;
     troubles_ += result.troubles;
     for (const Line& line : result.lines) {
@@ -253,6 +262,7 @@ class Certifying {
   std::ostream& out_;
   std::ostream& log_;
   Certificate certificate_;
+  std::vector<std::string> tables_;              ///< that are of it
   GroupResult now_;                              ///< of the group that is measured
   std::map<std::string, GroupResult> measured_;  ///< here
   report::Share share_;
@@ -278,7 +288,7 @@ int run_certify(const CertifyOptions& options, const std::function<bool()>& stop
     if (stop()) throw report::Stopped{};
     claims.keep();
   };
-  Subject subject = load_subject(options.scene, keep_going);
+  Subject subject = load_subject(scene::scene_file(options.scene), keep_going);
   subject.depth = options.depth;
   subject.speed = options.speed;
   report::make_out_folder(options.out);

@@ -50,9 +50,10 @@ std::string text_of(const Line& line) {
   const std::string what = fmt::format("{}: {}: ", line.group, line.name);
   if (line.verdict == Verdict::kNotMeasured) return what + "not measured, " + line.note;
   const std::string unit = line.unit.empty() ? "" : " " + line.unit;
-  return fmt::format("{}{:.4g}{}, {} {:.4g}{}: {}", what, line.value, unit,
+  const std::string why = std::isfinite(line.value) || line.note.empty() ? "" : ", " + line.note;
+  return fmt::format("{}{:.4g}{}, {} {:.4g}{}: {}{}", what, line.value, unit,
                      line.at_least ? "at least" : "at most", line.limit, unit,
-                     word_of(line.verdict));
+                     word_of(line.verdict), why);
 }
 
 bool any_failed(const std::vector<Line>& lines) {

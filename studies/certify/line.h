@@ -30,7 +30,8 @@ Line at_most(const std::string& group, const Measured& measured);
 Line at_least(const std::string& group, const Measured& measured);
 Line not_measured(const std::string& group, const std::string& name, const std::string& reason);
 
-/// "stability: critical stiffness: 392 N/m, at least 320 N/m: pass"
+/// "stability: critical stiffness: 392 N/m, at least 320 N/m: pass"; of what is not finite with its
+/// note, which says why
 std::string text_of(const Line& line);
 
 bool any_failed(const std::vector<Line>& lines);

@@ -10,10 +10,11 @@ int main(int argc, char** argv) {
   using namespace palpate;
   runtime::Program program(
       "Certifies the loop people run on a scene: hand, device, haptics, organ. Each line passes,\n"
-      "fails or was not measured; exit code 0: none failed, 1: some did, 2: bad input.",
+      "fails or was not measured.",
       "palpate certify");
   certify::CertifyOptions options;
-  program.add_input("SCENE", options.scene, "Scene file (YAML)").required();
+  program.add_input("SCENE", options.scene, "Scene file (YAML), or the name of a shipped scene")
+      .required();
   program.add("-o,--out", options.out, "Folder for certificate.html, certificate.json, tables")
       .shows_default();
   program.add("--depth", options.depth, "Of presses [m]").range(5e-4, 0.05).shows_default();
@@ -23,14 +24,20 @@ int main(int argc, char** argv) {
   program
       .add("--push", options.push, "Of held contacts [N]; else what the organ holds at the depth")
       .range(1e-3, 100);
-  program.add("--only", options.only, "Parts of the certificate; else all").one_of(certify::kParts);
+  program.add("--only", options.only, "Parts of the certificate, several with commas; else all")
+      .one_of(certify::kParts);
   program.flag("--lockstep", options.lockstep,
                "Only what runs in one process: the same numbers every time");
-  program.flag("--quick", options.quick, "Fewer disturbances, one row of slides: a minute or so");
+  program.flag(
+      "--quick", options.quick,
+      "Fewer disturbances, one row of slides, shorter timing: two minutes or so, in lockstep "
+      "under one");
   std::string shard;
   program.add("--shard", shard, std::string(report::kShardHelp) + "; with --lockstep");
   options.bus.session = launcher::random_session_name();
   runtime::add_bus_options(program, options.bus);
+  program.footer(
+      "Exit code: 0 if no line failed, 1 if one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
     const runtime::StopSignal signal;
     options.shard = report::shard_from(shard);

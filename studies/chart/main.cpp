@@ -4,6 +4,7 @@
 #include "modules/runtime/program.h"
 #include "studies/chart/chart_command.h"
 #include "studies/chart/fidelity.h"
+#include "studies/report/progress.h"
 
 namespace {
 
@@ -34,6 +35,7 @@ int main(int argc, char** argv) {
   std::string shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again);
   program.flag_off("--no-peers", options.peers, "Without Bullet");
+  program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
     options.shard = report::shard_from(shard);
     if (quick) options.extent = chart::Extent::kQuick;

@@ -16,6 +16,8 @@ int main(int argc, char** argv) {
       program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
   std::string shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again).excludes(only);
+  program.footer(
+      "Exit code: 0 if no scene failed, 1 if one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
     options.shard = report::shard_from(shard);
     return fuzz::run_fuzz(options, std::cout, std::cerr);

@@ -2,6 +2,7 @@
 
 #include "modules/runtime/program.h"
 #include "studies/paper/paper_command.h"
+#include "studies/report/progress.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
@@ -17,5 +18,6 @@ int main(int argc, char** argv) {
       .add("--budget-s", options.budget, "Wall time after which Figure 4 is cut short, and says so")
       .range(1.0, 1e6)
       .shows_default();
+  program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] { return paper::run_paper(options, std::cout, std::cerr); });
 }

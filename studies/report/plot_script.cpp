@@ -39,7 +39,8 @@ std::string find_python() {
 
 }  // namespace
 
-void draw_figures(const std::filesystem::path& script, const std::filesystem::path& folder) {
+void draw_figures(const std::filesystem::path& script, const std::filesystem::path& folder,
+                  const std::vector<std::string>& words) {
   const std::string python = find_python();
   if (python.empty()) {
     throw std::runtime_error(
@@ -47,7 +48,9 @@ void draw_figures(const std::filesystem::path& script, const std::filesystem::pa
         "python3-matplotlib); the CSV files in " +
         folder.string() + " stay");
   }
-  if (run_program({python, script.string(), folder.string()}) != 0) {
+  std::vector<std::string> command{python, script.string(), folder.string()};
+  command.insert(command.end(), words.begin(), words.end());
+  if (run_program(command) != 0) {
     throw std::runtime_error("no pictures: " + script.string() + " failed; the CSV files in " +
                              folder.string() + " stay");
   }

@@ -11,6 +11,11 @@ namespace palpate::report {
 /// Thrown out of a job that was asked to stop.
 struct Stopped {};
 inline constexpr int kExitStopped = 130;  ///< exit code of it: Ctrl-C as shells count it
+/// What --help says last.
+inline constexpr const char* kExitCodesHelp =
+    "Exit code: 0 if it ran to its end, 1 if something failed, 2 for bad input, 130 if it was "
+    "stopped "
+    "(Ctrl-C); what was done stays.";
 
 /// Asked now and then by long work; throws to end it.
 using KeepGoing = std::function<void()>;

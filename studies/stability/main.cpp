@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "modules/runtime/program.h"
+#include "studies/report/progress.h"
 #include "studies/stability/stability_command.h"
 
 int main(int argc, char** argv) {
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
       program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
   std::string shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again);
+  program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
     options.shard = report::shard_from(shard);
     return stability::run_stability(options, std::cout, std::cerr);

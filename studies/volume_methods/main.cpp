@@ -2,6 +2,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/runtime/program.h"
+#include "studies/report/progress.h"
 #include "studies/volume_methods/measurements.h"
 #include "studies/volume_methods/volume_methods_command.h"
 
@@ -18,6 +19,7 @@ int main(int argc, char** argv) {
   program.add("--only", options.only, "Only these methods").one_of(names);
   program.flag("--quick", options.quick, "Smaller ball, organ pressed for 4 s: under 20 s");
   program.add("--scene", options.scene, "Scene whose first organ is pressed").shows_default();
+  program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
     return volume_methods::run_volume_methods(options, std::cout, std::cerr);
   });

@@ -48,16 +48,49 @@ TEST_CASE("command line: what is not a command or option is bad input") {
       {"run", "a.yaml", "--domain", "300"},
       {"run", "a.yaml", "--duration", "-1"},
       {"run", "a.yaml", "--duration", "nan"},
+      {"run", "a.yaml", "--duration", "0"},
+      {"replay", "a.mcap", "--rerun", "haptics", "--duration", "0"},
+      {"replay", "a.mcap", "--lockstep"},
       {"run", "a.yaml", "--in-process", "--only", "haptics"},
       {"run", "a.yaml", "--lockstep", "--only", "haptics"},
       {"run", "a.yaml", "--in-process", "--frames", "f"},
       {"check"},
+      {"mesh", "a.ply", "--near-unit", "mm"},
+      {"mesh", "a.ply", "--radius-m", "0.01"},
       {"mesh"}};
   for (const auto& arguments : wrong) CHECK(type("palpate", arguments).code == kExitBadInput);
+  CHECK_THAT(type("palpate", {"mesh", "a.ply", "--near-unit", "mm"}).said,
+             Contains("--near-unit requires --near"));
   CHECK_THAT(type("palpate", {"rum"}).said, Contains("no command 'rum'; there are run replay"));
   CHECK_THAT(type("palpate", {"mesh", "a.ply", "--nodes", "-5"}).said, Contains("-5 not in range"));
   CHECK_THAT(type("palpate", {"run", "a.yaml", "--duration", "nan"}).said,
              Contains("--duration: nan is not a number"));
+}
+
+TEST_CASE("command line: an empty entry of a list is bad input") {
+  // Oracle: the message; the parser itself passes over it.
+  for (const std::string list : {"haptics,,collision", ",", "haptics,", ",haptics"}) {
+    for (const auto& words : {std::vector<std::string>{"--only", list}, {"--only=" + list}}) {
+      auto arguments = words;
+      arguments.insert(arguments.begin(), {"run", "a.yaml"});
+      const auto outcome = type("palpate", arguments);
+      CHECK(outcome.code == kExitBadInput);
+      CHECK(outcome.said == "palpate: --only " + list + ": an entry between its commas is empty\n");
+    }
+  }
+}
+
+TEST_CASE("command line: a summary that cannot be written is refused before anything starts") {
+  // Oracle: exit code 2 and one line by hand.
+  const BallScene scene;
+  const std::string folder = scene.folder().string(), no = folder + "/no";
+  for (const auto& [file, why] : std::vector<std::pair<std::string, std::string>>{
+           {folder, "it is a folder"}, {no + "/a.txt", "there is no folder " + no}}) {
+    const auto outcome = type("palpate", {"run", scene.file().string(), "--in-process",
+                                          "--duration", "0.1", "--summary", file});
+    CHECK(outcome.code == kExitBadInput);
+    CHECK(outcome.said == "palpate: " + file + ": cannot be written: " + why + "\n");
+  }
 }
 
 TEST_CASE("command line: every command says its version, and diff its exit codes") {

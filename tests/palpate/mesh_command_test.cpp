@@ -100,7 +100,24 @@ TEST_CASE("mesh command: every bad option is exit code 2, a failed write exit co
   CHECK(format.code == kExitBadInput);
   CHECK_THAT(format.err, Contains("allowed: .ply"));
   CHECK(format.out.empty());  // before any work
-  CHECK(run({folder / "in.ply", folder / "no" / "out.ply", 0, "m"}).code == kExitFailed);
+  const Outcome place = run({folder / "in.ply", folder / "no" / "out.ply", 0, "m"});
+  CHECK(place.code == kExitBadInput);
+  CHECK_THAT(place.err, Contains("out.ply: cannot be written: there is no folder "));
+  CHECK(place.out.empty());
+}
+
+TEST_CASE("mesh command: a file that is there is replaced only if that is asked for") {
+  // Oracle: the file's bytes, the message.
+  const ScratchFolder folder;
+  write_surface(make_ball(0.05, 2), folder / "in.ply");
+  MeshCommandOptions options{folder / "in.ply", folder.write("out.ply", "mine")};
+  const Outcome kept = run(options);
+  CHECK(kept.code == kExitBadInput);
+  CHECK_THAT(kept.err, Contains("out.ply: is there already; give another name, or --overwrite"));
+  CHECK(text_in(options.output) == "mine");
+  options.overwrite = true;
+  CHECK(run(options).code == kExitDone);
+  CHECK(text_in(options.output) != "mine");
 }
 
 namespace {
@@ -119,6 +136,7 @@ struct BlockAndMotion {
     options.near.columns = {"s", "px", "py", "pz"};
     options.near.unit = "mm";
     options.near.radius = radius;
+    options.overwrite = true;
     return options;
   }
   ScratchFolder folder;
@@ -252,7 +270,38 @@ TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothi
   options = given.near(8e-3);
   options.near.file = given.folder / "none.csv";
   CHECK_THAT(refused(options), Contains("none.csv"));
-  options = given.near(8e-3);
-  options.near.file.clear();
-  CHECK_THAT(refused(options), Contains("--radius-m, --edge-m and --growth are of --near"));
+}
+
+TEST_CASE("mesh command: what is wrong with a motion is told before a surface is filled") {
+  // Oracle: nothing of the surface has been said yet.
+  const ScratchFolder folder;
+  write_surface(make_ball(0.05, 2), folder / "in.ply");
+  MeshCommandOptions options{folder / "in.ply", {}};
+  options.near.radius = 8e-3;
+  options.near.file = folder.write("way.csv", "t,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,1\n");
+  options.near.unit = "feet";
+  for (const bool is_there : {true, false}) {
+    if (!is_there) {
+      options.near.file = folder / "none.csv";
+      options.near.unit = "m";
+    }
+    const Outcome outcome = run(options);
+    CHECK(outcome.code == kExitBadInput);
+    CHECK_THAT(outcome.err, Contains(is_there ? "feet" : "none.csv"));
+    CHECK(outcome.out.empty());
+  }
+}
+
+TEST_CASE("mesh command: a motion whose millimetres were read as metres is doubted") {
+  // Oracle: the text; the motion, 40 mm long, 40 m as read, ends at the block, which it touches.
+  const BlockAndMotion given;
+  MeshCommandOptions options = given.near(8e-3);
+  options.near.file = given.folder.write(
+      "far.csv", "t,x,y,z,qx,qy,qz,qw\n0,0.03,0.03,40.06,0,0,0,1\n1,0.03,0.03,0.06,0,0,0,1\n");
+  options.near.columns.clear();
+  options.near.unit = "m";
+  const Outcome outcome = run(options);
+  CHECK(outcome.code == kExitDone);
+  CHECK_THAT(outcome.out, Contains("moves over 40 m: are its positions in millimetres? Then say "
+                                   "--near-unit mm"));
 }

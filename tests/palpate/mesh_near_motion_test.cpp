@@ -20,9 +20,8 @@ TEST_CASE("mesh near a motion: no part of a fast way is left out, and its stay c
   NearMotion motion;
   motion.file = folder.write("way.csv", table);
   motion.radius = 8e-3;
-  std::vector<std::string> notes;
   const auto [mesh, refine] =
-      refined_near(testing::block(Vec3::Constant(0.06), 4, 4, 4), motion, notes);
+      refined_near(testing::block(Vec3::Constant(0.06), 4, 4, 4), motion, read_way(motion));
   CHECK(refine.edge_length == 4e-3);
   for (double x = 5e-3; x <= 55e-3; x += 1e-3) {
     double nearest = 1;

@@ -27,3 +27,31 @@ TEST_CASE("replay: a recording without a scene or motion is refused by name") {
                       Contains("of a replay without SCENE"));
   }
 }
+
+TEST_CASE("replay: options that a recording alone, or a rerun, would pass over are refused") {
+  // Oracle: what each is for; without SCENE no module is started, a rerun is of one process.
+  RunOptions run;
+  Playing shown, rerun;
+  rerun.rerun = {"haptics"};
+  const std::vector<std::string> both_refuse{"--lockstep",      "--snapshot-at", "--snapshot",
+                                             "--from-snapshot", "--only",        "--hosts",
+                                             "--host",          "--no-restart",  "--summary"};
+  for (const std::string& option : both_refuse) {
+    INFO(option);
+    CHECK_THROWS_WITH(
+        check_replay_options({option}, shown, run),
+        option + ": of a replay with SCENE; without, the recording is shown as it was");
+    CHECK_THROWS_WITH(check_replay_options({option}, rerun, run),
+                      option + ": does not go together with --rerun");
+  }
+  for (const char* option : {"--record", "--overwrite", "--duration", "--set", "--record-topics"}) {
+    CHECK_THROWS_AS(check_replay_options({option}, shown, run), InputError);
+    CHECK_NOTHROW(check_replay_options({option}, rerun, run));
+  }
+  for (const char* option : {"--frames", "--secure", "--session", "--rate", "--start", "--step"}) {
+    CHECK_THROWS_AS(check_replay_options({option}, rerun, run), InputError);
+    CHECK_NOTHROW(check_replay_options({option}, shown, run));
+  }
+  run.scene = "a.yaml";
+  CHECK_NOTHROW(check_replay_options({"--summary", "--only", "--lockstep"}, shown, run));
+}

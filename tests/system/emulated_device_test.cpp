@@ -114,6 +114,25 @@ TEST_CASE("emulated device: ends with its session, and at once when told to") {
   CHECK(session.wait_for_end() == 0);
 }
 
+TEST_CASE("emulated device: says what it waits for, and waits no longer than it is told") {
+  // Oracle: the messages, exit code 1; nobody starts this session.
+  const BallScene scene(kAboveTheBall);
+  const bus::BusOptions session = own_bus_options();
+  Device device(scene.file(), session, {"--duration", "1"});
+  CHECK(device.wait_for_end() == 1);
+  const std::string name =
+      "session " + session.session + " in domain " + std::to_string(session.domain);
+  CHECK_THAT(device.said(), Contains("waiting for " + name + " to begin\n"));
+  CHECK_THAT(device.said(), Contains(name + " has not begun within 10 s\n"));
+}
+
+TEST_CASE("emulated device: takes the names of shipped scenes") {
+  // Oracle: the message is about the scene's probe; the scene is no file here.
+  Device device("stomach_probe", own_bus_options(), {});
+  CHECK(device.wait_for_end() == 2);
+  CHECK_THAT(device.said(), Contains("stomach_probe.yaml has no probe with device topic"));
+}
+
 TEST_CASE("emulated device: what it cannot do is one line and exit code 2") {
   // Oracle: the messages.
   const BallScene driven(kAboveTheBall),

@@ -1,7 +1,6 @@
 // What a stranger can do who has no keys, but hears every packet of a session on its host and
 // forges others in its processes' names: from their addresses and ports, replayed, changed, cut and
 // mixed with words of his own.
-#include <fastdds/dds/log/Log.hpp>
 
 #include <iostream>
 #include <map>
@@ -149,7 +148,6 @@ TEST_CASE("secured packets: of ten thousand forged ones on each topic none is be
     std::cout << "SKIPPED: " << why << '\n';
     return;
   }
-  eprosima::fastdds::dds::Log::ClearConsumers();  // DDS tells of each
   const ScratchFolder folder;
   make_keys(folder / "keys", std::chrono::hours(1));
   std::apply([&](const auto&... topic) { (flood_with_forged(topic, folder / "keys"), ...); },

@@ -49,7 +49,7 @@ TEST_CASE("snapshot: nothing but a snapshot is replaced by one, and that only if
     CHECK(name_refusal(kept, true).find("is no snapshot, and is not replaced") !=
           std::string::npos);
   }
-  CHECK(name_refusal(folder / "no/new", true).find("no such folder") != std::string::npos);
+  CHECK(name_refusal(folder / "no/new", true).find("there is no folder") != std::string::npos);
   CHECK(name_refusal(folder / std::string(300, 'n'), true).find("too long") != std::string::npos);
 }
 

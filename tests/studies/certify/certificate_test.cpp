@@ -46,6 +46,29 @@ TEST_CASE("certificate: JSON holds each line's number, limit, source and verdict
   CHECK(page.find("<h2>h</h2>") != std::string::npos);
 }
 
+TEST_CASE("certificate: pictures are of its own tables, an earlier one's are gone") {
+  // Oracle: the files in the folder; tables of another certificate lie there, too.
+  const BallScene scene;
+  for (const char* name : {"certify_law.png", "certify_timing.png", "my.png"}) {
+    std::ofstream(scene.folder() / name) << "picture";
+  }
+  std::ofstream(scene.folder() / "law.csv") << "depth_m,law_n_per_m,organ_n_per_m\n1,1,1\n";
+  std::ofstream(scene.folder() / "held.csv") << "time_s,depth_m\n0,1\n1,1\n";
+  const auto there = [&](const char* name) {
+    return std::filesystem::exists(scene.folder() / name);
+  };
+  bool drawn = true;
+  try {
+    draw_pictures({"held"}, scene.folder());
+  } catch (const std::runtime_error&) {  // no matplotlib here
+    drawn = false;
+  }
+  CHECK(there("certify_held.png") == drawn);
+  CHECK_FALSE(there("certify_law.png"));
+  CHECK_FALSE(there("certify_timing.png"));
+  CHECK(there("my.png"));
+}
+
 TEST_CASE("certificate: what is incomplete does not pass") {
   // Oracle: definition.
   Certificate certificate;

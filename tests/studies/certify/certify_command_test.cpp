@@ -85,6 +85,9 @@ TEST_CASE("certify command: one part alone, pushed as hard as it is told") {
   auto options = options_for(scene, "part");
   options.only = {"held"};
   options.push = 0.04;
+  std::filesystem::create_directory(scene.folder() / "part");
+  std::ofstream(scene.folder() / "part/certify_law.png") << "of an earlier run";
+  std::ofstream(scene.folder() / "part/law.csv") << "depth_m,law_n_per_m,organ_n_per_m\n1,1,1\n";
   std::ostringstream out, log;
   run_certify(
       options, [] { return false; }, out, log);
@@ -93,10 +96,21 @@ TEST_CASE("certify command: one part alone, pushed as hard as it is told") {
   for (const char* other : {"law", "force", "energy", "steps", "sliding", "link: 20 ms late"}) {
     CHECK(json.find("\"group\" : \"" + std::string(other) + '"') == std::string::npos);
   }
+  const std::string page = text_in(scene.folder() / "part/certificate.html");
+  CHECK(page.find("certify_law") == std::string::npos);
   const report::ReferenceTable held(scene.folder() / "part/held.csv");
   double sum = 0;
   for (std::size_t i = held.size() - 1000; i < held.size(); ++i) sum += held.at("force_n", i);
   CHECK(sum / 1000 == Approx(options.push).epsilon(0.02));
+}
+
+TEST_CASE("certify command: its page says which lines each part has") {
+  // Oracle: the parts that --only takes.
+  const std::string page = text_in(std::filesystem::path(PALPATE_SOURCE_DIR) / "docs/certify.md");
+  for (const std::string& part : kParts) {
+    INFO(part);
+    CHECK(page.find("\n| `" + part + "` | ") != std::string::npos);
+  }
 }
 
 TEST_CASE("certify command: a scene that is none is bad input") {

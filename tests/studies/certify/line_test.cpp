@@ -18,6 +18,9 @@ TEST_CASE("certify line: it passes within its limit, and never with what is no n
     CHECK(at_least("g", at(value)).verdict == Verdict::kFail);
   }
   CHECK(text_of(at_least("g", at(1.9))) == "g: x: 1.9 N, at least 2 N: FAIL");
+  Measured left = at(std::numeric_limits<double>::infinity());
+  left.note = "it left after 0.3 s";
+  CHECK(text_of(at_most("g", left)) == "g: x: inf N, at most 2 N: FAIL, it left after 0.3 s");
   CHECK(text_of(not_measured("g", "x", "no tip")) == "g: x: not measured, no tip");
   CHECK_FALSE(any_failed({at_most("g", at(2)), not_measured("g", "y", "")}));
   CHECK(any_failed({at_most("g", at(2)), at_most("g", at(3))}));
