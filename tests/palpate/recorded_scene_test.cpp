@@ -18,7 +18,7 @@ using Stages = std::set<std::string>;
 
 TEST_CASE("recorded scene: it may differ in what the stages read that are computed anew") {
   // Oracle: which stage reads which key, by hand; triangles that contacts name are of both.
-  const testing::BallScene files("topic: {start_m: [0, 0, 0.09]}");
+  const palpate::testing::BallScene files("topic: {start_m: [0, 0, 0.09]}");
   const scene::Scene recorded = scene::load_scene(files.file());
   SceneDescription told;
   told.digest = scene::scene_digest(recorded);
