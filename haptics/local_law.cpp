@@ -110,21 +110,23 @@ void LawSolver::place_rows(const Pose& pose, double time, bool& beyond_validity)
   beyond_validity = directions_ > 0 && is_longer_than(away, validity_radius_);
   const double grown = std::max(0.0, 1 + growth_ * (time + half_period_));
   const Vec3 origin = anchor_.position + clamp_length(away, validity_radius_);
-  for (int i = 0; i < directions_; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (int i = 0; i < directions_; i += per_row_) {
     Row& row = rows_[static_cast<std::size_t>(i / per_row_)];
     const Vec3 apart = origin + pose.rotation * row.point_P - row.tissue - time * row.velocity;
     const double length = apart.norm();
-    const bool is_normal = i % per_row_ == 0;
     // A core at the tissue's very place has no direction from it: the last one stays.
-    if (is_normal && row.radius > 0 && length > kLeastDistance * row.radius) {
+    if (row.radius > 0 && length > kLeastDistance * row.radius) {
       row.basis = rotation_between(row.basis.col(0), apart / length) * row.basis;
     }
-    double distance = axis(i).dot(apart) - (is_normal ? row.radius : 0);
-    for (std::size_t j = 0; j < static_cast<std::size_t>(directions_); ++j) {
-      distance += compliance_[k][j] * (forces_[j] - grown * anchor_forces_[j]);
-    }
-    distances_[k] = distance;
+    double* const distance = &distances_[static_cast<std::size_t>(i)];
+    for (int k = 0; k < per_row_; ++k) distance[k] = row.basis.col(k).dot(apart);
+    distance[0] -= row.radius;
+  }
+  // By columns of the symmetric W: sums that do not wait for each other.
+  const auto count = static_cast<std::size_t>(directions_);
+  for (std::size_t j = 0; j < count; ++j) {
+    const double by = forces_[j] - grown * anchor_forces_[j];
+    for (std::size_t k = 0; k < count; ++k) distances_[k] += compliance_[j][k] * by;
   }
 }
 
@@ -183,6 +185,7 @@ void LawSolver::exchange(StateArchive& archive) {
 double LawSolver::stored_energy() const {
   double sum = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(directions_); ++i) {
+    if (forces_[i] == 0) continue;
     for (std::size_t j = 0; j < static_cast<std::size_t>(directions_); ++j) {
       sum += forces_[i] * compliance_[i][j] * forces_[j];
     }

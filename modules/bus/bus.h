@@ -23,8 +23,8 @@ struct BusOptions {
   std::string participant_name = "palpate";
   /// What every sample must bear; else session_token() (session_token.h).
   std::optional<std::uint64_t> token = {};
-  /// For lockstep: streams lose nothing either, and readers get every sample in order. All
-  /// processes of a session must agree.
+  /// For lockstep: streams lose nothing either, readers get every sample in order, and what is
+  /// written travels together (Bus::flush()). All processes of a session must agree.
   bool every_sample = false;
 };
 
@@ -98,6 +98,10 @@ class Bus {
   /// @throws std::runtime_error if the bus cannot
   virtual std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) = 0;
   virtual std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) = 0;
+
+  /// Sends what waits to travel together; who writes streams with every_sample calls it before it
+  /// waits for anything.
+  virtual void flush() {}
 
   /// All readers alive, in the order they were made.
   std::span<Input* const> inputs() const { return inputs_; }

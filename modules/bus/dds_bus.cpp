@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 
+#include "modules/bus/bundled_stream.h"
 #include "modules/bus/clock_exchange.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
@@ -150,7 +151,8 @@ class DdsReader : public RawReader {
 
 }  // namespace
 
-DdsBus::DdsBus(const BusOptions& options) : participant_(new Participant(options)) {
+DdsBus::DdsBus(const BusOptions& options)
+    : every_sample_(options.every_sample), participant_(new Participant(options)) {
   // In lockstep times are simulated ones, the same everywhere.
   if (!participant_->over_hosts() || options.every_sample) return;
   const TopicInfo topic = info_of(kClock);
@@ -163,11 +165,32 @@ DdsBus::DdsBus(const BusOptions& options) : participant_(new Participant(options
 DdsBus::~DdsBus() = default;
 
 std::unique_ptr<RawWriter> DdsBus::raw_writer(const TopicInfo& topic) {
+  if (is_bundled(topic)) return std::make_unique<BundledWriter>(sender_of(topic));
   return std::make_unique<DdsWriter>(*participant_, topic);
 }
 
 std::unique_ptr<RawReader> DdsBus::raw_reader(const TopicInfo& topic, Keep keep) {
-  return std::make_unique<DdsReader>(*participant_, topic, keep, clocks_.get());
+  auto reader = std::make_unique<DdsReader>(*participant_, topic, keep, clocks_.get());
+  if (!is_bundled(topic)) return reader;
+  return std::make_unique<BundledReader>(std::move(reader));
+}
+
+void DdsBus::flush() {
+  for (const auto& [topic, sender] : senders_) {
+    if (const auto alive = sender.lock()) alive->send();
+  }
+}
+
+bool DdsBus::is_bundled(const TopicInfo& topic) const {
+  return every_sample_ && topic.delivery == Delivery::kStream;
+}
+
+std::shared_ptr<BundleSender> DdsBus::sender_of(const TopicInfo& topic) {
+  std::weak_ptr<BundleSender>& known = senders_[topic.name];
+  if (auto alive = known.lock()) return alive;
+  auto made = std::make_shared<BundleSender>(std::make_unique<DdsWriter>(*participant_, topic));
+  known = made;
+  return made;
 }
 
 Refusals DdsBus::packets_refused() const { return participant_->packets_refused(); }

@@ -1,10 +1,13 @@
 // The bus between processes: Fast DDS, behind a header that knows no DDS.
 #pragma once
 
+#include <map>
+
 #include "modules/bus/bus.h"
 
 namespace palpate::bus {
 
+class BundleSender;
 class ClockExchanger;
 class HostClocks;
 class Participant;
@@ -23,13 +26,19 @@ class DdsBus : public Bus {
 
   std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) override;
   std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) override;
+  void flush() override;
   Refusals packets_refused() const override;
   const char* clock_trouble() const override;
 
  private:
+  bool is_bundled(const TopicInfo& topic) const;
+  std::shared_ptr<BundleSender> sender_of(const TopicInfo& topic);
+
+  bool every_sample_;
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<HostClocks> clocks_;  ///< none on one host, and in lockstep
   std::unique_ptr<ClockExchanger> exchanger_;
+  std::map<std::string_view, std::weak_ptr<BundleSender>> senders_;  ///< by topic; users own them
 };
 
 }  // namespace palpate::bus

@@ -126,7 +126,9 @@ void Participant::close() {
 dds::Topic* Participant::topic(const TopicInfo& topic) {
   const auto known = topics_.find(topic.name);
   if (known != topics_.end()) return known->second;
-  const dds::TypeSupport support(new PayloadType(*topic.type, token_));
+  // A bundle holds samples of many keys, and bundles come in the order they were sent.
+  const bool keyed = !(every_sample_ && topic.delivery == Delivery::kStream);
+  const dds::TypeSupport support(new PayloadType(*topic.type, token_, keyed));
   participant_->register_type(support);
   dds::Topic* created = demand_created(
       participant_->create_topic(std::string(topic.name), support.get_type_name(), dds::TopicQos()),

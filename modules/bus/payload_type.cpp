@@ -16,11 +16,11 @@ constexpr unsigned char kUnreadable = 0xff;  // every byte of the handle
 
 }  // namespace
 
-PayloadType::PayloadType(const messages::MessageType& type, std::uint64_t token)
+PayloadType::PayloadType(const messages::MessageType& type, std::uint64_t token, bool keyed)
     : type_(type), token_(token) {
   setName(std::string(type.wire_name).c_str());
   m_typeSize = kUsualBytes;
-  m_isGetKeyDefined = type.key != messages::MessageType::Key::kNone;
+  m_isGetKeyDefined = keyed && type.key != messages::MessageType::Key::kNone;
 }
 
 bool PayloadType::serialize(void* data, rtps::SerializedPayload_t* payload) {

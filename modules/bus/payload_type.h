@@ -19,7 +19,8 @@ class PayloadType : public eprosima::fastdds::dds::TopicDataType {
   };
 
   /// @param token  is written into each payload that leaves
-  PayloadType(const messages::MessageType& type, std::uint64_t token);
+  /// @param keyed  whether DDS tells samples apart by the message's key, if it has one
+  PayloadType(const messages::MessageType& type, std::uint64_t token, bool keyed = true);
 
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;

@@ -51,6 +51,7 @@ class RawReader {
   virtual bool take(RawSample& sample) = 0;
   /// Waits until a sample may be there; false on timeout [s].
   virtual bool wait(double timeout) = 0;
+  /// Those that travel together (Bus::flush()) count as one.
   virtual int matched_writers() const = 0;
 };
 

@@ -38,6 +38,7 @@ class TappedBus : public Bus {
 
   std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) override;
   std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) override;
+  void flush() override { bus_.flush(); }
 
  private:
   Bus& bus_;

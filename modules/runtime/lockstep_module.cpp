@@ -90,8 +90,10 @@ class LockstepModule {
       if (*health.guard != '\0') guard_ = health.guard;
       status_.set_contact_troubles(health.contacts);
       finished_ = health.finished;
-      if (finished_ || stop_.requested()) return;
+      if (finished_ || stop_.requested()) break;
     }
+    bus_.flush();
+    if (finished_ || stop_.requested()) return;
     if (cursor_->next_ns() >= until_ns && said_ns_ < until_ns) {
       const bool guarded = *guard_ != '\0';
       say(guarded ? ModuleState::kDegraded : ModuleState::kRunning, until_ns, guard_);
@@ -152,12 +154,22 @@ class LockstepModule {
     }
   }
 
+  static bool is_state_of_wires(const bus::Output& output) {
+    const bus::TopicInfo& topic = output.topic();
+    return topic.delivery == bus::Delivery::kState && find_wire(topic.name) != nullptr;
+  }
+
   /// What a state says now, a reader may need by the next cycle, and no cycle waits for it: a mesh
   /// is told once, an advance before node positions are of it.
   void wait_until_states_are_heard() {
+    std::uint64_t said = 0;
+    for (const bus::Output* output : bus_.outputs()) {
+      if (is_state_of_wires(*output)) said += output->next_sequence();
+    }
+    if (said == states_heard_) return;  // DDS is asked under its locks
+    states_heard_ = said;
     for (bus::Output* output : bus_.outputs()) {
-      const bus::TopicInfo& topic = output->topic();
-      if (topic.delivery != bus::Delivery::kState || find_wire(topic.name) == nullptr) continue;
+      if (!is_state_of_wires(*output)) continue;
       while (!stop_.requested() && !output->raw().wait_until_received(kLongestWait)) {
       }
     }
@@ -183,6 +195,7 @@ class LockstepModule {
   std::optional<LockstepCursor> cursor_;
   LoopStatistics loop_;
   std::size_t outputs_before_ = 0;  ///< the stage's own
+  std::uint64_t states_heard_ = 0;  ///< sum of their numbers
   std::int64_t start_ns_ = 0;
   std::optional<std::int64_t> save_at_ns_;  ///< none: no snapshot, or it is written
   std::int64_t said_ns_ = 0;
