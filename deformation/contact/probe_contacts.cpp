@@ -125,7 +125,7 @@ void ProbeContacts::note_begun() {
   const auto among = [](const std::vector<CarriedContact>& contacts, std::uint32_t organ) {
     return std::ranges::find(contacts, organ, &CarriedContact::organ) != contacts.end();
   };
-  std::erase_if(gentle_, [&](const GentleOrgan& g) { return !among(contacts_, g.organ); });
+  std::erase_if(gentle_, [&](const GentlePush& g) { return !among(contacts_, g.organ()); });
   std::erase_if(near_, [&](const Near& n) { return !n.watched && !among(contacts_, n.organ); });
   std::erase_if(begun_, [&](std::uint32_t organ) { return !among(contacts_, organ); });
   for (const CarriedContact& contact : contacts_) {
@@ -135,50 +135,17 @@ void ProbeContacts::note_begun() {
   }
 }
 
-/// Bounds how fast an organ's penetration is undone if it was not seen coming: all rows together
-/// push as one motion would, along their mean normal. Velocities come to it within kGentleRise:
-/// tissue that swings is not stopped at a blow. Where the probe itself moves on, tissue goes along;
-/// a probe that comes and goes, as encoders' steps make it, does not bring tissue in anew.
+/// Bounds how fast an organ's penetration is undone if it was not seen coming.
 /// @param rows  of the organ, at the beginning of a sub-step of h
 void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, double h,
                               std::span<ContactRow> rows) {
-  double deepest = 0;
-  Vec3 outward = Vec3::Zero();
-  for (const ContactRow& row : rows) {
-    deepest = std::max(deepest, -row.gap);
-    outward += std::max(-row.gap, 0.0) * row.normal;
-  }
-  auto gentle = std::ranges::find(gentle_, organ, &GentleOrgan::organ);
-  const auto approach_of = [&](const ContactRow& row) {
-    Vec3 velocity = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
-    const double tissue = row.normal.dot(velocity), probe = row.normal.dot(row.probe_velocity);
-    return std::min(tissue, tissue - probe);
-  };
-  if (std::erase(begun_, organ) > 0 && gentle == gentle_.end() && deepest > kSeenDepth + way()) {
-    gentle = gentle_.insert(gentle_.end(), GentleOrgan{organ});
+  auto gentle = std::ranges::find(gentle_, organ, &GentlePush::organ);
+  if (std::erase(begun_, organ) > 0 && gentle == gentle_.end() &&
+      deepest_of(rows) > GentlePush::kSeenDepth + way()) {
+    gentle = gentle_.insert(gentle_.end(), GentlePush(organ));
   }
   if (gentle == gentle_.end()) return;
-  gentle->time += h;
-  gentle->core_inside |= core_ && near_of(organ).inside;
-  if (deepest < kGentleDepth || gentle->time > kGentleTime) {
-    gentle_.erase(gentle);
-    return;
-  }
-  if (gentle->time < kGentleEnd) {
-    for (const ContactRow& row : rows) {
-      gentle->approach = std::max(gentle->approach, approach_of(row));
-    }
-  } else {
-    gentle->approach *= std::max(0.0, 1 - h / kGentleEnd);
-  }
-  const Vec3 push = std::min(kGentleSpeed, deepest / kGentleEnd) * outward.normalized();
-  const double change = std::min(1.0, h / kGentleRise);
-  for (ContactRow& row : rows) {
-    const double speed = std::max(0.0, row.normal.dot(push));
-    const double approach = std::max(std::min(approach_of(row), gentle->approach), -speed);
-    row.gap = std::max(row.gap, h * (approach - change * (approach + speed)));
-  }
+  if (!gentle->soften(state, h, core_ && near_of(organ).inside, rows)) gentle_.erase(gentle);
 }
 
 bool ProbeContacts::begin(double period) {
@@ -332,8 +299,8 @@ bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   take_seeds(near_of(organ));
   // A core on its gentle way out may swing back in; it is not kept from it at a blow.
-  const auto out = std::ranges::find(gentle_, organ, &GentleOrgan::organ);
-  const bool gentle = out != gentle_.end() && out->core_inside;
+  const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);
+  const bool gentle = out != gentle_.end() && out->core_was_inside();
   bool crossed = false;
   for (int end_of_core = 0; end_of_core < (core_->is_ball() ? 1 : 2); ++end_of_core) {
     const Vec3& tip = end_of_core == 0 ? core_->a : core_->b;

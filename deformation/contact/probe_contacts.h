@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "deformation/contact/contact_solve.h"
+#include "deformation/contact/gentle_push.h"
 #include "deformation/contact/surface_walk.h"
 #include "deformation/model/organ_state.h"
 #include "modules/core/touch.h"
@@ -44,11 +45,6 @@ class ProbeContacts {
   /// Tissue nearer than this and the way of an advance is watched even when a search, which was
   /// earlier, found it out of reach [m].
   static constexpr double kWatched = 0.03;
-  static constexpr double kSeenDepth = 1e-3;    ///< [m]
-  static constexpr double kGentleRise = 0.03;   ///< to the speed of a gentle push [s]
-  static constexpr double kGentleEnd = 0.2;     ///< its speed falls with the depth over this [s]
-  static constexpr double kGentleDepth = 5e-6;  ///< at which it is over [m],
-  static constexpr double kGentleTime = 2;      ///< or, under a hand that moves, after this [s]
 
   explicit ProbeContacts(const scene::Probe& probe);
 
@@ -58,8 +54,8 @@ class ProbeContacts {
   void set_pose(const Pose& pose);
   /// Replaces the contacts; one near to where its triangle had one starts from the forces
   /// of that. Sorted by (organ, triangle). Where
-  /// the probe had no contact with an organ and now has one deeper than kSeenDepth and its own way,
-  /// it was not seen coming: until it is out, it is pushed at no more than kGentleSpeed.
+  /// the probe had no contact with an organ and now has one deeper than GentlePush::kSeenDepth and
+  /// its own way, it was not seen coming: until it is out, it is pushed gently (GentlePush).
   void set_contacts(std::span<const Contact> contacts);
 
   /// An organ's surface has other triangles from now on: contacts stay where they are on it.
@@ -159,14 +155,7 @@ class ProbeContacts {
   std::vector<Near> near_;            ///< by organ it is or was near
   std::vector<NearTriangle> found_;   ///< buffer
   std::vector<std::uint32_t> seeds_;  ///< buffer
-  struct GentleOrgan {
-    std::uint32_t organ = 0;
-    double time = 0;      ///< since the first contact [s]
-    double approach = 0;  ///< of its tissue, at most: as in the first kGentleEnd, then less [m/s]
-    bool core_inside = false;  ///< at the start of a sub-step since then
-    void exchange(StateArchive& archive) { archive(organ, time, approach, core_inside); }
-  };
-  std::vector<GentleOrgan> gentle_;
+  std::vector<GentlePush> gentle_;
   std::vector<std::uint32_t> begun_;  ///< organs first touched by the newest contacts
 };
 
