@@ -83,6 +83,7 @@ void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, do
       injected_energy_ += std::max(0.0, impulse.dot(parting));
   }
   energy_budget_ += state.pressure * volume_change;
+  if (energy_budget_ < 0) energy_budget_ = 0;  // not of one that is no number
 }
 
 /// Of the pressure and, by the energy budget, of every impulse since the last check.
@@ -119,7 +120,7 @@ Violation DivergenceDetector::check_bounds(const OrganState& state, double perio
     energy_budget_ += body_.gravity.dot(moment - first_moment_);
     first_moment_ = moment;
   }
-  return judge_energy(kinetic_energy_);
+  return judge_motion();
 }
 
 Violation DivergenceDetector::check_thoroughly(const OrganState& state, double period,
@@ -130,21 +131,18 @@ Violation DivergenceDetector::check_thoroughly(const OrganState& state, double p
   if (volume < -kTurnedVolume * body_.rest_volume) return Violation::kTurnedInside;
   if (!knows_energy_) return Violation::kNone;
   const double energy = kinetic_energy_ + dynamics.elastic_energy(state);
-  const bool was_suspicious = suspicious_;
-  const Violation judged = judge_energy(energy);
-  suspicious_ |= was_suspicious;
-  if (judged == Violation::kNone) energy_budget_ = std::min(energy_budget_, energy);
-  return judged;
+  suspicious_ |= energy > kSuspiciousGain * may_hold();
+  energy_budget_ = std::min(energy_budget_, energy);
+  return Violation::kNone;
 }
 
-/// @param energy  all or part of what the organ holds [J]
-Violation DivergenceDetector::judge_energy(double energy) {
+Violation DivergenceDetector::judge_motion() {
   if (!knows_energy_) return Violation::kNone;
-  const double may_hold = std::max(energy_budget_, 0.0) + calm_energy_;
-  suspicious_ = energy > kSuspiciousGain * may_hold;
+  suspicious_ = kinetic_energy_ > kSuspiciousGain * may_hold();
   const bool shaken =
       injected_energy_ > largest_injected_energy_ && shaking_squared_ > kShakenSpeed * kShakenSpeed;
-  return shaken || energy > kEnergyGain * may_hold ? Violation::kEnergyGrew : Violation::kNone;
+  return shaken || kinetic_energy_ > kEnergyGain * may_hold() ? Violation::kEnergyGrew
+                                                              : Violation::kNone;
 }
 
 Violation DivergenceDetector::explain(const OrganState& state, double period) const {

@@ -8,7 +8,8 @@
 // The energy budget is the sum, and is brought down to the energy there is at every thorough check:
 // what damping took cannot be had again. An explicit step beyond its bound multiplies energy in
 // every step, so it passes any factor soon; time stepping within the bound makes the energy swing
-// (near the bound by 1/(1 − h²ω²/4)), which kEnergyGain leaves room for.
+// (near the bound by 1/(1 − h²ω²/4)), which kEnergyGain leaves room for. What moves is judged; what
+// is stored beyond the budget is only suspicious: a probe that crosses tissue may press it so.
 //
 // Of the contacts' work J·v_c is the probe's, v_c the velocity of its surface; the rest,
 // J·(v⁺ − v_c) where positive, undoes penetrations and is injected: nobody did that work. A probe
@@ -94,7 +95,8 @@ class DivergenceDetector {
 
  private:
   bool is_finite(const OrganState& state) const;
-  Violation judge_energy(double energy);
+  double may_hold() const { return energy_budget_ + calm_energy_; }  ///< [J]
+  Violation judge_motion();
   Violation explain(const OrganState& state, double period) const;
 
   const Body& body_;

@@ -15,6 +15,14 @@ namespace {
 
 constexpr double kNodeSteps = 4e5;  // that a scene may cost
 
+double moving_mass(const deformation::Body& body) {
+  double sum = 0;
+  for (std::size_t i = 0; i < body.node_count(); ++i) {
+    if (body.inverse_masses[i] > 0) sum += body.masses[i];
+  }
+  return sum;
+}
+
 class Lockstep {
  public:
   Lockstep(const RandomScene& scene, const ShapeStore& store, deformation::Guarding guarding,
@@ -27,7 +35,8 @@ class Lockstep {
       session_.haptics().set_device(i, faulty_device(scene, i));
     }
     for (std::size_t i = 0; i < scene.scene.organs.size(); ++i) {
-      organs_.emplace_back(session_.surface(i), scene.organ_shapes[i].size.maxCoeff(), period());
+      organs_.emplace_back(session_.surface(i), scene.organ_shapes[i].size.maxCoeff(),
+                           moving_mass(session_.world().model(i)), period());
     }
   }
 

@@ -12,7 +12,9 @@
 namespace palpate::fuzz {
 namespace {
 
-/// Root mean square of the nodes' speeds beside their mean's: what moves them is no faster.
+/// Root mean square of the nodes' speeds beside their mean's: what moves them is no faster. Of the
+/// surface from advance to advance, or of all nodes in the last step: what turns round in each is
+/// not seen otherwise.
 constexpr double kShaking = kMaxProbeSpeed;  // [m/s]
 
 void take_positions(const std::vector<float>& xyz, std::vector<Vec3>& out) {
@@ -30,8 +32,8 @@ double largest_distance(const std::vector<Vec3>& nodes) {
 
 }  // namespace
 
-OrganWatch::OrganWatch(const SurfaceTopology& surface, double size, double period)
-    : size_(size), period_(period), triangles_(surface.triangles) {
+OrganWatch::OrganWatch(const SurfaceTopology& surface, double size, double mass, double period)
+    : size_(size), mass_(mass), period_(period), triangles_(surface.triangles) {
   take_positions(surface.rest_positions, rest_);
   seen_ = rest_;
 }
@@ -40,6 +42,7 @@ void OrganWatch::look(const NodePositions& nodes, bool replaced) {
   before_ = seen_;
   take_positions(nodes.positions, seen_);
   volume_ = nodes.volume;
+  kinetic_energy_ = nodes.kinetic_energy;
   double fastest = 0, farthest = 0, away = 0;
   for (std::size_t n = 0; n < seen_.size(); ++n) {
     farthest = std::max(farthest, seen_[n].norm());
@@ -64,6 +67,7 @@ void OrganWatch::look_last() const {
     mean += velocity / count;
     squares += velocity.squaredNorm() / count;
   }
+  squares = std::max(squares, 2 * kinetic_energy_ / mass_);
   const double shaking = std::sqrt(std::max(0.0, squares - mean.squaredNorm()));
   if (shaking > kShaking) throw Failure{fmt::format("shaking: {} m/s", shaking)};
   if (largest_distance(seen_) > deformation::kMaxGrowth * largest_distance(rest_)) {

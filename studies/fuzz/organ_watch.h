@@ -11,8 +11,9 @@ namespace palpate::fuzz {
 class OrganWatch {
  public:
   /// @param size    of the organ [m]
+  /// @param mass    of what moves of it [kg]
   /// @param period  of an advance [s]
-  OrganWatch(const SurfaceTopology& surface, double size, double period);
+  OrganWatch(const SurfaceTopology& surface, double size, double mass, double period);
 
   /// After an advance.
   /// @param replaced  a guard has said that it put an organ's state back
@@ -25,7 +26,8 @@ class OrganWatch {
   void look_last() const;
 
  private:
-  double size_, period_, volume_ = 0;  ///< [m], [s], [m³]
+  double size_, mass_, period_;             ///< [m], [kg], [s]
+  double volume_ = 0, kinetic_energy_ = 0;  ///< [m³], [J]
   std::vector<geometry::Triangle> triangles_;
   std::vector<Vec3> rest_, seen_, before_;  ///< [m]
   double away_ = 0;                         ///< largest way from rest when last looked at [m]

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "deformation/organ_messages.h"
+#include "modules/core/tolerances.h"
 #include "studies/fuzz/outcome.h"
 #include "tests/deformation/organs.h"
 
@@ -11,12 +12,15 @@ namespace {
 
 namespace world_of = deformation::testing;
 
+constexpr double kMass = 0.1;  // [kg]
+
 TEST_CASE("organ watch: an organ at rest is fine, one back at rest without a word is not") {
   // Oracle: definition. A plate dents the ball; reset() puts it back.
   deformation::DeformationWorld world(world_of::ball_scene(1),
                                       {geometry::make_ball(world_of::kBallRadius, 1)});
   const double period = 4e-3;
-  OrganWatch watch(deformation::surface_message(world, 0), 2 * world_of::kBallRadius, period);
+  OrganWatch watch(deformation::surface_message(world, 0), 2 * world_of::kBallRadius, kMass,
+                   period);
   const auto nodes = [&] {
     NodePositions now;
     deformation::write_node_positions(world, 0, now);
@@ -33,6 +37,30 @@ TEST_CASE("organ watch: an organ at rest is fine, one back at rest without a wor
   CHECK_NOTHROW(watch.look_last());
   world.reset();
   CHECK_THROWS_AS(watch.look(nodes(), false), Failure);
+}
+
+TEST_CASE("organ watch: an organ that shakes within an advance is shaking, one that flies is not") {
+  // Oracle: m v²/2. Its surface is where it was an advance ago, or as far from there as it flew.
+  deformation::DeformationWorld world(world_of::ball_scene(1),
+                                      {geometry::make_ball(world_of::kBallRadius, 1)});
+  const double period = 4e-3, fast = 1.1 * kMaxProbeSpeed;
+  for (const bool flies : {false, true}) {
+    OrganWatch watch(deformation::surface_message(world, 0), 2 * world_of::kBallRadius, kMass,
+                     period);
+    NodePositions now;
+    deformation::write_node_positions(world, 0, now);
+    now.kinetic_energy = kMass * fast * fast / 2;
+    watch.look(now, false);
+    for (std::size_t k = 0; flies && k < now.positions.size(); k += 3) {
+      now.positions[k] += static_cast<float>(fast * period);
+    }
+    watch.look(now, false);
+    if (flies) {
+      CHECK_NOTHROW(watch.look_last());
+    } else {
+      CHECK_THROWS_AS(watch.look_last(), Failure);
+    }
+  }
 }
 
 }  // namespace
