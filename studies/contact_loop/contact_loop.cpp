@@ -76,46 +76,69 @@ class Judge {
         tool_(tool),
         contacts_(session.bus().reader(bus::kContacts)),
         positions_(session.bus().reader(bus::kNodePositions)),
+        topologies_(session.bus().reader(bus::kSurface)),
         laws_(session.bus().reader(bus::kContactModel)) {}
 
   void look(LoopResult& result) {
-    NodePositions nodes;
-    while (positions_.take(nodes)) {
-      if (nodes.organ == 0) surfaces_.push_back(nodes);
-    }
+    take_surfaces();
     while (contacts_.take(newest_)) judge(result);
     while (laws_.take(law_)) judge_advance(result);
     while (surfaces_.size() > 8) surfaces_.pop_front();
   }
 
  private:
+  /// Positions and the mesh they are of: one that follows a probe changes.
+  struct Surface {
+    NodePositions nodes;
+    std::shared_ptr<const SurfaceTopology> mesh;
+  };
+
+  void take_surfaces() {
+    SurfaceTopology mesh;
+    while (topologies_.take(mesh)) {
+      if (mesh.organ == 0) meshes_.push_back(std::make_shared<const SurfaceTopology>(mesh));
+    }
+    NodePositions nodes;
+    while (positions_.take(nodes)) {
+      if (nodes.organ != 0) continue;
+      const auto mesh_of_it = std::find_if(meshes_.rbegin(), meshes_.rend(), [&](const auto& m) {
+        return m->generation == nodes.generation;
+      });
+      if (mesh_of_it != meshes_.rend()) surfaces_.push_back({nodes, *mesh_of_it});
+    }
+    while (meshes_.size() > 8) meshes_.pop_front();
+  }
+
   /// The surface that deformation made, at the pose it made it for.
   void judge_advance(LoopResult& result) {
-    const auto at = std::find_if(surfaces_.rbegin(), surfaces_.rend(), [&](const NodePositions& s) {
-      return s.header.sim_time_ns == law_.header.sim_time_ns;
+    const auto at = std::find_if(surfaces_.rbegin(), surfaces_.rend(), [&](const Surface& s) {
+      return s.nodes.header.sim_time_ns == law_.header.sim_time_ns;
     });
     if (at == surfaces_.rend()) return;
     ++result.advances;
-    const bool inside = !points_inside(law_.anchor, at->positions).empty();
-    result.crossings += tool_.is_round() && inside && !was_inside_;
+    const bool inside = !points_inside(law_.anchor, *at).empty();
+    const bool crossed = tool_.is_round() && inside && !was_inside_;
+    result.crossings += crossed;
+    result.put_back += crossed && *session_.health("deformation").guard != '\0';
     was_inside_ = inside;
   }
 
   void judge(LoopResult& result) {
     ++result.searches;
     // What deformation says at an instant, it says after the search of that instant.
-    const auto on = std::find_if(surfaces_.rbegin(), surfaces_.rend(), [&](const NodePositions& s) {
-      return s.header.source_time_ns < newest_.header.source_time_ns;
+    const auto on = std::find_if(surfaces_.rbegin(), surfaces_.rend(), [&](const Surface& s) {
+      return s.nodes.header.source_time_ns < newest_.header.source_time_ns &&
+             (newest_.generations.empty() || s.nodes.generation == newest_.generations[0]);
     });
     if (on == surfaces_.rend()) return;
-    const auto points = points_inside(newest_.probe_pose, on->positions);
+    const auto points = points_inside(newest_.probe_pose, *on);
     if (points.empty()) {
       lost_since_ = -1;
       return;
     }
     ++result.inside;
     for (const Vec3& p : points) {
-      result.deepest = std::max(result.deepest, depth_of(p, on->positions));
+      result.deepest = std::max(result.deepest, depth_of(p, *on));
     }
     const bool held = newest_.deepest_gap() < 0;
     if (held) {
@@ -129,23 +152,23 @@ class Judge {
         std::max(result.longest_lost, now - lost_since_ + 1 / session_.scene().rates.collision);
   }
 
-  std::vector<Vec3> points_inside(const Pose& pose, std::span<const float> positions) const {
+  std::vector<Vec3> points_inside(const Pose& pose, const Surface& surface) const {
     std::vector<Vec3> points;
     for (const Vec3& p_P : tool_.inside) {
       const Vec3 p = pose.to_world(p_P);
-      if (geometry::winding_number(p, positions, session_.surface(0).triangles) > 0.5) {
+      if (geometry::winding_number(p, surface.nodes.positions, surface.mesh->triangles) > 0.5) {
         points.push_back(p);
       }
     }
     return points;
   }
 
-  double depth_of(const Vec3& p, std::span<const float> positions) const {
+  double depth_of(const Vec3& p, const Surface& surface) const {
     double nearest = std::numeric_limits<double>::infinity();
     const auto at = [&](std::uint32_t node) -> Vec3 {
-      return Eigen::Map<const Eigen::Vector3f>(&positions[3 * node]).cast<double>();
+      return Eigen::Map<const Eigen::Vector3f>(&surface.nodes.positions[3 * node]).cast<double>();
     };
-    for (const auto& t : session_.surface(0).triangles) {
+    for (const auto& t : surface.mesh->triangles) {
       const auto q = geometry::closest_on_triangle(p, {at(t[0]), at(t[1]), at(t[2])});
       nearest = std::min(nearest, (q.point - p).norm());
     }
@@ -156,8 +179,10 @@ class Judge {
   const Tool& tool_;
   bus::Reader<Contacts> contacts_;
   bus::Reader<NodePositions> positions_;
+  bus::Reader<SurfaceTopology> topologies_;
   bus::Reader<ContactModel> laws_;
-  std::deque<NodePositions> surfaces_;
+  std::deque<Surface> surfaces_;
+  std::deque<std::shared_ptr<const SurfaceTopology>> meshes_;
   Contacts newest_;
   ContactModel law_;
   bool was_inside_ = false;

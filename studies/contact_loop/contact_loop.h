@@ -48,6 +48,7 @@ struct LoopResult {
   /// Of these, of a round tool: a point of its core was inside the surface they left at the pose
   /// they left it for, and none before.
   long crossings = 0;
+  long put_back = 0;  ///< of these: while a guard acted on the organ, and said so
   long searches = 0;
   long inside = 0;           ///< a point of the tool was inside the surface
   long lost = 0;             ///< of these: no contact that pushes it out

@@ -43,7 +43,7 @@ std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3
 
 struct Sum {
   long runs = 0, inside = 0, lost = 0;
-  long presses = 0, crossings = 0;  ///< of round tools
+  long presses = 0, crossings = 0, put_back = 0;  ///< of round tools
   ContactTroubles troubles;
 
   void add(const Tool& tool, const LoopResult& result) {
@@ -53,6 +53,7 @@ struct Sum {
     troubles += result.troubles;
     presses += tool.is_round() ? result.presses : 0;
     crossings += result.crossings;
+    put_back += result.put_back;
   }
 };
 
@@ -135,8 +136,10 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
   }
   out << fmt::format(
              "{} runs: {} searches inside an organ, {} of them without contact\n{} presses of "
-             "round tools: {} times the organ was left with a point of the core inside\n",
-             sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings)
+             "round tools: {} times the organ was left with a point of the core inside, {} of them "
+             "when a "
+             "guard put it back\n",
+             sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings, sum.put_back)
       << session::contact_line(sum.troubles) << '\n';
   return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone
                                                                             : kExitFailed;
