@@ -82,7 +82,7 @@ def identity(arguments):
 
 
 def deformation_rate(palpate, scene):
-    resolved = subprocess.run([palpate, "check", scene], capture_output=True, text=True).stdout
+    resolved = subprocess.run([palpate, "check", "--resolved", scene], capture_output=True, text=True).stdout
     return float(re.search(r"deformation_hz: ([\d.]+)", resolved).group(1))
 
 
