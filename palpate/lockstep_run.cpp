@@ -54,7 +54,8 @@ void check_times(const RunOptions& options, std::int64_t start_ns, double durati
                                  options.from_snapshot.string(), start, duration));
   }
   if (!options.snapshot_at) return;
-  if (*options.snapshot_at > start && *options.snapshot_at <= duration) return;
+  const bool later = ns_from_seconds(*options.snapshot_at) > start_ns;
+  if (later && *options.snapshot_at <= duration) return;
   throw InputError(fmt::format("--snapshot-at {:g}: the run goes from {:g} to {:g} s",
                                *options.snapshot_at, start, duration));
 }

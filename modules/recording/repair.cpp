@@ -106,6 +106,7 @@ RepairReport repair(const std::filesystem::path& damaged, const std::filesystem:
     throw InputError(repaired.string() +
                      ": is there already; a repaired recording replaces nothing");
   }
+  check_recording_target(repaired);
   Copy copy(repaired);
   for (const auto& part : parts) {
     McapReader reader(part, McapDamage::kSkip);

@@ -28,9 +28,11 @@ struct Contents {
 };
 
 std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
   std::vector<std::uint8_t> bytes;
-  if (stream && std::filesystem::is_regular_file(file)) {
+  std::ifstream stream;
+  std::error_code none;
+  if (std::filesystem::is_regular_file(file, none)) {  // a FIFO would be waited for
+    stream.open(file, std::ios::binary);
     bytes.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   }
   if (!stream || bytes.empty()) throw InputError(file.string() + ": cannot be read, or is empty");

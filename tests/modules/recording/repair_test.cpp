@@ -58,7 +58,7 @@ TEST_CASE("repair: a damaged chunk is left out, an old recording gets its indexe
   CHECK(messages_in(folder / "new.mcap").size() == 9);
 }
 
-TEST_CASE("repair: replaces nothing") {
+TEST_CASE("repair: replaces nothing, and says before that it cannot write") {
   // Oracle: the message, and the file's bytes.
   const ScratchFolder folder;
   write_sample_file(folder / "a.mcap", 3);
@@ -67,6 +67,8 @@ TEST_CASE("repair: replaces nothing") {
       repair(folder / "a.mcap", folder / "a.mcap"),
       Catch::EndsWith("a.mcap: is there already; a repaired recording replaces nothing"));
   CHECK(bytes_of(folder / "a.mcap") == before);
+  CHECK_THROWS_WITH(repair(folder / "a.mcap", folder / "no/b.mcap"),
+                    Catch::Contains("b.mcap: cannot be recorded to: there is no folder "));
 }
 
 }  // namespace palpate::recording

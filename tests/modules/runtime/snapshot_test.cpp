@@ -1,5 +1,6 @@
 #include "modules/runtime/snapshot.h"
 
+#include <sys/stat.h>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -86,6 +87,8 @@ TEST_CASE("snapshot: one that is torn, damaged, of another scene or no snapshot 
         std::string::npos);
   CHECK(refusal(folder / "nowhere", scene).find("cannot be read") != std::string::npos);
   CHECK(refusal(folder.path(), scene).find("cannot be read") != std::string::npos);
+  REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);  // to read it would be to wait
+  CHECK(refusal(folder / "fifo", scene).find("cannot be read") != std::string::npos);
 
   const scene::Scene other =
       scene::load_scene_with(shipped, {"organs[0].tissue.youngs_modulus_pa=8e3"});
