@@ -8,8 +8,7 @@
 // The energy budget is the sum, and is brought down to the energy there is at every thorough check:
 // what damping took cannot be had again. An explicit step beyond its bound multiplies energy in
 // every step, so it passes any factor soon; time stepping within the bound makes the energy swing
-// (near the bound by 1/(1 − h²ω²/4)), which kEnergyGain leaves room for. What moves is judged; what
-// is stored beyond the budget is only suspicious: a probe that crosses tissue may press it so.
+// (near the bound by 1/(1 − h²ω²/4)), which kEnergyGain leaves room for.
 //
 // Of the contacts' work J·v_c is the probe's, v_c the velocity of its surface; the rest,
 // J·(v⁺ − v_c) where positive, undoes penetrations and is injected: nobody did that work. A probe
@@ -18,7 +17,13 @@
 // count: below 0.05 m/s those of an organ pressed flat with 1 kN add up to as much, and it is as
 // healthy as can be. And only those faster than the probe's surface moves: what it crosses unseen
 // it would have pushed away itself, with the same work. An organ is shaken once so much was
-// injected and its surface moves about its mean faster than one push can make it.
+// injected and its surface moves about its mean faster than any probe does, or for long faster than
+// one push can make it.
+//
+// Judged is motion: kinetic energy, and only what is more than one push out of a probe gives the
+// whole organ. Elastic energy that nobody gave is suspicious, no more: a step that is not solved to
+// the end leaves some in tissue crushed by a fast, small probe, and what it does as it comes free
+// is motion. The budget is never below 0: work that took more was overestimated.
 #pragma once
 
 #include <span>
@@ -26,6 +31,7 @@
 #include "deformation/guard/advance_report.h"
 #include "deformation/steppers/organ_dynamics.h"
 #include "modules/core/state_archive.h"
+#include "modules/core/tolerances.h"
 
 namespace palpate::deformation {
 
@@ -42,8 +48,11 @@ inline constexpr double kCalmSpeed = 0.05;
 /// Injected energy is forgotten by 1/e in this time [s]; no more is plausible at a time than pushes
 /// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed².
 inline constexpr double kInjectionMemory = 10.0;
-/// Root mean square of how a surface's nodes moved since the last check, about their mean [m/s].
-inline constexpr double kShakenSpeed = kMaxSeparationSpeed;
+/// Root mean square of how a surface's nodes moved since the last check, about their mean: faster
+/// than any probe moves them, or for so long faster than one push can [m/s], [s].
+inline constexpr double kShakenSpeed = kMaxProbeSpeed;
+inline constexpr double kShakenForLongSpeed = kMaxSeparationSpeed;
+inline constexpr double kShakenTime = 0.5;
 /// Tissue parts from the probe faster than this where a penetration is undone in a hurry [m/s].
 inline constexpr double kPushedSpeed = 0.2;
 
@@ -80,7 +89,7 @@ class DivergenceDetector {
 
   void exchange(StateArchive& archive) {
     archive(energy_budget_, injected_energy_, kinetic_energy_, shaking_squared_, first_moment_,
-            seen_, suspicious_);
+            shaken_time_, seen_, suspicious_);
   }
 
   /// What add_work() changes, for steps that are taken back.
@@ -95,6 +104,7 @@ class DivergenceDetector {
 
  private:
   bool is_finite(const OrganState& state) const;
+  void give(double work);
   double may_hold() const { return energy_budget_ + calm_energy_; }  ///< [J]
   Violation judge_motion();
   Violation explain(const OrganState& state, double period) const;
@@ -104,6 +114,7 @@ class DivergenceDetector {
   double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_injected_energy_ = 0;
   double energy_budget_ = 0, injected_energy_ = 0, kinetic_energy_ = 0;  ///< [J]
   double shaking_squared_ = 0;        ///< kShakenSpeed's, now [m²/s²]
+  double shaken_time_ = 0;            ///< faster than kShakenForLongSpeed until now [s]
   Vec3 first_moment_ = Vec3::Zero();  ///< Σ m x, under gravity [kg·m]
   std::vector<Vec3> seen_;            ///< positions of the last check [m]
   bool suspicious_ = false;

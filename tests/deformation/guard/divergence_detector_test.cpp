@@ -147,6 +147,39 @@ TEST_CASE("divergence detector: falling is not gaining") {
   }
 }
 
+TEST_CASE(
+    "divergence detector: elastic energy that nobody gave is suspicious, what it does as it comes "
+    "free is too much") {
+  // Oracle: definitions; a ball swollen by a third holds a hundred times what it may, at rest.
+  const auto organ = testing::undamped_ball_with("mass_spring");
+  const auto model = testing::ball_model(2, organ);
+  auto dynamics = testing::constrained(model);
+  DivergenceDetector detector(model, true);
+  OrganState state = rest_state(model);
+  detector.begin(state, 0);
+  for (Vec3& p : state.positions) p *= 4.0 / 3;
+  double mass = 0;
+  for (const double m : model.masses) mass += m;
+  REQUIRE(dynamics.elastic_energy(state) > 10 * kEnergyGain * mass * kCalmSpeed * kCalmSpeed / 2);
+  CHECK(detector.check_thoroughly(state, kLong, dynamics) == Violation::kNone);
+  CHECK(detector.suspicious());
+  CHECK(detector.energy_budget() == 0);  // it is not given to it
+  for (Vec3& v : state.velocities) v = Vec3(1.1 * kMaxSeparationSpeed, 0, 0);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kEnergyGrew);
+}
+
+TEST_CASE("divergence detector: work that takes more than there is leaves nothing, not less") {
+  // Oracle: no organ holds less than nothing, so what comes later is its own.
+  const auto model = testing::ball_model(1);
+  DivergenceDetector detector(model, true);
+  OrganState state = rest_state(model);
+  detector.begin(state, 0.1);
+  state.pressure = 100;
+  detector.add_work(kWatchedStep, {}, -1, state);
+  detector.add_work(kWatchedStep, {}, 1e-5, state);
+  CHECK(detector.energy_budget() == Approx(1e-3));
+}
+
 TEST_CASE("divergence detector: each kind of nonsense is told from the others") {
   // Oracle: definitions of Violation.
   const auto model = testing::ball_model(2);
@@ -182,8 +215,11 @@ TEST_CASE("divergence detector: each kind of nonsense is told from the others") 
   state.positions[5] += 2 * kMaxGrowth * Vec3(testing::kBallRadius, 0, 0);
   CHECK(detector.check_bounds(state, kLong) == Violation::kTooLarge);
   state = rest;
-  for (auto& v : state.velocities) v = Vec3(4 * kCalmSpeed, 0, 0);
+  for (auto& v : state.velocities) v = Vec3(1.01 * kMaxSeparationSpeed, 0, 0);
   CHECK(detector.check_bounds(state, kLong) == Violation::kEnergyGrew);
+  for (auto& v : state.velocities) v = Vec3(0.99 * kMaxSeparationSpeed, 0, 0);
+  CHECK(detector.check_bounds(state, kLong) == Violation::kNone);
+  CHECK(detector.suspicious());
   for (auto& v : state.velocities) v = Vec3(2 * kCalmSpeed, 0, 0);
   CHECK(detector.check_bounds(state, kLong) == Violation::kNone);
   CHECK(detector.suspicious());
