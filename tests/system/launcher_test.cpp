@@ -192,8 +192,9 @@ TEST_CASE("launcher: a recording can be replayed as the input of a new run") {
   REQUIRE(first.wait_for_end() == 0);
   const BallScene idle;  // its own device leaves the finger above the ball
   launcher::ChildProcess again(
-      std::filesystem::path(PALPATE_BIN_DIR) / "palpate",
-      {"replay", recording.string(), idle.file().string(), "--headless", "--duration", "1.5"});
+      bin("palpate"), joined({"replay", recording.string(), idle.file().string(), "--headless",
+                              "--duration", "1.5"},
+                             own_bus_options()));
   std::string said;
   const auto listen = [&] {
     for (const auto& line : again.take_lines()) said += line + "\n";
