@@ -1,6 +1,7 @@
 #include "modules/recording/mcap_writer.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -58,12 +59,22 @@ void check_recording_target(const std::filesystem::path& file) {
 
 McapWriter::McapWriter(const std::filesystem::path& file) : file_(file) {
   refuse_to_replace_what_is_no_recording(file);
-  descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("open", errno);
+  if (std::filesystem::is_regular_file(file)) empty();
   pending_.assign(kMcapMagic.begin(), kMcapMagic.end());
   appended(kMcapMagic.size());
   append(McapOpcode::kHeader, content_of(McapHeader{"", "palpate"}));  // no profile: schemas tell
   flush();
+}
+
+/// By nobody while another writes it; the kernel gives the lock back with the descriptor.
+void McapWriter::empty() {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(descriptor_);
+    throw InputError(file_.string() + ": another program is writing it");
+  }
+  if (::ftruncate(descriptor_, 0) != 0) fail("empty", errno);
 }
 
 McapWriter::~McapWriter() {

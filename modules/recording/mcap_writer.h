@@ -50,6 +50,7 @@ class McapWriter {
   std::uint64_t bytes_written() const { return offset_; }
 
  private:
+  void empty();
   void append(McapOpcode opcode, std::span<const std::uint8_t> content);
   void appended(std::size_t bytes);
   void append_summary();

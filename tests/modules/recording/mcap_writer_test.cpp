@@ -204,6 +204,19 @@ TEST_CASE("mcap writer: a full disk is reported with the file and the system's r
   CHECK_THROWS_WITH(McapWriter("/dev/full"), "/dev/full: cannot write: No space left on device");
 }
 
+TEST_CASE("mcap writer: a file that another one writes is refused and keeps what it has") {
+  // Oracle: the bytes of the first; after it has gone the file may be written anew.
+  const ScratchFolder folder;
+  const auto file = folder / "one.mcap";
+  {
+    McapWriter first(file);
+    const auto size = std::filesystem::file_size(file);
+    CHECK_THROWS_WITH(McapWriter(file), Catch::Contains("another program is writing it"));
+    CHECK(std::filesystem::file_size(file) == size);
+  }
+  CHECK_NOTHROW(McapWriter(file));
+}
+
 TEST_CASE("mcap writer: a file that cannot be opened is named") {
   // Oracle: the system's reason for a folder that does not exist.
   const ScratchFolder folder;
