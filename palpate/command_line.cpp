@@ -1,5 +1,7 @@
 #include "palpate/command_line.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -227,6 +229,8 @@ void add_keys(Program& program, KeyOptions& options) {
     constexpr double kSecondsPerDay = 86'400;
     bus::make_keys(options.folder,
                    std::chrono::seconds(std::int64_t(kSecondsPerDay * options.days)));
+    std::cout << fmt::format("{}: keys of every role, for {:g} days\n", options.folder.string(),
+                             options.days);
     return kExitDone;
   });
   command.add_output("DIR", options.folder, "A new folder").required();

@@ -102,6 +102,9 @@ std::string HostsFile::peers_of(const std::string& name) const {
 }
 
 HostsFile load_hosts(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) {
+    throw InputError("--hosts " + file.string() + ": is a folder");
+  }
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream) throw InputError("--hosts " + file.string() + ": cannot be read");

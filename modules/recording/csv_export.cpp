@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "modules/core/error.h"
 #include "modules/messages/csv.h"
 
 namespace palpate::recording {
@@ -32,7 +33,9 @@ std::string times_of(const Header& header, std::int64_t received_ns, std::int64_
 }  // namespace
 
 CsvExport::CsvExport(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::filesystem::create_directories(folder_);
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) throw InputError("--csv " + folder_.string() + ": " + error.message());
 }
 
 std::ofstream& CsvExport::file(const std::string& name, const std::string& columns) {

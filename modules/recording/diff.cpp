@@ -101,11 +101,13 @@ class Comparison {
 
   bool compare_values(const std::string& topic, const std::string& key, TopicDifference& into) {
     std::map<std::string_view, double> largest;  // of the fields that differ
+    std::set<std::string_view> texts;            // of these
     const std::size_t count = std::min(values_a_.size(), values_b_.size());
     for (std::size_t i = 0; i < count; ++i) {
       const Value &a = values_a_[i], &b = values_b_[i];
       if (a.same_as(b) || options_.ignore.contains(a.field)) continue;
       double& most = largest[a.field];
+      if (a.kind == Value::Kind::kText) texts.insert(a.field);
       if (a.field == b.field) most = std::max(most, std::abs(a.real - b.real));
       note(topic, key, messages::place_of(a), messages::text_of(a), messages::text_of(b));
       if (a.field != b.field) break;  // a longer list: what follows is shifted
@@ -113,11 +115,12 @@ class Comparison {
     for (const auto& [field, difference] : largest) {
       FieldDifference& total = into.fields[std::string(field)];
       ++total.samples;
+      total.is_text = texts.contains(field);
       if (difference > total.largest || total.samples == 1) {
         total.largest = difference;
         total.largest_sim_time_ns = sim_time_ns_;
       }
-      if (csv_.is_open()) write_row(topic, key, field, difference);
+      if (csv_.is_open()) write_row(topic, key, field, total.is_text, difference);
     }
     return !largest.empty();
   }
@@ -129,10 +132,14 @@ class Comparison {
   }
 
   void write_row(const std::string& topic, const std::string& key, std::string_view field,
-                 double difference) {
+                 bool is_text, double difference) {
     messages::write_seconds(csv_, sim_time_ns_);
     csv_ << ',' << topic << ',' << messages::csv_text(key) << ',' << field << ',';
-    messages::write_number(csv_, difference);
+    if (is_text) {
+      csv_ << "text";
+    } else {
+      messages::write_number(csv_, difference);
+    }
     csv_ << '\n';
   }
 
@@ -245,8 +252,13 @@ void print_difference(const RecordingDifference& difference, std::ostream& out) 
         << std::setw(11) << topic.differing << std::setw(11) << topic.only_in_a << std::setw(11)
         << topic.only_in_b << '\n';
     for (const auto& [field, d] : topic.fields) {
-      out << "  " << field << ": " << d.samples << " samples, at most " << d.largest << " at "
-          << seconds_from_ns(d.largest_sim_time_ns) << " s\n";
+      out << "  " << field << ": " << d.samples << " samples, ";
+      if (d.is_text) {
+        out << "another text";
+      } else {
+        out << "at most " << d.largest;
+      }
+      out << " at " << seconds_from_ns(d.largest_sim_time_ns) << " s\n";
     }
   }
   out << (difference.equal() ? "equal\n" : "different\n");

@@ -33,7 +33,8 @@ struct Difference {
 /// The differences of one field of a topic.
 struct FieldDifference {
   std::uint64_t samples = 0;  ///< that differ in it
-  double largest = 0;         ///< ∣a − b∣; of texts none
+  double largest = 0;         ///< ∣a − b∣
+  bool is_text = false;       ///< has none
   std::int64_t largest_sim_time_ns = 0;
 };
 

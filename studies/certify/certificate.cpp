@@ -91,9 +91,10 @@ std::string row_of(const Line& line) {
 std::string facts(const Certificate& certificate, const Subject& subject) {
   const Vec3& at = subject.place.pose.position;
   std::string text = fmt::format(
-      "<p><b>{}</b>. Scene {}, probe '{}', organ '{}', touched at ({:.4f}, {:.4f}, {:.4f}) m; "
+      "<p><b>{}</b>{}. Scene {}, probe '{}', organ '{}', touched at ({:.4f}, {:.4f}, {:.4f}) m; "
       "presses of {:g} mm at {:g} mm/s; device damping {:g} N·s/m, t_d {:g} ms. {}.</p>\n",
       certificate.complete ? verdict_of(certificate) : std::string("incomplete: it was stopped"),
+      certificate.scope.empty() ? "" : ", of a part: " + escaped(certificate.scope),
       escaped(subject.scene.name), escaped(subject.scene.probes[0].name),
       escaped(subject.scene.organs[subject.place.organ].name), at.x(), at.y(), at.z(),
       1e3 * subject.depth, 1e3 * subject.speed, subject.scene.haptics.device_damping,
@@ -129,6 +130,7 @@ void write_json(const Certificate& certificate, const Subject& subject,
   json["depth_m"] = subject.depth;
   json["speed_m_per_s"] = subject.speed;
   if (!certificate.machine.empty()) json["machine"] = certificate.machine;
+  json["scope"] = certificate.scope.empty() ? "whole" : certificate.scope;
   json["complete"] = certificate.complete;
   json["verdict"] = verdict_of(certificate);
   json["lines"] = Json::Value(Json::arrayValue);

@@ -10,7 +10,9 @@ namespace palpate::certify {
 
 struct Certificate {
   std::string machine;  ///< on which times were taken; empty: none were
-  bool complete = false;
+  /// What it leaves out: "in lockstep, --quick, only law"; empty: nothing.
+  std::string scope;
+  bool complete = false;  ///< within its scope
   std::vector<Line> lines;
 
   bool passed() const { return complete && !any_failed(lines); }

@@ -44,7 +44,9 @@ class Certifying {
         claims_(claims),
         keep_going_(std::move(keep_going)),
         out_(out),
-        log_(log) {}
+        log_(log) {
+    certificate_.scope = scope_of(options);
+  }
 
   /// Where shards leave what they measured.
   static std::filesystem::path shared_folder(const CertifyOptions& options) {
@@ -104,13 +106,25 @@ class Certifying {
     out_ << fmt::format(
         "{}: {} lines, {} failed, {} not measured; in {}: certificate.html, "
         "certificate.json\n",
-        certificate_.complete ? subject_.scene.name + " certified" : "incomplete",
+        certificate_.complete ? subject_.scene.name + " certified" + in_brackets() : "incomplete",
         certificate_.lines.size(), count(Verdict::kFail), count(Verdict::kNotMeasured),
         options_.out.string());
     return certificate_.passed();
   }
 
  private:
+  static std::string scope_of(const CertifyOptions& options) {
+    std::string scope;
+    const auto add = [&](const std::string& word) { scope += (scope.empty() ? "" : ", ") + word; };
+    if (options.lockstep) add("in lockstep");
+    if (options.quick) add("--quick");
+    for (const std::string& part : options.only) add("only " + part);
+    return scope;
+  }
+  std::string in_brackets() const {
+    return certificate_.scope.empty() ? "" : " (" + certificate_.scope + ")";
+  }
+
   /// What its results depend on.
   static std::string told(const CertifyOptions& options, const Subject& subject) {
     std::string text =

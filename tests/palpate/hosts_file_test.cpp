@@ -98,6 +98,7 @@ TEST_CASE("hosts file: what is wrong is named with its line and what is allowed"
         std::string::npos);
   CHECK_THROWS_WITH(load_hosts("/nowhere/hosts.yaml"),
                     "--hosts /nowhere/hosts.yaml: cannot be read");
+  CHECK_THROWS_WITH(load_hosts("/"), "--hosts /: is a folder");
 }
 
 TEST_CASE("hosts file: a run takes its modules, and its part, from it") {

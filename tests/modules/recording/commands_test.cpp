@@ -113,7 +113,8 @@ TEST_CASE("commands: diff warns of a torn file, whichever of the two it is") {
   CHECK(err.str() == "");
 }
 
-TEST_CASE("commands: a bad recording is bad input, an unwritable CSV folder a failure") {
+TEST_CASE(
+    "commands: a bad recording is bad input, and so is a file where the CSV folder should be") {
   // Oracle: exit codes of core/error.h.
   const ScratchFolder folder;
   std::ostringstream out, err;
@@ -124,7 +125,8 @@ TEST_CASE("commands: a bad recording is bad input, an unwritable CSV folder a fa
   CHECK(run_replay_command({folder / "text.mcap", bus::testing::own_options()}, kNeverStop, out,
                            err) == kExitBadInput);
   write_recording(folder / "a.mcap", true);
-  CHECK(run_inspect_command({folder / "a.mcap", folder / "text.mcap"}, out, err) == kExitFailed);
+  CHECK(run_inspect_command({folder / "a.mcap", folder / "text.mcap"}, out, err) == kExitBadInput);
+  CHECK_THAT(err.str(), Catch::EndsWith("text.mcap: Not a directory\n"));
   CHECK(out.str().empty());
 }
 

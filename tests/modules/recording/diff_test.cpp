@@ -1,6 +1,7 @@
 #include "modules/recording/diff.h"
 
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <sstream>
 
 #include "modules/core/error.h"
@@ -83,6 +84,31 @@ TEST_CASE("diff: names the first tick, key, field and values that differ") {
   const std::string csv = text_in(folder / "differences.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6);
   CHECK(csv.find("0.024,node_positions,1,pressure_pa,0.5\n") != std::string::npos);
+}
+
+TEST_CASE("diff: of texts it says that they differ, not by how much") {
+  // Oracle: two scenes that differ in their name alone.
+  const ScratchFolder folder;
+  const auto record_scene = [&](const std::string& name) {
+    const auto file = folder / (name + ".mcap");
+    SampleFile recording(file, {});
+    SceneDescription scene;
+    scene.name = name;
+    scene.header = {1, 0, 1};
+    scene.digest = "0123456789abcdef";
+    scene.resolved_text = "palpate_scene: 1\n";
+    recording.add(raw_sample(bus::kScene, scene, 1, 1));
+    recording.close();
+    return file;
+  };
+  const RecordingDifference difference = compare(
+      {.a = record_scene("one"), .b = record_scene("other"), .csv = folder / "differences.csv"});
+  std::ostringstream said;
+  print_difference(difference, said);
+  CHECK_THAT(said.str(), Catch::Contains("  name: 1 samples, another text at"));
+  std::ostringstream rows;
+  rows << std::ifstream(folder / "differences.csv").rdbuf();
+  CHECK_THAT(rows.str(), Catch::Contains(",scene,,name,text\n"));
 }
 
 TEST_CASE("diff: samples that one recording lacks are counted") {

@@ -20,6 +20,7 @@ TEST_CASE("certificate: JSON holds each line's number, limit, source and verdict
   const Subject subject = load_subject(scene.file(), kGoOn);
   Certificate certificate;
   certificate.complete = true;
+  certificate.scope = "in lockstep, only law";
   certificate.lines = {at_most("g", {"a <b>", 0.25, 1, "N", "a page", "a note"}),
                        at_most("g", {"b", std::numeric_limits<double>::infinity(), 1, "N", "", ""}),
                        not_measured("h", "c", "why")};
@@ -28,6 +29,7 @@ TEST_CASE("certificate: JSON holds each line's number, limit, source and verdict
   std::istringstream(text_in(scene.folder() / "certificate.json")) >> json;
   CHECK(json["verdict"] == "fail");
   CHECK(json["complete"] == true);
+  CHECK(json["scope"] == "in lockstep, only law");
   CHECK(json["scene"] == "press");
   REQUIRE(json["lines"].size() == 3);
   CHECK(json["lines"][0]["value"] == 0.25);
@@ -41,6 +43,7 @@ TEST_CASE("certificate: JSON holds each line's number, limit, source and verdict
   std::ofstream(scene.folder() / "certify_law.png") << "picture";
   write_page(certificate, subject, scene.folder());
   const std::string page = text_in(scene.folder() / "certificate.html");
+  CHECK(page.find("fail</b>, of a part: in lockstep, only law") != std::string::npos);
   CHECK(page.find("a &lt;b&gt;") != std::string::npos);
   CHECK(page.find("src=\"certify_law.png\"") != std::string::npos);
   CHECK(page.find("<h2>h</h2>") != std::string::npos);
