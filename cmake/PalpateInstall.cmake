@@ -54,6 +54,7 @@ measures its own speed, accuracy and stability.")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME palpate)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "python3:any")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS
     "gmsh, python3-matplotlib, python3-numpy, xvfb, libgl1-mesa-dri, fonts-dejavu-core")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
