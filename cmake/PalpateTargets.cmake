@@ -137,8 +137,10 @@ function(palpate_program name)
   endif()
 endfunction()
 
-# What a test has that starts real processes. Begun first, they wait while others compute.
+# What a test has that starts real processes, mostly to wait for them: begun first, one at a time, beside
+# others that compute. One that computes most of its time itself is begun first, too, but does not queue.
 set(PALPATE_PROCESSES COST 100 RESOURCE_LOCK palpate_session)
+set(PALPATE_LONG COST 100)
 
 # palpate_tests(NAME [RECURSE] [SOURCES … | EXCEPT pattern …] DEPENDS … [LABELS …, else unit] [TIMEOUT seconds]
 #               [PROCESSES [HOSTS]] [ALONE regex] [DRAWS])

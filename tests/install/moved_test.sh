@@ -34,7 +34,7 @@ for tree in "$build" "$source"; do
 done
 palpate=$prefix/bin/palpate scene=$prefix/share/palpate/scenes/stomach_probe.yaml
 set -x
-"$palpate" run "$scene" --headless --duration 1 --record run.mcap
+"$palpate" run "$scene" --headless --session "moved-$$" --duration 1 --record run.mcap
 "$palpate" inspect run.mcap | grep node_positions
 "$palpate" chart --quick --case ball --model implicit_volume --no-peers -o chart
 "$palpate" plan "$scene" --seconds 3 -o planned.yaml
