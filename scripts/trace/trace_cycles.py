@@ -14,7 +14,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/trace/bin"
-STAGES = {"haptics": 4, "collision": 4, "deformation": 6, "visualizer": 2, "recorder": 2}  # levels shown
+STAGES = {"haptics": 4, "collision": 4, "deformation": 7, "visualizer": 2, "recorder": 2}  # levels shown
 LEFT_OUT = re.compile(r"lambda|operator|(^|::)(\w+)(<.*>)?::~?\2$")  # constructors and destructors, too
 
 
@@ -24,7 +24,7 @@ def run(*command, **options):
 
 def build(out):
     run("g++", "-std=c++20", "-O1", "-shared", "-fPIC", ROOT / "scripts/trace/cycle_tracer.cpp", "-o", out / "tracer.so")
-    run(ROOT / "scripts/build", "trace", "palpate_program", *(f"palpate_{name}_program" for name in STAGES))
+    run(ROOT / "scripts/build", "trace", "palpate_program", *(f"palpate_{name}_program" for name in STAGES), stdout=sys.stderr)
 
 
 def root_of(program):
