@@ -37,7 +37,7 @@ def trace(scene, seconds, out):
     environment = dict(os.environ, LD_PRELOAD=str(out / "tracer.so"), PALPATE_TRACE_ROOTS=roots,
                        PALPATE_TRACE_FOLDER=str(out))
     run(BIN / "palpate", "run", scene, "--lockstep", "--headless", "--no-realtime", "--duration", seconds,
-        "--frames", out / "frames", "--frame-interval-s", 0.01, "--record", out / "recording.mcap",
+        "--frames", out / "frames", "--frame-interval-s", 0.01, "--record", out / "recording.mcap", "--overwrite",
         env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
@@ -141,13 +141,20 @@ def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("scene", nargs="?", default="scenes/stomach_probe.yaml")
     arguments.add_argument("--seconds", type=float, default=4, help="simulated before the cycle that is shown")
+    arguments.add_argument("--page", type=pathlib.Path, help="put them there (docs/pipeline.md) instead of printing them")
     options = arguments.parse_args()
     out = ROOT / "out/trace"
     out.mkdir(parents=True, exist_ok=True)
     build(out)
     trace(options.scene, options.seconds, out)
-    for name, deepest in STAGES.items():
-        print(f"```trace\n{table(name, out, deepest)}\n```\n")
+    tables = [f"```trace\n{table(name, out, deepest)}\n```" for name, deepest in STAGES.items()]
+    if not options.page:
+        print("\n\n".join(tables))
+        return
+    page, count = re.subn(r"```trace\n.*?```", lambda _: tables.pop(0), options.page.read_text(), count=len(STAGES), flags=re.S)
+    if count != len(STAGES):
+        sys.exit(f"{options.page} has {count} of {len(STAGES)} traces")
+    options.page.write_text(page)
 
 
 if __name__ == "__main__":
