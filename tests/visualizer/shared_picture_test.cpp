@@ -1,13 +1,14 @@
 #include "visualizer/shared_picture.h"
 
-#include <X11/Xlib.h>
-#include <X11/Xutil.h>
-
 #include <catch2/catch.hpp>
 #include <vector>
 
 #include "tests/visualizer/display_or_skip.h"
 #include "visualizer/offscreen_display.h"
+
+// Last: Eigen does not stand their macros (Success).
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
 
 using namespace palpate::visualizer;
 
