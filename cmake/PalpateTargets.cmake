@@ -143,12 +143,13 @@ set(PALPATE_PROCESSES COST 100 RESOURCE_LOCK palpate_session)
 set(PALPATE_LONG COST 100)
 
 # palpate_tests(NAME [RECURSE] [SOURCES … | EXCEPT pattern …] DEPENDS … [LABELS …, else unit] [TIMEOUT seconds]
-#               [PROCESSES [HOSTS]] [ALONE regex] [DRAWS])
+#               [PROCESSES [HOSTS]] [ALONE regex] [REAL_TIME regex] [DRAWS])
 # One Catch2 program, each case one ctest test. PROCESSES: its cases start real processes, mostly to wait
 # for them; one such case runs at a time, and one with HOSTS of its own, beside others that compute. ALONE:
-# names of cases that judge times; nothing runs beside them. DRAWS: with OpenGL.
+# names of cases that judge times; nothing runs beside them. REAL_TIME: those whose processes must keep up with
+# real time; sanitizers are too slow for it, ctest lists them as disabled. DRAWS: with OpenGL.
 function(palpate_tests name)
-  cmake_parse_arguments(ARG "RECURSE;PROCESSES;HOSTS;DRAWS" "TIMEOUT;ALONE" "SOURCES;EXCEPT;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "RECURSE;PROCESSES;HOSTS;DRAWS" "TIMEOUT;ALONE;REAL_TIME" "SOURCES;EXCEPT;DEPENDS;LABELS" ${ARGN})
   if(NOT ARG_SOURCES)
     palpate_sources(ARG_SOURCES ${ARG_RECURSE} ${ARG_EXCEPT})
   endif()
@@ -156,7 +157,7 @@ function(palpate_tests name)
     set(ARG_TIMEOUT 120)
   endif()
   if(PALPATE_SANITIZE)  # some thirty times as slow
-    math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")
+    math(EXPR ARG_TIMEOUT "20 * ${ARG_TIMEOUT}")
   endif()
   add_executable(${name}_tests ${ARG_SOURCES})
   # A test's own code is compiled often and run once; what it judges keeps the preset's optimization.
@@ -190,13 +191,21 @@ function(palpate_tests name)
   # NoTests: a name that ctest cannot hand over (it splits at ';') fails instead of matching nothing.
   catch_discover_tests(${name}_tests TEST_PREFIX "${name}: " EXTRA_ARGS -w NoTests PROPERTIES ${properties})
   if(ARG_ALONE)
-    set(script ${CMAKE_CURRENT_BINARY_DIR}/${name}_alone.cmake)
-    file(WRITE ${script} "foreach(test IN LISTS ${name}_tests_TESTS)
-  if(test MATCHES \"${ARG_ALONE}\")
-    set_tests_properties(\"\${test}\" PROPERTIES RUN_SERIAL TRUE)
+    palpate_set_of_cases(${name} alone "${ARG_ALONE}" "RUN_SERIAL TRUE")
+  endif()
+  if(ARG_REAL_TIME AND PALPATE_SANITIZE)
+    palpate_set_of_cases(${name} real_time "${ARG_REAL_TIME}" "DISABLED TRUE")
+  endif()
+endfunction()
+
+# Properties of those cases of a test program whose names match; they are known when ctest starts.
+function(palpate_set_of_cases name kind regex properties)
+  set(script ${CMAKE_CURRENT_BINARY_DIR}/${name}_${kind}.cmake)
+  file(WRITE ${script} "foreach(test IN LISTS ${name}_tests_TESTS)
+  if(test MATCHES \"${regex}\")
+    set_tests_properties(\"\${test}\" PROPERTIES ${properties})
   endif()
 endforeach()
 ")
-    set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
-  endif()
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${script})
 endfunction()
