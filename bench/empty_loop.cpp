@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <fstream>
 
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/realtime.h"
-#include "modules/runtime/stop_signal.h"
 
 namespace {
 

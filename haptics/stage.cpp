@@ -1,5 +1,6 @@
 #include "haptics/stage.h"
 
+#include "haptics/devices/driver_watch.h"
 #include "haptics/haptic_renderer.h"
 #include "modules/core/units.h"
 #include "modules/scene/processes.h"
@@ -10,16 +11,20 @@ namespace {
 /// What a status says of a probe; made ready because a cycle allocates nothing.
 struct ProbeTexts {
   explicit ProbeTexts(const std::string& name)
-      : silent("probe '" + name + "': its driver is silent on probe_input: no force"),
+      : several("probe '" + name +
+                "': several programs move it on probe_input: it jumps between their poses"),
+        silent("probe '" + name + "': its driver is silent on probe_input: no force"),
         refused("probe '" + name + "': a sample from its driver was refused"),
         slewed("probe '" + name + "': its driver moves too fast: the pose is slewed") {}
-  std::string silent, refused, slewed;
+  std::string several, silent, refused, slewed;
 };
 
 /// A device with the renderer of its force, and the messages that tell of them.
 struct RenderedProbe {
   std::unique_ptr<Device> device;
   OutsideDevice* outside;  ///< the device if it is one, else nullptr
+  DriverWatch drivers;     ///< of `outside`
+  bool several_drivers = false;
   HapticRenderer renderer;
   ProbeTexts texts;
   ProbeState state;
@@ -38,6 +43,8 @@ std::vector<RenderedProbe> make_probes(const scene::Scene& scene,
     probes.push_back(
         {nullptr,
          nullptr,
+         {},
+         false,
          HapticRenderer(scene.haptics, 1.0 / scene.rates.haptics, scene::process_count(scene)),
          ProbeTexts(described.name),
          {},
@@ -64,6 +71,7 @@ void tick(const runtime::Cycle& now, RenderedProbe& probe) {
 const char* acting_guard(const RenderedProbe& probe) {
   const std::uint32_t limits = probe.force.limits;
   if (limits & kForceNotFinite) return "a force or pose was not finite: rendered as zero";
+  if (probe.several_drivers) return probe.texts.several.c_str();
   if (limits & kDriverSilent) return probe.texts.silent.c_str();
   if (limits & kForceStaleFade)
     return "contact model older than stale_after_s: force fades to zero";
@@ -78,7 +86,7 @@ struct HapticsStage::Impl {
   Impl(const scene::Scene& scene, bus::Bus& bus, std::vector<std::string>& warnings)
       : probes(make_probes(scene, warnings)),
         processes(scene::process_count(scene)),
-        inputs(bus.reader(bus::kProbeInput)),
+        inputs(bus.reader(bus::kProbeInput, bus::Keep::kBacklog)),
         laws(bus.reader(bus::kContactModel)),
         states(bus.writer(bus::kProbeState)),
         forces(bus.writer(bus::kHapticForce)) {}
@@ -89,7 +97,9 @@ struct HapticsStage::Impl {
       if (input.probe >= probes.size() || !probes[input.probe].outside) continue;
       const DeviceSample said{input.pose, input.twist, input.buttons};
       probes[input.probe].outside->hear(said, input.header.source_time_ns, now_ns);
+      probes[input.probe].drivers.hear(inputs.writer(), now_ns);
     }
+    for (RenderedProbe& probe : probes) probe.several_drivers = probe.drivers.several(now_ns);
     note_rejected();
     while (laws.take(law)) {
       if (law.probe >= probes.size() || law.process == 0 || law.process > processes) continue;
@@ -108,8 +118,8 @@ struct HapticsStage::Impl {
   }
 
   std::vector<RenderedProbe> probes;
-  std::size_t processes;  ///< of deformation
-  bus::Reader<ProbeState> inputs;
+  std::size_t processes;           ///< of deformation
+  bus::Reader<ProbeState> inputs;  ///< all: of several drivers the newest hides the others'
   bus::Reader<ContactModel> laws;
   bus::Writer<ProbeState> states;
   bus::Writer<HapticForce> forces;

@@ -9,13 +9,13 @@
 #include "modules/bus/dds_bus.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
 #include "modules/recording/recorder_stage.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/snapshot.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/processes.h"
@@ -237,7 +237,7 @@ class LockstepRun {
   const RunOptions& options_;
   std::ostream& out_;
   std::ostream& log_;
-  runtime::StopSignal stop_;
+  StopSignal stop_;
   scene::Scene scene_;
   std::string digest_;
   double duration_;
@@ -256,7 +256,7 @@ class LockstepRun {
 
 /// This host's part of a lockstep that another one conducts.
 int follow_lockstep(const RunOptions& options, std::ostream& log) {
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   ModuleGroup modules(module_commands(options, program_folder()), log);
   runtime::PeriodicLoop loop(kConductorRate);
   int exit_code = kExitDone;
@@ -286,7 +286,7 @@ int run_lockstep(const RunOptions& options, std::ostream& out, std::ostream& log
 }
 
 int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& log) {
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   const scene::Scene scene = scene::load_scene(options.scene);
   const double duration = duration_of(options, scene);
   const runtime::Snapshot start = start_of(options, scene);

@@ -8,10 +8,10 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/recording/commands.h"
 #include "modules/recording/player.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/module_group.h"
@@ -32,7 +32,7 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   }
   // Samples of then among those of now would move a running session's organs.
   const SessionClaim claim(run.bus.session, run.bus.domain);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   const TemporaryFolder folder;
   RunOptions viewing = run;
   viewing.scene = folder.write("scene.yaml", recorded_scene(recording).resolved_text);
@@ -101,7 +101,7 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
         "--start, --rate and --step: of a replay without SCENE and --rerun; with them all is "
         "computed anew");
   }
-  const runtime::StopSignal stop;  // or a signal would leave the folder
+  const StopSignal stop;  // or a signal would leave the folder
   const TemporaryFolder folder;
   RunOptions again = run;
   if (!playing.rerun.empty()) {

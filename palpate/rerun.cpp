@@ -7,12 +7,12 @@
 #include <set>
 
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
 #include "modules/recording/recorder_stage.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/session_samples.h"
 #include "modules/runtime/session.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/scene_reader.h"
@@ -171,7 +171,7 @@ void check_stages(const std::vector<std::string>& stages, const RunOptions& run)
 int rerun(const std::filesystem::path& recording, const std::vector<std::string>& names,
           const RunOptions& run, bool another_scene, std::ostream& out, std::ostream& log) {
   check_stages(names, run);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   const std::set<std::string> stages(names.begin(), names.end());
   const scene::Scene scene = scene::load_scene(run.scene);
   const SceneDescription told = recorded_scene(recording);

@@ -11,13 +11,13 @@
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/core/units.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
@@ -233,7 +233,7 @@ class Run {
   const RunOptions& options_;
   std::ostream& out_;
   std::ostream& log_;
-  runtime::StopSignal stop_;
+  StopSignal stop_;
   scene::Scene scene_;
   std::string digest_;
   ModuleGroup modules_;  // before the bus: processes are born from a program of one thread
@@ -286,8 +286,8 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   if (!options.summary.empty()) check_writable(options.summary);
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
-    const runtime::StopSignal stop;  // or a signal would leave the folder
-    const TemporaryFolder folder;    // each process reads the scene
+    const StopSignal stop;         // or a signal would leave the folder
+    const TemporaryFolder folder;  // each process reads the scene
     const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
     RunOptions changed = options;
     changed.settings.clear();

@@ -25,6 +25,8 @@ void translate(std::exception_ptr pointer) {
     raise("InputError", error.what());
   } catch (const ClosedError& error) {
     raise("ClosedError", error.what());
+  } catch (const Interrupted&) {
+    PyErr_SetNone(PyExc_KeyboardInterrupt);
   } catch (const BusyError& error) {
     raise("BusyError", error.what());
   }

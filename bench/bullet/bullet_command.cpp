@@ -11,7 +11,7 @@
 #include "bench/bullet/bullet_ball.h"
 #include "bench/bullet/palpate_ball.h"
 #include "modules/core/error.h"
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 #include "studies/report/measures.h"
 #include "studies/report/progress.h"
 #include "studies/report/table_file.h"
@@ -279,7 +279,7 @@ void write_table(const std::vector<TableRow>& rows, const std::filesystem::path&
 
 int run_bullet(const BulletOptions& options, std::ostream& out, std::ostream& log) {
   if (!options.out.empty()) report::make_out_folder(options.out);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   try {
     const auto rows = compare(options, log, [&] {
       if (stop.requested()) throw report::Stopped{};

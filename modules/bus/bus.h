@@ -69,6 +69,7 @@ class Reader {
   /// Waits until a sample may be there. False on timeout. timeout in seconds.
   bool wait(double timeout) { return input_->wait(timeout); }
   int matched_writers() const { return input_->matched_writers(); }
+  const WriterId& writer() const { return input_->writer(); }  ///< of the last message taken
   const ReaderStatistics& statistics() const { return input_->statistics(); }
   Input& input() { return *input_; }
 

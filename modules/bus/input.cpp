@@ -108,6 +108,7 @@ void Input::note(const Waiting& waiting) {
 void Input::accept(const RawSample& sample, const Header& header) {
   count(sample.writer, header.sequence);
   ++statistics_.received;
+  writer_ = sample.writer;
   statistics_.clock_error = sample.clock_error;
   statistics_.newest_source_time_ns =
       std::max(statistics_.newest_source_time_ns, header.source_time_ns);

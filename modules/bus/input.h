@@ -39,6 +39,7 @@ class Input {
 
   const TopicInfo& topic() const { return topic_; }
   const ReaderStatistics& statistics() const { return statistics_; }
+  const WriterId& writer() const { return writer_; }  ///< of the last sample taken
   int matched_writers() const { return raw_->matched_writers(); }
   /// Waits until a sample may have come; false on timeout [s].
   bool wait(double timeout);
@@ -77,6 +78,7 @@ class Input {
   TopicInfo topic_;
   std::unique_ptr<RawReader> raw_;
   ReaderStatistics statistics_;
+  WriterId writer_{};
   SequenceGaps gaps_;
   RawSample current_;
 

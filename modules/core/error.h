@@ -9,12 +9,19 @@ namespace palpate {
 
 /// Exit codes of every program.
 inline constexpr int kExitDone = 0;
-inline constexpr int kExitFailed = 1;    ///< something failed while running
-inline constexpr int kExitBadInput = 2;  ///< scene, mesh, recording or option is not acceptable
+inline constexpr int kExitFailed = 1;     ///< something failed while running
+inline constexpr int kExitBadInput = 2;   ///< scene, mesh, recording or option is not acceptable
+inline constexpr int kExitStopped = 130;  ///< ended by who asked for it: Ctrl-C as shells count it
 
 /// Input that cannot be accepted. The message names the place ("scene.yaml:12"), the key, the
 /// value and what is allowed.
 class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Work that ends early because a signal asks for it (StopSignal): exit code kExitStopped.
+class Interrupted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -1,6 +1,8 @@
 // What an object remembers, as bytes. One function of it, exchange(StateArchive&), names its
 // members once: the same call puts them into an archive that writes and takes them from one that
-// reads. Numbers go bit for bit, in the order of the machine's bytes (little-endian).
+// reads. Numbers go bit for bit, in the order of the machine's bytes (little-endian). Each call of
+// an archive begins with a fingerprint of its values' types, which is compared before any is read:
+// what a program with other members wrote is refused and never read as something else.
 #pragma once
 
 #include <array>
@@ -11,9 +13,11 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
+#include "modules/core/crc32.h"
 #include "modules/core/error.h"
 #include "modules/core/types.h"
 
@@ -30,9 +34,15 @@ class StateArchive {
   const std::vector<std::uint8_t>& bytes() const { return written_; }
   std::span<const std::uint8_t> left() const { return left_; }  ///< to be read
 
-  /// @throws InputError where what is read ends early or cannot be of such a value
+  /// @throws InputError where what is read is of other types, ends early or cannot be of such a
+  /// value
   template <class... Values>
   void operator()(Values&... values) {
+    static const std::uint32_t own = fingerprint<Values...>();
+    std::uint32_t fingerprint = own;
+    const bool ends = reads_ && left_.size() < sizeof fingerprint;
+    if (!ends) raw(&fingerprint, sizeof fingerprint);
+    if (ends || fingerprint != own) throw InputError(kOtherLayout);
     (exchange(values), ...);
   }
 
@@ -43,7 +53,24 @@ class StateArchive {
     if (other != value) throw InputError("its state is of something else");
   }
 
+  /// Said of what a program with other members wrote.
+  static constexpr const char* kOtherLayout =
+      "its state is laid out otherwise than in this program: another build of it took it";
+
  private:
+  /// Of the types by their names, of numbers with their sizes.
+  template <class... Values>
+  static std::uint32_t fingerprint() {
+    std::string names;
+    ((names += std::string(typeid(Values).name()) + ' '), ...);
+    ((names += is_number<Values>() ? std::to_string(sizeof(Values)) + ' ' : ""), ...);
+    return crc32({reinterpret_cast<const std::uint8_t*>(names.data()), names.size()});
+  }
+  template <class Value>
+  static constexpr bool is_number() {
+    return std::is_arithmetic_v<Value> || std::is_enum_v<Value>;
+  }
+
   template <class Value>
   void exchange(Value& value) {
     if constexpr (requires { value.exchange(*this); }) {
@@ -54,7 +81,7 @@ class StateArchive {
       std::uint8_t byte = value ? 1 : 0;
       raw(&byte, 1);
       value = byte != 0;
-    } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
+    } else if constexpr (is_number<Value>()) {
       raw(&value, sizeof value);
     } else if constexpr (is_fixed<Value>()) {
       raw(value.data(), sizeof(typename Value::Scalar) * static_cast<std::size_t>(value.size()));

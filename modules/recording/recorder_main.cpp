@@ -3,13 +3,13 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/recorder.h"
 #include "modules/recording/recorder_stage.h"
 #include "modules/runtime/lockstep_module.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_reader.h"
 
 namespace {
@@ -36,7 +36,7 @@ void record(const palpate::runtime::ModuleOptions& options, const std::filesyste
             const Words& topics) {
   if (!options.lockstep.empty()) return record_in_lockstep(options, file, topics);
   const palpate::bus::BusOptions& session = options.bus;
-  const palpate::runtime::StopSignal stop;
+  const palpate::StopSignal stop;
   const palpate::recording::TopicSelection selection(
       topics.empty() ? palpate::recording::kRealTimeTopics : topics);
   palpate::bus::DdsBus bus(session);  // first: a bad session leaves no file

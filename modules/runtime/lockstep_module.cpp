@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "modules/bus/dds_bus.h"
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/lockstep.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/status_reporter.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
 

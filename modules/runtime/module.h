@@ -5,12 +5,12 @@
 #include <string>
 
 #include "modules/bus/dds_bus.h"
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/realtime.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/status_reporter.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::runtime {

@@ -262,6 +262,9 @@ int Program::run(int argc, char** argv, const std::function<int()>& body) {
   } catch (const InputError& error) {
     report_(error.what());
     return kExitBadInput;
+  } catch (const Interrupted& error) {
+    report_(error.what());
+    return kExitStopped;
   } catch (const std::exception& error) {
     report_(error.what());
     return kExitFailed;

@@ -16,16 +16,21 @@
 namespace palpate::runtime {
 namespace {
 
-// The file: these words, what is in it as a StateArchive's bytes, their CRC-32.
-constexpr std::string_view kWords = "palpate snapshot\n";
+// The file: these words, a line of its format's number, whose it is and what is in it as a
+// StateArchive's bytes, the CRC-32 of all. The number changes with this form, and where what a
+// module remembers means something else; that it has other members, its fingerprints tell.
+constexpr std::string_view kWords = "palpate snapshot";
+constexpr int kFormat = 2;
 
 struct Contents {
-  std::string version, scene, digest;
+  std::string scene, digest;
   std::int64_t time_ns = 0;
   std::vector<std::string> names;
   std::vector<std::vector<std::uint8_t>> states;  ///< in their order
-  void exchange(StateArchive& archive) { archive(version, scene, digest, time_ns, names, states); }
+  void exchange(StateArchive& archive) { archive(scene, digest, time_ns, names, states); }
 };
+
+std::string first_line() { return std::string(kWords) + ' ' + std::to_string(kFormat); }
 
 std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
   std::vector<std::uint8_t> bytes;
@@ -39,7 +44,7 @@ std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// Between its words and its CRC, which are right.
+/// Between its first line and its CRC, which are right.
 std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
                                       const std::filesystem::path& file) {
   const std::size_t begin = std::min(kWords.size(), bytes.size());
@@ -52,7 +57,15 @@ std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
   if (!long_enough || crc != crc32(bytes.first(bytes.size() - sizeof crc))) {
     throw InputError(file.string() + ": is torn or damaged");
   }
-  return bytes.subspan(kWords.size(), bytes.size() - kWords.size() - sizeof crc);
+  const auto line_end = std::ranges::find(bytes, std::uint8_t{'\n'});
+  const std::string line(bytes.begin(), line_end);
+  if (line != first_line()) {
+    const std::string number = line.substr(kWords.size(), 8);  // the first form had none
+    throw InputError(file.string() + ": a snapshot of format" + (number.empty() ? " 1" : number) +
+                     ", this program takes format " + std::to_string(kFormat) +
+                     ": another build took it");
+  }
+  return bytes.subspan(line.size() + 1, bytes.size() - line.size() - 1 - sizeof crc);
 }
 
 bool begins_as_snapshot(const std::filesystem::path& file) {
@@ -96,7 +109,7 @@ void go_on_from(const Snapshot& snapshot, const std::filesystem::path& file,
   StateArchive archive(state->second);
   try {
     cursor.exchange(archive, stage, outputs, snapshot.time_ns);
-    if (!archive.left().empty()) throw InputError("its state is longer than that of this program");
+    if (!archive.left().empty()) throw InputError(StateArchive::kOtherLayout);
   } catch (const InputError& error) {
     throw InputError(file.string() + ": " + module + ": " + error.what());
   }
@@ -112,15 +125,17 @@ void add_to(Snapshot& snapshot, const std::string& module, LockstepCursor& curso
 
 void write_snapshot(const std::filesystem::path& file, const scene::Scene& scene,
                     const Snapshot& snapshot) {
-  Contents contents{version_text(),   scene.name, scene::scene_digest(scene),
-                    snapshot.time_ns, {},         {}};
+  std::string version = version_text();
+  Contents contents{scene.name, scene::scene_digest(scene), snapshot.time_ns, {}, {}};
   for (const auto& [name, state] : snapshot.modules) {
     contents.names.push_back(name);
     contents.states.push_back(state);
   }
   StateArchive archive;
+  archive(version);
   archive(contents);
-  std::vector<std::uint8_t> bytes(kWords.begin(), kWords.end());
+  const std::string line = first_line() + '\n';
+  std::vector<std::uint8_t> bytes(line.begin(), line.end());
   bytes.insert(bytes.end(), archive.bytes().begin(), archive.bytes().end());
   const std::uint32_t crc = crc32(bytes);
   bytes.resize(bytes.size() + sizeof crc);
@@ -142,19 +157,19 @@ void write_snapshot(const std::filesystem::path& file, const scene::Scene& scene
 Snapshot read_snapshot(const std::filesystem::path& file, const scene::Scene& scene) {
   const std::vector<std::uint8_t> bytes = bytes_of(file);
   StateArchive archive(checked(bytes, file));
-  Contents contents;
-  archive(contents.version);
-  if (contents.version != version_text()) {
-    throw InputError(file.string() + ": a snapshot of " + contents.version + ", this is " +
-                     version_text() + ": a state is that of one version");
+  std::string version;
+  archive(version);
+  if (version != version_text()) {
+    throw InputError(file.string() + ": a snapshot of " + version + ", this is " + version_text() +
+                     ": a state is that of one version");
   }
-  archive = StateArchive(checked(bytes, file));
+  Contents contents;
   archive(contents);
   const std::string digest = scene::scene_digest(scene);
   if (contents.digest != digest) {
     throw InputError(file.string() + ": a snapshot of scene '" + contents.scene + "' (digest " +
                      contents.digest + "), not of this one (digest " + digest +
-                     "): it goes on with the same scene file, meshes and settings");
+                     "): it goes on with a scene of the same keys, meshes and settings");
   }
   Snapshot snapshot{contents.time_ns};
   for (std::size_t i = 0; i < std::min(contents.names.size(), contents.states.size()); ++i) {

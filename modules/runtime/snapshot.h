@@ -42,8 +42,8 @@ void check_snapshot_name(const std::filesystem::path& file, bool overwrite);
 void write_snapshot(const std::filesystem::path& file, const scene::Scene& scene,
                     const Snapshot& snapshot);
 
-/// @throws InputError naming the file: there is none, torn or damaged, of another version of
-///         Palpate, of another scene
+/// @throws InputError naming the file: there is none, torn or damaged, of another format or
+///         version of Palpate, of another scene by its content
 Snapshot read_snapshot(const std::filesystem::path& file, const scene::Scene& scene);
 
 }  // namespace palpate::runtime

@@ -24,8 +24,9 @@ EmulatedDevice parse_emulated_device(std::string_view text, const std::string& s
 /// YAML with every default written out; parse_scene() of it gives the same scene.
 std::string resolved_text(const Scene& scene);
 
-/// 16 hex digits over the resolved text (without folder names) and the bytes of every file it
-/// names: equal iff the physics is the same, wherever the files lie.
+/// 16 hex digits over the resolved text and the bytes of every file it names, of whose names only
+/// the extensions count, as the scene's own does not: equal iff the physics is the same, wherever
+/// the files lie and whatever they are called.
 std::string scene_digest(const Scene& scene);
 
 }  // namespace palpate::scene

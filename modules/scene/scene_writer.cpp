@@ -55,7 +55,9 @@ std::string resolved_text(const Scene& scene) {
 }
 
 std::string scene_digest(const Scene& scene) {
-  const YamlWriter writer = written(scene, YamlWriter::FileNames::kWithoutFolder);
+  Scene unnamed = scene;
+  unnamed.name.clear();
+  const YamlWriter writer = written(std::move(unnamed), YamlWriter::FileNames::kOnlyFormat);
   Digest digest;
   digest.add(writer.text().data(), writer.text().size());
   for (const auto& file : writer.files()) digest.add_file(file);

@@ -14,7 +14,7 @@ namespace palpate::scene {
 
 class YamlWriter {
  public:
-  enum class FileNames { kFull, kWithoutFolder };
+  enum class FileNames { kFull, kOnlyFormat };
   explicit YamlWriter(FileNames file_names) : file_names_(file_names) {}
 
   const std::string& text() const { return text_; }
@@ -29,7 +29,7 @@ class YamlWriter {
   }
   void field(const char* key, std::filesystem::path& value, const About&) {
     files_.push_back(value);
-    const auto shown = file_names_ == FileNames::kFull ? value : value.filename();
+    const auto shown = file_names_ == FileNames::kFull ? value : value.extension();
     line(key, quoted_text(shown.string()));
   }
   void field(const char* key, Vec3& value, const About&) { line(key, list_text(value)); }

@@ -8,13 +8,13 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/realtime.h"
 #include "modules/runtime/session.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/device/device_log.h"
@@ -86,7 +86,7 @@ class Waiting {
 /// begins to run, and holds it while it pauses.
 void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDriver& driver,
          bus::Bus& bus, launcher::DeviceLog& log) {
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   runtime::Session session(bus, scene::scene_digest(scene));
   runtime::PeriodicLoop loop(1 / driver.device().period());
   std::int64_t began_ns = 0;

@@ -4,8 +4,8 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
-#include "modules/runtime/stop_signal.h"
 #include "studies/calibration/report.h"
 #include "studies/report/progress.h"
 
@@ -73,7 +73,7 @@ void fit(const Case& calibrated, const std::vector<int>& levels,
 }
 
 int run(const Options& options) {
-  const runtime::StopSignal signal;
+  const StopSignal signal;
   const auto stop = [&] { return signal.requested(); };
   const auto cases = cases_of(options);
   std::ofstream csv;
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
       return run(options);
     } catch (const report::Stopped&) {
       std::cerr << "stopped\n";
-      return report::kExitStopped;
+      return kExitStopped;
     }
   });
 }

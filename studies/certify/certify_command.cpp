@@ -311,7 +311,7 @@ int run_certify(const CertifyOptions& options, const std::function<bool()>& stop
     certifying.measure();
   } catch (const report::Stopped&) {
     if (!options.shard) certifying.write();
-    return report::kExitStopped;
+    return kExitStopped;
   }
   if (options.shard) {
     out << report::text_of(certifying.share(), *options.shard);

@@ -1,8 +1,8 @@
 #include <iostream>
 
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/program.h"
-#include "modules/runtime/stop_signal.h"
 #include "palpate/run_options.h"
 #include "studies/certify/certify_command.h"
 
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   program.footer(
       "Exit code: 0 if no line failed, 1 if one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
-    const runtime::StopSignal signal;
+    const StopSignal signal;
     options.shard = report::shard_from(shard);
     return certify::run_certify(
         options, [&] { return signal.requested(); }, std::cout, std::cerr);

@@ -8,7 +8,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/accuracy_tables.h"
 #include "studies/chart/truth_cube.h"
@@ -97,7 +97,7 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
   const auto models = wanted_models(options);
   if (options.again) std::filesystem::remove_all(options.out / "points");
   const PointStore store(options.out / "points");
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   report::Claims claims(options.out / "points" / "claims", options.shard);
   const KeepGoing keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};
@@ -126,7 +126,7 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
   } catch (const report::Stopped&) {
     log << "stopped; finished points stay in " << (options.out / "points").string()
         << " and are not measured again" << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
 }
 

@@ -1,7 +1,7 @@
 #include <iostream>
 
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
-#include "modules/runtime/stop_signal.h"
 #include "studies/contact_loop/contact_loop_command.h"
 
 int main(int argc, char** argv) {
@@ -21,7 +21,7 @@ int main(int argc, char** argv) {
       .range(1, 1000);
   program.flag("--quick", options.quick, "A few balls: about a minute");
   return program.run(argc, argv, [&] {
-    const runtime::StopSignal signal;
+    const StopSignal signal;
     return contact_loop::run_contact_loop(
         options, [&] { return signal.requested(); }, std::cout);
   });

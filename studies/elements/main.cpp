@@ -2,8 +2,8 @@
 #include <iostream>
 
 #include "modules/core/data_folder.h"
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
-#include "modules/runtime/stop_signal.h"
 #include "studies/elements/elements_command.h"
 
 int main(int argc, char** argv) {
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
   program.flag("--quick", options.quick, "Coarse meshes, small loads: about a minute");
   return program.run(argc, argv, [&] {
     if (std::count(options.cases.begin(), options.cases.end(), "all") > 0) options.cases.clear();
-    const runtime::StopSignal signal;
+    const StopSignal signal;
     return elements_bench::run_elements(
         options, [&] { return signal.requested(); }, std::cout, std::cerr);
   });

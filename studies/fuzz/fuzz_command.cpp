@@ -8,7 +8,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 #include "studies/fuzz/block_store.h"
 #include "studies/fuzz/lockstep.h"
 #include "studies/fuzz/minimise.h"
@@ -91,7 +91,7 @@ report::Share run_all(const FuzzOptions& options, const ShapeStore& shapes,
 int run_fuzz(const FuzzOptions& options, std::ostream& out, std::ostream& log) {
   const ShapeStore shapes(data_file("scenes"));
   if (options.only) return run_one(options, shapes, out, log);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   report::Progress progress(log, [&] { return stop.requested(); });
   progress.begin(fmt::format("fuzz, seed {}", options.seed));
   Tally tally;
@@ -101,7 +101,7 @@ int run_fuzz(const FuzzOptions& options, std::ostream& out, std::ostream& log) {
   } catch (const report::Stopped&) {
     tally.print(out);
     log << "stopped; finished blocks are not run again" << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
   tally.print(out);
   if (options.shard) out << report::text_of(share, *options.shard);

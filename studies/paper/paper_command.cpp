@@ -6,7 +6,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 #include "studies/paper/figures.h"
 #include "studies/report/measures.h"
 #include "studies/report/plot_script.h"
@@ -59,7 +59,7 @@ std::vector<std::string> paper_parts() {
 
 int run_paper(const PaperOptions& options, std::ostream& out, std::ostream& log) {
   report::make_out_folder(options.out);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   report::Progress progress(log, [&] { return stop.requested(); });
   Findings findings;
   try {
@@ -78,7 +78,7 @@ int run_paper(const PaperOptions& options, std::ostream& out, std::ostream& log)
     return complete ? kExitDone : kExitFailed;
   } catch (const report::Stopped&) {
     log << "stopped; finished files stay in " << options.out.string() << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
-#include "modules/runtime/stop_signal.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/processes.h"
@@ -304,7 +304,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
   }
   Sharing sharing{{options.points / "claims", options.shard},
                   {options.points, told(scene, options)}};
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   const auto keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};
     sharing.claims.keep();
@@ -347,7 +347,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     return is_met ? kExitDone : kExitFailed;
   } catch (const report::Stopped&) {
     log << "stopped; nothing was written" << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
 }
 

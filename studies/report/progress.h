@@ -10,7 +10,6 @@ namespace palpate::report {
 
 /// Thrown out of a job that was asked to stop.
 struct Stopped {};
-inline constexpr int kExitStopped = 130;  ///< exit code of it: Ctrl-C as shells count it
 /// What --help says last.
 inline constexpr const char* kExitCodesHelp =
     "Exit code: 0 if it ran to its end, 1 if something failed, 2 for bad input, 130 if it was "

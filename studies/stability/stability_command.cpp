@@ -8,7 +8,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 #include "modules/scene/schema.h"
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
@@ -227,7 +227,7 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
   if (options.again) std::filesystem::remove_all(folder);
   const ColumnStore store(folder);
   report::Claims claims(folder / "claims", options.shard);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   const KeepGoing keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};
     claims.keep();
@@ -261,7 +261,7 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
   } catch (const report::Stopped&) {
     log << "stopped; finished points stay in " << folder.string() << " and are not measured again"
         << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
 }
 

@@ -10,7 +10,7 @@
 #include <ostream>
 
 #include "modules/core/error.h"
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/report/progress.h"
 #include "studies/report/table_file.h"
@@ -156,7 +156,7 @@ void make_folder(const std::filesystem::path& folder) {
 int run_volume_methods(const VolumeMethodsOptions& options, std::ostream& out, std::ostream& log) {
   const scene::Scene scene = scene::load_scene(options.scene);
   if (!options.out.empty()) make_folder(options.out);
-  const runtime::StopSignal stop;
+  const StopSignal stop;
   report::Progress progress(log, [&] { return stop.requested(); });
   std::vector<MethodRow> rows;
   print_header(options, out);
@@ -168,7 +168,7 @@ int run_volume_methods(const VolumeMethodsOptions& options, std::ostream& out, s
     }
   } catch (const report::Stopped&) {
     log << "stopped; nothing was written" << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
   if (options.out.empty()) return kExitDone;
   write_csv(rows, options.out / "volume_methods.csv");

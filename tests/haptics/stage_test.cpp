@@ -122,6 +122,32 @@ TEST_CASE("haptics stage: a real device is where its driver said, at the same ti
   }
 }
 
+TEST_CASE("haptics stage: several drivers of one probe are named, a driver's successor is not") {
+  // Oracle: the stated rule, whichever of them is heard last in a tick.
+  Session session{scene::TopicDevice{}};
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  auto second = session.bus.writer(bus::kProbeInput);
+  const auto guard_at = [&](std::int64_t ms, bool first_speaks, bool second_speaks) {
+    const auto drive_second = [&] {
+      ProbeState input;
+      input.header.source_time_ns = ms * kMs;
+      REQUIRE(second.write(input));
+    };
+    if (second_speaks && ms % 2 == 0) drive_second();
+    if (first_speaks) session.drive(ms * kMs, Vec3::Zero());
+    if (second_speaks && ms % 2 == 1) drive_second();
+    return std::string(session.tick(stage, ms * kMs).guard);
+  };
+  const std::string several = "probe 'finger': several programs move it on probe_input";
+  std::int64_t ms = 1;
+  for (; ms <= 100; ++ms) CHECK(guard_at(ms, true, false).empty());
+  for (; ms <= 1300; ++ms) CHECK(guard_at(ms, false, true).find(several) == std::string::npos);
+  for (; ms <= 1310; ++ms) guard_at(ms, true, true);
+  CHECK(guard_at(ms++, true, true).find(several) == 0);
+  for (const std::int64_t last = ms + 1010; ms < last; ++ms) guard_at(ms, true, false);
+  CHECK(guard_at(ms, true, false).empty());
+}
+
 TEST_CASE("haptics stage: without a driver there is no force, and the status names the probe") {
   // Oracle: the stated rule.
   Session session{scene::TopicDevice{}};

@@ -5,15 +5,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "modules/core/error.h"
 #include "modules/core/organ_limits.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/geometry/gmsh_file.h"
 
@@ -32,21 +35,25 @@ namespace {
 }
 
 /// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
-/// @throws std::runtime_error if a signal comes that somebody listens to: the user wants an end
+/// @throws Interrupted if a signal of StopSignal comes, or ends the program with those of its
+///         terminal
 int run(std::vector<std::string> words, const std::filesystem::path& log) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
+  const StopSignal stop;  // or a signal would leave the folder
   const pid_t parent = ::getpid(), child = ::fork();
   if (child < 0) throw std::runtime_error(words[0] + ": cannot be started");
   if (child == 0) become(arguments.data(), log.c_str(), parent);
   int status = 0;
-  const bool interrupted = ::waitpid(child, &status, 0) < 0;
-  if (interrupted) {
-    ::kill(child, SIGKILL);
-    ::waitpid(child, &status, 0);
-    throw std::runtime_error(words[0] + ": interrupted");
+  while (::waitpid(child, &status, WNOHANG) == 0) {  // asked again: a signal may come before a wait
+    if (stop.requested()) ::kill(child, SIGKILL);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const int ended_by = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (stop.requested() || ended_by == SIGINT || ended_by == SIGTERM || ended_by == SIGHUP) {
+    throw Interrupted(words[0] + ": interrupted");
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }

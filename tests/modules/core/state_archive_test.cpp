@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <limits>
+#include <tuple>
 
 #include "modules/core/touch_state.h"
 
@@ -62,14 +63,71 @@ TEST_CASE("state archive: whatever is cut off, and lists that cannot be, are ref
     Remembering into;
     REQUIRE_THROWS_AS(reading(into), InputError);
   }
-  std::vector<std::uint8_t> huge(16, 0xFF);
-  std::vector<Vec3> points;
+  std::vector<Vec3> points(1);
+  StateArchive one;
+  one(points);
+  std::vector<std::uint8_t> huge = one.bytes();
+  std::fill_n(huge.begin() + 4, 8, std::uint8_t{0xFF});  // the count, behind the fingerprint
   StateArchive reading(huge);
-  CHECK_THROWS_AS(reading(points), InputError);
+  CHECK_THROWS_WITH(reading(points), "its state ends early");
   StateArchive counted;
   counted.same(5);
   StateArchive other(counted.bytes());
   CHECK_THROWS_AS(other.same(6), InputError);
+}
+
+namespace {
+
+template <class... Members>
+struct Laid {
+  std::tuple<Members...> members;
+  void exchange(StateArchive& archive) {
+    std::apply([&](Members&... each) { archive(each...); }, members);
+  }
+};
+template <class... Members>
+struct Outer {  // what is inside of a state may differ, too
+  std::vector<Laid<Members...>> several{1};
+  int behind = 0;
+  void exchange(StateArchive& archive) {
+    archive(behind);
+    for (auto& each : several) each.exchange(archive);
+  }
+};
+
+template <class Into, class From>
+std::string refusal_of(From from) {
+  StateArchive written;
+  written.same(1);
+  from.exchange(written);
+  StateArchive reading(written.bytes());
+  reading.same(1);
+  try {
+    Into into;
+    into.exchange(reading);
+    return reading.left().empty() ? "" : "left over";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("state archive: what was laid out otherwise is refused before any of it is read") {
+  // Oracle: the definition; members added, taken away, exchanged, of another size or kind.
+  using Own = Outer<double, std::int32_t, Vec3>;
+  CHECK(refusal_of<Own>(Own{}) == "");
+  CHECK(refusal_of<Own>(Outer<double, std::int32_t>{}) == StateArchive::kOtherLayout);
+  CHECK(refusal_of<Own>(Outer<double, std::int32_t, Vec3, bool>{}) == StateArchive::kOtherLayout);
+  CHECK(refusal_of<Own>(Outer<double, Vec3, std::int32_t>{}) == StateArchive::kOtherLayout);
+  CHECK(refusal_of<Own>(Outer<double, std::uint32_t, Vec3>{}) == StateArchive::kOtherLayout);
+  CHECK(refusal_of<Own>(Outer<double, std::int64_t, Vec3>{}) == StateArchive::kOtherLayout);
+  CHECK(refusal_of<Own>(Outer<double, std::int32_t, std::array<double, 3>>{}) ==
+        StateArchive::kOtherLayout);
+  struct Nothing {
+    void exchange(StateArchive& /*archive*/) {}
+  };
+  CHECK(refusal_of<Own>(Nothing{}) == StateArchive::kOtherLayout);
 }
 
 }  // namespace palpate

@@ -4,8 +4,8 @@
 #include <csignal>
 #include <random>
 
+#include "modules/core/stop_signal.h"
 #include "modules/runtime/clock.h"
-#include "modules/runtime/stop_signal.h"
 #include "tests/modules/runtime/own_bus.h"
 
 using palpate::runtime::begin_period;
@@ -82,7 +82,7 @@ TEST_CASE("periodic loop: a cycle longer than its period costs periods and is se
 
 TEST_CASE("periodic loop: a signal ends the wait") {
   // Oracle: a loop of 0.01 Hz would sleep for 100 s.
-  const palpate::runtime::StopSignal stop;
+  const palpate::StopSignal stop;
   PeriodicLoop loop(0.01);
   loop.wait_for_period();
   sigevent event{};

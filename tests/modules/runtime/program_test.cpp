@@ -43,6 +43,7 @@ TEST_CASE("program: a wrong command line and what is thrown decide the exit code
   CHECK(run_main({"--sizes", "3"}, [] { return 0; }) == kExitBadInput);
   CHECK(run_main({}, []() -> int { throw InputError("s.yaml:3: no"); }) == kExitBadInput);
   CHECK(run_main({}, []() -> int { throw std::runtime_error("disk full"); }) == kExitFailed);
+  CHECK(run_main({}, []() -> int { throw Interrupted("gmsh: interrupted"); }) == kExitStopped);
 }
 
 TEST_CASE("program: the version names the project and the protocol") {

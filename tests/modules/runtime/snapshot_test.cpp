@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "modules/core/crc32.h"
 #include "modules/core/error.h"
 #include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
@@ -90,9 +91,34 @@ TEST_CASE("snapshot: one that is torn, damaged, of another scene or no snapshot 
   REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);  // to read it would be to wait
   CHECK(refusal(folder / "fifo", scene).find("cannot be read") != std::string::npos);
 
+  // Whatever the number is, and none, as the first form had it; the CRC of each is right.
+  for (const char* number : {" 1", " 3", "", " 99999999999999999999999", "\n", " 2 "}) {
+    std::string line = "palpate snapshot" + std::string(number) + "\n";
+    const std::string other = line + bytes.substr(bytes.find('\n') + 1, bytes.size());
+    const std::string_view all(other.data(), other.size() - 4);
+    const std::uint32_t crc =
+        crc32({reinterpret_cast<const std::uint8_t*>(all.data()), all.size()});
+    std::string with_crc(all);
+    with_crc.append(reinterpret_cast<const char*>(&crc), sizeof crc);
+    INFO(line);
+    CHECK(refusal(folder.write("format", with_crc), scene).find("this program takes format 2") !=
+          std::string::npos);
+  }
+
   const scene::Scene other =
       scene::load_scene_with(shipped, {"organs[0].tissue.youngs_modulus_pa=8e3"});
   CHECK(refusal(file, other).find("of scene 'ball_squeeze'") != std::string::npos);
+}
+
+TEST_CASE("snapshot: a scene of the same content under another name takes it") {
+  // Oracle: the bytes of the scene's file, copied.
+  const auto shipped = scene::scene_file("ball_squeeze");
+  const ScratchFolder folder;
+  write_snapshot(folder / "at.snapshot", scene::load_scene(shipped), Snapshot{100'000'000});
+  std::filesystem::create_directory(folder / "meshes");
+  std::filesystem::copy_file(shipped.parent_path() / "meshes/ball.ply", folder / "meshes/ball.ply");
+  const auto copy = folder.write("another.yaml", text_in(shipped));
+  CHECK(refusal(folder / "at.snapshot", scene::load_scene(copy)) == "");
 }
 
 }  // namespace

@@ -214,6 +214,19 @@ TEST_CASE("digest: the same scene elsewhere has the same digest") {
         scene_digest(here.parse(changed("sphere: {}", "sphere: {radius_m: 6e-3}", kMinimalScene))));
 }
 
+TEST_CASE("digest: what a scene and its files are called does not count") {
+  // Oracle: the same bytes under other names.
+  const SceneFolder folder;
+  const Scene scene = folder.parse(kFullScene);
+  Scene renamed = scene;
+  renamed.file.replace_filename("another.yaml");
+  renamed.name = "another";
+  const std::string digest = scene_digest(scene);
+  CHECK(scene_digest(renamed) == digest);
+  std::filesystem::rename(folder.path() / "organ.ply", folder.path() / "liver.ply");
+  CHECK(scene_digest(folder.parse(changed("organ.ply", "liver.ply"))) == digest);
+}
+
 TEST_CASE("digest: sixteen hexadecimal digits") {
   // Oracle: the format promised.
   const SceneFolder folder;

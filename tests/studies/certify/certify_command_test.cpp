@@ -72,7 +72,7 @@ TEST_CASE("certify command: stopped, it leaves what is done, marked incomplete")
   const BallScene scene(kFingerFromAbove);
   std::ostringstream out, log;
   const auto soon = [&] { return out.str().find("force: ") != std::string::npos; };
-  CHECK(run_certify(options_for(scene, "cut"), soon, out, log) == report::kExitStopped);
+  CHECK(run_certify(options_for(scene, "cut"), soon, out, log) == kExitStopped);
   const std::string json = text_in(scene.folder() / "cut/certificate.json");
   CHECK(json.find("\"complete\" : false") != std::string::npos);
   CHECK(json.find("\"group\" : \"law\"") != std::string::npos);

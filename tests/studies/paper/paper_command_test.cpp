@@ -49,7 +49,7 @@ TEST_CASE("paper command: Ctrl-C ends it at once, with 130 and nothing half writ
   child.signal(SIGINT);
   palpate::testing::wait_until([&] { return child.ended().has_value(); });
   REQUIRE(child.ended());
-  CHECK((WIFEXITED(*child.ended()) && WEXITSTATUS(*child.ended()) == report::kExitStopped));
+  CHECK((WIFEXITED(*child.ended()) && WEXITSTATUS(*child.ended()) == kExitStopped));
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
     CHECK(entry.path().extension() != ".part");
   }

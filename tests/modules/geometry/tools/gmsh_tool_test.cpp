@@ -58,44 +58,48 @@ bool is_over(pid_t process) {
   return true;
 }
 
-/// A process that meshes: 0 once Gmsh was interrupted. With or without somebody who listens.
-pid_t start_meshing(bool listens) {
+/// A process that meshes, with its temporary folders in one of its own: kExitStopped once Gmsh was
+/// interrupted.
+pid_t start_meshing(const std::filesystem::path& temporary) {
   const pid_t child = ::fork();
   if (child > 0) return child;
-  struct sigaction action {};
-  action.sa_handler = listens ? [](int) {} : SIG_DFL;
-  ::sigaction(SIGTERM, &action, nullptr);
+  ::setpgid(0, 0);  // as a job of a terminal
+  ::setenv("TMPDIR", temporary.c_str(), 1);
   try {
     mesh_ball(0.05, BallPart::kWhole, "0.02");
-  } catch (const std::runtime_error& error) {
-    ::_exit(std::string(error.what()) == "gmsh: interrupted" ? 0 : 1);
+  } catch (const Interrupted&) {
+    ::_exit(kExitStopped);
   }
-  ::_exit(2);
+  ::_exit(kExitFailed);
 }
 
 TEST_CASE("gmsh tool: it ends with the program that runs it, however that ends") {
   // Oracle: the kernel's table of processes.
-  const int signal = GENERATE(SIGTERM, SIGKILL);
   const SlowGmsh gmsh;
-  const pid_t meshing = start_meshing(false);
+  const ScratchFolder temporary;
+  const pid_t meshing = start_meshing(temporary.path());
   REQUIRE(comes_true([&] { return gmsh.process_id() > 0; }));
-  ::kill(meshing, signal);
+  ::kill(meshing, SIGKILL);
   ::waitpid(meshing, nullptr, 0);
   CHECK(comes_true([&] { return is_over(gmsh.process_id()); }));
 }
 
-TEST_CASE("gmsh tool: a signal that the program listens to ends it with a word") {
-  // Oracle: the message, and the kernel's table of processes.
+TEST_CASE("gmsh tool: a signal that asks for an end ends it with a word and leaves no folder") {
+  // Oracle: the exit code, the file system, and the kernel's table of processes. A terminal sends
+  // it to Gmsh, too.
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP);
+  const bool to_both = GENERATE(false, true);
   const SlowGmsh gmsh;
-  const pid_t meshing = start_meshing(true);
+  const ScratchFolder temporary;
+  const pid_t meshing = start_meshing(temporary.path());
   REQUIRE(comes_true([&] { return gmsh.process_id() > 0; }));
+  ::kill(to_both ? -meshing : meshing, signal);
   int status = -1;
-  CHECK(comes_true([&] {  // again: the first may come before anybody waits
-    ::kill(meshing, SIGTERM);
-    return ::waitpid(meshing, &status, WNOHANG) == meshing;
-  }));
-  CHECK(status == 0);
+  REQUIRE(comes_true([&] { return ::waitpid(meshing, &status, WNOHANG) == meshing; }));
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == kExitStopped);
   CHECK(is_over(gmsh.process_id()));
+  CHECK(std::filesystem::is_empty(temporary.path()));
 }
 
 TEST_CASE("gmsh tool: a filled surface keeps its nodes and triangles, first and in order") {

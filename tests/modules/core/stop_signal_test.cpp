@@ -1,8 +1,9 @@
-#include "modules/runtime/stop_signal.h"
+#include "modules/core/stop_signal.h"
 
 #include <catch2/catch.hpp>
+#include <csignal>
 
-using palpate::runtime::StopSignal;
+using palpate::StopSignal;
 
 TEST_CASE("stop signal: SIGINT, SIGTERM and SIGHUP are requests, and only while one exists") {
   // Oracle: the signal's action as the system reports it.

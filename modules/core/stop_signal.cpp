@@ -1,0 +1,40 @@
+#include "modules/core/stop_signal.h"
+
+#include <array>
+#include <csignal>
+#include <mutex>
+
+namespace palpate {
+namespace {
+
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+std::mutex mutex;  // of what follows; the handler takes none
+std::array<struct sigaction, kSignals.size()> earlier{};
+
+// A signal handler can reach nothing else.
+volatile std::sig_atomic_t stop_flag = 0;
+int depth = 0;  // of StopSignals one within another
+
+void set_stop_flag(int) { stop_flag = 1; }
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  const std::lock_guard lock(mutex);
+  if (depth++ > 0) return;
+  stop_flag = 0;
+  struct sigaction action {};
+  action.sa_handler = set_stop_flag;  // no SA_RESTART: a sleeping loop wakes up
+  sigemptyset(&action.sa_mask);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &earlier[i]);
+}
+
+StopSignal::~StopSignal() {
+  const std::lock_guard lock(mutex);
+  if (--depth > 0) return;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &earlier[i], nullptr);
+}
+
+bool StopSignal::requested() const { return stop_flag != 0; }
+
+}  // namespace palpate
