@@ -116,7 +116,8 @@ void add_run_options(Options& command, RunOptions& options) {
       .excludes(in_process);
   command.add("--host", options.host, "Which of the hosts of --hosts this one is");
   command.flag("--close", options.close, "Close the window when the run ends; else it stays");
-  command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer");
+  command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer")
+      .excludes(frames);
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
   command.flag_off("--no-restart", options.restart,
                    "Leave processes that die or hang as they are; else they are started again");
