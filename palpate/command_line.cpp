@@ -116,7 +116,8 @@ void add_run_options(Options& command, RunOptions& options) {
       .excludes(in_process);
   command.add("--host", options.host, "Which of the hosts of --hosts this one is");
   command.flag("--close", options.close, "Close the window when the run ends; else it stays");
-  command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer");
+  command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer")
+      .excludes(frames);
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
   command.flag_off("--no-restart", options.restart,
                    "Leave processes that die or hang as they are; else they are started again");
@@ -247,16 +248,17 @@ void add_token(Program& program, bus::BusOptions& session) {
 }
 
 void add_near(Options& command, geometry::NearMotion& near) {
-  const Option file =
-      command.add_input("--near", near.file,
-                        "Recorded motion (table, ROS bag): fill the surface with "
-                        "tetrahedra, small where a sphere that moves so touches it");
+  const Option file = command.add_input(
+      "--near", near.file,
+      "Recorded motion (table, bag of ROS 1, or of ROS 2 in MCAP): fill the surface with "
+      "tetrahedra, small where a sphere that moves so touches it");
   const auto add = [&](const char* name, auto& value, const char* help) {
     return command.add(name, value, help).needs(file);
   };
   add("--radius-m", near.radius, "Of that sphere").range(1e-4, 0.5);
   add("--near-columns", near.columns,
       "Of a table: names or numbers of time, x, y, z; else by its header");
+  add("--near-topic", near.topic, "Of a bag: the topic with its poses, where it has several");
   add("--near-unit", near.unit, "Unit of the motion's positions").shows_default();
   add("--near-position-m", near.position, "Of the motion's origin in the mesh's frame");
   add("--near-rotation-xyzw", near.rotation, "Unit quaternion, of the motion's frame");
@@ -270,11 +272,13 @@ void add_mesh(Program& program, geometry::MeshCommandOptions& options) {
   });
   command
       .add_input("IN", options.input,
-                 "Any surface format assimp reads; with --near tetrahedra (msh, vtk), too")
+                 "A surface in any format assimp reads; with --near also tetrahedra (.msh, .vtk)")
       .required();
   command.add_output("-o,--output", options.output,
-                     "ply, stl, obj or off file, with --near msh, in metres");
-  command.add("--nodes", options.node_count, "Decimate or refine to this many nodes")
+                     ".ply, .stl, .obj or .off, or with --near tetrahedra as .msh; in metres");
+  command
+      .add("--nodes", options.node_count,
+           "Decimate or refine the surface to this many nodes, with --near before it is filled")
       .range(4, 200000);
   command.add("--unit", options.unit, "Unit of the input: m, dm, cm, mm, um, in").shows_default();
   command.flag("--largest", options.largest, "Keep only the shell that encloses most");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/object_reader.h"
 #include "modules/scene/scene_tree.h"
@@ -102,12 +103,8 @@ std::string HostsFile::peers_of(const std::string& name) const {
 }
 
 HostsFile load_hosts(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) {
-    throw InputError("--hosts " + file.string() + ": is a folder");
-  }
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = open_input(file);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw InputError("--hosts " + file.string() + ": cannot be read");
   const scene::Source source{file.string(), file.parent_path()};
   const YamlValue root{scene::parse_yaml(text, source), 1, "", &source};
   check_keys(root, {kFormatKey, "hosts"});

@@ -146,10 +146,11 @@ void check_options(const MeshCommandOptions& options) {
   const bool is_filled = holds_tetrahedra(options.input);
   if (near.file.empty()) {
     if (is_filled) {
-      throw InputError(options.input.string() +
-                       ": holds tetrahedra; this command prepares surfaces, and halves tetrahedra "
-                       "with --near alone. " +
-                       scene_hint(options.input));
+      throw InputError(
+          options.input.string() +
+          ": files of this kind are read as tetrahedra; this command prepares surfaces, "
+          "and halves tetrahedra with --near alone. " +
+          scene_hint(options.input));
     }
     return;
   }
@@ -158,8 +159,9 @@ void check_options(const MeshCommandOptions& options) {
   }
   if (!near.radius) throw InputError("--near needs --radius-m, of the sphere that moves so");
   if (is_filled && (options.node_count > 0 || options.largest || options.fill_holes)) {
-    throw InputError(options.input.string() +
-                     ": holds tetrahedra; --nodes, --largest and --fill-holes are of surfaces");
+    throw InputError(
+        options.input.string() +
+        ": is read as tetrahedra; --nodes, --largest and --fill-holes are of surfaces");
   }
 }
 
@@ -246,7 +248,14 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
 TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
   if (!holds_tetrahedra(options.input)) {
     const TriangleSurface surface = prepare(options, json, out);
-    return fill_surface(surface, mean_edge_length(surface));
+    try {
+      return fill_surface(surface, mean_edge_length(surface));
+    } catch (const InputError& error) {
+      const std::string why = error.what();
+      const char* advice = "; they are as long as the surface's edges: give fewer --nodes";
+      throw InputError(options.input.string() + ": " + why +
+                       (why.starts_with("elements of") ? advice : ""));
+    }
   }
   TetMesh mesh = read_tetrahedra(options.input);
   const double scale = metres_per_unit(options.unit);

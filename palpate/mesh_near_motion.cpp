@@ -17,6 +17,40 @@ namespace palpate::geometry {
 namespace {
 
 constexpr double kStride = 0.25;  // radii, between places that are looked at
+constexpr double kStill = 1e-3;   // no press or stroke is as short [m]
+
+/// What is said of keys of a scene holds for options here.
+std::string in_options(const std::string& text) {
+  if (text.find("key") == std::string::npos) return text;
+  return text + " (keys of a scene; here --near-columns T,X,Y,Z, --near-unit, --near-topic)";
+}
+
+/// As `launcher::doubt_about_extent`, with the option that mends it.
+std::string doubt_about_unit(const NearMotion& motion, double extent) {
+  const std::string doubt = launcher::doubt_about_extent(motion.file.string(), extent);
+  if (!doubt.empty()) return doubt + " Then say --near-unit mm";
+  if (extent == 0 || extent >= kStill || motion.unit == "m") return "";
+  return fmt::format(
+      "{} moves over {:.2g} mm in all, read in {}: are its positions in metres? Then "
+      "leave out --near-unit",
+      motion.file.string(), 1e3 * extent, motion.unit);
+}
+
+std::vector<trajectories::TimedPose> poses_of(const NearMotion& motion,
+                                              std::vector<std::string>& notes) {
+  scene::TrajectoryDevice device;
+  device.file = motion.file;
+  device.length_unit = motion.unit;
+  device.columns = motion.columns;
+  if (!motion.topic.empty()) device.topic = motion.topic;
+  try {
+    auto poses = trajectories::read_trajectory(device, notes);
+    for (std::string& note : notes) note = in_options(note);
+    return poses;
+  } catch (const InputError& error) {
+    throw InputError(in_options(error.what()));
+  }
+}
 
 Pose place_of(const NearMotion& motion) {
   constexpr double kUnit = 1e-3;
@@ -69,20 +103,15 @@ InputError untouched(const NearMotion& motion, const SphereWay& way, const Trian
 }  // namespace
 
 SphereWay read_way(const NearMotion& motion) {
-  scene::TrajectoryDevice device;
-  device.file = motion.file;
-  device.length_unit = motion.unit;
-  device.columns = motion.columns;
   const Pose place = place_of(motion);
   SphereWay way;
   Eigen::AlignedBox3d box;
-  for (const auto& [time, pose] : trajectories::read_trajectory(device, way.notes)) {
+  for (const auto& [time, pose] : poses_of(motion, way.notes)) {
     way.places.push_back(place.to_world(pose.position));
     box.extend(way.places.back());
   }
-  const std::string doubt =
-      launcher::doubt_about_extent(motion.file.string(), box.diagonal().norm());
-  if (!doubt.empty()) way.notes.push_back(doubt + " Then say --near-unit mm");
+  const std::string doubt = doubt_about_unit(motion, box.diagonal().norm());
+  if (!doubt.empty()) way.notes.push_back(doubt);
   return way;
 }
 
@@ -105,7 +134,9 @@ TouchedMesh refined_near(const TetMesh& mesh, const NearMotion& motion, const Sp
   try {
     touched.mesh = scene::refined(mesh, touched.refine, {});
   } catch (const InputError& error) {
-    throw InputError(std::string("--edge-m, --growth: ") + error.what());
+    throw InputError(fmt::format("--edge-m {:g}, --growth {:g}, {} nodes before: {}",
+                                 *touched.refine.edge_length, *touched.refine.growth,
+                                 mesh.nodes.size(), error.what()));
   }
   return touched;
 }

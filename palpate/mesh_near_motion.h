@@ -15,6 +15,7 @@ struct NearMotion {
   std::filesystem::path file;        ///< as the device `trajectory` takes it; empty: none
   std::string unit = "m";            ///< of its positions, see metres_per_unit()
   std::vector<std::string> columns;  ///< of a table: time, x, y, z; empty: by its header
+  std::string topic;                 ///< of a bag; empty: the only one with poses
   /// Of the recording's frame in the mesh's, as the device's keys: x, y, z [m] and a unit
   /// quaternion; empty: none.
   std::vector<double> position, rotation;

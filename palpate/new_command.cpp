@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <ostream>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
 #include "modules/core/units.h"
+#include "modules/core/whole_file.h"
 #include "modules/geometry/bounding_box.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/scene/scene_reader.h"
@@ -186,8 +186,7 @@ int new_command(const NewOptions& options, std::ostream& out) {
   const auto mesh = std::filesystem::absolute(options.mesh).lexically_proximate(folder);
   const std::string text = scene_text(mesh, guess.unit, nodes, layout_of(surface));
   scene::parse_scene(text, folder / output.filename());  // what we write can be read
-  std::ofstream stream(output);
-  if (!(stream << text << std::flush)) throw std::runtime_error("cannot write " + output.string());
+  write_whole_file(output, text);
   const Vec3 size = 1e3 * geometry::bounding_box(surface.nodes).sizes();
   out << fmt::format("{}: {:.0f} x {:.0f} x {:.0f} mm in {} ({}), {} nodes{}\n",
                      options.mesh.string(), size.x(), size.y(), size.z(), guess.unit, guess.said,

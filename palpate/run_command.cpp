@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <ostream>
 
@@ -14,6 +13,7 @@
 #include "modules/core/stop_signal.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/core/units.h"
+#include "modules/core/whole_file.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
@@ -273,17 +273,14 @@ void check_recording(const RunOptions& options) {
 void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out) {
   out << text << std::flush;
   if (options.summary.empty()) return;
-  std::ofstream file(options.summary);
-  if (!(file << text << std::flush)) {
-    throw std::runtime_error("cannot write " + options.summary.string());
-  }
+  write_whole_file(options.summary, text);
 }
 
 int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   RunOptions options = asked;
   check_recording(options);
   check_snapshots(options);
-  if (!options.summary.empty()) check_writable(options.summary);
+  if (!options.summary.empty()) check_replaces_its_like(options.summary, "scene ", "summary");
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const StopSignal stop;         // or a signal would leave the folder

@@ -7,6 +7,7 @@
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/units.h"
 #include "modules/runtime/run_stage.h"
 #include "modules/scene/assets.h"
@@ -148,6 +149,8 @@ class VisualizerStage : public runtime::Stage {
         schedule_(options.frame_interval),
         studio_(scene, window) {
     if (!commands_) studio_.interaction.hands_off = "In lockstep nobody but the launcher conducts.";
+    if (!options.screenshot.empty())
+      check_replaces_its_like(options.screenshot, "\x89PNG", "picture");
   }
 
   ~VisualizerStage() override {
@@ -278,14 +281,7 @@ class VisualizerStage : public runtime::Stage {
 
 void run_visualizer(const runtime::ModuleOptions& common, const VisualizerOptions& options) {
   const scene::Scene scene = scene::load_scene(common.scene);
-  if (!options.frames.empty()) {
-    std::error_code error;
-    std::filesystem::create_directories(options.frames, error);
-    if (error) {
-      throw InputError("--frames '" + options.frames.string() + "': must be a folder that can be " +
-                       "written (" + error.message() + ")");
-    }
-  }
+  if (!options.frames.empty()) make_writable_folder(options.frames, "--frames");
   const XConnection connection =
       options.headless ? XConnection(nullptr, [](void*) {}) : connect_to_display();
   const bool window = connection != nullptr;  // held: see connect_to_display()

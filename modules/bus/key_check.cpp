@@ -14,6 +14,7 @@
 #include "modules/bus/certificates.h"
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 
 namespace palpate::bus {
 namespace {
@@ -34,8 +35,10 @@ constexpr const char* kCopyAll =
 }
 
 Bio opened(const fs::path& file) {
+  if (const std::string why = why_not_readable(file); !why.empty())
+    refuse(file, why, "; `palpate keys` makes them");
   Bio bio(BIO_new_file(file.c_str(), "r"), BIO_free_all);
-  if (bio == nullptr) refuse(file, std::strerror(errno), "; `palpate keys` makes them");
+  if (bio == nullptr) refuse(file, std::strerror(errno), "");
   return bio;
 }
 
@@ -49,8 +52,17 @@ Certificate certificate_in(const fs::path& file) {
 /// Asks nobody for a password.
 int no_password(char*, int, int, void*) { return 0; }
 
+/// As ssh does: whoever read it could be of this session, and nobody would know.
+void check_private(const fs::path& file) {
+  constexpr fs::perms kOthers = fs::perms::group_all | fs::perms::others_all;
+  std::error_code none;
+  if ((fs::status(file, none).permissions() & kOthers) == fs::perms::none) return;
+  refuse(file, "others may read or write it", "; chmod 600 it, and make new keys if they did");
+}
+
 Key key_in(const fs::path& file) {
   const Bio bio = opened(file);
+  check_private(file);
   Key key(PEM_read_bio_PrivateKey(bio.get(), nullptr, no_password, nullptr), EVP_PKEY_free);
   if (key == nullptr) refuse(file, "is no key", kCopyAll);
   return key;

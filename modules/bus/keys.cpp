@@ -18,26 +18,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using Texts = std::vector<std::pair<fs::path, std::string>>;  ///< by file
+
 /// Readable and writable by its owner alone, from the first byte on.
 void write_private(const fs::path& file, const std::string& text) {
   const int number =
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  const bool written =
-      number >= 0 && ::write(number, text.data(), text.size()) == ssize_t(text.size());
+  errno = number >= 0 ? ENOSPC : errno;  // of what was written in part
+  const bool written = number >= 0 &&
+                       ::write(number, text.data(), text.size()) == ssize_t(text.size()) &&
+                       ::fsync(number) == 0;
   const int failure = errno;
   if (number >= 0) ::close(number);
   if (!written) throw InputError(file.string() + ": " + std::strerror(failure));
 }
 
-void make_folder(const fs::path& folder) {
+/// All, or none and no folder that was not there: a part of them would refuse the next try.
+void write_all(const fs::path& folder, bool is_new, const Texts& texts) {
+  try {
+    for (const auto& [file, text] : texts) write_private(file, text);
+  } catch (const InputError&) {
+    std::error_code ignored;
+    for (const auto& [file, text] : texts) fs::remove(file, ignored);
+    if (is_new) fs::remove(folder, ignored);
+    throw;
+  }
+}
+
+/// @returns whether it was not there
+bool make_folder(const fs::path& folder) {
   std::error_code failure;
-  fs::create_directories(folder, failure);
+  const bool is_new = fs::create_directories(folder, failure);
   if (failure) throw InputError(folder.string() + ": " + failure.message());
   if (!fs::is_empty(folder)) {
     throw InputError(folder.string() +
                      ": is not empty; keys go to a folder of their own, and are never replaced");
   }
   fs::permissions(folder, fs::perms::owner_all);
+  return is_new;
 }
 
 // Elements in the order of the schemas of DDS Security 1.1, which readers insist on.
@@ -94,16 +112,17 @@ void make_keys(const fs::path& folder, std::chrono::seconds valid_for) {
 }
 
 void write_keys(const fs::path& folder, const Authority& authority, const Validity& validity) {
-  make_folder(folder);
-  write_private(key_files(folder, "").authority, authority.certificate());
-  write_private(key_files(folder, "").governance, authority.signed_text(governance()));
+  const bool is_new = make_folder(folder);
+  Texts texts{{key_files(folder, "").authority, authority.certificate()},
+              {key_files(folder, "").governance, authority.signed_text(governance())}};
   for (const Role& role : roles()) {
     const KeyFiles files = key_files(folder, role.name);
     const Identity identity = authority.identity(std::string(role.name), validity);
-    write_private(files.key, identity.key);
-    write_private(files.certificate, identity.certificate);
-    write_private(files.permissions, authority.signed_text(permissions(role, validity)));
+    texts.emplace_back(files.key, identity.key);
+    texts.emplace_back(files.certificate, identity.certificate);
+    texts.emplace_back(files.permissions, authority.signed_text(permissions(role, validity)));
   }
+  write_all(folder, is_new, texts);
 }
 
 void apply_keys(const fs::path& folder, const std::string& role,

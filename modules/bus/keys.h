@@ -16,7 +16,7 @@ namespace palpate::bus {
 /// Makes `folder` and in it the certificate of an authority, what it says of all traffic
 /// (everything is authenticated and encrypted), and for each role (roles.h) a key, a certificate
 /// and what the role may write and read. The authority's own key is not kept: nobody can add to
-/// them later. Files are readable by their owner alone.
+/// them later. Files are readable by their owner alone; they are all there, or none is.
 /// @throws InputError if the folder is there and not empty, or cannot be written
 void make_keys(const std::filesystem::path& folder, std::chrono::seconds valid_for);
 

@@ -2,6 +2,9 @@
 
 #include <unistd.h>
 
+#include <cerrno>
+#include <fstream>
+
 #include "modules/core/error.h"
 
 namespace palpate {
@@ -20,6 +23,33 @@ std::string why_not_writable(const std::filesystem::path& file) {
 void check_writable(const std::filesystem::path& file) {
   const std::string why = why_not_writable(file);
   if (!why.empty()) throw InputError(file.string() + ": cannot be written: " + why);
+}
+
+void make_writable_folder(const std::filesystem::path& folder, const std::string& option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (!error && ::access(folder.c_str(), W_OK | X_OK) != 0) {
+    error = std::error_code(errno, std::generic_category());
+  }
+  if (!error) return;
+  throw InputError(option + " '" + folder.string() + "': must be a folder that can be written (" +
+                   error.message() + ")");
+}
+
+void check_replaces_its_like(const std::filesystem::path& file, std::string_view beginning,
+                             const std::string& kind) {
+  check_writable(file);
+  std::error_code none;
+  const auto type = std::filesystem::status(file, none).type();
+  if (type == std::filesystem::file_type::not_found) return;
+  const auto refuse = [&] {
+    throw InputError(file.string() + ": is no " + kind + ", and is not replaced by one");
+  };
+  if (type != std::filesystem::file_type::regular) refuse();  // before it is opened: a FIFO
+  std::string first(beginning.size(), '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(first.data(), static_cast<std::streamsize>(first.size()));
+  if (stream.gcount() > 0 && first != beginning) refuse();
 }
 
 }  // namespace palpate

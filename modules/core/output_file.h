@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace palpate {
 
@@ -12,5 +13,15 @@ std::string why_not_writable(const std::filesystem::path& file);
 
 /// @throws InputError naming file and reason
 void check_writable(const std::filesystem::path& file);
+
+/// Made if it is not there. @throws InputError naming the option that asks for it
+void make_writable_folder(const std::filesystem::path& folder, const std::string& option);
+
+/// Of a file that is written anew each time: it takes the place of nothing but its like, which
+/// begins with the same words, or of an empty file. Nor of a FIFO or a device.
+/// @param kind  of it, for the message: "summary"
+/// @throws InputError naming file and reason
+void check_replaces_its_like(const std::filesystem::path& file, std::string_view beginning,
+                             const std::string& kind);
 
 }  // namespace palpate

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 
 namespace palpate::geometry {
 namespace {
@@ -30,11 +31,7 @@ std::string end_of(const std::string& section) { return std::string("$End").appe
 /// Lines of a file, with their numbers and the words in them.
 class LineReader {
  public:
-  explicit LineReader(const std::filesystem::path& file) : file_(file), stream_(file) {
-    if (!std::filesystem::is_regular_file(file) || !stream_) {
-      throw InputError(file.string() + ": no such mesh file");
-    }
-  }
+  explicit LineReader(const std::filesystem::path& file) : file_(file), stream_(open_input(file)) {}
 
   /// @returns false at the end of the file
   bool next() {

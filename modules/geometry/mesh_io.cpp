@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/units.h"
 #include "modules/geometry/ply_file.h"
 #include "modules/geometry/weld.h"
@@ -24,10 +25,8 @@ namespace {
 }
 
 void check_file(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) refuse(file, "no such mesh file");
-  if (!std::filesystem::is_regular_file(file, error)) refuse(file, "is not a file");
-  if (std::filesystem::file_size(file, error) == 0) refuse(file, "is empty");
+  open_input(file);
+  if (std::filesystem::file_size(file) == 0) refuse(file, "is empty");
 }
 
 /// By its name or its first word: assimp would know it by either.

@@ -1,13 +1,11 @@
 // The writing half of mesh_io.h. Our own writers: assimp's exporters split and reorder nodes.
-#include <unistd.h>
-
 #include <bit>
-#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <string>
 
 #include "modules/core/error.h"
+#include "modules/core/whole_file.h"
 #include "modules/geometry/gmsh_file.h"
 #include "modules/geometry/mesh_io.h"
 
@@ -85,30 +83,14 @@ Writer writer_for(const std::filesystem::path& file) {
   if (extension == ".stl") return write_stl;
   if (extension == ".obj") return write_obj;
   if (extension == ".off") return write_off;
-  refuse_format(file, ".ply, .stl, .obj, .off");
+  refuse_format(file, ".ply, .stl, .obj, .off; tetrahedra (.msh) come of --near");
 }
 
 template <class Write>
 void write_whole(const std::filesystem::path& file, const Write& write) {
-  std::filesystem::path temporary = file;
-  temporary += ".part";
-  temporary += std::to_string(::getpid());  // two writers of one file do not meet
-  std::error_code error;
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    if (out) write(out);
-    out.close();
-    if (!out) {
-      std::filesystem::remove(temporary, error);
-      throw std::runtime_error(file.string() + ": cannot be written");
-    }
-  }
-  std::filesystem::rename(temporary, file, error);
-  if (error) {
-    const std::string reason = error.message();
-    std::filesystem::remove(temporary, error);
-    throw std::runtime_error(file.string() + ": cannot be written: " + reason);
-  }
+  WholeFile whole(file);
+  write(whole.stream());
+  whole.finish();
 }
 
 }  // namespace
@@ -116,7 +98,7 @@ void write_whole(const std::filesystem::path& file, const Write& write) {
 void check_can_write(const std::filesystem::path& file) { writer_for(file); }
 
 void check_can_write_tetrahedra(const std::filesystem::path& file) {
-  if (file.extension() != ".msh") refuse_format(file, ".msh");
+  if (file.extension() != ".msh") refuse_format(file, ".msh, for --near makes tetrahedra");
 }
 
 void write_surface(const TriangleSurface& surface, const std::filesystem::path& file) {

@@ -2,9 +2,8 @@
 
 #include <cctype>
 #include <sstream>
-#include <stdexcept>
 
-#include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/messages/csv.h"
 
 namespace palpate::recording {
@@ -33,18 +32,15 @@ std::string times_of(const Header& header, std::int64_t received_ns, std::int64_
 }  // namespace
 
 CsvExport::CsvExport(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw InputError("--csv " + folder_.string() + ": " + error.message());
+  make_writable_folder(folder_, "--csv");
 }
 
-std::ofstream& CsvExport::file(const std::string& name, const std::string& columns) {
-  const auto [place, is_new] = files_.try_emplace(name);
-  if (is_new) {
-    place->second.open(folder_ / (name + ".csv"));
-    place->second << kTimeColumns << ',' << columns << '\n';
-  }
-  return place->second;
+std::ostream& CsvExport::file(const std::string& name, const std::string& columns) {
+  const auto [place, is_new] =
+      files_.try_emplace(name, folder_ / (name + ".csv"), kTimeColumns, "table of samples");
+  std::ostream& stream = place->second.stream();
+  if (is_new) stream << ',' << columns << '\n';
+  return stream;
 }
 
 void CsvExport::add(const RecordedSample& sample, const messages::AnyMessage& message,
@@ -54,7 +50,7 @@ void CsvExport::add(const RecordedSample& sample, const messages::AnyMessage& me
   if (!key.empty()) name.append("_").append(file_part(key));
   const std::string times =
       times_of(messages::header_of(message), sample.received_time_ns, start_ns);
-  std::ofstream& stream = file(name, messages::csv_columns(message));
+  std::ostream& stream = file(name, messages::csv_columns(message));
   stream << times << ',';
   messages::write_csv_values(stream, message);
   stream << '\n';
@@ -63,7 +59,7 @@ void CsvExport::add(const RecordedSample& sample, const messages::AnyMessage& me
 
 void CsvExport::add_inputs(const ModuleStatus& status, const std::string& times) {
   for (const ModuleStatus::Input& input : status.inputs) {
-    std::ofstream& stream =
+    std::ostream& stream =
         file("module_inputs_" + file_part(status.module), messages::csv_columns(input));
     stream << times << ',';
     messages::write_csv_values(stream, input);
@@ -72,12 +68,7 @@ void CsvExport::add_inputs(const ModuleStatus& status, const std::string& times)
 }
 
 void CsvExport::close() {
-  for (auto& [name, stream] : files_) {
-    stream.close();
-    if (!stream) {
-      throw std::runtime_error((folder_ / (name + ".csv")).string() + ": cannot be written");
-    }
-  }
+  for (auto& [name, file] : files_) file.finish();
 }
 
 }  // namespace palpate::recording

@@ -2,32 +2,34 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <ostream>
 #include <string>
 
+#include "modules/core/whole_file.h"
 #include "modules/recording/sample_reader.h"
 
 namespace palpate::recording {
 
 class CsvExport {
  public:
-  /// Makes the folder. @throws std::runtime_error if that fails
+  /// Makes the folder. @throws InputError if that fails
   explicit CsvExport(std::filesystem::path folder);
 
   /// @param start_ns  receive time at which time_s is 0
   void add(const RecordedSample& sample, const messages::AnyMessage& message,
            std::int64_t start_ns);
 
-  /// @throws std::runtime_error naming a file that could not be written
+  /// Before, none of them is there. @throws std::runtime_error naming a file that could not be
+  /// written
   void close();
 
  private:
-  std::ofstream& file(const std::string& name, const std::string& columns);
+  std::ostream& file(const std::string& name, const std::string& columns);
   void add_inputs(const ModuleStatus& status, const std::string& times);
 
   std::filesystem::path folder_;
-  std::map<std::string, std::ofstream> files_;
+  std::map<std::string, WholeFile> files_;
 };
 
 }  // namespace palpate::recording

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <fstream>
 #include <iomanip>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/core/whole_file.h"
 #include "modules/messages/csv.h"
 #include "modules/messages/values.h"
 #include "modules/recording/recorder.h"
@@ -24,9 +25,8 @@ class Comparison {
   Comparison(const DiffOptions& options, std::size_t most_waiting)
       : options_(options), most_waiting_(most_waiting) {
     if (options.csv.empty()) return;
-    csv_.open(options.csv);
-    if (!csv_) throw std::runtime_error(options.csv.string() + ": cannot be written");
-    csv_ << "sim_time_s,topic,key,field,largest_difference\n";
+    csv_.emplace(options.csv, "sim_time_s,topic,key,field,largest_difference\n",
+                 "table of differences");
   }
 
   void add_a(RecordedSample sample) { add(std::move(sample), &Stream::a); }
@@ -38,10 +38,7 @@ class Comparison {
       topic.only_in_a += stream.a.size();
       topic.only_in_b += stream.b.size();
     }
-    if (csv_.is_open()) {
-      csv_.close();
-      if (!csv_) throw std::runtime_error(options_.csv.string() + ": cannot be written");
-    }
+    if (csv_) csv_->finish();
     return std::move(result_);
   }
 
@@ -120,7 +117,7 @@ class Comparison {
         total.largest = difference;
         total.largest_sim_time_ns = sim_time_ns_;
       }
-      if (csv_.is_open()) write_row(topic, key, field, total.is_text, difference);
+      if (csv_) write_row(topic, key, field, total.is_text, difference);
     }
     return !largest.empty();
   }
@@ -133,20 +130,21 @@ class Comparison {
 
   void write_row(const std::string& topic, const std::string& key, std::string_view field,
                  bool is_text, double difference) {
-    messages::write_seconds(csv_, sim_time_ns_);
-    csv_ << ',' << topic << ',' << messages::csv_text(key) << ',' << field << ',';
+    std::ostream& csv = csv_->stream();
+    messages::write_seconds(csv, sim_time_ns_);
+    csv << ',' << topic << ',' << messages::csv_text(key) << ',' << field << ',';
     if (is_text) {
-      csv_ << "text";
+      csv << "text";
     } else {
-      messages::write_number(csv_, difference);
+      messages::write_number(csv, difference);
     }
-    csv_ << '\n';
+    csv << '\n';
   }
 
   const DiffOptions& options_;
   std::size_t most_waiting_;
   std::size_t waiting_ = 0;  ///< bytes of what has no partner yet
-  std::ofstream csv_;
+  std::optional<WholeFile> csv_;
   RecordingDifference result_;
   std::map<std::pair<std::string, std::string>, Stream> streams_;
   messages::AnyMessage message_a_, message_b_;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "modules/core/error.h"
+#include "modules/core/whole_file.h"
 #include "modules/recording/foxglove_messages.h"
 #include "modules/recording/idl_text.h"
 #include "modules/recording/mcap_bytes.h"
@@ -227,12 +228,14 @@ FoxgloveReport export_to_foxglove(const std::filesystem::path& recording,
   if (std::filesystem::exists(file)) {
     throw InputError(file.string() + ": is there already; a translation replaces nothing");
   }
-  Export translation(file);
+  FileInTheMaking making(file);
+  Export translation(making.part());
   translation.begin(reader.metadata(kSessionMetadata));
   for (; sample; sample = reader.next()) {
     translation.add(*sample, reader.about_channel(sample->channel));
   }
   FoxgloveReport report = translation.close(reader.metadata(kSceneMetadata));
+  making.finish();
   for (std::string& line : reader.warnings()) report.warnings.push_back(std::move(line));
   return report;
 }

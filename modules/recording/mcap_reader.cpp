@@ -4,6 +4,7 @@
 #include <array>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_chunk.h"
 #include "modules/recording/mcap_codec.h"
@@ -40,14 +41,8 @@ bool is_used(std::uint8_t opcode) {
 
 McapReader::McapReader(const std::filesystem::path& file, McapDamage damage)
     : file_(file), damage_(damage) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw InputError(file.string() + ": no such recording");
-  }
-  file_bytes_ = std::filesystem::file_size(file, error);
-  stream_.open(file, std::ios::binary);
-  if (!stream_ || error) throw InputError(file.string() + ": cannot be read");
-
+  stream_ = open_input(file);
+  file_bytes_ = std::filesystem::file_size(file);
   std::array<std::uint8_t, kMcapMagic.size()> magic{};
   if (!read_bytes(magic.data(), magic.size()) || magic != kMcapMagic) {
     refuse(0, "not an MCAP file of version 0 (its first bytes are not \\x89MCAP0\\r\\n)");

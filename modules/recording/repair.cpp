@@ -3,6 +3,7 @@
 #include <map>
 
 #include "modules/core/error.h"
+#include "modules/core/whole_file.h"
 #include "modules/recording/mcap_reader.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/recorder.h"
@@ -107,7 +108,8 @@ RepairReport repair(const std::filesystem::path& damaged, const std::filesystem:
                      ": is there already; a repaired recording replaces nothing");
   }
   check_recording_target(repaired);
-  Copy copy(repaired);
+  FileInTheMaking making(repaired);
+  Copy copy(making.part());
   for (const auto& part : parts) {
     McapReader reader(part, McapDamage::kSkip);
     copy.begin_part();
@@ -116,6 +118,7 @@ RepairReport repair(const std::filesystem::path& damaged, const std::filesystem:
     report.torn |= reader.torn();
   }
   report.samples = copy.close();
+  making.finish();
   report.parts = static_cast<int>(parts.size());
   return report;
 }

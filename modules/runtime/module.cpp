@@ -58,7 +58,8 @@ Module::~Module() {
   status_.publish(now, session_.time(now), loop);
   status_.take_leave();
   spdlog::info(
-      "{} cycles at {:.0f} Hz, {:.3f} % on time, late by at most {:.3f} ms ({:.3f} ms in 99.9 %)",
+      "{} cycles at {:.0f} Hz since its start, waiting for the session too: {:.3f} % on time, late "
+      "by at most {:.3f} ms ({:.3f} ms in 99.9 %)",
       loop.cycles, loop_.rate_hz(), 100 * loop.on_time_fraction(), 1e3 * worst,
       1e3 * std::min(worst, loop.lateness.quantile(0.999)));
   if (const bus::Refusals refused = bus_.packets_refused(); refused.count > 0) {

@@ -1,8 +1,9 @@
 #include "modules/scene/scene_reader.h"
 
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
+#include "modules/core/input_file.h"
 #include "modules/core/organ_limits.h"
 #include "modules/scene/object_reader.h"
 #include "modules/scene/scene_error.h"
@@ -52,16 +53,9 @@ void check_first_key(const YamlValue& root) {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) throw SceneError(file.string(), 0, "", "no such file");
-  if (!std::filesystem::is_regular_file(file, error)) {
-    throw SceneError(file.string(), 0, "", "not a scene file but a folder or device");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) throw SceneError(file.string(), 0, "", "cannot be read");
-  return parse_scene(text.str(), file);
+  std::ifstream stream = open_input(file);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_scene(text, file);
 }
 
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/yaml_writer.h"
 
@@ -21,7 +22,7 @@ class Digest {
     }
   }
   void add_file(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
+    std::ifstream stream = open_input(file);
     std::array<char, 1 << 16> block;
     std::uint64_t size = 0;
     while (stream.read(block.data(), block.size()) || stream.gcount() > 0) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
 #include "modules/scene/scene_error.h"
@@ -210,14 +210,8 @@ Quat rotation_from(const YamlValue& value) {
 std::filesystem::path file_from(const YamlValue& value) {
   if (!value.node.IsScalar() || value.node.Scalar().empty()) value.refuse("must name a file");
   const auto path = std::filesystem::absolute(value.source->folder / value.node.Scalar());
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status))
-    value.refuse("no such file: " + path.lexically_normal().string());
-  if (!std::filesystem::is_regular_file(status)) {
-    value.refuse("must be a file, this is a folder or device: " + path.lexically_normal().string());
-  }
-  if (!std::ifstream(path)) value.refuse("cannot be read: " + path.lexically_normal().string());
+  const std::string why = why_not_readable(path);
+  if (!why.empty()) value.refuse(why + ": " + path.lexically_normal().string());
   return path.lexically_normal();
 }
 

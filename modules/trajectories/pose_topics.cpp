@@ -36,6 +36,14 @@ PoseTopic PoseTopics::choose(const scene::TrajectoryDevice& config) const {
     throw InputError(fmt::format("{}: has {} topics with poses; name one by key topic: {}", file,
                                  count, readable));
   }
+  if (types_.contains("probe_state")) {
+    throw InputError(fmt::format(
+        "{0}: a recording of palpate, not a bag with poses; first: palpate inspect {0} --csv "
+        "FOLDER, "
+        "then FOLDER/probe_state_0.csv with columns sim_time_s, position_x_m, position_y_m, "
+        "position_z_m, for a device rotation_x to rotation_w, too",
+        file));
+  }
   throw InputError(fmt::format("{}: has no topic with poses ({}); it has: {}", file, kPoseTypes,
                                all.empty() ? "none" : all));
 }

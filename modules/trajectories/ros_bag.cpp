@@ -9,6 +9,7 @@
 #include <span>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/units.h"
 #include "modules/trajectories/pose_collector.h"
 #include "modules/trajectories/pose_topics.h"
@@ -88,13 +89,10 @@ class BagReader {
   /// @returns false if the file ends within one
   template <class Visit>
   bool read(const Visit& visit) {
-    std::ifstream stream(file_, std::ios::binary);
+    std::ifstream stream = open_input(file_);
     std::string magic(kMagic.size(), '\0');
-    if (!stream || std::filesystem::is_directory(file_) ||
-        !stream.read(magic.data(), std::streamsize(magic.size()))) {
-      throw InputError(file_.string() + ": recording cannot be opened");
-    }
-    if (magic != kMagic) throw InputError(file_.string() + ": is no ROS 1 bag of format 2.0");
+    if (!stream.read(magic.data(), std::streamsize(magic.size())) || magic != kMagic)
+      throw InputError(file_.string() + ": is no ROS 1 bag of format 2.0");
     while (stream.peek() != std::ifstream::traits_type::eof()) {
       offset_ = std::uint64_t(stream.tellg());
       if (!read_block(stream, header_) || !read_block(stream, data_)) return false;

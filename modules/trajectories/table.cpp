@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/units.h"
 #include "modules/trajectories/pose_collector.h"
 #include "modules/trajectories/table_columns.h"
@@ -58,10 +59,7 @@ class TableReader {
         poses_(config.file.string(), ":", warnings) {}
 
   std::vector<TimedPose> read() {
-    std::ifstream stream(config_.file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(config_.file)) {
-      throw InputError(config_.file.string() + ": recording cannot be opened");
-    }
+    std::ifstream stream = open_input(config_.file);
     const double bytes = double(std::filesystem::file_size(config_.file));
     double read = 0;
     for (std::string line; std::getline(stream, line);) {

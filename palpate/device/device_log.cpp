@@ -21,9 +21,7 @@ std::string place_and_force(const Vec3& position, const Vec3& force) {
 }  // namespace
 
 DeviceLog::DeviceLog(std::ostream& lines, std::ostream* table) : lines_(lines), table_(table) {
-  if (!table_) return;
-  table_->precision(9);
-  *table_ << "source_time_ns,time_s,x_m,y_m,z_m,fx_n,fy_n,fz_n\n";
+  if (table_) table_->precision(9);
 }
 
 void DeviceLog::add(std::int64_t now_ns, double time, const Vec3& position, const Vec3& force) {

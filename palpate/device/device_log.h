@@ -9,13 +9,17 @@
 
 namespace palpate::launcher {
 
+/// The first line of its table.
+inline constexpr const char* kDeviceTable = "source_time_ns,time_s,x_m,y_m,z_m,fx_n,fy_n,fz_n\n";
+
 class DeviceLog {
  public:
   /// A device that stays within a box of this diagonal is said to rest [m].
   static constexpr double kRest = 1e-4;
 
   /// @param lines  receives the line of each second
-  /// @param table  receives CSV rows: source time, time, position, force of the motors; or nullptr
+  /// @param table  receives CSV rows, below the first line: source time, time, position, force of
+  /// the motors; or nullptr
   DeviceLog(std::ostream& lines, std::ostream* table);
 
   /// @param time      since the hand took the device [s]

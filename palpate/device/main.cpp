@@ -1,15 +1,16 @@
 // palpate-emulated-device: moves one probe of a session as a haptic device in a hand would, until
 // the session ends or it is told to stop (Ctrl-C, SIGTERM, SIGHUP).
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
+#include "modules/core/whole_file.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/program.h"
@@ -115,6 +116,10 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
 
 void attach(const Options& options) {
   const scene::Scene scene = scene::load_scene(scene::scene_file(options.scene));
+  std::optional<WholeFile> table;
+  if (!options.table.empty()) {
+    table.emplace(options.table, launcher::kDeviceTable, "table of a device");
+  }
   const std::uint32_t probe = probe_of(scene, options.probe);
   const scene::EmulatedDevice device = scene::parse_emulated_device(
       options.device, "--device", std::get<scene::TopicDevice>(scene.probes[probe].device));
@@ -124,13 +129,9 @@ void attach(const Options& options) {
   }
   bus::DdsBus bus(options.bus);
   launcher::EmulatedDriver driver(device, probe, bus);
-  std::ofstream table;
-  if (!options.table.empty()) {
-    table.open(options.table);
-    if (!table) throw InputError(options.table.string() + ": cannot be written");
-  }
-  launcher::DeviceLog log(std::cout, options.table.empty() ? nullptr : &table);
+  launcher::DeviceLog log(std::cout, table ? &table->stream() : nullptr);
   run(options, scene, driver, bus, log);
+  if (table) table->finish();
   std::cout << scene.probes[probe].name << ": " << log.summary() << std::endl;
 }
 
@@ -154,8 +155,9 @@ int main(int argc, char** argv) {
       .add("--duration", options.duration,
            "Seconds of the session, which is waited for as long, or 10 s; else until it ends")
       .range(0.001, 1e6);
-  program.add_output("--csv", options.table,
-                     "Place and force of each period; an existing one is replaced");
+  program.add_output(
+      "--csv", options.table,
+      "Place and force of each period, written at the end; an earlier one is replaced");
   program.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
   return program.run(argc, argv, [&] {
     attach(options);

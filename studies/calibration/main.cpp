@@ -1,10 +1,11 @@
 // palpate calibrate: fits and checks spring stiffness against squeezed balls of finite elements.
-#include <fstream>
 #include <iostream>
+#include <optional>
 
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
+#include "modules/core/whole_file.h"
 #include "modules/runtime/program.h"
 #include "studies/calibration/report.h"
 #include "studies/report/progress.h"
@@ -34,7 +35,7 @@ void add_options(runtime::Program& program, Options& options) {
   program.add("--inner-ratio", options.inner_ratio, "Instead of the shipped one").range(0.0, 100.0);
   program.flag("--outer-surface", options.outer_surface,
                "Nodes on the outer surface instead of the middle of the wall");
-  program.add("--csv", options.csv, "File for the comparison");
+  program.add_output("--csv", options.csv, "File for the comparison; an earlier one is replaced");
   program.add("--reference", options.reference, "Folder of the reference tables").shows_default();
 }
 
@@ -76,11 +77,9 @@ int run(const Options& options) {
   const StopSignal signal;
   const auto stop = [&] { return signal.requested(); };
   const auto cases = cases_of(options);
-  std::ofstream csv;
+  std::optional<WholeFile> csv;
   if (!options.csv.empty()) {
-    csv.open(options.csv);
-    if (!csv) throw InputError(options.csv.string() + ": cannot be written");
-    calibration::write_csv_header(csv);
+    csv.emplace(options.csv, calibration::kCsvHeader, "comparison of this kind");
   }
   for (const Case& calibrated : cases) {
     calibration::print_settings(calibrated, std::cout);
@@ -92,8 +91,9 @@ int run(const Options& options) {
     }
     calibration::print_comparisons(calibrated, comparisons, std::cout);
     std::cout << std::endl;
-    if (csv.is_open()) calibration::write_csv(calibrated, comparisons, csv);
+    if (csv) calibration::write_csv(calibrated, comparisons, csv->stream());
   }
+  if (csv) csv->finish();
   return kExitDone;
 }
 

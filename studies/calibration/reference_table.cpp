@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 
 namespace palpate::calibration {
 namespace {
@@ -55,9 +56,9 @@ void demand_columns(const std::filesystem::path& file, const std::vector<std::st
 std::vector<ReferenceRow> read_reference(const std::filesystem::path& file,
                                          const ReferenceColumns& columns,
                                          double least_compression) {
-  std::ifstream stream(file);
+  std::ifstream stream = open_input(file);
   std::string text;
-  if (!std::getline(stream, text)) throw InputError(file.string() + ": cannot be read");
+  if (!std::getline(stream, text)) throw InputError(file.string() + ": is empty");
   const auto header = cells_of(text);
   demand_columns(file, header, columns);
   std::vector<ReferenceRow> rows;

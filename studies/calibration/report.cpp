@@ -94,11 +94,6 @@ void print_fit(const Case& calibrated, const Fit& fit, std::ostream& out) {
   out.flush();
 }
 
-void write_csv_header(std::ostream& out) {
-  out << "case,nodes,compression,settled,force_n,reference_force_n,pressure_pa,"
-         "reference_pressure_pa,equatorial_radius_m,reference_equatorial_radius_m\n";
-}
-
 void write_csv(const Case& calibrated, const std::vector<Comparison>& comparisons,
                std::ostream& out) {
   for (const Comparison& comparison : comparisons) {

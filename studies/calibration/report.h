@@ -23,7 +23,9 @@ void print_fit_header(const Case& calibrated, std::ostream& out);
 void print_fit(const Case& calibrated, const Fit& fit, std::ostream& out);
 
 /// CSV, one header line; SI units in the column names.
-void write_csv_header(std::ostream& out);
+inline constexpr const char* kCsvHeader =
+    "case,nodes,compression,settled,force_n,reference_force_n,pressure_pa,"
+    "reference_pressure_pa,equatorial_radius_m,reference_equatorial_radius_m\n";
 void write_csv(const Case& calibrated, const std::vector<Comparison>& comparisons,
                std::ostream& out);
 

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "modules/core/data_folder.h"
+#include "modules/core/whole_file.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/certify/hands.h"
 #include "studies/report/plot_script.h"
-#include "studies/report/whole_file.h"
 
 namespace palpate::certify {
 namespace {
@@ -139,7 +139,7 @@ void write_json(const Certificate& certificate, const Subject& subject,
   style["indentation"] = "  ";
   style["precision"] = kDigits;
   style["emitUTF8"] = true;
-  report::write_whole_file(folder / "certificate.json", Json::writeString(style, json) + "\n");
+  write_whole_file(folder / "certificate.json", Json::writeString(style, json) + "\n");
 }
 
 void draw_pictures(const std::vector<std::string>& tables, const std::filesystem::path& folder) {
@@ -167,7 +167,7 @@ void write_page(const Certificate& certificate, const Subject& subject,
   for (const auto& picture : pictures_in(folder)) {
     page += fmt::format("<p><img src=\"{0}\" alt=\"{0}\"></p>\n", picture);
   }
-  report::write_whole_file(folder / "certificate.html", page + "</body></html>\n");
+  write_whole_file(folder / "certificate.html", page + "</body></html>\n");
 }
 
 }  // namespace palpate::certify

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/polar_decomposition.h"
 
 namespace palpate::chart {
@@ -66,8 +67,7 @@ std::optional<std::filesystem::path> truth_cube_folder() {
 
 TruthCube read_truth_cube(const std::filesystem::path& folder) {
   const auto file = folder / "truthcube_uniaxial_positions.csv";
-  std::ifstream stream(file);
-  if (!stream) throw InputError(file.string() + ": no such file");
+  std::ifstream stream = open_input(file);
   TruthCube cube;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {

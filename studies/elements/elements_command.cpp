@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "modules/core/error.h"
+#include "modules/core/whole_file.h"
+#include "studies/report/measures.h"
 #include "studies/report/progress.h"
 
 namespace palpate::elements_bench {
@@ -63,7 +65,8 @@ void print_convergence(const std::vector<Run>& runs, std::ostream& out) {
 }
 
 void write_csv(const std::filesystem::path& file, const std::vector<Run>& runs) {
-  std::ofstream csv(file);
+  WholeFile whole(file);
+  std::ostream& csv = whole.stream();
   csv << "size_ratio,nodes,elements,unknowns,load,value,reference,bulge_m,reference_bulge_m,"
          "newton_iterations\n";
   csv.precision(10);
@@ -74,8 +77,7 @@ void write_csv(const std::filesystem::path& file, const std::vector<Run>& runs) 
           << row.reference_bulge << ',' << row.iterations << '\n';
     }
   }
-  csv.flush();
-  if (!csv) throw std::runtime_error(file.string() + ": cannot be written");
+  whole.finish();
 }
 
 const char* heading(const std::string& name) {
@@ -94,7 +96,7 @@ double observed_order(double coarse_error, double fine_error, double coarse_size
 
 int run_elements(const ElementsOptions& options, const std::function<bool()>& stop,
                  std::ostream& out, std::ostream& log) {
-  if (!options.out.empty()) std::filesystem::create_directories(options.out);
+  if (!options.out.empty()) report::make_out_folder(options.out);
   for (const auto& name : options.cases.empty() ? case_names() : options.cases) {
     out << '\n' << heading(name) << '\n';
     std::vector<Run> runs;

@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/stop_signal.h"
+#include "modules/core/whole_file.h"
 #include "modules/runtime/program.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
@@ -27,7 +29,6 @@
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
 #include "studies/report/progress.h"
-#include "studies/report/whole_file.h"
 
 namespace palpate::plan {
 namespace {
@@ -281,6 +282,21 @@ bool choose(const scene::Needs& needs, std::vector<OrganPlan>& plans) {
   return plans[0].chosen != nullptr;
 }
 
+/// Beside the scene, of a shipped one here, unless it is named; then a file that is there is some
+/// scene, perhaps one written by hand.
+/// @throws InputError before the work if it cannot be written
+std::filesystem::path output_of(const scene::Scene& scene, const PlanOptions& options) {
+  std::filesystem::path file = options.out;
+  if (file.empty()) {
+    file = scene.file.stem().string() + ".planned.yaml";
+    if (!scene::is_shipped(scene.file)) file = scene.file.parent_path() / file;
+  } else if (std::filesystem::exists(file)) {
+    throw InputError(file.string() + ": is there already; --out names another");
+  }
+  check_writable(file);
+  return file;
+}
+
 /// What verdicts depend on.
 std::string told(const scene::Scene& scene, const PlanOptions& options) {
   std::string text = fmt::format("{} {} for {} s, {} touches", runtime::version_text(),
@@ -302,6 +318,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
   if (options.shard && options.points.empty()) {
     throw InputError("--shard needs --points, the folder that all shards share");
   }
+  const std::filesystem::path output = options.shard ? "" : output_of(scene, options);
   Sharing sharing{{options.points / "claims", options.shard},
                   {options.points, told(scene, options)}};
   const StopSignal stop;
@@ -325,16 +342,12 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     const bool is_met = choose(scene.needs, plans);
     std::filesystem::path file;
     if (is_met) {
-      file = options.out;
-      if (file.empty()) {
-        file = scene.file.stem().string() + ".planned.yaml";
-        if (!scene::is_shipped(scene.file)) file = scene.file.parent_path() / file;
-      }
+      file = output;
       scene::Scene planned = scene;
       for (std::size_t i = 0; i < plans.size(); ++i) {
         planned = scene_with(planned, plans[i].chosen->candidate, i);
       }
-      report::write_whole_file(file, scene::resolved_text(planned));
+      write_whole_file(file, scene::resolved_text(planned));
     }
     for (std::size_t i = 0; options.verify && is_met && is_solid(scene) && i < plans.size(); ++i) {
       scene::Scene alone = scene;

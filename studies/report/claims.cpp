@@ -4,13 +4,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <stdexcept>
 
 #include "modules/core/error.h"
+#include "modules/core/whole_file.h"
 #include "studies/report/measures.h"
 
 namespace palpate::report {
@@ -47,12 +47,6 @@ std::optional<double> time_of(const std::filesystem::path& file) {
 }
 
 }  // namespace
-
-std::string process_word() {
-  std::array<char, 256> host{};
-  ::gethostname(host.data(), host.size() - 1);
-  return std::string(host.data()) + "-" + std::to_string(::getpid());
-}
 
 std::optional<Shard> shard_from(const std::string& text) {
   if (text.empty()) return {};

@@ -86,7 +86,4 @@ Share measure_points(const std::vector<Point>& points, Claims& claims);
 /// "shard 2/8: 12 points measured here, 30 stored before, 3 being measured by others; …"
 std::string text_of(const Share& share, const Shard& shard);
 
-/// "HOST-PID": of this process alone on a shared file system.
-std::string process_word();
-
 }  // namespace palpate::report

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 
 namespace palpate::report {
 
@@ -42,13 +43,6 @@ std::string machine_name() {
   return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores seen";
 }
 
-void make_out_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError("--out '" + folder.string() + "': must be a folder that can be written (" +
-                     error.message() + ")");
-  }
-}
+void make_out_folder(const std::filesystem::path& folder) { make_writable_folder(folder, "--out"); }
 
 }  // namespace palpate::report

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 
 namespace palpate::report {
 namespace {
@@ -21,9 +22,9 @@ std::vector<std::string> cells_of(const std::string& line) {
 }  // namespace
 
 ReferenceTable::ReferenceTable(std::filesystem::path file) : file_(std::move(file)) {
-  std::ifstream stream(file_);
+  std::ifstream stream = open_input(file_);
   std::string line;
-  if (!std::getline(stream, line)) throw InputError(file_.string() + ": no such reference table");
+  if (!std::getline(stream, line)) throw InputError(file_.string() + ": is empty");
   names_ = cells_of(line);
   while (std::getline(stream, line)) rows_.push_back(cells_of(line));
 }

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "studies/report/whole_file.h"
+#include "modules/core/whole_file.h"
 
 namespace palpate::report {
 

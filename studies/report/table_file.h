@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/report/whole_file.h"
+#include "modules/core/whole_file.h"
 
 namespace palpate::report {
 

@@ -12,6 +12,7 @@
 #include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
 #include "modules/scene/scene_reader.h"
+#include "studies/report/measures.h"
 #include "studies/report/progress.h"
 #include "studies/report/table_file.h"
 #include "studies/volume_methods/measurements.h"
@@ -143,19 +144,11 @@ bool wanted(const VolumeMethodsOptions& options, const Method& method) {
          std::find(options.only.begin(), options.only.end(), method.name) != options.only.end();
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!error) return;
-  throw InputError("--out '" + folder.string() + "': must be a folder that can be written (" +
-                   error.message() + ")");
-}
-
 }  // namespace
 
 int run_volume_methods(const VolumeMethodsOptions& options, std::ostream& out, std::ostream& log) {
   const scene::Scene scene = scene::load_scene(options.scene);
-  if (!options.out.empty()) make_folder(options.out);
+  if (!options.out.empty()) report::make_out_folder(options.out);
   const StopSignal stop;
   report::Progress progress(log, [&] { return stop.requested(); });
   std::vector<MethodRow> rows;

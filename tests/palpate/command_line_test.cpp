@@ -194,7 +194,7 @@ TEST_CASE("command line: keys that cannot be used are refused before anything st
   for (const auto& [keys, what] : std::vector<std::pair<std::string, std::string>>{
            {"old", "palpate.pem: expired at "},
            {"mixed", "palpate.pem: is not signed by the authority.pem beside it; copy "},
-           {"part", "collision.key: No such file or directory; `palpate keys` makes them"}}) {
+           {"part", "collision.key: no such file; `palpate keys` makes them"}}) {
     for (const std::string mode : {"--headless", "--lockstep"}) {
       const auto outcome = run(keys, mode);
       CAPTURE(outcome.said);

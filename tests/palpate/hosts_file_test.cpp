@@ -96,9 +96,8 @@ TEST_CASE("hosts file: what is wrong is named with its line and what is allowed"
         std::string::npos);
   CHECK(refusal("palpate_hosts: 1\nhosts: []\n").find("must have at least one entry") !=
         std::string::npos);
-  CHECK_THROWS_WITH(load_hosts("/nowhere/hosts.yaml"),
-                    "--hosts /nowhere/hosts.yaml: cannot be read");
-  CHECK_THROWS_WITH(load_hosts("/"), "--hosts /: is a folder");
+  CHECK_THROWS_WITH(load_hosts("/nowhere/hosts.yaml"), "/nowhere/hosts.yaml: no such file");
+  CHECK_THROWS_WITH(load_hosts("/"), "/: is a folder, not a file");
 }
 
 TEST_CASE("hosts file: a run takes its modules, and its part, from it") {

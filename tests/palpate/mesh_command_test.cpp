@@ -249,8 +249,9 @@ TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothi
   CHECK_THAT(refused(options), Contains("--near-columns must name four"));
   options = given.near(8e-3);
   options.near.edge = 2e-4;
-  CHECK_THAT(refused(options), Contains("--edge-m, --growth: refined, it would have more than "
-                                        "50000 nodes; allow longer edges"));
+  CHECK_THAT(refused(options),
+             Contains("--edge-m 0.0002, --growth 0.5, 125 nodes before: refined, it would "
+                      "have more than 50000 nodes; allow longer edges"));
   options = given.near(8e-3);
   TetMesh apart = palpate::geometry::testing::block(Vec3::Constant(0.06), 1, 1, 1);
   for (const Vec3& node : std::vector(apart.nodes)) apart.nodes.push_back(node + Vec3(1, 0, 0));
@@ -270,6 +271,24 @@ TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothi
   options = given.near(8e-3);
   options.near.file = given.folder / "none.csv";
   CHECK_THAT(refused(options), Contains("none.csv"));
+}
+
+TEST_CASE("mesh command: what is said of a motion names the options here, not keys of a scene") {
+  // Oracle: the texts by hand.
+  const BlockAndMotion given;
+  const std::string options_here =
+      "(keys of a scene; here --near-columns T,X,Y,Z, --near-unit, --near-topic)";
+  MeshCommandOptions options = given.near(8e-3);
+  options.near.columns.clear();
+  CHECK_THAT(run(options).err, Contains("header is 's,px,py,pz'") && Contains(options_here));
+  options = given.near(8e-3);
+  given.folder.write("way.csv", "s px py pz\n0 30 30 90\n0.001 30 30 64\n2 30 30 90\n");
+  CHECK_THAT(run(options).out, Contains("which no hand is") && Contains(options_here));
+  // Metres read as millimetres move hardly, and touch where they begin.
+  given.folder.write("way.csv", "s px py pz\n0 0.030 0.030 0.090\n1 0.030 0.030 0.064\n");
+  options.near.position = {0.03, 0.03, 0.06};
+  CHECK_THAT(run(options).out, Contains("way.csv moves over 0.026 mm in all, read in mm: are its "
+                                        "positions in metres? Then leave out --near-unit"));
 }
 
 TEST_CASE("mesh command: what is wrong with a motion is told before a surface is filled") {

@@ -119,7 +119,7 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {{"mesh", desk.file("garbage.stl")}, "garbage.stl"},
       {{"mesh", desk.file("open.ply")}, "--fill-holes closes 1 hole"},
       {{"mesh", desk.file("two.ply")}, "--largest keeps the shell with"},
-      {{"mesh", desk.file("tetrahedra.msh")}, "holds tetrahedra"},
+      {{"mesh", desk.file("tetrahedra.msh")}, "files of this kind are read as tetrahedra"},
       {{"mesh", desk.file("in_mm.stl"), "--near", desk.file("good.csv")}, "needs --radius-m"},
       {{"mesh", desk.file("in_mm.stl"), "--near", desk.file("good.csv"), "--radius-m", "8"},
        "--radius-m"},

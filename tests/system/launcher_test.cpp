@@ -39,6 +39,8 @@ TEST_CASE("launcher: runs for its duration, reports each second, sums up and rec
   CHECK_THAT(text.str(), Contains("% on time") && Contains("organ ball") &&
                              Contains("probe finger") && Contains("real-time factor"));
   CHECK_THAT(text.str(), !Contains("force at most 0.000 N"));
+  // Another span than the summary's, and so another figure.
+  CHECK_THAT(run.said(), Contains("Hz since its start, waiting for the session too: "));
   CHECK(std::filesystem::file_size(recording) > 100'000);
   CHECK(run.processes().empty());
 }

@@ -145,7 +145,7 @@ TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(TemporaryFolder
 
 TetMesh read_tetrahedra(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) {
-    throw InputError(file.string() + ": no such mesh file");
+    throw InputError(file.string() + ": no such file");
   }
   if (is_msh_2(file)) return read_gmsh(file);
   try {

@@ -1,5 +1,8 @@
 #include "modules/bus/key_check.h"
 
+#include <sys/stat.h>
+
+#include <array>
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <functional>
@@ -64,13 +67,50 @@ TEST_CASE("key check: each wrong file is named, with what is wrong and what to d
            {write(own.certificate), own.certificate, "is no certificate" + kCopy},
            {write(own.key), own.key, "is no key" + kCopy},
            {write(own.governance), own.governance, kForeign},
-           {[&] { fs::remove(own.key); }, own.key,
-            "No such file or directory; `palpate keys` makes them"}}) {
+           {[&] { fs::remove(own.key); }, own.key, "no such file; `palpate keys` makes them"}}) {
     fs::remove_all(keys);
     make_keys(keys, kKeyHour);
     REQUIRE(said_of(keys) == "accepted");
     wrong.make();
     CHECK(said_of(keys) == "keys: " + wrong.file.string() + ": " + wrong.what);
+  }
+}
+
+TEST_CASE("key check: a key that others may read is refused as ssh does, certificates may be",
+          "[bus]") {
+  // Oracle: the text by hand, for each right that others can have.
+  const ScratchFolder scratch;
+  const fs::path keys = scratch / "keys";
+  make_keys(keys, kKeyHour);
+  const KeyFiles own = key_files(keys, "haptics");
+  for (const fs::path& file : {own.authority, own.governance, own.certificate, own.permissions}) {
+    fs::permissions(file, fs::perms::others_read, fs::perm_options::add);
+  }
+  CHECK(said_of(keys) == "accepted");
+  for (const auto right : {fs::perms::group_read, fs::perms::group_write, fs::perms::others_read,
+                           fs::perms::others_write}) {
+    fs::permissions(own.key, fs::perms::owner_read | right);
+    CHECK(said_of(keys) == "keys: " + own.key.string() +
+                               ": others may read or write it; chmod 600 it, and make new keys if "
+                               "they did");
+  }
+  fs::permissions(own.key, fs::perms::owner_read);
+  CHECK(said_of(keys) == "accepted");
+}
+
+TEST_CASE("key check: what is no file is told from one before it is opened", "[bus]") {
+  // Oracle: the texts by hand. A FIFO that is opened would hold the test up.
+  const ScratchFolder scratch;
+  const fs::path keys = scratch / "keys";
+  for (const std::size_t k : {0, 1, 2, 3, 4}) {
+    fs::remove_all(keys);
+    make_keys(keys, kKeyHour);
+    const KeyFiles own = key_files(keys, "haptics");
+    const fs::path file =
+        std::array{own.authority, own.governance, own.certificate, own.key, own.permissions}[k];
+    fs::remove(file);
+    REQUIRE(::mkfifo(file.c_str(), 0600) == 0);
+    CHECK(said_of(keys).starts_with("keys: " + file.string() + ": is a FIFO, not a file"));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
+#include "tests/file_size_limit.h"
 #include "tests/modules/bus/keyed_process.h"
 #include "tests/scratch_folder.h"
 
@@ -101,12 +102,30 @@ TEST_CASE("keys: files are their owner's alone, the authority's key is not among
   CHECK(told([&] { make_keys(keys, kHour); }).find("is not empty") != std::string::npos);
 }
 
+TEST_CASE("keys: a full disk leaves none of them, nor a folder that was not there", "[bus]") {
+  // Oracle: the folder; a limit on the size of files fails where a full disk does. Of the files the
+  // authority's certificate is the shortest: some are written before one is too long.
+  const ScratchFolder folder;
+  const fs::path keys = folder / "keys", empty = folder / "empty";
+  fs::create_directory(empty);
+  {
+    const FileSizeLimit limit(1000);
+    for (const auto& place : {keys, empty}) {
+      const std::string said = told([&] { make_keys(place, kHour); });
+      CHECK(said == (place / "governance.p7s").string() + ": No space left on device");
+    }
+  }
+  CHECK_FALSE(fs::exists(keys));
+  CHECK(fs::is_empty(empty));
+  CHECK_NOTHROW(make_keys(keys, kHour));
+}
+
 TEST_CASE("keys: what is missing is named", "[bus]") {
   // Oracle: the texts.
   const ScratchFolder folder;
   CHECK(told([&] { keyed_process(folder.path(), "haptics", own_options()); }) ==
         "keys: " + (folder / "authority.pem").string() +
-            ": No such file or directory; `palpate keys` makes them");
+            ": no such file; `palpate keys` makes them");
   CHECK(told([&] { keyed_process(folder.path(), "nobody", own_options()); }) ==
         "keys: there is no role 'nobody'");
 }

@@ -1,5 +1,7 @@
 #include "modules/core/output_file.h"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "modules/core/error.h"
@@ -20,4 +22,24 @@ TEST_CASE("output file: what cannot be written is known before") {
   CHECK_FALSE(std::filesystem::exists(folder / "new"));
   CHECK_THROWS_AS(check_writable(folder.path()), InputError);
   CHECK_NOTHROW(check_writable("/dev/null"));
+}
+
+TEST_CASE("output file: a file written anew replaces its like and nothing else") {
+  // Oracle: the messages by hand. A FIFO that is opened would hold the test up.
+  const ScratchFolder folder;
+  const auto check = [&](const std::string& name) {
+    check_replaces_its_like(folder / name, "scene ", "summary");
+  };
+  const auto refusal = [&](const std::string& name) {
+    return (folder / name).string() + ": is no summary, and is not replaced by one";
+  };
+  folder.write("own", "scene liver: 1 s");
+  folder.write("empty", "");
+  for (const char* name : {"new", "own", "empty"}) CHECK_NOTHROW(check(name));
+  folder.write("other", "palpate_scene: 1");
+  folder.write("short", "sc");
+  REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);
+  for (const char* name : {"other", "short", "fifo"}) CHECK_THROWS_WITH(check(name), refusal(name));
+  CHECK(text_in(folder / "other") == "palpate_scene: 1");
+  CHECK_THROWS_AS(check_replaces_its_like("/nowhere/x", "scene ", "summary"), InputError);
 }

@@ -56,7 +56,7 @@ TEST_CASE("gmsh file: what is wrong is named with its line") {
 
 TEST_CASE("gmsh file: a missing file is named") {
   // Oracle: the stated message.
-  CHECK_THROWS_WITH(read_gmsh("/nowhere/x.msh"), "/nowhere/x.msh: no such mesh file");
+  CHECK_THROWS_WITH(read_gmsh("/nowhere/x.msh"), "/nowhere/x.msh: no such file");
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ TEST_CASE("read: transforms of a file's nodes are applied") {
 TEST_CASE("read: a missing file, a folder and an empty file are refused by name") {
   // Oracle: the rules of read_surface.
   const ScratchFolder folder;
-  CHECK_THAT(refusal(folder / "nowhere.stl"), Contains("nowhere.stl: no such mesh file"));
-  CHECK_THAT(refusal(folder / "."), Contains("is not a file"));
+  CHECK_THAT(refusal(folder / "nowhere.stl"), Contains("nowhere.stl: no such file"));
+  CHECK_THAT(refusal(folder / "."), Contains("is a folder, not a file"));
   CHECK_THAT(refusal(folder.write("empty.ply", "")), Contains("empty.ply: is empty"));
 }
 

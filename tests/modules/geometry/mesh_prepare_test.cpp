@@ -44,7 +44,7 @@ TEST_CASE("load: what cannot hold a volume is refused with file, problem and rem
   CHECK_THAT(refusal("open.ply", 100),
              Contains("open.ply: cannot resample to 100 nodes") && Contains("3 open edges"));
   CHECK_THAT(refusal("two.ply", 0), Contains("2 separate shells"));
-  CHECK_THAT(refusal("none.ply", 0), Contains("none.ply: no such mesh file"));
+  CHECK_THAT(refusal("none.ply", 0), Contains("none.ply: no such file"));
 }
 
 TEST_CASE("load: an OFF file with an index out of range is refused") {

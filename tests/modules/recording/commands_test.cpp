@@ -119,14 +119,16 @@ TEST_CASE(
   const ScratchFolder folder;
   std::ostringstream out, err;
   CHECK(run_inspect_command({folder / "none.mcap", {}}, out, err) == kExitBadInput);
-  CHECK_THAT(err.str(), Catch::EndsWith("none.mcap: no such recording\n"));
+  CHECK_THAT(err.str(), Catch::EndsWith("none.mcap: no such file\n"));
   write_bytes(folder / "text.mcap", {'n', 'o'});
   CHECK(run_inspect_command({folder / "text.mcap", {}}, out, err) == kExitBadInput);
   CHECK(run_replay_command({folder / "text.mcap", bus::testing::own_options()}, kNeverStop, out,
                            err) == kExitBadInput);
   write_recording(folder / "a.mcap", true);
   CHECK(run_inspect_command({folder / "a.mcap", folder / "text.mcap"}, out, err) == kExitBadInput);
-  CHECK_THAT(err.str(), Catch::EndsWith("text.mcap: Not a directory\n"));
+  CHECK_THAT(
+      err.str(),
+      Catch::EndsWith("text.mcap': must be a folder that can be written (Not a directory)\n"));
   CHECK(out.str().empty());
 }
 

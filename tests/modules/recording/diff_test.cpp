@@ -6,6 +6,7 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/commands.h"
+#include "tests/file_size_limit.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 
@@ -84,6 +85,29 @@ TEST_CASE("diff: names the first tick, key, field and values that differ") {
   const std::string csv = text_in(folder / "differences.csv");
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 6);
   CHECK(csv.find("0.024,node_positions,1,pressure_pa,0.5\n") != std::string::npos);
+}
+
+TEST_CASE("diff: a table that cannot be finished is not there, and replaces nothing but its like") {
+  // Oracle: the folder, and the messages by hand; a limit on the size of files fails where a full
+  // disk does.
+  const ScratchFolder folder;
+  const auto a = record(folder / "a.mcap", {.samples = 200});
+  const auto b = record(folder / "b.mcap", {.other_pressure_at = 1, .samples = 200});
+  const auto table = folder / "t.csv";
+  {
+    const FileSizeLimit limit(600);
+    CHECK_THROWS_WITH(compare({.a = a, .b = b, .csv = table}),
+                      Catch::StartsWith("cannot write " + table.string()));
+  }
+  CHECK_THROWS_AS(compare({a, b, {}, table}, 100), InputError);  // more waits than may
+  CHECK(folder.file_count() == 2);
+  CHECK_NOTHROW(compare({.a = a, .b = b, .csv = table}));
+  CHECK_NOTHROW(compare({.a = a, .b = b, .csv = table}));
+  folder.write("scene.yaml", "palpate_scene: 1");
+  CHECK_THROWS_WITH(compare({.a = a, .b = b, .csv = folder / "scene.yaml"}),
+                    (folder / "scene.yaml").string() +
+                        ": is no table of differences, and is not replaced by one");
+  CHECK(text_in(folder / "scene.yaml") == "palpate_scene: 1");
 }
 
 TEST_CASE("diff: of texts it says that they differ, not by how much") {

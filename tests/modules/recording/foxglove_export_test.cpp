@@ -6,6 +6,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/diff.h"
 #include "modules/recording/inspect.h"
+#include "tests/file_size_limit.h"
 #include "tests/modules/recording/node_judge.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
@@ -112,6 +113,20 @@ TEST_CASE("foxglove export: replaces nothing, and leaves nothing of what is no r
   write_bytes(folder / "b.mcap", {1, 2, 3});
   CHECK_THROWS_AS(export_to_foxglove(folder / "b.mcap", folder / "f.mcap"), InputError);
   CHECK_FALSE(std::filesystem::exists(folder / "f.mcap"));
+}
+
+TEST_CASE("foxglove export: a full disk leaves nothing that would refuse the next try") {
+  // Oracle: the folder; a limit on the size of files fails where a full disk does.
+  const ScratchFolder folder;
+  write_touched_tetrahedron(folder / "a.mcap");
+  {
+    const FileSizeLimit limit(600);
+    CHECK_THROWS_WITH(export_to_foxglove(folder / "a.mcap", folder / "f.mcap"),
+                      Catch::Contains("cannot write"));
+  }
+  CHECK(folder.file_count() == 1);
+  CHECK_NOTHROW(export_to_foxglove(folder / "a.mcap", folder / "f.mcap"));
+  CHECK(folder.file_count() == 2);
 }
 
 }  // namespace palpate::recording

@@ -197,8 +197,9 @@ TEST_CASE("inspect: writes one CSV file per topic and key") {
   CHECK_THAT(inputs, Catch::Contains(",probe_state,0.5,0,10,1,0\n"));
   CHECK_THAT(inputs, Catch::EndsWith(",contacts,0.25,0,20,0,2\n"));
   CHECK(std::filesystem::exists(folder / "csv/scene.csv"));
-  CHECK_THROWS_WITH(summarize(folder / "a.mcap", folder / "a.mcap"),
-                    Catch::Contains("a.mcap: Not a directory"));
+  CHECK_THROWS_WITH(
+      summarize(folder / "a.mcap", folder / "a.mcap"),
+      Catch::Contains("a.mcap': must be a folder that can be written (Not a directory)"));
   CHECK(std::filesystem::exists(folder / "csv/module_status_haptics.csv"));
   CHECK_FALSE(std::filesystem::exists(folder / "csv/haptic_force_0.csv"));  // none was valid
 }

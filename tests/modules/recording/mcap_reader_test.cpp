@@ -370,7 +370,7 @@ TEST_CASE("mcap reader: what is passed over leaves the CRC of its section unknow
 
 TEST_CASE("mcap reader: a missing file is named") {
   // Oracle: the message the rule must give.
-  CHECK_THROWS_WITH(McapReader("no/such.mcap"), "no/such.mcap: no such recording");
+  CHECK_THROWS_WITH(McapReader("no/such.mcap"), "no/such.mcap: no such file");
 }
 
 }  // namespace palpate::recording

@@ -4,6 +4,7 @@
 
 #include "modules/core/error.h"
 #include "modules/recording/mcap_reader.h"
+#include "tests/file_size_limit.h"
 #include "tests/modules/recording/mcap_sample_file.h"
 
 namespace palpate::recording {
@@ -69,6 +70,20 @@ TEST_CASE("repair: replaces nothing, and says before that it cannot write") {
   CHECK(bytes_of(folder / "a.mcap") == before);
   CHECK_THROWS_WITH(repair(folder / "a.mcap", folder / "no/b.mcap"),
                     Catch::Contains("b.mcap: cannot be recorded to: there is no folder "));
+}
+
+TEST_CASE("repair: a full disk leaves nothing that would refuse the next try") {
+  // Oracle: the folder; a limit on the size of files fails where a full disk does.
+  const ScratchFolder folder;
+  write_sample_file(folder / "a.mcap", 300);
+  {
+    const FileSizeLimit limit(600);
+    CHECK_THROWS_WITH(repair(folder / "a.mcap", folder / "b.mcap"),
+                      Catch::Contains("cannot write"));
+  }
+  CHECK(folder.file_count() == 1);
+  CHECK(repair(folder / "a.mcap", folder / "b.mcap").samples == 300);
+  CHECK(folder.file_count() == 2);
 }
 
 }  // namespace palpate::recording

@@ -92,7 +92,7 @@ TEST_CASE("sample reader: a later part that is no recording is left out, and nam
   SECTION("junk") { write_bytes(bad, std::vector<std::uint8_t>(100, 'x')); }
   SECTION("a folder") {
     std::filesystem::create_directory(bad);
-    why = bad + ": no such recording; this part is left out";
+    why = bad + ": is a folder, not a file; this part is left out";
   }
   SampleReader reader(file);
   std::vector<std::int64_t> times;

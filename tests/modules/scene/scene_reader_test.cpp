@@ -276,12 +276,12 @@ TEST_CASE("scene reader: scene files that cannot be read are named") {
   CHECK_THROWS_MATCHES(load_scene(folder.path() / "none.yaml"), InputError,
                        Catch::Message(name + "/none.yaml: no such file"));
   CHECK_THROWS_MATCHES(load_scene(folder.path()), InputError,
-                       Catch::Message(name + ": not a scene file but a folder or device"));
+                       Catch::Message(name + ": is a folder, not a file"));
   const auto locked = folder.write("locked.yaml", kMinimalScene);
   std::filesystem::permissions(locked, std::filesystem::perms::none);
   const AsNobody nobody;
   CHECK_THROWS_MATCHES(load_scene(locked), InputError,
-                       Catch::Message(locked.string() + ": cannot be read"));
+                       Catch::Message(locked.string() + ": may not be read"));
 }
 
 TEST_CASE("scene reader: a scene whose file name is no acceptable name needs one") {

@@ -265,5 +265,5 @@ TEST_CASE("digest: a file that has gone since is named") {
   const Scene scene = folder.parse(kFullScene);
   std::filesystem::remove(folder.path() / "tool.stl");
   CHECK_THROWS_MATCHES(scene_digest(scene), InputError,
-                       Catch::Message((folder.path() / "tool.stl").string() + ": cannot be read"));
+                       Catch::Message((folder.path() / "tool.stl").string() + ": no such file"));
 }

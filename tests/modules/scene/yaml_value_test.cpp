@@ -250,8 +250,8 @@ TEST_CASE("yaml value: a file must be there, be a file and be readable") {
   const SceneFolder folder;
   folder.write("folder/inside", "");
   CHECK(folder.refusal(changed("tool.stl", "folder")) ==
-        "scene.yaml:61: key 'probes[4].shape.mesh.file' = 'folder': must be a file, this is a "
-        "folder or device: folder");
+        "scene.yaml:61: key 'probes[4].shape.mesh.file' = 'folder': is a folder, not a file: "
+        "folder");
 }
 
 TEST_CASE("yaml value: a file without permission is refused") {
@@ -260,5 +260,5 @@ TEST_CASE("yaml value: a file without permission is refused") {
   std::filesystem::permissions(folder.path() / "tool.stl", std::filesystem::perms::none);
   const AsNobody nobody;
   CHECK(folder.refusal(kFullScene) ==
-        "scene.yaml:61: key 'probes[4].shape.mesh.file' = 'tool.stl': cannot be read: tool.stl");
+        "scene.yaml:61: key 'probes[4].shape.mesh.file' = 'tool.stl': may not be read: tool.stl");
 }

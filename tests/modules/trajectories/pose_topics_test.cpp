@@ -21,6 +21,17 @@ TEST_CASE("pose topics: the one named, or the only one") {
   CHECK(topics.choose({.file = "a.bag", .topic = "/tf"}).type == "geometry_msgs/TransformStamped");
 }
 
+TEST_CASE("pose topics: of a recording of palpate it says how it becomes a table") {
+  // Oracle: the way by hand: `inspect --csv` writes these columns (csv.h).
+  PoseTopics topics;
+  topics.add("probe_state", "palpate::idl::ProbeState");
+  CHECK_THROWS_WITH(topics.choose({.file = "a.mcap"}),
+                    "a.mcap: a recording of palpate, not a bag with poses; first: palpate inspect "
+                    "a.mcap --csv FOLDER, then FOLDER/probe_state_0.csv with columns sim_time_s, "
+                    "position_x_m, position_y_m, position_z_m, for a device rotation_x to "
+                    "rotation_w, too");
+}
+
 TEST_CASE("pose topics: a message that is none is left out by its number") {
   // Oracle: the stated form.
   std::vector<std::string> warnings;

@@ -59,10 +59,10 @@ TEST_CASE("trajectory file: one that cannot be used is refused with file and lin
   // Oracle: the stated rules and their messages.
   std::vector<std::string> warnings;
   CHECK_THROWS_WITH(read_trajectory({.file = "no/such.csv"}, warnings),
-                    "no/such.csv: recording cannot be opened");
+                    "no/such.csv: no such file");
   CHECK_THROWS_AS(read_trajectory({.file = "no/such.csv"}, warnings), InputError);
   CHECK_THROWS_WITH(read_trajectory({.file = std::filesystem::temp_directory_path()}, warnings),
-                    EndsWith("recording cannot be opened"));
+                    EndsWith(": is a folder, not a file"));
   CHECK_THAT(error_of(""), EndsWith("recording.csv:0: holds no line that is not a comment"));
   CHECK_THAT(error_of("# only\n# comments\n"), Contains("recording.csv:2: holds no line"));
   CHECK_THAT(error_of("#\ntime,x,y,z,qw,qx,qy,qz\n"),

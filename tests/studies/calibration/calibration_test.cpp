@@ -93,7 +93,7 @@ TEST_CASE("calibration: tables and CSV hold every row, the worst error only from
   comparison.equilibria[0].force *= 3;
   CHECK(worst_error(ball, comparison) == Approx(0.07));
   std::ostringstream csv, text;
-  write_csv_header(csv);
+  csv << kCsvHeader;
   write_csv(ball, {comparison, comparison}, csv);
   const std::string written = csv.str();
   CHECK(std::count(written.begin(), written.end(), '\n') == 5);

@@ -65,7 +65,7 @@ TEST_CASE("verification: the command prints errors and orders, and stops when as
   options.reference_folder = "/nowhere";
   CHECK_THROWS_WITH(run_elements(
                         options, [] { return false; }, out, log),
-                    Catch::Contains("/nowhere/C_block_force_bulge.csv: no such reference table"));
+                    Catch::Contains("/nowhere/C_block_force_bulge.csv: no such file"));
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "modules/core/input_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "modules/core/error.h"
+
+namespace palpate {
+
+std::string why_not_readable(const std::filesystem::path& file) {
+  using Type = std::filesystem::file_type;
+  std::error_code error;
+  switch (std::filesystem::status(file, error).type()) {
+    case Type::regular:
+      return ::faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0 ? "" : "may not be read";
+    case Type::not_found:
+      return "no such file";
+    case Type::directory:
+      return "is a folder, not a file";
+    case Type::fifo:
+      return "is a FIFO, not a file; write to a file first";
+    case Type::none:
+      return "cannot be read: " + error.message();
+    default:
+      return "is a device or socket, not a file";
+  }
+}
+
+std::ifstream open_input(const std::filesystem::path& file) {
+  if (const std::string why = why_not_readable(file); !why.empty()) {
+    throw InputError(file.string() + ": " + why);
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string() + ": may not be read");
+  return stream;
+}
+
+}  // namespace palpate

@@ -1,0 +1,27 @@
+#include "modules/core/input_file.h"
+
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+
+#include "modules/core/error.h"
+#include "tests/scratch_folder.h"
+
+using namespace palpate;
+
+TEST_CASE("input file: what is no file is told from one before it is opened") {
+  // Oracle: the texts by hand. A FIFO that is opened would hold the test up.
+  const ScratchFolder folder;
+  REQUIRE(::mkfifo((folder / "fifo").c_str(), 0600) == 0);
+  CHECK(why_not_readable(folder / "none") == "no such file");
+  CHECK(why_not_readable(folder.write("file", "x") / "none") == "no such file");
+  CHECK(why_not_readable(folder.path()) == "is a folder, not a file");
+  CHECK(why_not_readable(folder / "fifo") == "is a FIFO, not a file; write to a file first");
+  CHECK(why_not_readable("/dev/zero") == "is a device or socket, not a file");
+  CHECK(why_not_readable(folder / std::string(300, 'n')).starts_with("cannot be read: "));
+  CHECK_THROWS_WITH(open_input(folder.path()),
+                    folder.path().string() + ": is a folder, not a file");
+  CHECK_THROWS_AS(open_input(folder / "fifo"), InputError);
+  std::string word;
+  CHECK((open_input(folder / "file") >> word && word == "x"));
+}

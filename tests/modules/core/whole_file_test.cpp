@@ -1,0 +1,84 @@
+#include "modules/core/whole_file.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+
+#include "modules/core/error.h"
+#include "tests/file_size_limit.h"
+#include "tests/scratch_folder.h"
+
+namespace palpate {
+namespace {
+
+TEST_CASE("whole file: without finish nothing is left, and what was there stays") {
+  // Oracle: the folder.
+  const ScratchFolder folder;
+  const auto file = folder.write("a.csv", "old");
+  {
+    WholeFile whole(file);
+    whole.stream() << "new" << std::flush;
+    CHECK(text_in(file) == "old");
+    CHECK(folder.file_count() == 2);
+  }
+  CHECK(text_in(file) == "old");
+  CHECK(folder.file_count() == 1);
+  write_whole_file(file, "new");
+  CHECK(text_in(file) == "new");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("whole file: a full disk leaves nothing, and what was there stays") {
+  // Oracle: the folder; a limit on the size of files fails where a full disk does.
+  const ScratchFolder folder;
+  const auto file = folder.write("a.csv", "old");
+  {
+    const FileSizeLimit limit(10'000);
+    CHECK_THROWS_WITH(write_whole_file(file, std::string(100'000, 'x')),
+                      Catch::StartsWith("cannot write " + file.string()));
+  }
+  CHECK(text_in(file) == "old");
+  CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("whole file: Ctrl-C, SIGTERM and SIGHUP leave nothing") {
+  // Oracle: the folder, and how the child ended.
+  const int signal = GENERATE(SIGINT, SIGTERM, SIGHUP);
+  const ScratchFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(signal, SIG_DFL);
+    WholeFile one(folder / "a.csv"), two(folder / "b.csv");
+    one.stream() << "x" << std::flush;
+    if (folder.file_count() == 2) ::raise(signal);
+    ::_exit(0);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WIFSIGNALED(status));
+  CHECK(WTERMSIG(status) == signal);
+  CHECK(folder.file_count() == 0);
+}
+
+TEST_CASE("whole file: a link stays one, and what it names is replaced") {
+  // Oracle: the folder.
+  const ScratchFolder folder;
+  const auto file = folder.write("a.csv", "old");
+  std::filesystem::create_symlink(file, folder / "link");
+  write_whole_file(folder / "link", "new");
+  CHECK(std::filesystem::is_symlink(folder / "link"));
+  CHECK(text_in(file) == "new");
+}
+
+TEST_CASE("whole file: where nothing can be written it says so") {
+  // Oracle: the messages by hand.
+  CHECK_THROWS_WITH(WholeFile("/nowhere/a.csv"),
+                    "/nowhere/a.csv: cannot be written: there is no folder /nowhere");
+  CHECK_THROWS_WITH(WholeFile("/dev/null"),
+                    "/dev/null: cannot be written: it is there and no regular file");
+}
+
+}  // namespace
+}  // namespace palpate

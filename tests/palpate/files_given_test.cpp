@@ -1,0 +1,109 @@
+// Files as they are given to a command: what is no file is refused before it is opened, and what a
+// command writes takes the place of nothing but its like.
+#include <sys/stat.h>
+
+#include <catch2/catch.hpp>
+
+#include "modules/core/error.h"
+#include "tests/palpate/ball_scene.h"
+#include "tests/palpate/typed_command.h"
+#include "tests/scratch_folder.h"
+
+using namespace palpate;
+using palpate::testing::BallScene;
+using palpate::testing::type;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A sound scene, its mesh, a recording of it and things that are no files.
+struct Desk {
+  Desk() {
+    REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+    REQUIRE(
+        type("palpate", {"run", scene, "--in-process", "--duration", "0.05", "--record", recording})
+            .code == kExitDone);
+  }
+  BallScene ball;
+  const std::string folder = ball.folder().string(), scene = ball.file().string(),
+                    mesh = folder + "/ball.ply", fifo = folder + "/fifo",
+                    recording = folder + "/a.mcap";
+};
+
+}  // namespace
+
+TEST_CASE("files given: no option that reads one waits for a FIFO, or reads a device or a folder") {
+  // Oracle: exit code 2 and the reason by hand. A FIFO that is opened would never be read.
+  const Desk desk;
+  for (const auto& [file, why] : std::vector<std::pair<std::string, std::string>>{
+           {desk.fifo, "is a FIFO, not a file"},
+           {"/dev/zero", "is a device or socket, not a file"},
+           {desk.folder, "is a folder, not a file"}}) {
+    for (const Words& typed :
+         std::vector<Words>{{"run", file},
+                            {"run", desk.scene, "--hosts", file, "--host", "a"},
+                            {"replay", file},
+                            {"replay", desk.recording, file},
+                            {"inspect", file},
+                            {"diff", desk.recording, file},
+                            {"diff", file, desk.recording},
+                            {"check", file},
+                            {"new", file, "-o", desk.folder + "/new.yaml"},
+                            {"mesh", file},
+                            {"mesh", desk.mesh, "--near", file, "--radius-m", "0.01"},
+                            {"plan", file},
+                            {"certify", file, "--lockstep"}}) {
+      const auto outcome = type("palpate", typed);
+      CAPTURE(typed, outcome.said);
+      CHECK(outcome.code == kExitBadInput);
+      CHECK(outcome.said.find(file + ": " + why) != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("files given: nothing is written over what is something else, nor to a FIFO") {
+  // Oracle: exit code 2, and the bytes of a scene.
+  const Desk desk;
+  const std::string before = text_in(desk.mesh);
+  for (const std::string& file : {desk.mesh, desk.fifo, std::string("/dev/null")}) {
+    for (const Words& typed : std::vector<Words>{
+             {"run", desk.scene, "--in-process", "--duration", "0.05", "--summary", file},
+             {"run", desk.scene, "--in-process", "--duration", "0.05", "--record", file},
+             {"inspect", desk.recording, "--repair", file},
+             {"inspect", desk.recording, "--foxglove", file},
+             {"inspect", desk.recording, "--csv", file},
+             {"diff", desk.recording, desk.recording, "--csv", file},
+             {"new", desk.mesh, "-o", file},
+             {"keys", file},
+             {"calibrate", "--quick", "--nodes", "162", "--csv", file},
+             {"elements", "--quick", "-o", file},
+             {"chart", "--quick", "-o", file}}) {
+      const auto outcome = type("palpate", typed);
+      CAPTURE(typed, outcome.said);
+      CHECK(outcome.code == kExitBadInput);
+    }
+  }
+  CHECK(text_in(desk.mesh) == before);
+}
+
+TEST_CASE("files given: a summary replaces a summary") {
+  // Oracle: the text's beginning and the one file.
+  const Desk desk;
+  const std::string file = desk.folder + "/summary.txt";
+  const Words run{"run", desk.scene, "--in-process", "--duration", "0.05", "--summary", file};
+  REQUIRE(type("palpate", run).code == kExitDone);
+  std::filesystem::resize_file(file, 20);
+  REQUIRE(type("palpate", run).code == kExitDone);
+  CHECK(text_in(file).starts_with("scene "));
+  CHECK(text_in(file).size() > 100);
+}
+
+TEST_CASE("files given: pictures without a visualizer are refused, not left out") {
+  // Oracle: exit code 2 and both options' names.
+  const Desk desk;
+  const auto outcome =
+      type("palpate", {"run", desk.scene, "--no-visualizer", "--frames", desk.folder});
+  CHECK(outcome.code == kExitBadInput);
+  CHECK(outcome.said.find("--frames excludes --no-visualizer") != std::string::npos);
+}
