@@ -342,6 +342,9 @@ int run_mesh_command(const MeshCommandOptions& options, std::ostream& out, std::
   } catch (const InputError& error) {
     err << error.what() << '\n';
     return kExitBadInput;
+  } catch (const Interrupted& error) {
+    err << error.what() << '\n';
+    return kExitStopped;
   } catch (const std::exception& error) {
     err << error.what() << '\n';
     return kExitFailed;

@@ -25,8 +25,8 @@ struct MeshCommandOptions {
 
 /// Reads, repairs, resamples and refines where asked, and prints a one-screen report to `out`;
 /// writes the result only if it holds a volume. What is wrong goes to `err`.
-/// @return kExitDone, kExitBadInput (not written, or not replaced), or kExitFailed if writing
-/// failed
+/// @return kExitDone, kExitBadInput (not written, or not replaced), kExitStopped, or kExitFailed if
+/// writing failed
 int run_mesh_command(const MeshCommandOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace palpate::geometry

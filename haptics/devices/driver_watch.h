@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 
-#include "modules/bus/raw_bus.h"
-
 namespace palpate::haptics {
 
 /// One that stops and another that begins are a driver and its successor; one that speaks again
@@ -15,7 +13,9 @@ class DriverWatch {
   /// So long one that spoke is remembered, and several are said to be there [ns].
   static constexpr std::int64_t kRemembered = 1'000'000'000;
 
-  void hear(const bus::WriterId& writer, std::int64_t now_ns) {
+  using Writer = std::array<unsigned char, 16>;  ///< unique among all that ever were
+
+  void hear(const Writer& writer, std::int64_t now_ns) {
     std::size_t place = 0;
     while (place + 1 < heard_.size() && heard_[place].writer != writer) ++place;
     if (place > 0 && heard_[place].writer == writer && is_recent(heard_[place].at_ns, now_ns)) {
@@ -28,7 +28,7 @@ class DriverWatch {
 
  private:
   struct Heard {
-    bus::WriterId writer{};
+    Writer writer{};
     std::int64_t at_ns = kNever;
   };
   static constexpr std::int64_t kNever = -1;

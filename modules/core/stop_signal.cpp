@@ -1,14 +1,25 @@
 #include "modules/core/stop_signal.h"
 
 #include <array>
+#include <atomic>
 #include <csignal>
-#include <mutex>
 
 namespace palpate {
 namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
-std::mutex mutex;  // of what follows; the handler takes none
+/// Of what follows; the handler takes none.
+class Alone {
+ public:
+  Alone() {
+    while (busy.test_and_set()) {
+    }
+  }
+  ~Alone() { busy.clear(); }
+
+ private:
+  static inline std::atomic_flag busy;
+};
 std::array<struct sigaction, kSignals.size()> earlier{};
 
 // A signal handler can reach nothing else.
@@ -20,7 +31,7 @@ void set_stop_flag(int) { stop_flag = 1; }
 }  // namespace
 
 StopSignal::StopSignal() {
-  const std::lock_guard lock(mutex);
+  const Alone alone;
   if (depth++ > 0) return;
   stop_flag = 0;
   struct sigaction action {};
@@ -30,7 +41,7 @@ StopSignal::StopSignal() {
 }
 
 StopSignal::~StopSignal() {
-  const std::lock_guard lock(mutex);
+  const Alone alone;
   if (--depth > 0) return;
   for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &earlier[i], nullptr);
 }

@@ -159,6 +159,8 @@ Outcome run_lockstep(const RandomScene& scene, const ShapeStore& shapes,
   } catch (const InputError& error) {
     outcome.ending = runs ? Ending::kFailed : Ending::kRefused;
     outcome.what = (runs ? "input error while running: " : "") + std::string(error.what());
+  } catch (const Interrupted&) {
+    throw;  // no fault of the scene
   } catch (const std::exception& error) {
     outcome.ending = Ending::kFailed;
     outcome.what = fmt::format("exception: {}", error.what());

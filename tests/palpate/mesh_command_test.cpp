@@ -2,9 +2,11 @@
 
 #include <json/json.h>
 
+#include <csignal>
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/geometry/gmsh_file.h"
 #include "modules/geometry/mesh_check.h"
 #include "modules/geometry/mesh_io.h"
@@ -219,6 +221,23 @@ TEST_CASE("mesh command: a surface near a motion is filled first") {
     CHECK((mesh.nodes[i] - ball.nodes[i]).norm() < 1e-8);  // a file of single precision
   }
   CHECK(palpate::geometry::testing::volume_of(mesh) == Approx(volume_of(ball)).epsilon(1e-5));
+}
+
+TEST_CASE("mesh command: one that is stopped while a surface is filled writes nothing") {
+  // Oracle: the contract: exit code 130, no file. The signal has come when Gmsh begins.
+  const ScratchFolder folder;
+  write_surface(make_ball(0.05, 2), folder / "in.ply");
+  folder.write("way.csv", "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.07,0,0,0,1\n1,0,0,0.055,0,0,0,1\n");
+  MeshCommandOptions options{folder / "in.ply", folder / "out.msh"};
+  options.near.file = folder / "way.csv";
+  options.near.radius = 0.01;
+  const StopSignal stop;
+  std::raise(SIGTERM);
+  const Outcome outcome = run(options);
+  INFO(outcome.out << outcome.err);
+  CHECK(outcome.code == kExitStopped);
+  CHECK_THAT(outcome.err, Contains("gmsh: interrupted"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out.msh"));
 }
 
 TEST_CASE("mesh command: what cannot be refined near a motion is told, and nothing written") {

@@ -5,13 +5,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "modules/core/error.h"
@@ -49,7 +47,7 @@ int run(std::vector<std::string> words, const std::filesystem::path& log) {
   int status = 0;
   while (::waitpid(child, &status, WNOHANG) == 0) {  // asked again: a signal may come before a wait
     if (stop.requested()) ::kill(child, SIGKILL);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    ::usleep(2000);
   }
   const int ended_by = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (stop.requested() || ended_by == SIGINT || ended_by == SIGTERM || ended_by == SIGHUP) {
