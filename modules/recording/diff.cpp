@@ -22,8 +22,9 @@ using messages::Value;
 
 class Comparison {
  public:
-  Comparison(const DiffOptions& options, std::size_t most_waiting)
+  Comparison(const DiffOptions& options, std::size_t most_waiting, bool by_time)
       : options_(options), most_waiting_(most_waiting) {
+    result_.by_time = by_time;
     if (options.csv.empty()) return;
     csv_.emplace(options.csv, "sim_time_s,topic,key,field,largest_difference\n",
                  "table of differences");
@@ -33,7 +34,9 @@ class Comparison {
   void add_b(RecordedSample sample) { add(std::move(sample), &Stream::b); }
 
   RecordingDifference finish() {
-    for (const auto& [name, stream] : streams_) {
+    for (auto& [name, stream] : streams_) {
+      while (compare_next(name.first, name.second, stream)) {
+      }
       TopicDifference& topic = result_.topics[name.first];
       topic.only_in_a += stream.a.size();
       topic.only_in_b += stream.b.size();
@@ -57,11 +60,48 @@ class Comparison {
     Stream& stream = streams_[{topic, key}];
     waiting_ += cost_of(sample);
     (stream.*side).push_back(std::move(sample));
-    if (stream.a.empty() || stream.b.empty()) return demand_room();
-    compare(topic, key, stream.a.front(), stream.b.front());
-    waiting_ -= cost_of(stream.a.front()) + cost_of(stream.b.front());
-    stream.a.pop_front();
-    stream.b.pop_front();
+    // By time the nearest is known once the next one is.
+    const std::size_t needed = result_.by_time ? 2 : 1;
+    if (stream.a.size() < needed || stream.b.size() < needed) return demand_room();
+    while (stream.a.size() >= needed && stream.b.size() >= needed) {
+      compare_next(topic, key, stream);
+    }
+  }
+
+  /// Compares the first of both, or passes over one that has no partner. @return false: one is
+  /// empty
+  bool compare_next(const std::string& topic, const std::string& key, Stream& stream) {
+    if (stream.a.empty() || stream.b.empty()) return false;
+    if (result_.by_time && is_nearer(stream.a, stream.b)) {
+      ++result_.topics[topic].only_in_a;
+      pop(stream.a);
+    } else if (result_.by_time && is_nearer(stream.b, stream.a)) {
+      ++result_.topics[topic].only_in_b;
+      pop(stream.b);
+    } else {
+      if (result_.by_time) {
+        result_.farthest_ns = std::max(result_.farthest_ns, apart(stream.a[0], stream.b[0]));
+      }
+      compare(topic, key, stream.a.front(), stream.b.front());
+      pop(stream.a);
+      pop(stream.b);
+    }
+    return true;
+  }
+
+  /// Is the second of these nearer to the other's first than the first of these?
+  static bool is_nearer(const std::deque<RecordedSample>& these,
+                        const std::deque<RecordedSample>& others) {
+    return these.size() > 1 && apart(these[1], others[0]) < apart(these[0], others[0]);
+  }
+  /// In simulated time [ns].
+  static std::int64_t apart(const RecordedSample& a, const RecordedSample& b) {
+    return std::abs(messages::header_of(a.payload).sim_time_ns -
+                    messages::header_of(b.payload).sim_time_ns);
+  }
+  void pop(std::deque<RecordedSample>& samples) {
+    waiting_ -= cost_of(samples.front());
+    samples.pop_front();
   }
 
   static std::size_t cost_of(const RecordedSample& sample) {
@@ -172,6 +212,15 @@ void check_names(const DiffOptions& options) {
   }
 }
 
+/// Whether it says that its clock was that of the day.
+bool is_of_real_time(const std::filesystem::path& file) {
+  SampleReader reader(file);
+  if (!reader.next()) return false;
+  const McapMap session = reader.metadata(kSessionMetadata);
+  const auto clock = session.find("clock");
+  return clock != session.end() && clock->second == kTimeOfDay;
+}
+
 /// When the streams of a session in lockstep begin, simulated [ns]; none of one in real time.
 std::optional<std::int64_t> beginning_of(const std::filesystem::path& file) {
   SampleReader reader(file);
@@ -215,7 +264,8 @@ RecordingDifference compare(const DiffOptions& options, std::size_t most_waiting
   check_names(options);
   const auto from_ns = common_beginning(options);
   SampleReader a(options.a), b(options.b);
-  Comparison comparison(options, most_waiting);
+  const bool by_time = is_of_real_time(options.a) || is_of_real_time(options.b);
+  Comparison comparison(options, most_waiting, by_time);
   // In turns: of recordings of one session little waits for the other.
   for (bool more_a = true, more_b = true; more_a || more_b;) {
     auto sample_a = more_a ? next_since(from_ns, a) : std::nullopt;
@@ -237,6 +287,10 @@ void print_difference(const RecordingDifference& difference, std::ostream& out) 
   if (difference.from_ns) {
     out << "compared from " << seconds_from_ns(*difference.from_ns)
         << " s of the session on, where one of them begins\n\n";
+  }
+  if (difference.by_time && !difference.equal()) {
+    out << "recorded in real time: each sample beside the one nearest in simulated time, at most "
+        << seconds_from_ns(difference.farthest_ns) << " s away\n\n";
   }
   if (difference.first) {
     const Difference& first = *difference.first;

@@ -22,7 +22,8 @@ struct DiffOptions {
   std::filesystem::path csv = {};  ///< --csv: a row per sample and field that differ; empty: none
 };
 
-/// Where a value differs. Samples of a topic and key are compared in the order of each file.
+/// Where a value differs. Samples of a topic and key are compared in the order of each file; where
+/// one was recorded in real time, with that of the other that is nearest in simulated time.
 struct Difference {
   std::int64_t sim_time_ns = 0;  ///< of the sample in A
   std::string topic, key;
@@ -50,6 +51,8 @@ struct RecordingDifference {
   std::vector<std::string> warnings;  ///< SampleReader::warnings() of both
   /// Of two in lockstep, one of which goes on from a snapshot: since when they are compared.
   std::optional<std::int64_t> from_ns;
+  bool by_time = false;          ///< samples were paired by simulated time
+  std::int64_t farthest_ns = 0;  ///< then: between two of a pair
   bool equal() const;
 };
 

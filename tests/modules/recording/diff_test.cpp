@@ -2,9 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "modules/core/error.h"
+#include "modules/core/units.h"
 #include "modules/recording/commands.h"
 #include "tests/file_size_limit.h"
 #include "tests/modules/recording/payloads.h"
@@ -145,6 +147,40 @@ TEST_CASE("diff: samples that one recording lacks are counted") {
   CHECK(difference.topics.at("node_positions").only_in_a == 6);
   CHECK(difference.topics.at("node_positions").only_in_b == 0);
   CHECK(difference.topics.at("node_positions").compared == 14);
+}
+
+TEST_CASE("diff: a sample of real time is compared with the nearest in simulated time") {
+  // Oracle: the pressures are the times: 0.3 ms apart or less, the middle sample of a hole in A is
+  // nobody's. By order all behind it would be 4 ms off, and more.
+  const ScratchFolder folder;
+  const auto record_at = [&](SampleFile recording, std::span<const double> times_ms) {
+    std::uint64_t sequence = 0;
+    for (const double ms : times_ms) {
+      NodePositions nodes = node_positions(++sequence, 1e-3, ms);
+      nodes.header.sim_time_ns = ns_from_seconds(1e-3 * ms);
+      recording.add(raw_sample(bus::kNodePositions, nodes, long(sequence), 1));
+    }
+    recording.close();
+  };
+  const std::vector<double> real{0.2, 4.1, 8.3, 16.1, 20.2, 24, 28.1};
+  const std::vector<double> grid{0, 4, 8, 12, 16, 20, 24};
+  record_at(SampleFile(folder / "a.mcap", {}), real);
+  record_at(SampleFile(folder / "b.mcap"), grid);
+  for (const bool swapped : {false, true}) {
+    const auto a = folder / (swapped ? "b.mcap" : "a.mcap");
+    const auto b = folder / (swapped ? "a.mcap" : "b.mcap");
+    const RecordingDifference difference = compare({.a = a, .b = b});
+    const TopicDifference& topic = difference.topics.at("node_positions");
+    CHECK(topic.compared == 6);
+    CHECK((swapped ? topic.only_in_b : topic.only_in_a) == 1);  // 28.1
+    CHECK((swapped ? topic.only_in_a : topic.only_in_b) == 1);  // 12
+    CHECK(topic.fields.at("pressure_pa").largest == Approx(0.3));
+    CHECK(difference.farthest_ns == 300'000);
+    std::ostringstream said;
+    print_difference(difference, said);
+    CHECK_THAT(said.str(), Catch::StartsWith("recorded in real time: each sample beside the one "
+                                             "nearest in simulated time, at most 0.0003 s away"));
+  }
 }
 
 TEST_CASE("diff: what is to be ignored makes no difference, and must exist") {
