@@ -43,7 +43,14 @@ double duration_of(const RunOptions& options, const scene::Scene& scene) {
 /// Where a run begins.
 runtime::Snapshot start_of(const RunOptions& options, const scene::Scene& scene) {
   if (options.from_snapshot.empty()) return {};
-  return runtime::read_snapshot(options.from_snapshot, scene);
+  runtime::Snapshot start = runtime::read_snapshot(options.from_snapshot, scene);
+  for (const auto& [module, state] : start.modules) {
+    if (runtime::module_named(module)) continue;
+    throw InputError(
+        fmt::format("{}: of a session whose probes {} guides: no process goes on there",
+                    options.from_snapshot.string(), module));
+  }
+  return start;
 }
 
 /// A run begins before it ends, and a snapshot is taken on the way.

@@ -23,6 +23,7 @@ class GuidedDevice final : public haptics::Device {
         (rotation_from_vector(gone * sample_.twist.angular) * from_.rotation).normalized();
     return sample_;
   }
+  void exchange(StateArchive& archive) override { archive(from_, sample_, began_); }
 
  private:
   static constexpr double kNotYet = -1;

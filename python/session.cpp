@@ -19,6 +19,8 @@ namespace py = pybind11;
 namespace palpate::python {
 namespace {
 
+/// In a snapshot beside the modules' states: which probes Python guides. None: no probe.
+const std::string kGuided = "python";
 constexpr double kLongest = 1e6;  ///< of a session [s], as a scene's duration_s
 
 /// How far a node has gone since it was looked at last [m].
@@ -76,7 +78,8 @@ const bus::TopicInfo& topic_named(const std::string& name) {
 
 }  // namespace
 
-Session::Session(const scene::Scene& scene, const std::string& record)
+Session::Session(const scene::Scene& scene, const std::string& record,
+                 const std::string& from_snapshot)
     : scene_(scene),
       period_(1 / scene.rates.deformation),
       team_(std::make_unique<runtime::WorkerTeam>(scene.deformation_threads)),
@@ -84,7 +87,19 @@ Session::Session(const scene::Scene& scene, const std::string& record)
   const Unlocked unlocked;
   session::InProcessOptions options;
   options.runner = team_.get();
+  runtime::Snapshot from;
+  if (!from_snapshot.empty()) {
+    from = runtime::read_snapshot(from_snapshot, scene_);
+    options.from = &from;
+    options.from_file = from_snapshot;
+    options.make = [&](std::string_view module, bus::Bus& bus, const session::MakeStage& usual) {
+      auto stage = usual(bus);
+      if (module == "haptics") guide_as_in(from, dynamic_cast<haptics::HapticsStage&>(*stage));
+      return stage;
+    };
+  }
   session_ = std::make_unique<session::InProcess>(scene_, session::load_assets(scene_), options);
+  time_ = asked_for_ = session_->time();
   // As `palpate run --in-process` does it, so that recordings are the same.
   SceneDescription description = runtime::scene_description(scene_);
   description.header.source_time_ns = runtime::CycleGrid::kSetUp;
@@ -93,6 +108,40 @@ Session::Session(const scene::Scene& scene, const std::string& record)
   session_->add("recorder", [&](bus::Bus& bus) {
     return std::make_unique<recording::RecorderStage>(bus, record);
   });
+}
+
+/// Their devices remember, too.
+void Session::guide_as_in(const runtime::Snapshot& snapshot, haptics::HapticsStage& haptics) {
+  const auto told = snapshot.modules.find(kGuided);
+  if (told == snapshot.modules.end()) return;
+  std::vector<std::uint32_t> probes;
+  StateArchive archive(told->second);
+  archive(probes);
+  for (const std::uint32_t probe : probes) {
+    auto device = std::make_unique<GuidedDevice>();
+    guided_.at(probe) = device.get();
+    haptics.set_device(probe, std::move(device));
+  }
+}
+
+double Session::save_snapshot(const std::string& file, bool overwrite) {
+  const InUse use(in_use_, "the session");
+  open();
+  // cppcheck-suppress unreadVariable
+  const Unlocked unlocked;
+  runtime::check_snapshot_name(file, overwrite);
+  runtime::Snapshot now = session_->snapshot();
+  std::vector<std::uint32_t> probes;
+  for (std::uint32_t probe = 0; probe < guided_.size(); ++probe) {
+    if (guided_[probe] != nullptr) probes.push_back(probe);
+  }
+  if (!probes.empty()) {
+    StateArchive archive;
+    archive(probes);
+    now.modules[kGuided] = archive.bytes();
+  }
+  runtime::write_snapshot(file, scene_, now);
+  return seconds_from_ns(now.time_ns);
 }
 
 session::InProcess& Session::open() const {

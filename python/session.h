@@ -23,9 +23,10 @@ namespace palpate::python {
 /// for.
 class Session {
  public:
-  /// Every topic that carries physics is recorded to `record`, unless it is empty.
-  /// @throws InputError as session::InProcess does
-  Session(const scene::Scene& scene, const std::string& record);
+  /// Every topic that carries physics is recorded to `record`, unless it is empty. Goes on from the
+  /// snapshot of that name, unless it is empty.
+  /// @throws InputError as session::InProcess and runtime::read_snapshot() do
+  Session(const scene::Scene& scene, const std::string& record, const std::string& from_snapshot);
 
   double time() const { return time_; }  ///< when the next cycle begins [s]; any thread may ask
   /// All cycles that begin before `time` [s].
@@ -37,6 +38,9 @@ class Session {
   bool settle(double speed, double still, double time);
   /// The same as run_until(); what is said of these topics meanwhile, (topic, columns, messages).
   pybind11::list run_keeping(double time, const std::vector<std::string>& topics);
+  /// Of now, as `palpate run --snapshot-at`. @return its time [s]
+  /// @throws InputError as runtime::check_snapshot_name() does
+  double save_snapshot(const std::string& file, bool overwrite);
   void close();
   bool closed() const { return closed_; }
 
@@ -52,6 +56,7 @@ class Session {
  private:
   using Listener = std::function<void()>;
   session::InProcess& open() const;
+  void guide_as_in(const runtime::Snapshot& snapshot, haptics::HapticsStage& haptics);
   void check_probe(std::size_t probe) const;
   void check_organ(std::size_t organ) const;
   void check_time(double time) const;

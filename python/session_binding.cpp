@@ -26,14 +26,16 @@ void guide_probe(Session& session, std::size_t probe, py::handle position, py::h
 
 void bind_session(py::module_& module) {
   py::class_<Session>(module, "Session")
-      .def(py::init([](const scene::SceneDocument& scene, const std::string& record) {
-             return std::make_unique<Session>(scene.scene(), record);
+      .def(py::init([](const scene::SceneDocument& scene, const std::string& record,
+                       const std::string& from_snapshot) {
+             return std::make_unique<Session>(scene.scene(), record, from_snapshot);
            }),
-           py::arg("scene"), py::arg("record"))
+           py::arg("scene"), py::arg("record"), py::arg("from_snapshot"))
       .def("run_until", &Session::run_until)
       .def("step", &Session::step)
       .def("settle", &Session::settle)
       .def("run_keeping", &Session::run_keeping)
+      .def("save_snapshot", &Session::save_snapshot)
       .def("close", &Session::close)
       .def("guide_probe", &guide_probe)
       .def("ask_for_volume", &Session::ask_for_volume)

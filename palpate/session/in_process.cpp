@@ -161,7 +161,7 @@ struct InProcess::Impl {
                        {outputs.begin(), outputs.end()},
                        {scene, module, std::vector<bus::Input*>(own.begin(), own.end())},
                        {}});
-    if (from.time_ns == 0) return;
+    if (from.modules.empty()) return;
     Member& member = members.back();
     runtime::go_on_from(from, from_file, module, member.cursor, *member.stage, member.outputs);
   }
@@ -205,7 +205,7 @@ struct InProcess::Impl {
 
   const scene::Scene scene;
   ContactTroubles* troubles;
-  const runtime::Snapshot from;  ///< at 0: none
+  const runtime::Snapshot from;  ///< without modules: none
   const std::filesystem::path from_file;
   std::int64_t clock_ns = runtime::CycleGrid::kSetUp;
   bus::MemoryBus carrier{true};

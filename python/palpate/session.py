@@ -31,16 +31,39 @@ class Session(Closing[_core.Session]):
     Args:
         scene: a Scene, or the file of one.
         record: a recording (.mcap) of every message that carries physics goes here; close() ends it.
+        from_snapshot: a snapshot (save_snapshot(), `palpate run --snapshot-at`) of the same scene; the session goes
+            on there, the same bits as one never interrupted, and guides the probes that were guided.
 
     Raises:
-        SceneError, InputError: the scene, or a mesh or recording that it names, cannot be used.
+        SceneError, InputError: the scene, or a mesh or recording that it names, or the snapshot cannot be used.
     """
 
-    def __init__(self, scene: Scene | str | os.PathLike[str], record: str | os.PathLike[str] | None = None) -> None:
+    def __init__(
+        self,
+        scene: Scene | str | os.PathLike[str],
+        record: str | os.PathLike[str] | None = None,
+        from_snapshot: str | os.PathLike[str] | None = None,
+    ) -> None:
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene)
         self._organs = {name: i for i, name in enumerate(self._scene.organs)}
         self._probes = {name: i for i, name in enumerate(self._scene.probes)}
-        self._core = _core.Session(self._scene._core, "" if record is None else os.fspath(record))
+        files = ["" if file is None else os.fspath(file) for file in (record, from_snapshot)]
+        self._core = _core.Session(self._scene._core, *files)
+
+    def save_snapshot(self, file: str | os.PathLike[str], overwrite: bool = False) -> float:
+        """Saves the session as it is now, for Session(scene, from_snapshot=file).
+
+        Args:
+            overwrite: replace a snapshot of that name; nothing else is replaced.
+
+        Returns:
+            Its simulated time [s].
+
+        Raises:
+            InputError: there is something of that name, or it cannot be written.
+            ClosedError, BusyError.
+        """
+        return self._core.save_snapshot(os.fspath(file), overwrite)
 
     # Time goes on.
 

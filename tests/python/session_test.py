@@ -43,6 +43,65 @@ class SameBitsTest(unittest.TestCase):
                     session.run_until(seconds, keep=["contacts"])
                 self.assertEqual(command.read_bytes(), own.read_bytes())
 
+    def test_a_snapshot_is_that_of_the_command_and_goes_on_the_same(self):
+        with tempfile.TemporaryDirectory() as folder:
+            command, own, rest = (Path(folder) / name for name in ("command", "own", "rest.mcap"))
+            run = [PALPATE, "run", BALL, "--in-process"]
+            quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE, "text": True}
+            save = ["--duration", "1", "--snapshot-at", "0.4", "--snapshot", command]
+            subprocess.run([*run, *save], check=True, **quiet)
+            with palpate.Session(BALL) as session:
+                session.run_until(0.4)
+                self.assertEqual(session.save_snapshot(own), 0.4)
+                with self.assertRaises(palpate.InputError):
+                    session.save_snapshot(own)
+                self.assertEqual(session.save_snapshot(own, overwrite=True), 0.4)
+                session.run_until(1.0)
+                end = session.positions().tobytes()
+            self.assertEqual(command.read_bytes(), own.read_bytes())
+            for _ in range(2):
+                with palpate.Session(BALL, from_snapshot=own, record=rest) as session:
+                    self.assertEqual(session.time, 0.4)
+                    session.run_until(1.0)
+                    self.assertEqual(session.positions().tobytes(), end)
+            commands = Path(folder) / "commands.mcap"
+            subprocess.run([*run, "--duration", "1", "--from-snapshot", own, "--record", commands], check=True, **quiet)
+            self.assertEqual(commands.read_bytes(), rest.read_bytes())
+            with self.assertRaisesRegex(palpate.InputError, "of scene 'ball_squeeze'"):
+                palpate.Session(STOMACH, from_snapshot=own)
+
+    def test_a_guided_probe_goes_on_from_a_snapshot(self):
+        def press(session):
+            session.run_until(0.2)
+            session.set_probe((0, 0, 0.06), linear_velocity_m_per_s=(0, 0, -0.02))
+            session.run_until(0.5)
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "guided"
+            ends = []
+            with palpate.Session(BALL) as session:
+                press(session)
+                session.save_snapshot(file)
+                session.run_until(0.7)
+                ends.append((session.probe_position().tobytes(), session.positions().tobytes()))
+            with palpate.Session(BALL, from_snapshot=file) as session:
+                session.run_until(0.7)
+                ends.append((session.probe_position().tobytes(), session.positions().tobytes()))
+            self.assertEqual(ends[0], ends[1])
+            with palpate.Session(BALL) as session:
+                session.set_probe((0, 0, 0.1))
+                session.save_snapshot(file, overwrite=True)
+            with palpate.Session(BALL, from_snapshot=file) as session:
+                session.run_until(0.1)
+                self.assertEqual(list(session.probe_position()), [0, 0, 0.1])
+            ran = subprocess.run(
+                [PALPATE, "run", BALL, "--in-process", "--duration", "1", "--from-snapshot", file],
+                stderr=subprocess.PIPE,
+                text=True,
+            )
+            self.assertEqual(ran.returncode, 2)
+            self.assertIn("whose probes python guides", ran.stderr)
+
     def test_threads_and_processes_give_the_same_bits(self):
         scene = palpate.Scene.load(STOMACH)
         alone = end_of(scene)
