@@ -101,7 +101,7 @@ void add_run_options(Options& command, RunOptions& options) {
   command
       .add("--snapshot-at", options.snapshot_at,
            "Simulated seconds at which a snapshot is written, at the next cycle; the same")
-      .range(0.0, 1e6);
+      .range(1e-6, 1e6);
   command.add_output("--snapshot", options.snapshot, "File for it");
   command.add("--only", options.only, "Start only these modules, joining a running session")
       .excludes(lockstep)

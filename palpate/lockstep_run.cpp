@@ -63,7 +63,7 @@ void check_times(const RunOptions& options, std::int64_t start_ns, double durati
   if (!options.snapshot_at) return;
   const bool later = ns_from_seconds(*options.snapshot_at) > start_ns;
   if (later && *options.snapshot_at <= duration) return;
-  throw InputError(fmt::format("--snapshot-at {:g}: the run goes from {:g} to {:g} s",
+  throw InputError(fmt::format("--snapshot-at {:.10g}: the run goes from {:.10g} to {:.10g} s",
                                *options.snapshot_at, start, duration));
 }
 
@@ -165,7 +165,7 @@ class LockstepRun {
       if (missing.empty()) return true;
       if (runtime::monotonic_now_ns() < deadline_ns) continue;
       log_ << fmt::format("palpate: not ready after {:g} s: {}\n", options_.ready_deadline,
-                          fmt::join(missing, ", "));
+                          fmt::join(monitor_.waited_for(names_), ", "));
       exit_code_ = kExitFailed;
       return false;
     }
@@ -214,8 +214,8 @@ class LockstepRun {
       exit_code_ = kExitFailed;
     }
     modules_.stop();
-    if (options_.snapshot_at) unite_parts();
     monitor_.poll();
+    if (options_.snapshot_at) unite_parts();
     if (wall_time > 0) {
       SessionEnd said{scene_.name, seconds_from_ns(slowest_ns() - start_ns_),
                       wall_time,   modules_.last_words(),

@@ -30,6 +30,7 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
         "--secure, or PALPATE_KEYS: no key lets one process say what all have said; a recording is "
         "shown without, in a session of its own");
   }
+  recording::check_start(recording, playing.start);  // before anybody is started to look at it
   // Samples of then among those of now would move a running session's organs.
   const SessionClaim claim(run.bus.session, run.bus.domain);
   const StopSignal stop;

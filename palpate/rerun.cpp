@@ -210,8 +210,14 @@ int rerun(const std::filesystem::path& recording, const std::vector<std::string>
     log << "palpate: warning: of " << topic
         << " only some samples were recorded (--record-topics all has them all)\n";
   }
-  out << fmt::format("scene {}: {} computed anew for {:g} s on {}\n", scene.name, anew,
+  out << fmt::format("scene {}: {} computed anew for {:.10g} s on {}\n", scene.name, anew,
                      seconds_from_ns(now_ns), recording.string());
+  if (stop.requested()) {
+    log << "palpate: stopped there, the recording goes on\n";
+  } else if (now_ns < end_ns && run.duration > 0) {
+    log << fmt::format("palpate: the recording ends there, before the {:.10g} s asked for\n",
+                       run.duration);
+  }
   return kExitDone;
 }
 

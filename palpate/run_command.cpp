@@ -128,7 +128,8 @@ class Run {
       if (exit_code_ != kExitDone) return false;
       if (waiting.empty() || loop_.woke_ns() < line_ns) continue;
       line_ns += kWaitingLineEveryNs;
-      log_ << "palpate: waiting for " << joined(waiting)
+      const auto named = monitor_.waited_for(waiting);
+      log_ << "palpate: waiting for " << joined(named)
            << (options_.secure.empty() ? "" : "; only who has keys of the same folder is heard")
            << std::endl;
     }

@@ -8,6 +8,7 @@
 #include <random>
 #include <string_view>
 
+#include "modules/bus/addresses.h"
 #include "modules/bus/key_check.h"
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
@@ -129,6 +130,12 @@ void apply_hosts(RunOptions& options) {
     throw InputError(
         "--record: in lockstep all must know of it: list recorder among the modules of " +
         own.name + " in " + options.hosts.string());
+  }
+  const std::vector<std::string> here = bus::addresses_of_this_host();
+  if (std::ranges::find(here, own.address) == here.end()) {
+    throw InputError(fmt::format("{}: host {}: address {} is none of this host, which has {}",
+                                 options.hosts.string(), own.name, own.address,
+                                 fmt::join(here, ", ")));
   }
   options.only = own.modules;
   options.everywhere = hosts.all_modules();

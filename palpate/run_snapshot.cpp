@@ -68,8 +68,9 @@ void tell_snapshot(const RunOptions& options, std::int64_t time_ns, std::ostream
 }
 
 int tell_no_snapshot(const RunOptions& options, double reached, std::ostream& log) {
-  log << fmt::format("palpate: there is no snapshot {}: the run ended at {:g} s, before {:g} s",
-                     options.snapshot.string(), reached, *options.snapshot_at)
+  log << fmt::format(
+             "palpate: there is no snapshot {}: the run ended at {:.10g} s, before {:.10g} s",
+             options.snapshot.string(), reached, *options.snapshot_at)
       << std::endl;
   return kExitFailed;
 }

@@ -30,4 +30,12 @@ std::vector<std::string> SessionMonitor::not_ready(const std::vector<std::string
   return waiting;
 }
 
+std::vector<std::string> SessionMonitor::waited_for(const std::vector<std::string>& modules) const {
+  std::vector<std::string> unheard;
+  for (const auto& name : modules) {
+    if (tally_.module(name) == nullptr) unheard.push_back(name);
+  }
+  return unheard.empty() ? not_ready(modules) : unheard;
+}
+
 }  // namespace palpate::launcher

@@ -24,6 +24,9 @@ class SessionMonitor {
 
   /// Names of modules whose state is not yet kReady or beyond (nothing heard, starting).
   std::vector<std::string> not_ready(const std::vector<std::string>& modules) const;
+  /// Whom these wait for: who has not been heard; the others may wait for them. If all were heard,
+  /// those that are not ready.
+  std::vector<std::string> waited_for(const std::vector<std::string>& modules) const;
 
   SessionTally& tally() { return tally_; }
   const SessionTally& tally() const { return tally_; }

@@ -10,8 +10,6 @@
 #include "modules/core/error.h"
 
 namespace palpate::bus {
-namespace {
-
 std::vector<std::string> addresses_of_this_host() {
   std::vector<std::string> addresses;
   ifaddrs* interfaces = nullptr;
@@ -27,6 +25,8 @@ std::vector<std::string> addresses_of_this_host() {
   freeifaddrs(interfaces);
   return addresses;
 }
+
+namespace {
 
 void check_is_of_this_host(const std::string& address) {
   const std::vector<std::string> own = addresses_of_this_host();

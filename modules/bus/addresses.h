@@ -15,6 +15,9 @@ struct Addresses {
   bool over_hosts() const;
 };
 
+/// IPv4, loopback among them.
+std::vector<std::string> addresses_of_this_host();
+
 /// From the environment of a process: PALPATE_INTERFACES, loopback if null or empty, and
 /// PALPATE_PEERS. Each is a comma-separated list.
 /// @throws InputError for an address of PALPATE_INTERFACES that this host does not have, and one of

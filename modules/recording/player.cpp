@@ -104,6 +104,22 @@ void write_trajectory(const std::filesystem::path& file, const std::vector<Motio
 
 }  // namespace
 
+void check_start(const std::filesystem::path& recording, double start) {
+  SampleReader reader(recording);
+  const auto first = reader.next();
+  if (start <= 0 || !first) return;
+  const std::int64_t start_ns = first->received_time_ns + ns_from_seconds(start);
+  std::int64_t newest_ns = first->received_time_ns;
+  while (const auto sample = reader.next()) {
+    newest_ns = std::max(newest_ns, sample->received_time_ns);
+    if (newest_ns >= start_ns) return;
+  }
+  std::ostringstream text;
+  text << recording.string() << ": is " << seconds_from_ns(newest_ns - first->received_time_ns)
+       << " s long and ends before the start asked for, --start " << start;
+  throw InputError(text.str());
+}
+
 PlayReport play(SampleReader& recording, SessionWriter& session,
                 const std::function<bool()>& stop_requested, const PlayOptions& options) {
   PlayReport report;

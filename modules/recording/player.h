@@ -25,6 +25,9 @@ struct PlayOptions {
   std::function<bool()> wait_for_step;
 };
 
+/// @throws InputError where the recording ends before `start` [s], and as SampleReader does
+void check_start(const std::filesystem::path& recording, double start);
+
 /// Writes every sample, byte for byte, with the spacing at which it was received. A sample that is
 /// late is written at once; none is left out.
 /// @param stop_requested  asked at least every 20 ms

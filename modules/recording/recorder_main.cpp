@@ -22,6 +22,7 @@ void record_in_lockstep(const palpate::runtime::ModuleOptions& options,
                         const std::filesystem::path& file, const Words& topics) {
   using namespace palpate;
   if (options.scene.empty()) throw InputError("--lockstep: --scene is missing");
+  runtime::start_log("recorder");
   const scene::Scene scene = scene::load_scene(options.scene);
   runtime::run_in_lockstep(options, scene, "recorder", [&](bus::Bus& bus) {
     return std::make_unique<recording::RecorderStage>(bus, file, recording::TopicSelection(topics));

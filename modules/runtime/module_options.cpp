@@ -8,8 +8,6 @@
 #include "modules/scene/processes.h"
 
 namespace palpate::runtime {
-namespace {
-
 void start_log(const std::string& name) {
   auto logger =
       std::make_shared<spdlog::logger>(name, std::make_shared<spdlog::sinks::stderr_sink_mt>());
@@ -17,8 +15,6 @@ void start_log(const std::string& name) {
   logger->flush_on(spdlog::level::trace);
   spdlog::set_default_logger(logger);
 }
-
-}  // namespace
 
 void add_bus_options(Options& options, bus::BusOptions& bus) {
   options.add("--session", bus.session, "Name that keeps simultaneous sessions apart")
@@ -41,7 +37,7 @@ void add_lockstep_options(Options& options, ModuleOptions& module) {
       .one_of(names);
   options.add_input("--from-snapshot", module.from_snapshot, "In lockstep: goes on from there");
   options.add("--snapshot-at", module.snapshot_at, "In lockstep: when --snapshot is written [s]")
-      .range(0.0, 1e6);
+      .range(1e-6, 1e6);
   options.add_output("--snapshot", module.snapshot, "Its own part of a snapshot");
 }
 

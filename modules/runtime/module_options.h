@@ -36,7 +36,10 @@ void add_lockstep_options(Options& options, ModuleOptions& module);
 /// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
 void add_bus_options(Options& options, bus::BusOptions& bus);
 
-/// The whole of a module's main: parses, starts the log on stderr ("[haptics] warning: …"), runs,
+/// What a module says goes to stderr: "[haptics] warning: …".
+void start_log(const std::string& name);
+
+/// The whole of a module's main: parses, starts the log, runs,
 /// and reports what is thrown in one line.
 /// @return kExitDone, kExitBadInput for an InputError or a wrong command line, else kExitFailed
 int run_module(int argc, char** argv, const ModuleProgram& program,

@@ -2,9 +2,11 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <charconv>
 
 #include "modules/core/error.h"
+#include "modules/scene/scene_error.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::scene {
@@ -64,12 +66,43 @@ SceneDocument::Change change_from(const std::string& setting) {
   }
 }
 
+namespace {
+
+/// Whether one of these is the other, or holds it.
+bool overlap(const std::string& a, const std::string& b) {
+  const auto& [shorter, longer] =
+      std::minmax(a, b, [](const auto& x, const auto& y) { return x.size() < y.size(); });
+  if (shorter.empty() || !longer.starts_with(shorter)) return false;
+  return longer.size() == shorter.size() || longer[shorter.size()] == '.' ||
+         longer[shorter.size()] == '[';
+}
+
+/// The scene's own lines are sound: it is the setting that is not, or what it does to other keys.
+[[noreturn]] void blame_settings(const SceneError& error,
+                                 const std::vector<std::string>& settings) {
+  const std::string what = error.what();
+  const std::string place =
+      error.file + (error.line > 0 ? ":" + std::to_string(error.line) : "") + ": ";
+  const std::string problem = what.starts_with(place) ? what.substr(place.size()) : what;
+  for (auto setting = settings.rbegin(); setting != settings.rend(); ++setting) {
+    if (!overlap(setting->substr(0, setting->find('=')), error.key)) continue;
+    throw SceneError("--set " + *setting, 0, error.key, problem);
+  }
+  throw SceneError(error.file, error.line, error.key, problem + " (with what --set changes)");
+}
+
+}  // namespace
+
 Scene load_scene_with(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   if (settings.empty()) return load_scene(file);
   SceneDocument document(file);
   std::vector<SceneDocument::Change> changes;
   for (const auto& setting : settings) changes.push_back(change_from(setting));
-  document.change(changes);
+  try {
+    document.change(changes);
+  } catch (const SceneError& error) {
+    blame_settings(error, settings);
+  }
   return document.scene();
 }
 

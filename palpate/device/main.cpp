@@ -67,6 +67,7 @@ class Waiting {
                         ? ns_from_seconds(std::max(options.duration, kShortestWait))
                         : std::numeric_limits<std::int64_t>::max()) {}
 
+  const std::string& what() const { return what_; }
   void look(std::int64_t now_ns) {
     if (began_ns_ == 0) began_ns_ = line_ns_ = now_ns;
     if (now_ns - began_ns_ >= longest_ns_) {
@@ -85,6 +86,7 @@ class Waiting {
 
 /// Until the session ends, a signal comes or time is up; the hand takes the device as the session
 /// begins to run, and holds it while it pauses.
+/// @throws Interrupted, std::runtime_error where it ends before the session ran: nothing was felt
 void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDriver& driver,
          bus::Bus& bus, launcher::DeviceLog& log) {
   const StopSignal stop;
@@ -109,6 +111,10 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
     log.add(now_ns, time, driver.device().position(), driver.device().motor_force());
     if (options.duration > 0 && time >= options.duration) break;
   }
+  if (began_ns == 0 && stop.requested()) {
+    throw Interrupted("stopped; " + waiting.what() + " had not begun, the probe was not moved");
+  }
+  if (began_ns == 0) throw std::runtime_error(waiting.what() + " ended before it ran");
   const runtime::LoopStatistics& statistics = loop.statistics();
   std::cerr << kName << ": " << statistics.cycles << " periods, "
             << 100 * statistics.on_time_fraction() << " % on time\n";

@@ -171,6 +171,7 @@ void Processes::drive_device(std::int64_t now_ns) {
   tick.time = static_cast<double>(*period) * device.period();
   tick.off = device.position() - subject_.place.pose.position;
   tick.depth = tick.off.dot(subject_.place.into);
+  tick.motor = -device.motor_force().dot(subject_.place.into);
   if (!device.motor_force().isZero(0)) heard_.last_motor_ns = now_ns;
 }
 

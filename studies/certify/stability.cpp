@@ -90,6 +90,8 @@ std::vector<Tick> hold(const Loop& loop, const Subject& subject, double push,
 
 namespace {
 
+constexpr double kLeastHeld = 1e-3;  // what is weaker holds no device [N]
+
 Line swing_after(const std::string& group, const std::string& name, const std::string& source,
                  double from, const std::vector<Tick>& ticks) {
   const double found = swing(ticks, from, kHeld);
@@ -97,7 +99,13 @@ Line swing_after(const std::string& group, const std::string& name, const std::s
       std::isfinite(found)
           ? fmt::format("{:.2f} mm deep", 1e3 * ticks.back().depth)
           : fmt::format("it left after {:.2f} s", ticks.empty() ? 0 : ticks.back().time);
-  return at_most(group, {name, 1e3 * found, 1e3 * kSwing, "mm", source, note});
+  const Line line = at_most(group, {name, 1e3 * found, 1e3 * kSwing, "mm", source, note});
+  const auto pushes = [&](const Tick& tick) {
+    return tick.time >= from && std::abs(tick.motor) >= kLeastHeld;
+  };
+  if (line.verdict != Verdict::kPass || std::ranges::any_of(ticks, pushes)) return line;
+  return not_measured(group, name,
+                      fmt::format("nothing to judge, no force reaches {:g} N", kLeastHeld));
 }
 
 }  // namespace

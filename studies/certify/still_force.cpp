@@ -77,6 +77,14 @@ Line still_force_line(const std::vector<StillForce>& forces) {
                         f.felt, f.organ);
   }
   if (forces.size() < kSteps) worst = HUGE_VAL;
+  const bool touched = std::ranges::any_of(forces, [](const StillForce& f) {
+    return std::max(std::abs(f.felt), std::abs(f.organ)) >= kLeast;
+  });
+  if (forces.size() == kSteps && !touched) {
+    return not_measured(
+        "force", name,
+        "nothing to judge, no force reaches " + fmt::format("{:g} N: {}", kLeast, note));
+  }
   return at_most("force",
                  {name, 100 * worst, 100 * kForceJnd, "%",
                   "smallest difference of forces a hand tells apart (Pang et al. 1991)", note});

@@ -104,13 +104,13 @@ TEST_CASE("hosts file: a run takes its modules, and its part, from it") {
   // Oracle: the file by hand.
   const testing::Scripts files;
   RunOptions options;
-  options.hosts = written(files, kTwo);
+  options.hosts = written(files, with("10.0.0.6", "127.0.0.1"));
   options.host = "rack";
   apply_hosts(options);
   CHECK(options.only == Names{"deformation"});
   CHECK_FALSE(options.conducts);
   CHECK(participants_of(options, {"deformation"}).size() == 5);
-  CHECK(std::string(std::getenv("PALPATE_INTERFACES")) == "10.0.0.6");
+  CHECK(std::string(std::getenv("PALPATE_INTERFACES")) == "127.0.0.1");
   CHECK(std::string(std::getenv("PALPATE_PEERS")) == "10.0.0.5,10.0.0.7");
   ::unsetenv("PALPATE_INTERFACES");
   ::unsetenv("PALPATE_PEERS");
@@ -134,6 +134,11 @@ TEST_CASE("hosts file: options that do not go with it are refused") {
           o.lockstep = true;
           o.record = "felt.mcap";
         }).starts_with("--record: in lockstep all must know of it"));
+  const std::string elsewhere = refused_options([](RunOptions&) {});
+  CHECK(
+      elsewhere.find("hosts.yaml: host rack: address 10.0.0.6 is none of this host, which has ") !=
+      std::string::npos);
+  CHECK(elsewhere.find("127.0.0.1") != std::string::npos);
 }
 
 }  // namespace palpate::launcher

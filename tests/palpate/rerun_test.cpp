@@ -84,6 +84,26 @@ TEST_CASE("rerun: any stages of a recording in lockstep leave its samples again,
   }
 }
 
+TEST_CASE("rerun: says where it ends before what was asked for, and where it was told to") {
+  // Oracle: 0.4 s of recording.
+  const palpate::testing::BallScene scene(kPressAndSlide);
+  const auto run = recorded(scene);
+  const auto log_of = [&](double duration) {
+    RunOptions options;
+    options.record = scene.folder() / "again.mcap";
+    options.overwrite = true;
+    options.duration = duration;
+    Playing playing;
+    playing.rerun = {"haptics"};
+    std::ostringstream out, log;
+    CHECK(replay_command(run, playing, options, out, log) == kExitDone);
+    return log.str();
+  };
+  CHECK(log_of(100) == "palpate: the recording ends there, before the 100 s asked for\n");
+  CHECK(log_of(0.3).empty());
+  CHECK(log_of(0).empty());
+}
+
 TEST_CASE("rerun: another organ is tried on the recorded hand, and the output is of its scene") {
   // Oracle: the scene that was given; poses as they were recorded, another law.
   const palpate::testing::BallScene scene(kPressAndSlide);

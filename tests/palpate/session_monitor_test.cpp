@@ -18,6 +18,7 @@ TEST_CASE("session monitor: knows who is ready and hears forces and nodes") {
   SessionMonitor monitor(bus, scene);
   const std::vector<std::string> both{"haptics", "collision"};
   CHECK(monitor.not_ready(both) == both);
+  CHECK(monitor.waited_for(both) == both);
 
   auto statuses = module_bus.writer(bus::kModuleStatus);
   auto forces = module_bus.writer(bus::kHapticForce);
@@ -29,10 +30,14 @@ TEST_CASE("session monitor: knows who is ready and hears forces and nodes") {
   status.module = "collision";
   status.state = ModuleState::kStarting;
   statuses.write(status);
+  const std::vector<std::string> three{"haptics", "collision", "deformation"};
   CHECK(palpate::testing::wait_until([&] {
     monitor.poll();
     return monitor.not_ready(both) == std::vector<std::string>{"collision"};
   }));
+  CHECK(monitor.waited_for(both) == std::vector<std::string>{"collision"});
+  // It has started, and waits for what another host has to say.
+  CHECK(monitor.waited_for(three) == std::vector<std::string>{"deformation"});
   status.state = ModuleState::kReady;
   statuses.write(status);
   CHECK(palpate::testing::wait_until([&] {

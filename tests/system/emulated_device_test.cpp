@@ -115,7 +115,7 @@ TEST_CASE("emulated device: ends with its session, and at once when told to") {
 }
 
 TEST_CASE("emulated device: says what it waits for, and waits no longer than it is told") {
-  // Oracle: the messages, exit code 1; nobody starts this session.
+  // Oracle: the messages, exit codes 1 and 130; nobody starts this session.
   const BallScene scene(kAboveTheBall);
   const bus::BusOptions session = own_bus_options();
   Device device(scene.file(), session, {"--duration", "1"});
@@ -124,6 +124,14 @@ TEST_CASE("emulated device: says what it waits for, and waits no longer than it 
       "session " + session.session + " in domain " + std::to_string(session.domain);
   CHECK_THAT(device.said(), Contains("waiting for " + name + " to begin\n"));
   CHECK_THAT(device.said(), Contains(name + " has not begun within 10 s\n"));
+
+  // Stopped before there is anything to sum up.
+  Device stopped(scene.file(), session, {});
+  REQUIRE(stopped.wait_for_text("waiting for " + name + " to begin\n"));
+  stopped.child().signal(SIGTERM);
+  CHECK(stopped.wait_for_end() == kExitStopped);
+  CHECK_THAT(stopped.said(), Contains("stopped; " + name + " had not begun") &&
+                                 !Contains("finger: ") && !Contains("on time"));
 }
 
 TEST_CASE("emulated device: takes the names of shipped scenes") {

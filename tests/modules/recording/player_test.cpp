@@ -139,6 +139,9 @@ TEST_CASE("player: from a time on, what held then goes first, then the rest") {
   CHECK(from.report.duration == Approx(0.015));
   CHECK_THROWS_WITH(played(folder / "a.mcap", {.start = 1, .wait_for_step = {}}),
                     Catch::EndsWith("a.mcap: ends before the start asked for"));
+  CHECK_NOTHROW(check_start(folder / "a.mcap", 0.025));
+  CHECK_THROWS_WITH(check_start(folder / "a.mcap", 1),
+                    Catch::EndsWith("s long and ends before the start asked for, --start 1"));
 }
 
 TEST_CASE("player: the rate stretches the spacing") {

@@ -54,8 +54,16 @@ TEST_CASE("settings: two keys that only fit together are judged together") {
 }
 
 TEST_CASE("settings: the schema judges what was set") {
-  // Oracle: the reader's own messages.
+  // Oracle: the reader's own messages, with the setting in the place of a line of the file, which
+  // is sound.
   const SceneFolder folder;
+  CHECK(refusal(folder, {"rates.haptics_hz=1000", "rates.deformation_hz=-1"})
+            .find("--set rates.deformation_hz=-1: key 'rates.deformation_hz'") == 0);
+  CHECK(refusal(folder, {"rates={deformation_hz: -1}"})
+            .find("--set rates={deformation_hz: -1}: key") == 0);
+  CHECK_THAT(refusal(folder, {"organs[0].springs.virtual_nodes=0"}),
+             Catch::StartsWith("--set organs[0].springs.virtual_nodes=0: ") ||
+                 Catch::EndsWith("(with what --set changes)"));
   CHECK_THAT(refusal(folder, {"organs[0].tissue.youngs_modulus=8e3"}),
              Catch::Contains("organs[0].tissue.youngs_modulus") &&
                  Catch::Contains("did you mean 'youngs_modulus_pa'?"));

@@ -53,6 +53,14 @@ TEST_CASE("certify stability: a device that is calmed comes to rest, one that is
   subject.device.damping = 0.2;
   subject.device.mass = 1;
   CHECK(held_lines("g", hold(wall, subject, 0.48, kGoOn)).front().verdict == Verdict::kFail);
+
+  // A device that nothing pushes rests, too: that judges nothing.
+  std::vector<Tick> alone = calm;
+  for (Tick& tick : alone) tick.motor = 1e-4;
+  for (const Line& line : held_lines("g", alone)) {
+    CHECK(line.verdict == Verdict::kNotMeasured);
+    CHECK(line.note.find("nothing to judge") == 0);
+  }
 }
 
 TEST_CASE("certify stability: with nobody to calm it a pushed device rests on stomach and liver") {

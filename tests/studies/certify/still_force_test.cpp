@@ -23,3 +23,16 @@ TEST_CASE("certify force: what is held is felt as the organ says, unless its law
   INFO(text_of(faded) << ' ' << faded.note);
   CHECK(faded.verdict == Verdict::kFail);
 }
+
+TEST_CASE("certify force: where nothing pushes, nothing was judged") {
+  // Oracle: forces under the least that is judged by its share; a single one that reaches it is.
+  const std::vector<StillForce> none{{1e-3, 0.001, 0}, {2e-3, 0, 0.002}, {3e-3, 0.004, 0.003}};
+  const Line line = still_force_line(none);
+  CHECK(line.verdict == Verdict::kNotMeasured);
+  CHECK(line.note.find("nothing to judge") == 0);
+  std::vector<StillForce> one = none;
+  one[2].organ = 0.02;
+  CHECK(still_force_line(one).verdict == Verdict::kFail);
+  one[2].felt = 0.02;
+  CHECK(still_force_line(one).verdict != Verdict::kNotMeasured);
+}
