@@ -105,6 +105,7 @@ struct InProcess::Impl {
           [&](bus::Bus& bus) { return add_deformation(process, assets, bus, options); });
     }
     listen();
+    if (!from.modules.empty()) read_nodes();
   }
 
   std::unique_ptr<runtime::Stage> add_deformation(std::size_t process, Assets& assets,
@@ -121,6 +122,17 @@ struct InProcess::Impl {
       nodes[own[k]].organ = static_cast<std::uint32_t>(own[k]);
     }
     return stage;
+  }
+
+  /// Of organs that go on from somewhere: nothing says where their nodes are before they advance.
+  void read_nodes() {
+    for (std::size_t organ = 0; organ < scene.organs.size(); ++organ) {
+      const std::size_t process = scene.organs[organ].process;
+      if (process > deformation.size() || deformation[process - 1] == nullptr) continue;
+      const auto [owner, own] = owner_of(organ);
+      deformation::write_node_positions(owner->world(), own, nodes[organ]);
+      nodes[organ].organ = static_cast<std::uint32_t>(organ);
+    }
   }
 
   /// Where an organ is simulated, and its index there.

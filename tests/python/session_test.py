@@ -56,12 +56,14 @@ class SameBitsTest(unittest.TestCase):
                 with self.assertRaises(palpate.InputError):
                     session.save_snapshot(own)
                 self.assertEqual(session.save_snapshot(own, overwrite=True), 0.4)
+                then = session.positions().tobytes()
                 session.run_until(1.0)
                 end = session.positions().tobytes()
             self.assertEqual(command.read_bytes(), own.read_bytes())
             for _ in range(2):
                 with palpate.Session(BALL, from_snapshot=own, record=rest) as session:
                     self.assertEqual(session.time, 0.4)
+                    self.assertEqual(session.positions().tobytes(), then)
                     session.run_until(1.0)
                     self.assertEqual(session.positions().tobytes(), end)
             commands = Path(folder) / "commands.mcap"
