@@ -15,6 +15,9 @@
 namespace palpate::collision {
 namespace {
 
+/// Surfaces of an organ that wait for their positions.
+constexpr std::size_t kMostTold = 8;
+
 /// The organs' surfaces as deformation tells them, kept in a finder.
 class OrganInputs {
  public:
@@ -61,18 +64,19 @@ class OrganInputs {
     std::size_t surface_node_count = 0;
     std::vector<float> rest_positions;  ///< x, y, z per node [m]
     std::size_t block_count = 0;        ///< of triangle_blocks
-    /// Told, but no positions have come that are of it.
-    std::optional<SurfaceTopology> next;
+    /// Told, the newest last, but no positions have come that are of them. A mesh that changes in
+    /// every advance has its next surface told together with the positions of the one before.
+    std::vector<SurfaceTopology> next;
     bool boxes_misfit = false;  ///< of the newest node positions
 
     void exchange(StateArchive& archive) {
       archive(generation, triangles, triangle_blocks, surface_node_count, rest_positions,
               block_count, boxes_misfit);
-      bool has_next = next.has_value();
-      archive(has_next);
-      if (!has_next) return next.reset();
-      if (!next) next.emplace();
-      messages::exchange_message(archive, *next);
+      std::size_t told = next.size();
+      archive(told);
+      if (told > kMostTold) throw InputError("its state holds surfaces that cannot be");
+      next.resize(told);
+      for (SurfaceTopology& surface : next) messages::exchange_message(archive, surface);
     }
   };
 
@@ -95,10 +99,10 @@ class OrganInputs {
       know(surface_, organ);
       return make_finder();
     }
-    organ.next.reset();
-    if (organ.triangles != surface_.triangles ||
+    if (!organ.next.empty() || organ.triangles != surface_.triangles ||
         organ.triangle_blocks != surface_.triangle_blocks) {
-      organ.next = surface_;
+      if (organ.next.size() == kMostTold) organ.next.erase(organ.next.begin());
+      organ.next.push_back(surface_);
       return;
     }
     know(surface_, organ);
@@ -127,11 +131,16 @@ class OrganInputs {
     return rest;
   }
 
-  void take_next(std::size_t index) {
+  /// The surface told last that positions of a generation are of, if it waits for them.
+  void take_next(std::size_t index, std::uint32_t generation) {
     OrganInput& organ = organs_[index];
+    const auto told = std::find_if(
+        organ.next.rbegin(), organ.next.rend(),
+        [&](const SurfaceTopology& surface) { return surface.generation == generation; });
+    if (told == organ.next.rend()) return;
     const std::vector<Vec3> before = rest_of(organ);
-    know(*organ.next, organ);
-    organ.next.reset();
+    know(*told, organ);
+    organ.next.erase(organ.next.begin(), told.base());
     finder_->change_organ(index, organ.triangles, organ.triangle_blocks, before, rest_of(organ));
   }
 
@@ -158,7 +167,7 @@ class OrganInputs {
   void take_positions() {
     if (newest_.organ >= organs_.size() || !finder_) return;
     OrganInput& organ = organs_[newest_.organ];
-    if (organ.next && newest_.generation == organ.next->generation) take_next(newest_.organ);
+    if (newest_.generation != organ.generation) take_next(newest_.organ, newest_.generation);
     if (newest_.generation != organ.generation ||
         newest_.positions.size() < 3 * organ.surface_node_count) {
       return;

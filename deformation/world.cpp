@@ -32,6 +32,7 @@ struct DeformationWorld::Impl {
   std::optional<OrganContacts> organ_contacts;  ///< none: the scene has them off
   ContactIntake intake;
   std::vector<Pose> poses;           ///< buffer of look_ahead()
+  std::vector<Vec3> places;          ///< buffer of change_meshes() [m]
   std::vector<ForceHistory> forces;  ///< on each probe
   double time = 0, period = 0;       ///< simulated; of the last advance [s]
 
@@ -163,13 +164,17 @@ struct DeformationWorld::Impl {
     }
   }
 
-  /// Organs that follow go on with what was made for them; contacts stay where they are on them.
+  /// Organs that follow go on with what was made for them; contacts stay where they are on them,
+  /// and cores that were outside a wall stay so: where nodes go, the flat triangles in their place
+  /// may lie beyond a tip.
   void change_meshes(AdvanceReport& report) {
     for (std::uint32_t i = 0; i < organs.size(); ++i) {
       WorldOrgan& organ = organs[i];
       if (!organ.following) continue;
       if (organ.following->next() != nullptr) {
-        organ.change_mesh();
+        places.clear();
+        for (const auto& probe : probes) probe.append_kept_outside(i, places);
+        organ.change_mesh(places);
         for (auto& probe : probes) probe.change_surface(i, organ.following->last_transfer());
       }
       report.mesh_coarser |= organ.is_coarser;

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <utility>
 
+#include "deformation/contact/outer_seat.h"
 #include "deformation/elements/quadratic_mesh_change.h"
 #include "deformation/model/mesh_change.h"
 #include "modules/core/error.h"
@@ -75,13 +76,16 @@ void WorldOrgan::know_model() {
        model.triangles});
 }
 
-void WorldOrgan::take(OrganMesh mesh) {
+void WorldOrgan::take(OrganMesh mesh, std::span<const Vec3> outside) {
   auto dynamics = following->dynamics_of(*mesh.model);
   const OrganModel &before = simulated.model(), &next = *mesh.model;
   RefinedShape& refined = mesh.refined;
   const auto goes_on = [&](const auto& change) {
-    simulated.change_mesh(std::move(mesh.model), std::move(dynamics),
-                          [&](const OrganState& state) { return change.carried(state); });
+    simulated.change_mesh(std::move(mesh.model), std::move(dynamics), [&](const OrganState& state) {
+      OrganState carried = change.carried(state);
+      seat_outside(outside, next, carried.positions);
+      return carried;
+    });
   };
   if (next.mesh().edge_nodes.empty()) {
     goes_on(MeshChange(before, parents, next, refined.parents));
@@ -95,13 +99,15 @@ void WorldOrgan::take(OrganMesh mesh) {
   know_model();
 }
 
-void WorldOrgan::change_mesh() { take(following->take_next(generation, simulated.model())); }
+void WorldOrgan::change_mesh(std::span<const Vec3> outside) {
+  take(following->take_next(generation, simulated.model()), outside);
+}
 
 void WorldOrgan::exchange(StateArchive& archive) {
   archive(generation);
   if (following) {
     following->exchange(archive, generation);
-    if (archive.reads()) take(following->present(generation));
+    if (archive.reads()) take(following->present(generation), {});
   }
   archive(simulated, replaced, *compliance);
   if (copy) archive(*copy);
@@ -109,7 +115,7 @@ void WorldOrgan::exchange(StateArchive& archive) {
 
 void WorldOrgan::reset() {
   generation += following != nullptr && following->next() != nullptr ? 2 : 1;
-  if (following) take(following->begin(generation));
+  if (following) take(following->begin(generation), {});
   simulated.reset();
   compliance->forget();
   if (copy) copy->forget();

@@ -50,7 +50,8 @@ struct WorldOrgan {
   Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period);
 
   /// Of one that follows: goes on with the mesh that was made for it.
-  void change_mesh();
+  /// @param outside  places where probes are that it must not put its wall around [m]
+  void change_mesh(std::span<const Vec3> outside);
   /// Between two advances; one that follows takes its mesh when it reads.
   void exchange(StateArchive& archive);
   /// At rest, at time 0, with the next generation; one that follows with its coarse mesh.
@@ -60,7 +61,7 @@ struct WorldOrgan {
   friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
                                ChunkRunner*, Guarding);
   void look_ahead(double time);
-  void take(OrganMesh mesh);
+  void take(OrganMesh mesh, std::span<const Vec3> outside);
   void know_model();
 };
 

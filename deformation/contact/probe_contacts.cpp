@@ -1,6 +1,7 @@
 #include "deformation/contact/probe_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "modules/core/sort_unique.h"
@@ -15,6 +16,9 @@ constexpr double kResting = 1e-6;
 /// Contacts on one triangle, in barycentric coordinates as far from each other as two nodes, are
 /// two.
 constexpr double kSamePlace = 0.99;
+
+/// Between places along a core, which are else two radii apart.
+constexpr int kMostGaps = 24;
 
 std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
   return {contact.organ, contact.triangle};
@@ -92,6 +96,18 @@ void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceT
   }
   std::ranges::stable_sort(contacts_, {}, triangle_of);
   if (core_) unite_contacts_of_triangles();
+}
+
+void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const {
+  const auto near = std::ranges::find(near_, organ, &Near::organ);
+  if (!core_ || near == near_.end() || near->inside) return;
+  const double length = (core_->b - core_->a).norm();
+  const int gaps = static_cast<int>(
+      std::min(static_cast<double>(kMostGaps), std::ceil(length / (2 * core_->radius))));
+  for (int i = 0; i <= gaps; ++i) {
+    const double at = gaps == 0 ? 0 : static_cast<double>(i) / gaps;
+    places.push_back(start_.to_world(core_->a + at * (core_->b - core_->a)));
+  }
 }
 
 /// Of a round probe there is one to a triangle; forces of several are its.

@@ -87,6 +87,8 @@ class ProbeContacts {
   bool may_cross(std::uint32_t organ) const {
     return core_ && (has_contacts(organ) || is_watched(organ));
   }
+  /// Appends places all along a round probe's core, where it was kept outside an organ [m].
+  void append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const;
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance

@@ -137,8 +137,8 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
   out << fmt::format(
              "{} runs: {} searches inside an organ, {} of them without contact\n{} presses of "
              "round tools: {} times the organ was left with a point of the core inside, {} of them "
-             "when a "
-             "guard put it back\n",
+             "while a "
+             "guard acted\n",
              sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings, sum.put_back)
       << session::contact_line(sum.troubles) << '\n';
   return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone

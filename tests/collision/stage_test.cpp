@@ -32,10 +32,10 @@ struct Session {
   CollisionStage stage() { return {scene, collision::load_probes(scene), bus}; }
 
   /// @param blocks  told of it, at most one
-  void publish_ball(std::size_t blocks = 0) {
-    const auto ball = geometry::make_ball(kRadius, 2);
+  void publish_ball(std::size_t blocks = 0, int halvings = 2, std::uint32_t generation = 1) {
+    const auto ball = geometry::make_ball(kRadius, halvings);
     SurfaceTopology surface;
-    surface.generation = 1;
+    surface.generation = generation;
     surface.name = "ball";
     surface.surface_node_count = static_cast<std::uint32_t>(ball.nodes.size());
     for (const Vec3& p : ball.nodes) {
@@ -127,6 +127,36 @@ TEST_CASE(
   session.move_finger(0.0605, now_ns);
   CHECK(session.search(stage, now_ns) > 0);
   CHECK(session.guard.find("node_positions tells boxes of other blocks") == 0);
+}
+
+TEST_CASE("collision stage: a mesh that changes in every advance is searched as it is") {
+  // Oracle: by construction; each time positions of the surface told before come together with the
+  // next surface. Every second one has the first one's triangles again.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball();
+  auto positions = session.bus.writer(bus::kNodePositions);
+  std::int64_t now_ns = kMs;
+  stage.cycle({});
+  session.publish_ball(0, 3, 2);
+  stage.cycle({});
+  for (std::uint32_t generation = 2; generation < 12; ++generation, now_ns += 4 * kMs) {
+    CAPTURE(generation);
+    const int halvings = generation % 2 == 0 ? 3 : 2;
+    NodePositions moved;
+    moved.generation = generation;
+    const float aside = 1e-3F * static_cast<float>(generation);
+    for (const Vec3& x : geometry::make_ball(kRadius, halvings).nodes) {
+      for (int axis = 0; axis < 3; ++axis) moved.positions.push_back(static_cast<float>(x[axis]));
+      moved.positions.back() += aside;
+    }
+    REQUIRE(positions.write(moved));
+    session.publish_ball(0, 5 - halvings, generation + 1);
+    session.move_finger(0.0595 + aside, now_ns);
+    REQUIRE(session.search(stage, now_ns) > 0);
+    CHECK(session.newest.generations == std::vector<std::uint32_t>{generation});
+    CHECK(std::abs(session.newest.deepest_gap() + 5e-4) < 1e-6);  // the finger is over a node
+  }
 }
 
 TEST_CASE("collision stage: a probe that fell silent touches nothing, and its status says so") {

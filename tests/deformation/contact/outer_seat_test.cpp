@@ -1,0 +1,45 @@
+#include "deformation/contact/outer_seat.h"
+
+#include <catch2/catch.hpp>
+
+#include "modules/geometry/winding_number.h"
+#include "tests/collision/random_shapes.h"
+#include "tests/deformation/organs.h"
+
+namespace palpate::deformation {
+namespace {
+
+TEST_CASE("outer seat: a wall comes off points inside it, and no further than to them") {
+  // Oracle: the winding number over all triangles; of least motion, a place that moves by d for
+  // weights w needs |Δx| ≤ d / √Σw² ≤ √3 d of its corners, a few times over where walls fold.
+  const OrganModel model = testing::ball_model(3);
+  const double radius = model.rest_positions[0].norm();
+  collision::RandomShapes random(11);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Vec3> x = model.rest_positions;
+    const double depth = random.number(1e-4, 0.2 * radius);
+    const std::vector<Vec3> points{(radius - depth) * random.direction()};
+    CHECK(seat_outside(points, model, x));
+    CHECK(geometry::winding_number(points[0], x, model.triangles) < 0.5);
+    double farthest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      farthest = std::max(farthest, (x[i] - model.rest_positions[i]).norm());
+    }
+    CHECK(farthest < 4 * depth);
+  }
+}
+
+TEST_CASE("outer seat: a wall that points are outside of stays, and what is held does") {
+  // Oracle: the same positions.
+  OrganModel model = testing::ball_model(2);
+  std::vector<Vec3> x = model.rest_positions;
+  const double radius = x[0].norm();
+  CHECK(seat_outside(std::vector<Vec3>{Vec3(0, 0, 1.1 * radius)}, model, x));
+  CHECK(x == model.rest_positions);
+  std::ranges::fill(model.inverse_masses, 0.0);
+  CHECK_FALSE(seat_outside(std::vector<Vec3>{Vec3(0, 0, 0.8 * radius)}, model, x));
+  CHECK(x == model.rest_positions);
+}
+
+}  // namespace
+}  // namespace palpate::deformation
