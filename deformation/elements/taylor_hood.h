@@ -37,6 +37,7 @@ struct ElementPoint {
 struct SolidState {
   std::vector<Vec3> positions;  ///< [m]  (node_count)
   Eigen::VectorXd pressures;    ///< p [Pa]  (corner_count)
+  double fluid_pressure = 0;    ///< of what fills its cavity, see EnclosedFluid [Pa]
 };
 
 class TaylorHoodElements {

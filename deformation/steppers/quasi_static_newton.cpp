@@ -37,16 +37,20 @@ void add_scaled(const Eigen::VectorXd& direction, double scale, SolidState& stat
   for (std::size_t i = 0; i < state.positions.size(); ++i) {
     state.positions[i] += scale * direction.segment<3>(static_cast<Eigen::Index>(3 * i));
   }
-  state.pressures += scale * direction.tail(state.pressures.size());
+  const auto displacements = static_cast<Eigen::Index>(3 * state.positions.size());
+  const Eigen::Index solid = displacements + state.pressures.size();
+  state.pressures += scale * direction.segment(displacements, state.pressures.size());
+  if (direction.size() > solid) state.fluid_pressure += scale * direction[solid];
 }
 
 }  // namespace
 
 QuasiStaticNewton::QuasiStaticNewton(const TaylorHoodElements& solid, std::vector<char> constrained,
-                                     ElementContact* contact)
+                                     ElementContact* contact, const EnclosedFluid* fluid)
     : solid_(solid),
       constrained_(std::move(constrained)),
       contact_(contact),
+      fluid_(fluid),
       factor_(make_factor(solid, constrained_)) {
   PALPATE_DEMAND(constrained_.size() == solid.displacement_count());
   for (std::size_t e = 0; e < solid.element_count(); ++e) masses_.push_back(solid.mass(e));
@@ -54,11 +58,14 @@ QuasiStaticNewton::QuasiStaticNewton(const TaylorHoodElements& solid, std::vecto
 
 Eigen::VectorXd QuasiStaticNewton::residual(const SolidState& state,
                                             const std::optional<Inertia>& inertia) const {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(solid_.dof_count()));
+  const auto count = static_cast<Eigen::Index>(solid_.dof_count());
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(count + (fluid_ ? 1 : 0));
+  if (fluid_) sum[count] = fluid_->rest_volume() - fluid_->volume(state);
   ElementVector local;
   for (std::size_t e = 0; e < solid_.element_count(); ++e) {
     if (!solid_.residual(e, state, local)) return {};
     if (contact_) contact_->add_residual(e, state, local);
+    if (fluid_) fluid_->add_residual(e, state, local);
     if (inertia) {
       Eigen::Matrix<double, 3, kElementNodes> offset;
       for (int a = 0; a < kElementNodes; ++a) {
@@ -79,6 +86,7 @@ bool QuasiStaticNewton::factor(const SolidState& state, const std::optional<Iner
   return factor_.factor([&](std::size_t e) -> Eigen::Ref<const Eigen::MatrixXd> {
     solid_.tangent(e, state, matrix, positive);
     if (contact_) contact_->add_tangent(e, state, matrix, positive);
+    if (fluid_ && !positive) fluid_->add_tangent(e, state, matrix);
     if (!inertia) return matrix;
     for (int b = 0; b < kElementNodes; ++b) {
       for (int a = 0; a < kElementNodes; ++a) {
@@ -107,10 +115,32 @@ double QuasiStaticNewton::norm(const Eigen::VectorXd& residual) const {
     forces += r * r;
   }
   const double size = solid_.size();
-  const double volumes =
-      residual.tail(static_cast<Eigen::Index>(solid_.mesh().corner_count)).norm();
+  const double fluid = fluid_ ? std::abs(residual[residual.size() - 1]) / kFluidShare : 0;
+  const double volumes = residual
+                             .segment(static_cast<Eigen::Index>(constrained_.size()),
+                                      static_cast<Eigen::Index>(solid_.mesh().corner_count))
+                             .norm();
   return std::max(std::sqrt(forces) / (solid_.tissue().shear_modulus() * size * size),
-                  volumes / (size * size * size));
+                  std::max(volumes, fluid) / (size * size * size));
+}
+
+// [K g; gᵀ 0] [d; Δp] = −[r; V₀ − V], g = −∂V/∂x.
+Eigen::VectorXd QuasiStaticNewton::step(const Eigen::VectorXd& residual,
+                                        const SolidState& state) const {
+  if (!fluid_) {
+    Eigen::VectorXd direction = -residual;
+    factor_.solve(direction);
+    return direction;
+  }
+  const Eigen::Index count = residual.size() - 1;
+  const Eigen::VectorXd g = fluid_->gradient(state);
+  Eigen::MatrixXd solved(count, 2);
+  solved << -residual.head(count), g;
+  factor_.solve(solved);
+  const double pressure = (g.dot(solved.col(0)) + residual[count]) / g.dot(solved.col(1));
+  Eigen::VectorXd direction(count + 1);
+  direction << solved.col(0) - pressure * solved.col(1), pressure;
+  return direction;
 }
 
 // s(α) = d·r_u(x + α d) is the slope of the energy along the step; a contact that closes on the way
@@ -163,10 +193,7 @@ NewtonReport QuasiStaticNewton::solve(SolidState& state, std::optional<Inertia> 
         if (!factor_descending(state, inertia)) return report;
       }
       const double before = norm(r);
-      r = -r;
-      factor_.solve(r);
-      const Eigen::VectorXd direction = r;
-      r = residual(state, inertia);
+      const Eigen::VectorXd direction = step(r, state);
       if (!search(direction, inertia, state, r)) return report;
       is_useful = goal.keeps_factor && norm(r) < kUsefulDecrease * before;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "deformation/contact/element_contact.h"
+#include "deformation/contact/enclosed_fluid.h"
 #include "deformation/linear_algebra/multifrontal_ldlt.h"
 
 namespace palpate::deformation {
@@ -35,16 +36,19 @@ struct NewtonGoal {
 
 class QuasiStaticNewton {
  public:
-  static constexpr int kMostIterations = 40;  ///< in all
+  static constexpr int kMostIterations = 40;   ///< in all
+  static constexpr double kFluidShare = 1e-2;  ///< a dent is a small part of a cavity
 
   /// @param solid    outlives this
   /// @param constrained     true: this coordinate of this node does not move  (3 · node_count)
   /// @param contact  outlives this; null: none
+  /// @param fluid    likewise
   QuasiStaticNewton(const TaylorHoodElements& solid, std::vector<char> constrained,
-                    ElementContact* contact);
+                    ElementContact* contact, const EnclosedFluid* fluid = nullptr);
 
   /// From `state`, constrained coordinates where they are to be. Stops when, in this order,
-  ///   1. ‖r_u‖ ≤ force_tolerance f and ‖r_p‖ ≤ force_tolerance size³, and
+  ///   1. ‖r_u‖ ≤ force_tolerance f and ‖r_p‖ ≤ force_tolerance size³, of a fluid
+  ///      |V − V₀| ≤ kFluidShare of that, and
   ///   2. no point penetrates by more than most_penetration · size, and friction is settled: else
   ///      λ is augmented and 1. starts anew;
   /// not converged after kMostIterations, or where no step along Newton's direction keeps J > 0.
@@ -52,7 +56,7 @@ class QuasiStaticNewton {
                      const NewtonGoal& goal = {});
 
   /// Residual of the whole; empty if J ≤ 0 somewhere. Constrained coordinates have their reactions'
-  /// sign turned: r is the force the support has to exert [N].
+  /// sign turned: r is the force the support has to exert [N]. V₀ − V of a fluid is the last.
   Eigen::VectorXd residual(const SolidState& state, const std::optional<Inertia>& inertia) const;
 
   /// Factors the tangent. @param positive  as in TaylorHoodElements::tangent()
@@ -65,6 +69,8 @@ class QuasiStaticNewton {
   /// Factors a tangent whose K is positive: the true one where it is.
   bool factor_descending(const SolidState& state, const std::optional<Inertia>& inertia);
   double norm(const Eigen::VectorXd& residual) const;
+  /// Newton's step from there, by the factorisation; of a fluid, whose row is dense, bordered.
+  Eigen::VectorXd step(const Eigen::VectorXd& residual, const SolidState& state) const;
   /// Newton's step, shortened where contact closes on the way or J would fall to 0; moves the
   /// state.
   bool search(const Eigen::VectorXd& direction, const std::optional<Inertia>& inertia,
@@ -73,6 +79,7 @@ class QuasiStaticNewton {
   const TaylorHoodElements& solid_;
   std::vector<char> constrained_;
   ElementContact* contact_;
+  const EnclosedFluid* fluid_;
   std::vector<ElementMass> masses_;  ///< empty until inertia was asked for
   MultifrontalLdlt factor_;
 };

@@ -22,12 +22,11 @@ int main(int argc, char** argv) {
       .shows_default();
   program.add_each("--set", options.settings,
                    "Another value for a key of the scene: --set needs.force_error=0.1");
-  program.add("--touches", options.touches, "Instants at which the truth of a solid is computed")
+  program.add("--touches", options.touches, "Instants at which the truth is computed")
       .range(1, 100)
       .shows_default();
-  program.flag(
-      "--verify", options.verify,
-      "Afterwards judge the choice for a solid by a truth on finer meshes, at other instants");
+  program.flag("--verify", options.verify,
+               "Afterwards judge the choice by a truth on finer meshes, at other instants");
   program.flag("--json", options.json, "Print JSON");
   program.add("--points", options.points, "Folder that shards share; what they left is used");
   std::string shard;

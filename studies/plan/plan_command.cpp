@@ -25,6 +25,7 @@
 #include "studies/plan/plan.h"
 #include "studies/plan/plan_report.h"
 #include "studies/plan/probe_paths.h"
+#include "studies/plan/standard.h"
 #include "studies/plan/verdict_store.h"
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
@@ -32,10 +33,6 @@
 
 namespace palpate::plan {
 namespace {
-
-bool is_solid(const scene::Scene& scene) {
-  return scene.needs.contents == scene::Needs::Contents::kSolid;
-}
 
 void check_plannable(const scene::Scene& scene) {
   const std::string file = scene.file.string();
@@ -66,145 +63,7 @@ void check_plannable(const scene::Scene& scene) {
                     "tetrahedra cannot be resampled",
                     file, i));
   }
-  if (is_solid(scene)) check_shapes(scene);
-}
-
-InputError untouched(const scene::Scene& scene, double seconds) {
-  return InputError(
-      fmt::format("{}: no probe touches the organ in the first {:g} s, so key 'needs.force_error' "
-                  "cannot be judged; give a longer --seconds",
-                  scene.file.string(), seconds));
-}
-
-/// A force error is of a force.
-void check_touched(const scene::Scene& scene, const Course& reference, double seconds) {
-  if (!scene.needs.force_error) return;
-  for (const auto& forces : reference.forces) {
-    for (const Vec3& force : forces) {
-      if (force.norm() > 0) return;
-    }
-  }
-  throw untouched(scene, seconds);
-}
-
-/// What candidates of one organ are judged by.
-struct Standard {
-  std::vector<Vec3> marks;
-  std::vector<double> held;       ///< of a solid: where its truth is known [s]
-  std::vector<TrueTouch> truths;  ///< of a solid
-  std::vector<scene::Region> touched;
-  double radius = 0;  ///< of the smallest probe [m]
-  Course reference;   ///< of a wall
-
-  Errors errors_of(const Course& course) const {
-    return truths.empty() ? compare(course, reference) : compare(course, truths);
-  }
-};
-
-/// Of springs on four times the nodes, and on twice, which say how far those may be off.
-void run_references(const scene::Scene& scene, const PlanOptions& options, std::ostream& log,
-                    const std::function<void()>& keep_going, Standard& standard) {
-  const auto run = [&](std::size_t part) {
-    auto candidate = reference_of(scene);
-    candidate.nodes /= part;
-    const auto changed = scene_with(scene, candidate);
-    return run_course(changed, scene::load_organ(changed.organs[0]), standard.marks,
-                      options.seconds, {}, keep_going);
-  };
-  log << "reference: " << reference_of(scene).name() << ", and a coarser one" << std::endl;
-  standard.reference = run(1);
-  const Course& reference = standard.reference;
-  if (reference.diverged) throw std::runtime_error("the reference diverged on this scene: no plan");
-  if (reference.contacts.truncated + reference.contacts.lost > 0) {
-    throw std::runtime_error("contacts of the reference were left out on this scene: no plan");
-  }
-  check_touched(scene, reference, options.seconds);
-  const Course coarser = run(2);
-  const Errors errors = compare(coarser, reference);
-  log << fmt::format(
-             "reference: {} nodes; a coarser one of {} differs by {:.1f}% of the force, {:.2g} mm "
-             "of "
-             "surface",
-             reference.node_count, coarser.node_count, 100 * errors.force, 1e3 * errors.surface)
-      << std::endl;
-}
-
-/// Where probes touch a solid.
-void find_places(const scene::Scene& scene, const PlanOptions& options, Standard& standard) {
-  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
-  if (paths.touching(options.touches).empty()) throw untouched(scene, options.seconds);
-  standard.touched = paths.regions();
-  standard.radius = paths.smallest_radius();
-}
-
-/// Equilibria of quadratic elements.
-/// @param fineness  see truth::Effort
-std::vector<TrueTouch> truths_at(const scene::Scene& scene, const ProbePaths& paths,
-                                 const std::vector<double>& times, const std::vector<Vec3>& marks,
-                                 double fineness, const std::function<void()>& keep_going) {
-  const auto body = truth::body_of(scene.organs[0]);
-  std::vector<std::optional<TrueTouch>> found(times.size());
-  runtime::WorkerTeam team(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
-  truth::run_all(team, times.size(), [&](std::size_t i) {
-    TrueTouch touch{times[i], {}, {}};
-    auto question = paths.question_at(times[i], touch.probes);
-    question.marks = marks;
-    const auto truths = truth::force_truth(body, question, {nullptr, fineness, keep_going});
-    if (truths.empty()) return;
-    touch.truth = truths[0];
-    found[i] = touch;
-  });
-  std::vector<TrueTouch> truths;
-  for (const auto& touch : found) {
-    if (touch) truths.push_back(*touch);
-  }
-  return truths;
-}
-
-/// At some of the poses in which probes touch.
-void find_truths(const scene::Scene& scene, const PlanOptions& options, std::ostream& log,
-                 const std::function<void()>& keep_going, Standard& standard) {
-  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
-  const auto times = paths.touching(options.touches);
-  log << fmt::format("truth: equilibria of quadratic elements at {} instants", times.size())
-      << std::endl;
-  standard.truths = truths_at(scene, paths, times, standard.marks, 1, keep_going);
-  for (const TrueTouch& touch : standard.truths) {
-    standard.held.push_back(touch.time);
-    log << fmt::format("  {:.2f} s:", touch.time);
-    for (std::size_t j = 0; j < touch.probes.size(); ++j) {
-      log << fmt::format(" {:.4g} ± {:.2g} N", touch.truth.forces[j].norm(), touch.truth.bars[j]);
-    }
-    log << fmt::format(", {} nodes", touch.truth.node_count) << std::endl;
-  }
-  if (standard.truths.empty()) {
-    throw std::runtime_error("no equilibrium was found where probes touch: no plan");
-  }
-  if (standard.truths.size() < times.size()) {
-    log << fmt::format("  none found at {} more", times.size() - standard.truths.size())
-        << std::endl;
-  }
-}
-
-/// The choice, run anew, against a truth on finer meshes at instants between those of the plan.
-/// @param scene  of one organ
-Verification verified(const scene::Scene& scene, const Candidate& chosen,
-                      const PlanOptions& options, const std::function<void()>& keep_going) {
-  constexpr double kFiner = 0.75;  // edges over those of the plan's truth
-  const ProbePaths paths(scene, scene::load_skin(scene.organs[0]), options.seconds);
-  const auto planned = paths.touching(options.touches);
-  std::vector<double> times;
-  for (const double time : paths.touching(2 * options.touches + 1)) {
-    if (std::ranges::find(planned, time) == planned.end()) times.push_back(time);
-  }
-  const auto truths = truths_at(scene, paths, times, {}, kFiner, keep_going);
-  if (truths.empty()) throw std::runtime_error("no equilibrium was found to verify by");
-  times.clear();
-  for (const TrueTouch& touch : truths) times.push_back(touch.time);
-  const auto changed = scene_with(scene, chosen);
-  const Course course = run_course(changed, scene::load_organ(changed.organs[0]), {},
-                                   options.seconds, times, keep_going);
-  return {compare(course, truths), times.size()};
+  if (scene.needs.contents == scene::Needs::Contents::kSolid) check_shapes(scene);
 }
 
 /// What all organs' measurements share.
@@ -219,22 +78,17 @@ struct Sharing {
 std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& options,
                                  Sharing& sharing, std::ostream& log,
                                  const std::function<void()>& keep_going) {
-  Standard standard;
-  standard.marks = marks_on(scene::load_organ(scene.organs[0]).surface);
-  if (is_solid(scene)) find_places(scene, options, standard);
-  const auto candidates = candidates_of(scene, standard.touched, standard.radius);
+  Standard standard(scene, options);
+  const auto candidates = candidates_of(scene, standard.touched(), standard.radius());
   const std::string& organ = scene.organs[0].name;
-  bool is_known = false;
   std::map<std::size_t, StoredVerdict> measured;
   const auto measure = [&](std::size_t i) {
-    if (!std::exchange(is_known, true)) {
-      (is_solid(scene) ? find_truths : run_references)(scene, options, log, keep_going, standard);
-    }
+    standard.find(log, keep_going);
     log << fmt::format("{} of {}: {}", i + 1, candidates.size(), candidates[i].name()) << std::endl;
     const auto candidate_scene = scene_with(scene, candidates[i]);
     const auto shape = scene::load_organ(candidate_scene.organs[0]);
-    const Course course = run_course(candidate_scene, shape, standard.marks, options.seconds,
-                                     standard.held, keep_going);
+    const Course course = run_course(candidate_scene, shape, standard.marks(), options.seconds,
+                                     standard.held(), keep_going);
     measured[i] = {judge(scene.needs, candidates[i], course, standard.errors_of(course)),
                    report::machine_name()};
     if (options.shard) sharing.store.write(organ, measured[i]);
@@ -349,11 +203,11 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       }
       write_whole_file(file, scene::resolved_text(planned));
     }
-    for (std::size_t i = 0; options.verify && is_met && is_solid(scene) && i < plans.size(); ++i) {
+    for (std::size_t i = 0; options.verify && is_met && i < plans.size(); ++i) {
+      if (plans[i].chosen->errors.force_bar == 0) continue;  // not judged by truth
       scene::Scene alone = scene;
       alone.organs = {scene.organs[i]};
-      log << "verifying: a finer truth, at other instants" << std::endl;
-      plans[i].verification = verified(alone, plans[i].chosen->candidate, options, keep_going);
+      plans[i].verification = verified(alone, plans[i].chosen->candidate, options, log, keep_going);
     }
     options.json ? print_json(plans, sharing.machines, file, out)
                  : print_text(scene, plans, sharing.machines, file, out);

@@ -17,9 +17,9 @@ struct PlanOptions {
   double seconds = 6;         ///< of the scene, from its start
   std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
   bool json = false;                       ///< the verdicts as JSON
-  std::size_t touches = 6;                 ///< instants at which a solid's truth is computed
-  bool verify = false;  ///< judges the choice for a solid by a finer truth at other instants
-  std::filesystem::path points = {};        ///< folder of verdicts that shards left; empty: none
+  std::size_t touches = 6;                 ///< instants at which the truth is computed
+  bool verify = false;                     ///< judges the choice by a finer truth at other instants
+  std::filesystem::path points = {};       ///< folder of verdicts that shards left; empty: none
   std::optional<report::Shard> shard = {};  ///< judges candidates that no other run does
 };
 

@@ -4,15 +4,12 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ostream>
 
 namespace palpate::plan {
 namespace {
-
-bool of_solid(const scene::Scene& scene) {
-  return scene.needs.contents == scene::Needs::Contents::kSolid;
-}
 
 std::string machines_text(const std::set<std::string>& machines) {
   return fmt::format("{}", fmt::join(machines, "; "));
@@ -39,7 +36,7 @@ std::string why_not(const Verdict& verdict, const Verdict* chosen) {
                                  : fmt::format("{:.2f} times the load of the choice", ratio);
 }
 
-void print(const OrganPlan& plan, bool solid, std::ostream& out) {
+void print(const OrganPlan& plan, bool by_truth, std::ostream& out) {
   out << fmt::format("{:<62} {:>7} {:>7} {:>14} {:>11} {:>9}  {}\n", "candidate", "nodes", "load",
                      "force", "surface[mm]", "volume", "why not");
   for (const Verdict& v : plan.verdicts) {
@@ -49,7 +46,7 @@ void print(const OrganPlan& plan, bool solid, std::ostream& out) {
                        v.node_count, 100 * v.total_load,
                        percent(v.errors.force, v.errors.force_bar), 1e3 * v.errors.surface,
                        v.errors.volume, why);
-    if (solid && std::isfinite(v.errors.force)) {
+    if (by_truth && std::isfinite(v.errors.force)) {
       out << "    " << text_of(v.errors.feel) << '\n';
     }
   }
@@ -115,13 +112,17 @@ void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>
 void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
                 const std::set<std::string>& machines, const std::filesystem::path& written,
                 std::ostream& out) {
+  const bool by_truth = std::ranges::any_of(plans, [](const OrganPlan& plan) {
+    return std::ranges::any_of(plan.verdicts,
+                               [](const Verdict& v) { return v.errors.force_bar > 0; });
+  });
   for (const OrganPlan& plan : plans) {
     if (plans.size() > 1) out << "\norgan '" << plan.name << "'\n";
-    print(plan, of_solid(scene), out);
+    print(plan, by_truth, out);
   }
   out << "load: of one core; force: RMS difference from the "
-      << (of_solid(scene) ? "truth, along it, over its RMS, and how far that may be off; on "
-                          : "reference over its RMS; on ")
+      << (by_truth ? "truth, along it, over its RMS, and how far that may be off; on "
+                   : "reference over its RMS; on ")
       << machines_text(machines) << '\n';
   if (written.empty()) {
     out << "\nnothing meets the needs. What would:\n";
@@ -132,7 +133,7 @@ void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
   }
   for (const OrganPlan& plan : plans) {
     print_margins(scene.needs, *plan.chosen, out);
-    if (!of_solid(scene)) continue;
+    if (!by_truth) continue;
     out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
     if (plan.verification) {
       const Errors& found = plan.verification->errors;

@@ -19,12 +19,19 @@ geometry::RoundedSegment moved(const geometry::RoundedSegment& probe, const Vec3
   return {probe.a + by, probe.b + by, probe.radius};
 }
 
+bool has_known_shape(const scene::Probe& probe) {
+  return std::holds_alternative<geometry::RoundedSegment>(scene::form_of(probe.shape));
+}
+
 }  // namespace
+
+bool has_known_shapes(const scene::Scene& scene) {
+  return std::ranges::all_of(scene.probes, has_known_shape);
+}
 
 void check_shapes(const scene::Scene& scene) {
   for (std::size_t i = 0; i < scene.probes.size(); ++i) {
-    const auto form = scene::form_of(scene.probes[i].shape);
-    if (std::holds_alternative<geometry::RoundedSegment>(form)) continue;
+    if (has_known_shape(scene.probes[i])) continue;
     throw InputError(
         fmt::format("{}: key 'probes[{}].shape': of a solid the truth is known under spheres and "
                     "capsules only",

@@ -38,7 +38,9 @@ class ProbePaths {
   std::vector<std::vector<Pose>> poses_;         ///< per probe, at kRate
 };
 
-/// @throws InputError naming the probe whose shape the truth does not know
+/// Whether the truth knows the shapes of all probes: spheres and capsules.
+bool has_known_shapes(const scene::Scene& scene);
+/// @throws InputError naming the probe of which it does not
 void check_shapes(const scene::Scene& scene);
 
 }  // namespace palpate::plan

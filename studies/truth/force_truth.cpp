@@ -12,6 +12,7 @@
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/assets.h"
+#include "studies/truth/wall_mesh.h"
 
 namespace palpate::truth {
 namespace {
@@ -126,6 +127,15 @@ Body body_of(const scene::Organ& organ) {
   return {std::move(mesh),
           {organ.tissue.youngs_modulus, organ.solid.poisson_ratio},
           [organ](const Vec3& x) { return deformation::is_fixed(organ, x); }};
+}
+
+Body wall_of(const scene::Organ& organ, std::size_t* thinned) {
+  auto wall = wall_under(scene::load_skin(organ), organ.tissue.wall_thickness);
+  if (thinned) *thinned = wall.thinned;
+  return {std::move(wall.mesh),
+          {organ.tissue.youngs_modulus, 0.5},
+          [organ](const Vec3& x) { return deformation::is_fixed(organ, x); },
+          true};
 }
 
 Extrapolated extrapolated(const Vec3& coarse, const Vec3& fine) {

@@ -1,6 +1,6 @@
-// The force that a solid organ exerts on rigid probes at rest, with an error bar: equilibria of
-// quadratic elements on two nested meshes, extrapolated. It shares nothing with what it judges but
-// the organ's shape, tissue and fixed part.
+// The force that an organ, a solid or a wall filled with fluid, exerts on rigid probes at rest,
+// with an error bar: equilibria of quadratic elements on two nested meshes, extrapolated. It shares
+// nothing with what it judges but the organ's shape, tissue and fixed part.
 //   L. Richardson, "The deferred approach to the limit", Phil. Trans. R. Soc. A 226, 1927
 #pragma once
 
@@ -17,6 +17,12 @@ namespace palpate::truth {
 /// the surface's triangles, or its own tetrahedra.
 /// @throws InputError as scene::load_skin(), or if gmsh is missing
 Body body_of(const scene::Organ& organ);
+
+/// The organ as a wall of its tissue, incompressible, `wall_thickness` thick under its surface and
+/// filled with incompressible fluid, in W.
+/// @param thinned  if not null: nodes where it is thinner, see wall_under()
+/// @throws InputError as scene::load_skin() and wall_under()
+Body wall_of(const scene::Organ& organ, std::size_t* thinned = nullptr);
 
 struct Question {
   Station free;                   ///< where the probes touch nothing

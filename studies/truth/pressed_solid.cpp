@@ -51,7 +51,9 @@ std::vector<char> constrained_nodes(const geometry::TetMesh& mesh, const Body& b
   return constrained;
 }
 
+/// @param cavity  faces that no probe touches, rising
 std::vector<std::uint32_t> faces_near(const TaylorHoodElements& solid,
+                                      const std::vector<std::uint32_t>& cavity,
                                       const std::vector<Station>& stations) {
   const auto& mesh = solid.mesh();
   const auto is_near = [&](const Vec3& x) {
@@ -64,11 +66,18 @@ std::vector<std::uint32_t> faces_near(const TaylorHoodElements& solid,
   };
   std::vector<std::uint32_t> near;
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    if (std::ranges::binary_search(cavity, f)) continue;
     bool any = false;
     for (int k = 0; k < 3; ++k) any = any || is_near(mesh.nodes[mesh.face_node(mesh.faces[f], k)]);
     if (any) near.push_back(f);
   }
   return near;
+}
+
+std::optional<deformation::EnclosedFluid> fluid_in(const TaylorHoodElements& solid,
+                                                   const std::vector<std::uint32_t>& cavity) {
+  if (cavity.empty()) return {};
+  return deformation::EnclosedFluid(solid, cavity);
 }
 
 std::vector<deformation::Obstacle> obstacles_at(const Station& station) {
@@ -144,18 +153,20 @@ std::vector<Vec3> displacements_at(const std::vector<Vec3>& marks, const TaylorH
 }
 
 PressedSolid::PressedSolid(TaylorHoodElements solid, std::vector<char> constrained,
-                           const std::vector<Station>& stations)
+                           const std::vector<Station>& stations, bool is_filled)
     : solid_(std::move(solid)),
-      contact_(solid_, faces_near(solid_, stations),
+      cavity_(is_filled ? deformation::cavity_faces(solid_.mesh()) : std::vector<std::uint32_t>{}),
+      contact_(solid_, faces_near(solid_, cavity_, stations),
                kPenaltyRatio * 3 * solid_.tissue().shear_modulus() / smallest_radius(stations)),
+      fluid_(fluid_in(solid_, cavity_)),
       constrained_(std::move(constrained)),
-      solver_(solid_, constrained_, &contact_),
+      solver_(solid_, constrained_, &contact_, fluid_ ? &*fluid_ : nullptr),
       radius_(smallest_radius(stations)) {}
 
 PressedSolid::PressedSolid(const geometry::TetMesh& mesh, const Body& body,
                            const std::vector<Station>& stations)
     : PressedSolid({deformation::make_quadratic(mesh), body.tissue, kAnyDensity},
-                   constrained_nodes(mesh, body), stations) {}
+                   constrained_nodes(mesh, body), stations, body.is_filled) {}
 
 bool PressedSolid::press(const Station& from, const Station& to, SolidState& state,
                          const std::function<void()>& keep_going) {
@@ -172,6 +183,7 @@ bool PressedSolid::press(const Station& from, const Station& to, SolidState& sta
       found.positions[i] += beyond * (state.positions[i] - before.positions[i]);
     }
     found.pressures += beyond * (state.pressures - before.pressures);
+    found.fluid_pressure += beyond * (state.fluid_pressure - before.fluid_pressure);
     auto report = solver_.solve(found, {}, kOnTheWay);
     if (!report.converged && beyond > 0) {
       found = state;
@@ -209,6 +221,7 @@ Equilibrium PressedSolid::equilibrium(const SolidState& state,
 SolidState PressedSolid::refined(const PressedSolid& coarser, const SolidState& state) const {
   const auto &fine = solid_.mesh(), &coarse = coarser.solid_.mesh();
   SolidState result = rest_state();
+  result.fluid_pressure = state.fluid_pressure;
   std::vector<Eigen::Matrix4d> to_barycentric;
   for (const auto& element : coarse.elements) {
     Eigen::Matrix4d corners = Eigen::Matrix4d::Ones();

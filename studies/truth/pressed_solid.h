@@ -1,7 +1,9 @@
-// One mesh of a solid organ at rest under rigid probes without friction, by quadratic elements.
+// One mesh of an organ at rest under rigid probes without friction, by quadratic elements: of a
+// solid or of a wall that is filled with fluid.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "deformation/contact/rigid_contact.h"
@@ -15,6 +17,7 @@ struct Body {
   geometry::TetMesh mesh;  ///< in W [m]
   deformation::ElasticConstants tissue;
   std::function<bool(const Vec3&)> is_fixed;  ///< of a place at rest
+  bool is_filled = false;                     ///< its cavities, with one incompressible fluid
 };
 
 /// The probes, in W.
@@ -38,7 +41,7 @@ class PressedSolid {
                const std::vector<Station>& stations);
   /// @param constrained  as QuasiStaticNewton
   PressedSolid(deformation::TaylorHoodElements solid, std::vector<char> constrained,
-               const std::vector<Station>& stations);
+               const std::vector<Station>& stations, bool is_filled = false);
   PressedSolid(const PressedSolid&) = delete;
   PressedSolid& operator=(const PressedSolid&) = delete;
 
@@ -67,7 +70,9 @@ class PressedSolid {
 
  private:
   deformation::TaylorHoodElements solid_;
+  std::vector<std::uint32_t> cavity_;  ///< faces that fluid touches
   deformation::RigidContact contact_;
+  std::optional<deformation::EnclosedFluid> fluid_;
   std::vector<char> constrained_;  ///< per coordinate
   deformation::QuasiStaticNewton solver_;
   double radius_;  ///< of the smallest probe [m]

@@ -52,6 +52,7 @@ TEST_CASE("plan command: shards judge each candidate once, and a run afterwards 
   const chart::testing::WorkFolder folder;
   PlanOptions options;
   options.seconds = 0.3;
+  options.touches = 1;
   options.json = true;
   options.scene = write_scene(folder.path, "needs: {surface_error_m: 0.1, step_hz: 50}\n", "", 120);
   std::ostringstream alone, merged, log, nothing, told;
@@ -86,15 +87,17 @@ TEST_CASE("plan command: it writes a scene that can be read, or says what would 
   const chart::testing::WorkFolder folder;
   PlanOptions options;
   options.seconds = 0.5;
-  options.scene = write_scene(folder.path, "needs: {force_error: 5, step_hz: 50}\n");
+  options.touches = 1;
+  options.scene =
+      write_scene(folder.path, "needs: {force_error: 5, step_hz: 50}\n", "", 80, "0.060", 0.014);
   std::ostringstream out, log;
   REQUIRE(run_plan(options, out, log) == kExitDone);
   const auto planned = scene::load_scene(folder.path / "scene.planned.yaml");
   CHECK_THAT(out.str(), Catch::Contains(std::to_string(planned.organs[0].mesh.nodes) + " nodes"));
   CHECK(planned.rates.deformation >= 50);
   CHECK_THAT(log.str(),
-             Catch::Matches("(.|\\n)*reference: [0-9]+ nodes; a coarser one of [0-9]+ differs"
-                            " by [0-9.]+% of the force(.|\\n)*"));
+             Catch::Matches("(.|\\n)*truth: (.|\\n)*of a wall [0-9.]+ mm thick(.|\\n)*"
+                            "1 of 1: [0-9.]+ s: [0-9.e-]+ ± [0-9.e-]+ N, [0-9]+ nodes\n(.|\\n)*"));
 
   std::ofstream(options.scene, std::ios::app) << "\n";
   const chart::testing::WorkFolder strict;
