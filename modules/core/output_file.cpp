@@ -14,8 +14,10 @@ std::string why_not_writable(const std::filesystem::path& file) {
   std::error_code none;
   if (!std::filesystem::is_directory(folder, none)) return "there is no folder " + folder.string();
   if (std::filesystem::is_directory(file, none)) return "it is a folder";
-  const bool is_there = std::filesystem::exists(std::filesystem::symlink_status(file, none));
-  if (is_there) return ::access(file.c_str(), W_OK) == 0 ? "" : "it may not be written to";
+  const auto there = std::filesystem::symlink_status(file, none);
+  if (there.type() == std::filesystem::file_type::none) return none.message();  // a name too long
+  const bool is_there = std::filesystem::exists(there);
+  if (is_there && ::access(file.c_str(), W_OK) != 0) return "it may not be written to";
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return "";
   return "the folder " + folder.string() + " may not be written to";
 }

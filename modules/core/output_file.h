@@ -7,7 +7,8 @@
 
 namespace palpate {
 
-/// Why it cannot: its folder is missing or closed to us, or it is there, and is a folder or closed;
+/// Why it cannot: its folder is missing or closed to us (what is written whole comes to be beside
+/// its place), or it is there, and is a folder or closed;
 /// empty if it can.
 std::string why_not_writable(const std::filesystem::path& file);
 

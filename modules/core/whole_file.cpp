@@ -27,6 +27,9 @@ void remove_parts_and_end(int signal) {
   std::raise(signal);  // delivered when this returns
 }
 
+/// Of a file's name, in that of what is beside it: the longest that may be is 255 bytes.
+constexpr std::size_t kPartOfName = 160;
+
 /// Those that would end the process at once. Whoever heeds them comes to the destructors.
 void heed_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -65,7 +68,8 @@ FileInTheMaking::FileInTheMaking(const std::filesystem::path& file)
   if (std::filesystem::exists(file_, none) && !std::filesystem::is_regular_file(file_, none)) {
     throw InputError(file.string() + ": cannot be written: it is there and no regular file");
   }
-  part_ += "." + process_word() + ".part";
+  part_.replace_filename(file_.filename().string().substr(0, kPartOfName) + "." + process_word() +
+                         ".part");
   if (const std::string why = why_not_writable(part_); !why.empty()) {
     throw InputError(file.string() + ": cannot be written: " + why);
   }

@@ -80,7 +80,8 @@ foxglove::Entity entity_of(const HapticForce& force, const Vec3& origin) {
 
 class Export {
  public:
-  explicit Export(const std::filesystem::path& file) : writer_(file) {}
+  Export(const std::filesystem::path& file, const std::filesystem::path& named)
+      : writer_(file, named) {}
 
   void begin(const McapMap& session) {
     if (!session.empty()) writer_.add_metadata({kSessionMetadata, session});
@@ -229,7 +230,7 @@ FoxgloveReport export_to_foxglove(const std::filesystem::path& recording,
     throw InputError(file.string() + ": is there already; a translation replaces nothing");
   }
   FileInTheMaking making(file);
-  Export translation(making.part());
+  Export translation(making.part(), file);
   translation.begin(reader.metadata(kSessionMetadata));
   for (; sample; sample = reader.next()) {
     translation.add(*sample, reader.about_channel(sample->channel));

@@ -57,7 +57,8 @@ void check_recording_target(const std::filesystem::path& file) {
   refuse_to_replace_what_is_no_recording(file);
 }
 
-McapWriter::McapWriter(const std::filesystem::path& file) : file_(file) {
+McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem::path& named)
+    : named_(named) {
   refuse_to_replace_what_is_no_recording(file);
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("open", errno);
@@ -72,7 +73,7 @@ McapWriter::McapWriter(const std::filesystem::path& file) : file_(file) {
 void McapWriter::empty() {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(descriptor_);
-    throw InputError(file_.string() + ": another program is writing it");
+    throw InputError(named_.string() + ": another program is writing it");
   }
   if (::ftruncate(descriptor_, 0) != 0) fail("empty", errno);
 }
@@ -226,7 +227,7 @@ void McapWriter::append_summary() {
 }
 
 void McapWriter::fail(const char* doing, int system_error) const {
-  throw std::runtime_error(file_.string() + ": cannot " + doing + ": " +
+  throw std::runtime_error(named_.string() + ": cannot " + doing + ": " +
                            std::generic_category().message(system_error));
 }
 

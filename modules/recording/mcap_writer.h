@@ -23,7 +23,9 @@ class McapWriter {
  public:
   /// Replaces an existing recording. @throws InputError if the file holds something else;
   /// std::runtime_error naming the file and the system's reason
-  explicit McapWriter(const std::filesystem::path& file);
+  /// @param named  what errors call it: of a file in the making the one that it will be
+  explicit McapWriter(const std::filesystem::path& file, const std::filesystem::path& named);
+  explicit McapWriter(const std::filesystem::path& file) : McapWriter(file, file) {}
   /// Without close() the file stays as a killed writer leaves it.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
@@ -56,7 +58,7 @@ class McapWriter {
   void append_summary();
   [[noreturn]] void fail(const char* doing, int system_error) const;
 
-  std::filesystem::path file_;
+  std::filesystem::path named_;
   int descriptor_ = -1;
   std::uint64_t offset_ = 0;
   std::vector<std::uint8_t> pending_;

@@ -17,7 +17,8 @@ constexpr std::uint32_t kMostIds = 0xFFFF;
 /// Puts records into a file that numbers schemas and channels itself.
 class Copy {
  public:
-  explicit Copy(const std::filesystem::path& file) : writer_(file) {}
+  Copy(const std::filesystem::path& file, const std::filesystem::path& named)
+      : writer_(file, named) {}
 
   /// The numbers of its schemas and channels are its own.
   void begin_part() {
@@ -109,7 +110,7 @@ RepairReport repair(const std::filesystem::path& damaged, const std::filesystem:
   }
   check_recording_target(repaired);
   FileInTheMaking making(repaired);
-  Copy copy(making.part());
+  Copy copy(making.part(), repaired);
   for (const auto& part : parts) {
     McapReader reader(part, McapDamage::kSkip);
     copy.begin_part();

@@ -17,6 +17,7 @@ TEST_CASE("output file: what cannot be written is known before") {
   std::ofstream(folder / "old") << "x";
   CHECK(why_not_writable(folder / "old").empty());
   CHECK(why_not_writable(folder.path()) == "it is a folder");
+  CHECK(why_not_writable(folder / std::string(256, 'n')) == "File name too long");
   CHECK(why_not_writable(folder / "no/new") == "there is no folder " + at + "/no");
   CHECK(why_not_writable(folder / "old/new") == "there is no folder " + at + "/old");
   CHECK_FALSE(std::filesystem::exists(folder / "new"));

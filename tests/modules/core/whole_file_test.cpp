@@ -72,6 +72,15 @@ TEST_CASE("whole file: a link stays one, and what it names is replaced") {
   CHECK(text_in(file) == "new");
 }
 
+TEST_CASE("whole file: a name as long as one may be is written") {
+  // Oracle: the folder; Linux takes 255 bytes.
+  const ScratchFolder folder;
+  const auto file = folder / std::string(255, 'n');
+  write_whole_file(file, "new");
+  CHECK(text_in(file) == "new");
+  CHECK(folder.file_count() == 1);
+}
+
 TEST_CASE("whole file: where nothing can be written it says so") {
   // Oracle: the messages by hand.
   CHECK_THROWS_WITH(WholeFile("/nowhere/a.csv"),

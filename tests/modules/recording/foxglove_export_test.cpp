@@ -122,7 +122,7 @@ TEST_CASE("foxglove export: a full disk leaves nothing that would refuse the nex
   {
     const FileSizeLimit limit(600);
     CHECK_THROWS_WITH(export_to_foxglove(folder / "a.mcap", folder / "f.mcap"),
-                      Catch::Contains("cannot write"));
+                      Catch::StartsWith((folder / "f.mcap").string() + ": cannot write: "));
   }
   CHECK(folder.file_count() == 1);
   CHECK_NOTHROW(export_to_foxglove(folder / "a.mcap", folder / "f.mcap"));
