@@ -3,12 +3,12 @@
 #include <arpa/inet.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <optional>
 
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
+#include "modules/core/organ_limits.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/object_reader.h"
 #include "modules/scene/scene_tree.h"
@@ -103,8 +103,7 @@ std::string HostsFile::peers_of(const std::string& name) const {
 }
 
 HostsFile load_hosts(const std::filesystem::path& file) {
-  std::ifstream stream = open_input(file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::string text = read_input(file, kMaxTextBytes);
   const scene::Source source{file.string(), file.parent_path()};
   const YamlValue root{scene::parse_yaml(text, source), 1, "", &source};
   check_keys(root, {kFormatKey, "hosts"});

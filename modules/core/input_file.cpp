@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <iterator>
+
 #include "modules/core/error.h"
 
 namespace palpate {
@@ -33,6 +35,20 @@ std::ifstream open_input(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string() + ": may not be read");
   return stream;
+}
+
+void check_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+  open_input(file);
+  const std::uintmax_t bytes = std::filesystem::file_size(file);
+  if (bytes <= most_bytes) return;
+  throw InputError(file.string() + ": is " + std::to_string(bytes >> 20) +
+                   " MiB long; such a file may have " + std::to_string(most_bytes >> 20));
+}
+
+std::string read_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+  check_input(file, most_bytes);
+  std::ifstream stream = open_input(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 }  // namespace palpate

@@ -25,7 +25,7 @@ namespace {
 }
 
 void check_file(const std::filesystem::path& file) {
-  open_input(file);
+  check_input(file, kMaxMeshFileBytes);
   if (std::filesystem::file_size(file) == 0) refuse(file, "is empty");
 }
 

@@ -7,6 +7,8 @@
 
 namespace palpate::geometry {
 
+inline constexpr std::size_t kMaxMeshFileBytes = std::size_t{1} << 30;  ///< before it is resampled
+
 /// Reads any surface format assimp reads, merges all its meshes, triangulates, welds vertices at
 /// the same position, and scales to metres.
 /// @param unit  unit of the file's numbers, see metres_per_unit()

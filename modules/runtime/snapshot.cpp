@@ -21,6 +21,7 @@ namespace {
 // module remembers means something else; that it has other members, its fingerprints tell.
 constexpr std::string_view kWords = "palpate snapshot";
 constexpr int kFormat = 2;
+constexpr const char* kNoSnapshot = ": is no snapshot (palpate run --snapshot-at)";
 
 struct Contents {
   std::string scene, digest;
@@ -32,11 +33,20 @@ struct Contents {
 
 std::string first_line() { return std::string(kWords) + ' ' + std::to_string(kFormat); }
 
+bool begins_as_snapshot(const std::filesystem::path& file) {
+  std::string words(kWords.size(), ' ');
+  return std::ifstream(file, std::ios::binary).read(words.data(), std::ssize(words)) &&
+         words == kWords;
+}
+
 std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
   std::vector<std::uint8_t> bytes;
   std::ifstream stream;
   std::error_code none;
   if (std::filesystem::is_regular_file(file, none)) {  // a FIFO would be waited for
+    if (std::filesystem::file_size(file, none) > kWords.size() && !begins_as_snapshot(file)) {
+      throw InputError(file.string() + kNoSnapshot);  // however long it is
+    }
     stream.open(file, std::ios::binary);
     bytes.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   }
@@ -49,7 +59,7 @@ std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
                                       const std::filesystem::path& file) {
   const std::size_t begin = std::min(kWords.size(), bytes.size());
   if (std::memcmp(bytes.data(), kWords.data(), begin) != 0) {
-    throw InputError(file.string() + ": is no snapshot (palpate run --snapshot-at)");
+    throw InputError(file.string() + kNoSnapshot);
   }
   std::uint32_t crc = 0;
   const bool long_enough = bytes.size() >= kWords.size() + sizeof crc;
@@ -66,12 +76,6 @@ std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
                      ": another build took it");
   }
   return bytes.subspan(line.size() + 1, bytes.size() - line.size() - 1 - sizeof crc);
-}
-
-bool begins_as_snapshot(const std::filesystem::path& file) {
-  std::string words(kWords.size(), ' ');
-  return std::ifstream(file, std::ios::binary).read(words.data(), std::ssize(words)) &&
-         words == kWords;
 }
 
 }  // namespace

@@ -1,8 +1,5 @@
 #include "modules/scene/scene_reader.h"
 
-#include <fstream>
-#include <iterator>
-
 #include "modules/core/input_file.h"
 #include "modules/core/organ_limits.h"
 #include "modules/scene/object_reader.h"
@@ -53,9 +50,7 @@ void check_first_key(const YamlValue& root) {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
-  std::ifstream stream = open_input(file);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  return parse_scene(text, file);
+  return parse_scene(read_input(file, kMaxTextBytes), file);
 }
 
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {

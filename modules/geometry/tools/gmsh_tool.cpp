@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/organ_limits.h"
 #include "modules/core/stop_signal.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/geometry/gmsh_file.h"
+#include "modules/geometry/mesh_io.h"
 
 namespace palpate::geometry {
 namespace {
@@ -142,9 +144,8 @@ void refuse_too_many_nodes(const TriangleSurface& surface, double size) {
 TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(TemporaryFolder(), script); }
 
 TetMesh read_tetrahedra(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) {
-    throw InputError(file.string() + ": no such file");
-  }
+  check_input(file, kMaxMeshFileBytes);
+  if (std::filesystem::file_size(file) == 0) throw InputError(file.string() + ": is empty");
   if (is_msh_2(file)) return read_gmsh(file);
   try {
     return run_gmsh_with(TemporaryFolder(), {"-save_all", "-save", file.string()});

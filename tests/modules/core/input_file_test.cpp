@@ -22,6 +22,11 @@ TEST_CASE("input file: what is no file is told from one before it is opened") {
   CHECK_THROWS_WITH(open_input(folder.path()),
                     folder.path().string() + ": is a folder, not a file");
   CHECK_THROWS_AS(open_input(folder / "fifo"), InputError);
+  CHECK(read_input(folder / "file", 1) == "x");
+  std::filesystem::resize_file(folder / "file", (5u << 20) + 1);
+  CHECK_THROWS_WITH(read_input(folder / "file", 4u << 20),
+                    (folder / "file").string() + ": is 5 MiB long; such a file may have 4");
+  folder.write("file", "x");
   std::string word;
   CHECK((open_input(folder / "file") >> word && word == "x"));
 }
