@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
       "palpate-bench-empty-loop");
   return program.run(argc, argv, [] {
     const Realtime granted = request_realtime(kPriority, /*lock_memory=*/true);
-    const StopSignal stop;
+    const palpate::StopSignal stop;
     PeriodicLoop loop(kRateHz);
     std::int64_t waited_before_ns = waited_ns();
     std::uint64_t missed = 0, waiting = 0;
