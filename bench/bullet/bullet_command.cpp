@@ -292,7 +292,7 @@ int run_bullet(const BulletOptions& options, std::ostream& out, std::ostream& lo
     return kExitDone;
   } catch (const report::Stopped&) {
     log << "stopped" << std::endl;
-    return report::kExitStopped;
+    return kExitStopped;
   }
 }
 
