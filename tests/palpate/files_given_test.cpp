@@ -18,8 +18,8 @@ namespace {
 using Words = std::vector<std::string>;
 
 /// A sound scene, its mesh, a recording of it and things that are no files.
-struct Desk {
-  Desk() {
+struct GivenFiles {
+  GivenFiles() {
     REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
     REQUIRE(
         type("palpate", {"run", scene, "--in-process", "--duration", "0.05", "--record", recording})
@@ -35,23 +35,23 @@ struct Desk {
 
 TEST_CASE("files given: no option that reads one waits for a FIFO, or reads a device or a folder") {
   // Oracle: exit code 2 and the reason by hand. A FIFO that is opened would never be read.
-  const Desk desk;
+  const GivenFiles given;
   for (const auto& [file, why] : std::vector<std::pair<std::string, std::string>>{
-           {desk.fifo, "is a FIFO, not a file"},
+           {given.fifo, "is a FIFO, not a file"},
            {"/dev/zero", "is a device or socket, not a file"},
-           {desk.folder, "is a folder, not a file"}}) {
+           {given.folder, "is a folder, not a file"}}) {
     for (const Words& typed :
          std::vector<Words>{{"run", file},
-                            {"run", desk.scene, "--hosts", file, "--host", "a"},
+                            {"run", given.scene, "--hosts", file, "--host", "a"},
                             {"replay", file},
-                            {"replay", desk.recording, file},
+                            {"replay", given.recording, file},
                             {"inspect", file},
-                            {"diff", desk.recording, file},
-                            {"diff", file, desk.recording},
+                            {"diff", given.recording, file},
+                            {"diff", file, given.recording},
                             {"check", file},
-                            {"new", file, "-o", desk.folder + "/new.yaml"},
+                            {"new", file, "-o", given.folder + "/new.yaml"},
                             {"mesh", file},
-                            {"mesh", desk.mesh, "--near", file, "--radius-m", "0.01"},
+                            {"mesh", given.mesh, "--near", file, "--radius-m", "0.01"},
                             {"plan", file},
                             {"certify", file, "--lockstep"}}) {
       const auto outcome = type("palpate", typed);
@@ -64,17 +64,17 @@ TEST_CASE("files given: no option that reads one waits for a FIFO, or reads a de
 
 TEST_CASE("files given: nothing is written over what is something else, nor to a FIFO") {
   // Oracle: exit code 2, and the bytes of a scene.
-  const Desk desk;
-  const std::string before = text_in(desk.mesh);
-  for (const std::string& file : {desk.mesh, desk.fifo, std::string("/dev/null")}) {
+  const GivenFiles given;
+  const std::string before = text_in(given.mesh);
+  for (const std::string& file : {given.mesh, given.fifo, std::string("/dev/null")}) {
     for (const Words& typed : std::vector<Words>{
-             {"run", desk.scene, "--in-process", "--duration", "0.05", "--summary", file},
-             {"run", desk.scene, "--in-process", "--duration", "0.05", "--record", file},
-             {"inspect", desk.recording, "--repair", file},
-             {"inspect", desk.recording, "--foxglove", file},
-             {"inspect", desk.recording, "--csv", file},
-             {"diff", desk.recording, desk.recording, "--csv", file},
-             {"new", desk.mesh, "-o", file},
+             {"run", given.scene, "--in-process", "--duration", "0.05", "--summary", file},
+             {"run", given.scene, "--in-process", "--duration", "0.05", "--record", file},
+             {"inspect", given.recording, "--repair", file},
+             {"inspect", given.recording, "--foxglove", file},
+             {"inspect", given.recording, "--csv", file},
+             {"diff", given.recording, given.recording, "--csv", file},
+             {"new", given.mesh, "-o", file},
              {"keys", file},
              {"calibrate", "--quick", "--nodes", "162", "--csv", file},
              {"elements", "--quick", "-o", file},
@@ -84,14 +84,14 @@ TEST_CASE("files given: nothing is written over what is something else, nor to a
       CHECK(outcome.code == kExitBadInput);
     }
   }
-  CHECK(text_in(desk.mesh) == before);
+  CHECK(text_in(given.mesh) == before);
 }
 
 TEST_CASE("files given: a summary replaces a summary") {
   // Oracle: the text's beginning and the one file.
-  const Desk desk;
-  const std::string file = desk.folder + "/summary.txt";
-  const Words run{"run", desk.scene, "--in-process", "--duration", "0.05", "--summary", file};
+  const GivenFiles given;
+  const std::string file = given.folder + "/summary.txt";
+  const Words run{"run", given.scene, "--in-process", "--duration", "0.05", "--summary", file};
   REQUIRE(type("palpate", run).code == kExitDone);
   std::filesystem::resize_file(file, 20);
   REQUIRE(type("palpate", run).code == kExitDone);
@@ -101,9 +101,9 @@ TEST_CASE("files given: a summary replaces a summary") {
 
 TEST_CASE("files given: pictures without a visualizer are refused, not left out") {
   // Oracle: exit code 2 and both options' names.
-  const Desk desk;
+  const GivenFiles given;
   const auto outcome =
-      type("palpate", {"run", desk.scene, "--no-visualizer", "--frames", desk.folder});
+      type("palpate", {"run", given.scene, "--no-visualizer", "--frames", given.folder});
   CHECK(outcome.code == kExitBadInput);
   CHECK(outcome.said.find("--frames excludes --no-visualizer") != std::string::npos);
 }
