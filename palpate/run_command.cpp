@@ -282,6 +282,7 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   check_recording(options);
   check_snapshots(options);
   if (!options.summary.empty()) check_replaces_its_like(options.summary, "scene ", "summary");
+  if (!options.frames.empty()) make_writable_folder(options.frames, "--frames");
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const StopSignal stop;         // or a signal would leave the folder

@@ -42,7 +42,7 @@ void check_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {
   const std::uintmax_t bytes = std::filesystem::file_size(file);
   if (bytes <= most_bytes) return;
   throw InputError(file.string() + ": is " + std::to_string(bytes >> 20) +
-                   " MiB long; such a file may have " + std::to_string(most_bytes >> 20));
+                   " MiB long; such a file may have " + std::to_string(most_bytes >> 20) + " MiB");
 }
 
 std::string read_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {

@@ -1,4 +1,5 @@
-// A folder that vanishes with its owner.
+// A folder that vanishes with its owner, whatever signal comes: who works in it looks at
+// StopSignal.
 #pragma once
 
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+
+#include "modules/core/stop_signal.h"
 
 namespace palpate {
 
@@ -42,6 +45,7 @@ class TemporaryFolder {
   }
 
  private:
+  StopSignal stop_;  // outlives the folder
   std::filesystem::path path_;
 };
 

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 
 #include "modules/core/crc32.h"
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/core/output_file.h"
 #include "modules/core/state_archive.h"
+#include "modules/core/whole_file.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_reader.h"
 
@@ -21,6 +22,7 @@ namespace {
 // module remembers means something else; that it has other members, its fingerprints tell.
 constexpr std::string_view kWords = "palpate snapshot";
 constexpr int kFormat = 2;
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 constexpr const char* kNoSnapshot = ": is no snapshot (palpate run --snapshot-at)";
 
 struct Contents {
@@ -40,18 +42,13 @@ bool begins_as_snapshot(const std::filesystem::path& file) {
 }
 
 std::vector<std::uint8_t> bytes_of(const std::filesystem::path& file) {
-  std::vector<std::uint8_t> bytes;
-  std::ifstream stream;
-  std::error_code none;
-  if (std::filesystem::is_regular_file(file, none)) {  // a FIFO would be waited for
-    if (std::filesystem::file_size(file, none) > kWords.size() && !begins_as_snapshot(file)) {
-      throw InputError(file.string() + kNoSnapshot);  // however long it is
-    }
-    stream.open(file, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  open_input(file);
+  if (std::filesystem::file_size(file) > kWords.size() && !begins_as_snapshot(file)) {
+    throw InputError(file.string() + kNoSnapshot);  // however long it is
   }
-  if (!stream || bytes.empty()) throw InputError(file.string() + ": cannot be read, or is empty");
-  return bytes;
+  const std::string text = read_input(file, kMostBytes);
+  if (text.empty()) throw InputError(file.string() + ": is empty");
+  return {text.begin(), text.end()};
 }
 
 /// Between its first line and its CRC, which are right.
@@ -145,17 +142,7 @@ void write_snapshot(const std::filesystem::path& file, const scene::Scene& scene
   bytes.resize(bytes.size() + sizeof crc);
   std::memcpy(bytes.data() + bytes.size() - sizeof crc, &crc, sizeof crc);
 
-  std::filesystem::path part = file;
-  part += ".part";
-  std::ofstream stream(part, std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(bytes.data()),
-               static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  std::error_code error;
-  if (stream) std::filesystem::rename(part, file, error);
-  if (stream && !error) return;
-  std::filesystem::remove(part, error);
-  throw std::runtime_error(file.string() + ": the snapshot cannot be written");
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 Snapshot read_snapshot(const std::filesystem::path& file, const scene::Scene& scene) {

@@ -62,7 +62,7 @@ class TableReader {
     std::ifstream stream = open_input(config_.file);
     const double bytes = double(std::filesystem::file_size(config_.file));
     double read = 0;
-    for (std::string line; std::getline(stream, line);) {
+    for (std::string line; next_line(stream, line);) {
       if (++line_ == 1) drop_byte_order_mark(line);
       read += double(line.size() + 1);
       take(line);
@@ -75,6 +75,19 @@ class TableReader {
   }
 
  private:
+  /// Bounded: a long file may have no end of a line.
+  bool next_line(std::istream& stream, std::string& line) {
+    stream.getline(buffer_.data(), std::ssize(buffer_));
+    const std::streamsize count = stream.gcount();
+    if (stream.fail()) {
+      if (count + 1 < std::ssize(buffer_)) return false;
+      ++line_;
+      refuse("the line is longer than 64 KiB");
+    }
+    line.assign(buffer_.data(), static_cast<std::size_t>(stream.eof() ? count : count - 1));
+    return true;
+  }
+
   [[noreturn]] void refuse(const std::string& what) const {
     throw InputError(fmt::format("{}:{}: {}", config_.file.string(), line_, what));
   }
@@ -161,6 +174,7 @@ class TableReader {
   const Progress& progress_;
   double second_, metre_;
   PoseCollector poses_;
+  std::vector<char> buffer_ = std::vector<char>(1 << 16);  ///< a line
   std::size_t line_ = 0;
   char separator_ = ',';
   TableColumns columns_;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <ostream>
 #include <thread>
 #include <utility>
@@ -302,22 +303,24 @@ int run_certify(const CertifyOptions& options, const std::function<bool()>& stop
     if (stop()) throw report::Stopped{};
     claims.keep();
   };
-  Subject subject = load_subject(scene::scene_file(options.scene), keep_going);
-  subject.depth = options.depth;
-  subject.speed = options.speed;
-  report::make_out_folder(options.out);
-  Certifying certifying(options, std::move(subject), claims, keep_going, out, log);
+  std::optional<Certifying> certifying;
   try {
-    certifying.measure();
+    Subject subject = load_subject(scene::scene_file(options.scene), keep_going);
+    subject.depth = options.depth;
+    subject.speed = options.speed;
+    report::make_out_folder(options.out);
+    certifying.emplace(options, std::move(subject), claims, keep_going, out, log);
+    certifying->measure();
   } catch (const report::Stopped&) {
-    if (!options.shard) certifying.write();
+    if (!certifying) log << "stopped" << std::endl;
+    if (certifying && !options.shard) certifying->write();
     return kExitStopped;
   }
   if (options.shard) {
-    out << report::text_of(certifying.share(), *options.shard);
+    out << report::text_of(certifying->share(), *options.shard);
     return kExitDone;
   }
-  return certifying.write() ? kExitDone : kExitFailed;
+  return certifying->write() ? kExitDone : kExitFailed;
 }
 
 }  // namespace palpate::certify

@@ -9,6 +9,7 @@
 #include "modules/core/error.h"
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/tet_mesh.h"
+#include "modules/geometry/winding_number.h"
 
 namespace palpate::truth {
 namespace {
@@ -72,6 +73,18 @@ std::vector<std::uint32_t> faces_near(const TaylorHoodElements& solid,
     if (any) near.push_back(f);
   }
   return near;
+}
+
+std::vector<geometry::Triangle> skin_of(const TaylorHoodElements& solid,
+                                        const std::vector<std::uint32_t>& cavity) {
+  const auto& mesh = solid.mesh();
+  std::vector<geometry::Triangle> skin;
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    if (std::ranges::binary_search(cavity, f)) continue;
+    const auto& face = mesh.faces[f];
+    skin.push_back({mesh.face_node(face, 0), mesh.face_node(face, 1), mesh.face_node(face, 2)});
+  }
+  return skin;
 }
 
 std::optional<deformation::EnclosedFluid> fluid_in(const TaylorHoodElements& solid,
@@ -156,6 +169,7 @@ PressedSolid::PressedSolid(TaylorHoodElements solid, std::vector<char> constrain
                            const std::vector<Station>& stations, bool is_filled)
     : solid_(std::move(solid)),
       cavity_(is_filled ? deformation::cavity_faces(solid_.mesh()) : std::vector<std::uint32_t>{}),
+      skin_(skin_of(solid_, cavity_)),
       contact_(solid_, faces_near(solid_, cavity_, stations),
                kPenaltyRatio * 3 * solid_.tissue().shear_modulus() / smallest_radius(stations)),
       fluid_(fluid_in(solid_, cavity_)),
@@ -206,7 +220,17 @@ bool PressedSolid::settle(const Station& station, SolidState& state) {
   contact_.set_obstacles(obstacles_at(station));
   const deformation::NewtonGoal goal{kForceTolerance, kMostPenetration * radius_ / solid_.size(),
                                      true};
-  return solver_.solve(state, {}, goal).converged;
+  return solver_.solve(state, {}, goal).converged && !is_behind_skin(station, state);
+}
+
+/// Walls are thin, and only faces resist: a probe that came through one is felt no more.
+bool PressedSolid::is_behind_skin(const Station& station, const SolidState& state) const {
+  return std::ranges::any_of(station, [&](const geometry::RoundedSegment& probe) {
+    const Vec3 places[] = {probe.a, (probe.a + probe.b) / 2, probe.b};
+    return std::ranges::any_of(places, [&](const Vec3& place) {
+      return std::abs(geometry::winding_number(place, state.positions, skin_)) > 0.5;
+    });
+  });
 }
 
 Equilibrium PressedSolid::equilibrium(const SolidState& state,

@@ -55,7 +55,7 @@ class PressedSolid {
              const std::function<void()>& keep_going);
 
   /// The equilibrium under probes at `station`, from a state near it. @returns false if none is
-  /// found
+  /// found, or one that has a probe's core behind its skin
   bool settle(const Station& station, deformation::SolidState& state);
 
   /// Of the last equilibrium.
@@ -69,8 +69,11 @@ class PressedSolid {
   std::size_t node_count() const { return solid_.mesh().nodes.size(); }
 
  private:
+  bool is_behind_skin(const Station& station, const deformation::SolidState& state) const;
+
   deformation::TaylorHoodElements solid_;
-  std::vector<std::uint32_t> cavity_;  ///< faces that fluid touches
+  std::vector<std::uint32_t> cavity_;     ///< faces that fluid touches
+  std::vector<geometry::Triangle> skin_;  ///< all others, by their corners
   deformation::RigidContact contact_;
   std::optional<deformation::EnclosedFluid> fluid_;
   std::vector<char> constrained_;  ///< per coordinate

@@ -42,7 +42,7 @@ int run(std::vector<std::string> words, const std::filesystem::path& log) {
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  const StopSignal stop;  // or a signal would leave the folder
+  const StopSignal stop;
   const pid_t parent = ::getpid(), child = ::fork();
   if (child < 0) throw std::runtime_error(words[0] + ": cannot be started");
   if (child == 0) become(arguments.data(), log.c_str(), parent);
@@ -105,7 +105,9 @@ TetMesh run_gmsh_with(const TemporaryFolder& folder, std::vector<std::string> op
     throw InputError("gmsh: exit status " + std::to_string(status) + ": " + wrong);
   }
   try {
-    return read_gmsh(output);
+    TetMesh mesh = read_gmsh(output);
+    if (StopSignal().requested()) throw Interrupted("gmsh: interrupted");
+    return mesh;
   } catch (const InputError& error) {  // "/tmp/…/solid.msh:12: what": nobody knows that file
     const std::string text = error.what();
     throw InputError(text.substr(text.find(": ") + 2));
