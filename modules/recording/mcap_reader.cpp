@@ -40,8 +40,7 @@ bool is_used(std::uint8_t opcode) {
 }  // namespace
 
 McapReader::McapReader(const std::filesystem::path& file, McapDamage damage)
-    : file_(file), damage_(damage) {
-  stream_ = open_input(file);
+    : file_(file), damage_(damage), stream_(open_input(file)) {
   file_bytes_ = std::filesystem::file_size(file);
   std::array<std::uint8_t, kMcapMagic.size()> magic{};
   if (!read_bytes(magic.data(), magic.size()) || magic != kMcapMagic) {

@@ -50,6 +50,9 @@ void check_first_key(const YamlValue& root) {
 }  // namespace
 
 Scene load_scene(const std::filesystem::path& file) {
+  if (const std::string why = why_not_readable(file); !why.empty()) {
+    throw SceneError(file.string(), 0, "", why);
+  }
   return parse_scene(read_input(file, kMaxTextBytes), file);
 }
 
