@@ -25,7 +25,7 @@ TEST_CASE("input file: what is no file is told from one before it is opened") {
   CHECK(read_input(folder / "file", 1) == "x");
   std::filesystem::resize_file(folder / "file", (5u << 20) + 1);
   CHECK_THROWS_WITH(read_input(folder / "file", 4u << 20),
-                    (folder / "file").string() + ": is 5 MiB long; such a file may have 4");
+                    (folder / "file").string() + ": is 5 MiB long; such a file may have 4 MiB");
   folder.write("file", "x");
   std::string word;
   CHECK((open_input(folder / "file") >> word && word == "x"));
