@@ -33,7 +33,7 @@ class PacketSenders {
   /// Where a participant speaks from; nothing if it is not known.
   std::optional<PacketSender> sender_of(const GuidPrefix& participant) const;
 
-  static constexpr std::int64_t kSilence = 1'000'000'000;     ///< two announcements [ns]
+  static constexpr std::int64_t kSilence = 1'000'000'000;     ///< four announcements [ns]
   static constexpr std::int64_t kForgotten = 10'000'000'000;  ///< [ns]
   static constexpr std::size_t kMaxParticipants = 256;
 

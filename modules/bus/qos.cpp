@@ -90,8 +90,7 @@ void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolCo
   auto& discovery = wire.builtin.discovery_config;
   discovery.initial_announcements.count = 20;
   discovery.initial_announcements.period = milliseconds(50);
-  // Each goes to the ports of all that may be there.
-  discovery.leaseDuration_announcementperiod = milliseconds(500);
+  discovery.leaseDuration_announcementperiod = milliseconds(250);
   // Every remote participant is checked once per lease. A check that meets one just leaving aborts
   // the process (2.9.1: assertion in PDP::check_remote_participant_liveliness; leases of 3 ms show
   // it in seconds): so not while a session lasts. Nobody waits for the lease: a silent process is
