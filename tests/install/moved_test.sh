@@ -37,7 +37,7 @@ set -x
 "$palpate" run "$scene" --headless --session "moved-$$" --duration 1 --record run.mcap
 "$palpate" inspect run.mcap | grep node_positions
 "$palpate" chart --quick --case ball --model implicit_volume --no-peers -o chart
-"$palpate" plan "$scene" --seconds 3 -o planned.yaml
+"$palpate" plan "$scene" --seconds 3 --touches 1 -o planned.yaml
 "$palpate" check planned.yaml
 "$palpate" stability --quick --only squeeze --series mass_spring -o stability
 "$palpate" certify "$scene" --lockstep --quick -o certify || [ $? -eq 1 ]  # 1: a line failed
