@@ -135,5 +135,21 @@ TEST_CASE("wall: a small dent is resisted as a shell that bends, and softer for 
   CHECK(truths[0].bars[0] < 0.05 * low);
 }
 
+TEST_CASE("wall: where a probe came through it, nothing is at rest under the probe") {
+  // Oracle: the definition. Nothing touches the probe in either place, so that Newton's method ends
+  // at once and finds no force; the organ would push whoever is behind its skin.
+  const Body body{wall_under(geometry::make_ball(kRadius, 2), kThickness).mesh,
+                  {kYoungsModulus, 0.5},
+                  [](const Vec3& x) { return x.z() < -0.03; },
+                  true};
+  const auto at = [](double z) { return Station{{Vec3(0, 0, z), Vec3(0, 0, z), 8e-3}}; };
+  PressedSolid wall(body.mesh, body, {at(0.06), at(0.03)});
+  auto state = wall.rest_state();
+  CHECK(wall.settle(at(0.06), state));
+  CHECK(wall.equilibrium(state, {}).forces[0].isZero());
+  CHECK_FALSE(wall.settle(at(0.03), state));
+  CHECK(wall.equilibrium(state, {}).forces[0].isZero());
+}
+
 }  // namespace
 }  // namespace palpate::truth
