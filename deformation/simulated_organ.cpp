@@ -72,8 +72,10 @@ void SimulatedOrgan::exchange(StateArchive& archive) {
 }
 
 void SimulatedOrgan::change_mesh(std::unique_ptr<const OrganModel> model,
-                                 std::unique_ptr<OrganDynamics> dynamics, const Carry& carry) {
+                                 std::unique_ptr<OrganDynamics> dynamics, const Carry& carry,
+                                 const std::function<void(OrganState&)>& seat) {
   state_ = carry(state_);
+  seat(state_);
   last_good_ = carry(last_good_);
   auto detector = std::make_unique<DivergenceDetector>(*model, knows_energy_);
   detector->take_over(*detector_, state_);

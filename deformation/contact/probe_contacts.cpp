@@ -17,9 +17,6 @@ constexpr double kResting = 1e-6;
 /// two.
 constexpr double kSamePlace = 0.99;
 
-/// Between places along a core, which are else two radii apart.
-constexpr int kMostGaps = 24;
-
 std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
   return {contact.organ, contact.triangle};
 }
@@ -96,18 +93,6 @@ void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceT
   }
   std::ranges::stable_sort(contacts_, {}, triangle_of);
   if (core_) unite_contacts_of_triangles();
-}
-
-void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const {
-  const auto near = std::ranges::find(near_, organ, &Near::organ);
-  if (!core_ || near == near_.end() || near->inside) return;
-  const double length = (core_->b - core_->a).norm();
-  const int gaps = static_cast<int>(
-      std::min(static_cast<double>(kMostGaps), std::ceil(length / (2 * core_->radius))));
-  for (int i = 0; i <= gaps; ++i) {
-    const double at = gaps == 0 ? 0 : static_cast<double>(i) / gaps;
-    places.push_back(start_.to_world(core_->a + at * (core_->b - core_->a)));
-  }
 }
 
 /// Of a round probe there is one to a triangle; forces of several are its.
@@ -306,41 +291,6 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   if (!gentle_.empty() || !begun_.empty()) {
     be_gentle(organ, state, h, std::span(rows).subspan(first));
   }
-}
-
-bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
-                                 std::span<const Vec3> start, std::span<const Vec3> end, double h,
-                                 double fraction, std::vector<ContactRow>& rows) {
-  if (!may_cross(organ) || near_of(organ).inside) return false;
-  const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
-  take_seeds(near_of(organ));
-  // A core on its gentle way out may swing back in; it is not kept from it at a blow.
-  const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);
-  const bool gentle = out != gentle_.end() && out->core_was_inside();
-  bool crossed = false;
-  for (int end_of_core = 0; end_of_core < (core_->is_ball() ? 1 : 2); ++end_of_core) {
-    const Vec3& tip = end_of_core == 0 ? core_->a : core_->b;
-    const auto crossing =
-        surface.first_crossing(before.to_world(tip), after.to_world(tip), start, end, seeds_);
-    if (!crossing) continue;
-    crossed = true;
-    if (gentle) continue;
-    CarriedContact& contact = contact_on(organ, crossing->triangle);
-    contact.barycentric = crossing->weights;
-    contact.normal_P = after.rotation.conjugate() * crossing->normal;
-    contact.point_P = tip - core_->radius * contact.normal_P;
-    ContactRow row = row_of(contact, surface.body(), start, before, after, h);
-    if (contact.row == CarriedContact::kNoRow) {
-      contact.row = rows.size();
-      rows.push_back(row);
-    } else {
-      row.normal_impulse = rows[contact.row].normal_impulse;
-      row.tangential_impulse = rows[contact.row].tangential_impulse;
-      rows[contact.row] = row;
-    }
-  }
-  near_of(organ).crossed = crossed;
-  return crossed && !gentle;
 }
 
 std::size_t ProbeContacts::take_rows(std::uint32_t organ, double h,

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/core/rotation_vector.h"
 #include "tests/deformation/contact/touched_ball.h"
 
 namespace palpate::deformation {
@@ -214,6 +215,36 @@ TEST_CASE("probe contacts: a core that went through the wall gets a row where it
   REQUIRE(row != tip.rows.end());
   CHECK(row->gap == Approx(row->normal.z() * from - Tip::kRadius).margin(1e-6));
   CHECK(row->probe_velocity.z() == Approx((to - from) / kPeriod));
+  auto yielded = tip.organ.state.positions;
+  for (Vec3& x : yielded) x.z() += to - from;
+  CHECK_FALSE(tip.held(yielded));
+}
+
+TEST_CASE("probe contacts: a core that lies across the wall is held where its side would go in") {
+  // Oracle: geometry: of a rod over the top, both ends stay beyond the ball; the first it meets is
+  // the highest node, by an edge there. Held by nothing, brute force finds the core in the wall.
+  Tip tip;
+  scene::CapsuleShape rod{Tip::kRadius, 4 * testing::kBallRadius};
+  tip.probe = ProbeContacts({"rod", rod, 0, scene::ScriptedDevice{}});
+  const auto lay = [&](double height) {
+    tip.probe.set_pose({tip.above(height), rotation_between(Vec3::UnitZ(), Vec3(1, 0.3, 0))});
+  };
+  const double from = 4e-3, to = -3e-3;
+  lay(from);
+  tip.probe.begin(kPeriod);
+  tip.probe.end();
+  tip.probe.set_contacts(contacts_on({tip.one}, Vec3(Tip::kRadius, 0, 0), -Vec3::UnitX()));
+  lay(to);
+  tip.probe.begin(kPeriod);
+  tip.probe.append_rows(0, tip.organ.surface, tip.organ.state, kPeriod, 1.0, tip.rows);
+  REQUIRE(tip.held(tip.organ.state.positions));
+  const bool at_top = std::ranges::any_of(tip.rows, [&](const ContactRow& r) {
+    Vec3 tissue = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) tissue += r.weights[k] * tip.organ.state.positions[r.nodes[k]];
+    const double gap = r.normal.z() * from - Tip::kRadius;
+    return (tissue - tip.above(0)).norm() < 1e-6 && std::abs(r.gap - gap) < 1e-6;
+  });
+  CHECK(at_top);
   auto yielded = tip.organ.state.positions;
   for (Vec3& x : yielded) x.z() += to - from;
   CHECK_FALSE(tip.held(yielded));
