@@ -222,12 +222,18 @@ void ProbeContacts::look_around(std::uint32_t organ, SurfaceWalk& surface, const
   }
 }
 
-/// A probe that starts in a hurry reaches the wall before the next search does.
+/// A probe that starts in a hurry reaches the wall before the next search does, and another fold of
+/// the wall may have come nearer than what it is near.
 void ProbeContacts::watch_from_afar(std::uint32_t organ, SurfaceWalk& surface,
                                     const OrganState& state, const Pose& pose) {
   const Vec3 a = pose.to_world(core_->a), b = pose.to_world(core_->b);
-  const std::uint32_t node = surface.nearest_node(a, b, state.positions);
-  surface.find(a, b, state.positions, surface.around(node), 0, found_);
+  const auto seeds = surface.around(surface.nearest_node(a, b, state.positions));
+  if (knows(organ)) {
+    auto& triangles = near_of(organ).triangles;
+    triangles.insert(triangles.end(), seeds.begin(), seeds.end());
+    return;
+  }
+  surface.find(a, b, state.positions, seeds, 0, found_);
   const bool clear = std::ranges::all_of(found_, [&](const NearTriangle& found) {
     return found.pair.distance > core_->radius && found.facing > 0;
   });
@@ -275,7 +281,7 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   const std::size_t first = rows.size();
   const bool begins = fraction * period_ < 1.5 * h;
-  if (core_ && searched_ && begins && !has_contacts(organ) && !knows(organ)) {
+  if (core_ && searched_ && begins && !has_contacts(organ)) {
     watch_from_afar(organ, surface, state, before);
   }
   if (!has_contacts(organ) && !knows(organ)) return;

@@ -119,7 +119,7 @@ class ProbeContacts {
   };
   Near& near_of(std::uint32_t organ);
   void take_seeds(const Near& near);
-  /// Where the probe is clear of an organ that searches found out of reach.
+  /// Where the probe is clear of an organ that searches found out of reach: what is nearest there.
   void watch_from_afar(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                        const Pose& pose);
   /// Looks around the core; what it touches and has no contact gets one.

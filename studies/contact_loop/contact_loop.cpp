@@ -185,7 +185,7 @@ class Judge {
   std::deque<std::shared_ptr<const SurfaceTopology>> meshes_;
   Contacts newest_;
   ContactModel law_;
-  bool was_inside_ = false;
+  bool was_inside_ = true;  ///< a tool that begins inside has crossed nothing
   double lost_since_ = -1;
 };
 
