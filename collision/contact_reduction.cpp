@@ -197,6 +197,35 @@ void take_faces(std::vector<FoundContact>& found, const ContactLimits& limits, C
   found.erase(kept, found.end());
 }
 
+/// Of what a message must hold, what touches and of each place on the tissue the nearest come
+/// first, then the nearest of the others.
+/// @returns whether it must hold more than `most`
+bool keep_nearest(std::vector<FoundContact>& found, std::size_t most) {
+  if (found.size() <= most) return false;
+  std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
+    return std::tuple_cat(std::tie(a.organ, a.feature), deepest_first(a)) <
+           std::tuple_cat(std::tie(b.organ, b.feature), deepest_first(b));
+  });
+  std::vector<FoundContact> others;
+  std::size_t needed = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool is_nearest = needed == 0 || found[needed - 1].organ != found[i].organ ||
+                            found[needed - 1].feature != found[i].feature;
+    if (is_nearest || found[i].gap <= 0) {
+      found[needed++] = found[i];
+    } else {
+      others.push_back(found[i]);
+    }
+  }
+  found.resize(needed);
+  if (needed <= most) found.insert(found.end(), others.begin(), others.end());
+  const std::size_t settled = needed <= most ? needed : 0;
+  const auto at = [&](std::size_t i) { return found.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(settled), at(most), found.end(), deeper);
+  found.resize(most);
+  return needed > most;
+}
+
 }  // namespace
 
 void append_contact(FoundContact contact, const geometry::Triangle& nodes,
@@ -225,12 +254,7 @@ void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const Cont
     merge_duplicates(found);
     take_faces(found, limits, result);
   }
-  result.truncated = found.size() > limits.contacts;
-  if (result.truncated) {
-    std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(limits.contacts),
-                     found.end(), deeper);
-    found.resize(limits.contacts);
-  }
+  result.truncated = keep_nearest(found, limits.contacts);
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.triangle), order_within(a)) <
            std::tuple_cat(std::tie(b.organ, b.triangle), order_within(b));

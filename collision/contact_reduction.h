@@ -39,8 +39,10 @@ inline constexpr std::size_t kThinnedDeepest = 128, kThinnedCells = 4;
 /// The same place and normal found twice (over triangles that share it) becomes one contact, of the
 /// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others
 /// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more
-/// than `limits.contacts` the deepest are kept and result.truncated says so. Writes them into
-/// result.
+/// than `limits.contacts`, as of a sharp probe in a hurry, which may come to far more than it will,
+/// what does not touch is left out where another contact of the same place is nearer, the farthest
+/// first. Where that is not enough the deepest are kept and result.truncated says so. Writes them
+/// into result.
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
                      ContactSet& result);
 

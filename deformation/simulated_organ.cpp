@@ -72,8 +72,10 @@ void SimulatedOrgan::exchange(StateArchive& archive) {
 }
 
 void SimulatedOrgan::change_mesh(std::unique_ptr<const OrganModel> model,
-                                 std::unique_ptr<OrganDynamics> dynamics, const Carry& carry) {
+                                 std::unique_ptr<OrganDynamics> dynamics, const Carry& carry,
+                                 const std::function<void(OrganState&)>& seat) {
   state_ = carry(state_);
+  seat(state_);
   last_good_ = carry(last_good_);
   auto detector = std::make_unique<DivergenceDetector>(*model, knows_energy_);
   detector->take_over(*detector_, state_);
@@ -100,12 +102,15 @@ bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
   const TargetVolume target_start = target_volume_;
   const double target_before = begin_step(time, h, rows);
   const double target = state_.target_volume;
+  const int unsolved_before = report.contacts_unsolved;
+  bool is_held = true;
   StepReport stepped = dynamics_->step(h, rows, state_);
   for (int revision = 0; revise(start_, state_); ++revision) {
-    if (revision == kMostRevisions && last_resort) break;
+    is_held = revision < kMostRevisions;
+    if (!is_held && last_resort) break;
     state_ = start_;
     started_.give(rows);
-    if (revision == kMostRevisions) {
+    if (!is_held) {
       target_volume_ = target_start;
       return false;
     }
@@ -114,6 +119,7 @@ bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
     stepped = dynamics_->step(h, rows, state_);
   }
   end_step(h, rows, target_before, stepped, report);
+  if (!is_held) report.contacts_unsolved = unsolved_before + 1;
   return true;
 }
 

@@ -66,8 +66,9 @@ class SimulatedOrgan {
   using Carry = std::function<OrganState(const OrganState&)>;
   /// Goes on as the same organ on another mesh; guards do, too.
   /// @param carry  a state from the model it has to `model`
+  /// @param seat   moves the state it goes on from, there
   void change_mesh(std::unique_ptr<const OrganModel> model, std::unique_ptr<OrganDynamics> dynamics,
-                   const Carry& carry);
+                   const Carry& carry, const std::function<void(OrganState&)>& seat);
 
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);

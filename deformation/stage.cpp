@@ -181,6 +181,7 @@ class Outputs {
   /// An advance before an organ has it, so that nobody is without when it does.
   void publish_next_surfaces(const DeformationWorld& world) {
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
+      if (next_blocks_[organ].generation == world.generation(organ)) take_next_blocks(organ);
       const OrganMesh* next = world.next_mesh(organ);
       if (next == nullptr || next->generation == next_blocks_[organ].generation) continue;
       SurfaceTopology surface = surface_message(world, organ, *next);
@@ -193,7 +194,6 @@ class Outputs {
   void publish_positions(double sim_time, const DeformationWorld& world) {
     const Header header{0, ns_from_seconds(sim_time), 0};
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
-      if (next_blocks_[organ].generation == world.generation(organ)) take_next_blocks(organ);
       write_node_positions(world, organ, node_positions_);
       write_block_boxes(blocks_[organ], node_positions_);
       node_positions_.organ = organs_.in_scene(organ);

@@ -133,7 +133,10 @@ struct DeformationWorld::Impl {
       rows.emplace_back(organs[i].rows);
     }
     if (held) organ_contacts->end_step(h, rows, tried);
-    if (held && may_cross) held = !crossed_together(h, to) || last_resort;
+    if (held && may_cross && crossed_together(h, to)) {
+      held = last_resort;
+      ++tried.contacts_unsolved;
+    }
     if (!held) {
       for (WorldOrgan& organ : organs) organ.simulated.go_back(organ.start);
       return false;

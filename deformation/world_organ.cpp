@@ -80,12 +80,11 @@ void WorldOrgan::take(OrganMesh mesh, std::span<const Vec3> outside) {
   auto dynamics = following->dynamics_of(*mesh.model);
   const OrganModel &before = simulated.model(), &next = *mesh.model;
   RefinedShape& refined = mesh.refined;
+  const auto seat = [&](OrganState& state) { seat_outside(outside, next, state.positions); };
   const auto goes_on = [&](const auto& change) {
-    simulated.change_mesh(std::move(mesh.model), std::move(dynamics), [&](const OrganState& state) {
-      OrganState carried = change.carried(state);
-      seat_outside(outside, next, carried.positions);
-      return carried;
-    });
+    simulated.change_mesh(
+        std::move(mesh.model), std::move(dynamics),
+        [&](const OrganState& state) { return change.carried(state); }, seat);
   };
   if (next.mesh().edge_nodes.empty()) {
     goes_on(MeshChange(before, parents, next, refined.parents));

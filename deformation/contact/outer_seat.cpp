@@ -1,6 +1,7 @@
 #include "deformation/contact/outer_seat.h"
 
-#include <limits>
+#include <algorithm>
+#include <vector>
 
 #include "modules/geometry/closest_points.h"
 #include "modules/geometry/winding_number.h"
@@ -8,57 +9,82 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kOff = 1e-6;     ///< so far beyond a point its wall is put [m]
-constexpr int kMostSeatings = 8;  ///< rounds over all points
+constexpr double kOff = 1e-6;          ///< so far beyond a point its wall is put, at first [m]
+constexpr int kMostSeatings = 12;      ///< rounds over all points, each twice as far
+constexpr std::size_t kMostWays = 32;  ///< out of a wall that are looked at
 
 bool is_inside(const Vec3& p, const Body& body, std::span<const Vec3> positions) {
   return geometry::winding_number(p, positions.first(body.surface_node_count), body.triangles) >
          0.5;
 }
 
-struct NearestWall {
+/// Where a triangle is nearest to a point behind it.
+struct NearPlace {
   const geometry::Triangle* nodes = nullptr;
   Vec3 weights = Vec3::Zero();
   Vec3 way = Vec3::Zero();  ///< from there to the point [m]
+  double distance = 0;      ///< [m]
 };
 
-NearestWall nearest_wall(const Vec3& p, const Body& body, std::span<const Vec3> positions) {
-  NearestWall nearest;
-  double least = std::numeric_limits<double>::infinity();
+/// Ascending by distance.
+std::vector<NearPlace> places_behind(const Vec3& p, const Body& body,
+                                     std::span<const Vec3> positions) {
+  std::vector<NearPlace> places;
   for (const geometry::Triangle& t : body.triangles) {
-    const auto at =
-        geometry::closest_on_triangle(p, {positions[t[0]], positions[t[1]], positions[t[2]]});
-    const double squared = (p - at.point).squaredNorm();
-    if (!(squared < least)) continue;
-    least = squared;
-    nearest = {&t, at.weights, p - at.point};
+    const geometry::TriangleCorners x{positions[t[0]], positions[t[1]], positions[t[2]]};
+    if (!(geometry::unit_normal(x).dot(p - x[0]) < 0)) continue;
+    const auto at = geometry::closest_on_triangle(p, x);
+    const Vec3 way = p - at.point;
+    if (way.norm() > 0) places.push_back({&t, at.weights, way, way.norm()});
   }
-  return nearest;
+  std::ranges::sort(places, {}, &NearPlace::distance);
+  return places;
 }
 
-/// The nearest place comes to the point by the least motion of its corners, Σ |Δx|².
-void move_to(const NearestWall& wall, const Body& body, std::span<Vec3> positions) {
-  const double distance = wall.way.norm();
-  if (wall.nodes == nullptr || !(distance > 0)) return;
-  Vec3 moved = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) {
-    if (body.inverse_masses[(*wall.nodes)[k]] > 0) moved[k] = wall.weights[k];
+/// The nearest place beyond which it is outside: where a wall is folded over itself that is not the
+/// nearest wall.
+NearPlace nearest_way_out(const Vec3& p, double off, const Body& body,
+                          std::span<const Vec3> positions) {
+  auto places = places_behind(p, body, positions);
+  places.resize(std::min(places.size(), kMostWays));
+  for (const NearPlace& place : places) {
+    if (!is_inside(p - place.way * (1 + off / place.distance), body, positions)) return place;
   }
-  const double squares = moved.squaredNorm();
-  if (!(squares > 0)) return;  // held
-  const Vec3 way = wall.way * (1 + kOff / distance);
-  for (int k = 0; k < 3; ++k) positions[(*wall.nodes)[k]] += moved[k] / squares * way;
+  return places.empty() ? NearPlace{} : places[0];
+}
+
+/// The nearest place comes to the point, and what is around it along with it, less with the
+/// distance: so slowly that no tissue is turned inside out.
+void move_to(const NearPlace& wall, double off, const Body& body, std::span<Vec3> positions) {
+  if (wall.nodes == nullptr) return;
+  Vec3 place = Vec3::Zero(), shares = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) place += wall.weights[k] * positions[(*wall.nodes)[k]];
+  double reach = 4 * wall.distance;
+  for (const std::uint32_t node : *wall.nodes) {
+    reach = std::max(reach, 2 * (positions[node] - place).norm());
+  }
+  const auto share_of = [&](std::size_t node) {
+    const double away = (positions[node] - place).squaredNorm() / (reach * reach);
+    return away < 1 && body.inverse_masses[node] > 0 ? (1 - away) * (1 - away) : 0.0;
+  };
+  for (int k = 0; k < 3; ++k) shares[k] = share_of((*wall.nodes)[k]);
+  const double share = wall.weights.dot(shares);
+  if (!(share > 0)) return;  // held
+  const Vec3 way = wall.way * ((1 + off / wall.distance) / share);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += share_of(i) * way;
 }
 
 }  // namespace
 
 bool seat_outside(std::span<const Vec3> points, const Body& body, std::span<Vec3> positions) {
-  for (int round = 0; round <= kMostSeatings; ++round) {
+  double off = kOff;
+  for (int round = 0; round <= kMostSeatings; ++round, off *= 2) {
     bool any = false;
     for (const Vec3& p : points) {
       if (!is_inside(p, body, positions)) continue;
       any = true;
-      if (round < kMostSeatings) move_to(nearest_wall(p, body, positions), body, positions);
+      if (round < kMostSeatings)
+        move_to(nearest_way_out(p, off, body, positions), off, body, positions);
     }
     if (!any) return true;
   }

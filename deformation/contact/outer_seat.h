@@ -9,10 +9,10 @@
 
 namespace palpate::deformation {
 
-/// Moves the free nodes of the closed surface next to points inside it, as little as can be, until
-/// the points are outside.
+/// Moves free nodes around the walls nearest to points inside the closed surface, until the points
+/// are outside.
 /// @param points     that belong outside [m]
-/// @param positions  of the body's nodes [m]
+/// @param positions  of all the body's nodes [m]
 /// @returns whether they are outside
 bool seat_outside(std::span<const Vec3> points, const Body& body, std::span<Vec3> positions);
 

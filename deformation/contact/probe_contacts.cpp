@@ -17,9 +17,6 @@ constexpr double kResting = 1e-6;
 /// two.
 constexpr double kSamePlace = 0.99;
 
-/// Between places along a core, which are else two radii apart.
-constexpr int kMostGaps = 24;
-
 std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
   return {contact.organ, contact.triangle};
 }
@@ -96,18 +93,6 @@ void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceT
   }
   std::ranges::stable_sort(contacts_, {}, triangle_of);
   if (core_) unite_contacts_of_triangles();
-}
-
-void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const {
-  const auto near = std::ranges::find(near_, organ, &Near::organ);
-  if (!core_ || near == near_.end() || near->inside) return;
-  const double length = (core_->b - core_->a).norm();
-  const int gaps = static_cast<int>(
-      std::min(static_cast<double>(kMostGaps), std::ceil(length / (2 * core_->radius))));
-  for (int i = 0; i <= gaps; ++i) {
-    const double at = gaps == 0 ? 0 : static_cast<double>(i) / gaps;
-    places.push_back(start_.to_world(core_->a + at * (core_->b - core_->a)));
-  }
 }
 
 /// Of a round probe there is one to a triangle; forces of several are its.
@@ -237,12 +222,18 @@ void ProbeContacts::look_around(std::uint32_t organ, SurfaceWalk& surface, const
   }
 }
 
-/// A probe that starts in a hurry reaches the wall before the next search does.
+/// A probe that starts in a hurry reaches the wall before the next search does, and another fold of
+/// the wall may have come nearer than what it is near.
 void ProbeContacts::watch_from_afar(std::uint32_t organ, SurfaceWalk& surface,
                                     const OrganState& state, const Pose& pose) {
   const Vec3 a = pose.to_world(core_->a), b = pose.to_world(core_->b);
-  const std::uint32_t node = surface.nearest_node(a, b, state.positions);
-  surface.find(a, b, state.positions, surface.around(node), 0, found_);
+  const auto seeds = surface.around(surface.nearest_node(a, b, state.positions));
+  if (knows(organ)) {
+    auto& triangles = near_of(organ).triangles;
+    triangles.insert(triangles.end(), seeds.begin(), seeds.end());
+    return;
+  }
+  surface.find(a, b, state.positions, seeds, 0, found_);
   const bool clear = std::ranges::all_of(found_, [&](const NearTriangle& found) {
     return found.pair.distance > core_->radius && found.facing > 0;
   });
@@ -290,7 +281,7 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   const std::size_t first = rows.size();
   const bool begins = fraction * period_ < 1.5 * h;
-  if (core_ && searched_ && begins && !has_contacts(organ) && !knows(organ)) {
+  if (core_ && searched_ && begins && !has_contacts(organ)) {
     watch_from_afar(organ, surface, state, before);
   }
   if (!has_contacts(organ) && !knows(organ)) return;
@@ -306,41 +297,6 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   if (!gentle_.empty() || !begun_.empty()) {
     be_gentle(organ, state, h, std::span(rows).subspan(first));
   }
-}
-
-bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
-                                 std::span<const Vec3> start, std::span<const Vec3> end, double h,
-                                 double fraction, std::vector<ContactRow>& rows) {
-  if (!may_cross(organ) || near_of(organ).inside) return false;
-  const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
-  take_seeds(near_of(organ));
-  // A core on its gentle way out may swing back in; it is not kept from it at a blow.
-  const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);
-  const bool gentle = out != gentle_.end() && out->core_was_inside();
-  bool crossed = false;
-  for (int end_of_core = 0; end_of_core < (core_->is_ball() ? 1 : 2); ++end_of_core) {
-    const Vec3& tip = end_of_core == 0 ? core_->a : core_->b;
-    const auto crossing =
-        surface.first_crossing(before.to_world(tip), after.to_world(tip), start, end, seeds_);
-    if (!crossing) continue;
-    crossed = true;
-    if (gentle) continue;
-    CarriedContact& contact = contact_on(organ, crossing->triangle);
-    contact.barycentric = crossing->weights;
-    contact.normal_P = after.rotation.conjugate() * crossing->normal;
-    contact.point_P = tip - core_->radius * contact.normal_P;
-    ContactRow row = row_of(contact, surface.body(), start, before, after, h);
-    if (contact.row == CarriedContact::kNoRow) {
-      contact.row = rows.size();
-      rows.push_back(row);
-    } else {
-      row.normal_impulse = rows[contact.row].normal_impulse;
-      row.tangential_impulse = rows[contact.row].tangential_impulse;
-      rows[contact.row] = row;
-    }
-  }
-  near_of(organ).crossed = crossed;
-  return crossed && !gentle;
 }
 
 std::size_t ProbeContacts::take_rows(std::uint32_t organ, double h,

@@ -119,7 +119,7 @@ class ProbeContacts {
   };
   Near& near_of(std::uint32_t organ);
   void take_seeds(const Near& near);
-  /// Where the probe is clear of an organ that searches found out of reach.
+  /// Where the probe is clear of an organ that searches found out of reach: what is nearest there.
   void watch_from_afar(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                        const Pose& pose);
   /// Looks around the core; what it touches and has no contact gets one.
@@ -128,6 +128,11 @@ class ProbeContacts {
   void take_forces_of_previous(CarriedContact& carried);
   void unite_contacts_of_triangles();
   CarriedContact& contact_on(std::uint32_t organ, std::uint32_t triangle);
+  void find_crossings(SurfaceWalk& surface, std::span<const Vec3> start, std::span<const Vec3> end,
+                      const Pose& before, const Pose& after);
+  void hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
+               std::span<const Vec3> start, const Pose& before, const Pose& after, double h,
+               std::vector<ContactRow>& rows);
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
   /// @returns false if it is seen from behind by a core outside: the wall is not touched there
   bool measure_again(const SurfaceWalk& surface, const OrganState& state, const Pose& pose,
@@ -154,9 +159,10 @@ class ProbeContacts {
   Vec3 went_ = Vec3::Zero();
   double period_ = 0;
   std::vector<CarriedContact> contacts_, previous_contacts_;
-  std::vector<Near> near_;            ///< by organ it is or was near
-  std::vector<NearTriangle> found_;   ///< buffer
-  std::vector<std::uint32_t> seeds_;  ///< buffer
+  std::vector<Near> near_;               ///< by organ it is or was near
+  std::vector<NearTriangle> found_;      ///< buffer
+  std::vector<std::uint32_t> seeds_;     ///< buffer
+  std::vector<WallCrossing> crossings_;  ///< buffer
   std::vector<GentlePush> gentle_;
   std::vector<std::uint32_t> begun_;  ///< organs first touched by the newest contacts
 };

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "modules/core/tolerances.h"
-#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::deformation {
 namespace {
@@ -32,26 +31,24 @@ bool may_meet(const geometry::TriangleCorners& start, const geometry::TriangleCo
   return (low.array() <= kDirectionless).all() && (high.array() >= -kDirectionless).all();
 }
 
-/// Seen from the point, which rests at the origin.
-std::optional<WallCrossing> crossing_of(const geometry::TriangleCorners& start,
-                                        const geometry::TriangleCorners& end) {
-  const Vec3 p = Vec3::Zero();
-  const auto impact = geometry::point_triangle_impact({p, start[0], start[1], start[2]},
-                                                      {p, end[0], end[1], end[2]});
-  if (!impact) return {};
-  WallCrossing crossing;
-  crossing.time = impact->time;
-  const double u = impact->u, v = std::min(impact->v, 1 - impact->u);
-  crossing.weights = {1 - u - v, u, v};
-  geometry::TriangleCorners at;
-  Vec3 way = Vec3::Zero();
+/// Do the boxes around what a core and a triangle pass overlap?
+bool may_meet(const CoreWay& core, const geometry::TriangleCorners& start,
+              const geometry::TriangleCorners& end) {
+  const Vec3 low = core.a0.cwiseMin(core.b0).cwiseMin(core.a1).cwiseMin(core.b1);
+  const Vec3 high = core.a0.cwiseMax(core.b0).cwiseMax(core.a1).cwiseMax(core.b1);
+  Vec3 wall_low = start[0], wall_high = start[0];
   for (int k = 0; k < 3; ++k) {
-    at[k] = start[k] + impact->time * (end[k] - start[k]);
-    way += crossing.weights[k] * (end[k] - start[k]);
+    wall_low = wall_low.cwiseMin(start[k]).cwiseMin(end[k]);
+    wall_high = wall_high.cwiseMax(start[k]).cwiseMax(end[k]);
   }
-  crossing.normal = geometry::unit_normal(at);
-  if (!(crossing.normal.dot(way) > 0)) return {};  // the wall comes from behind
-  return crossing;
+  return (wall_low.array() <= high.array() + kDirectionless).all() &&
+         (low.array() <= wall_high.array() + kDirectionless).all();
+}
+
+double farthest_corner(const geometry::TriangleCorners& from, const geometry::TriangleCorners& to) {
+  double moved = 0;
+  for (int k = 0; k < 3; ++k) moved = std::max(moved, (to[k] - from[k]).norm());
+  return moved;
 }
 
 }  // namespace
@@ -172,16 +169,15 @@ std::optional<WallCrossing> SurfaceWalk::first_crossing(const Vec3& p0, const Ve
   flood(seeds, [&](std::uint32_t t) {
     geometry::TriangleCorners from = corners_of(body_.triangles[t], start);
     geometry::TriangleCorners to = corners_of(body_.triangles[t], end);
-    double moved = 0;
+    const double moved = farthest_corner(from, to);
     for (int k = 0; k < 3; ++k) {
-      moved = std::max(moved, (to[k] - from[k]).norm());
       from[k] -= p0;
       to[k] -= p1;
     }
     const double distance = geometry::closest_on_triangle(Vec3::Zero(), from).point.norm();
     if (distance > way + moved) return false;
     if (!may_meet(from, to)) return true;
-    const auto crossing = crossing_of(from, to);
+    const auto crossing = crossing_of_point(from, to);
     if (crossing &&
         (!first || std::pair(crossing->time, t) < std::pair(first->time, first->triangle))) {
       first = crossing;
@@ -190,6 +186,47 @@ std::optional<WallCrossing> SurfaceWalk::first_crossing(const Vec3& p0, const Ve
     return true;
   });
   return first;
+}
+
+std::uint32_t SurfaceWalk::opposite_of(std::uint32_t p, std::uint32_t q,
+                                       std::uint32_t triangle) const {
+  for (const std::uint32_t other : around(p)) {
+    const geometry::Triangle& t = body_.triangles[other];
+    if (other == triangle || std::ranges::count(t, q) == 0) continue;
+    for (const std::uint32_t node : t) {
+      if (node != p && node != q) return node;
+    }
+  }
+  return p;
+}
+
+void SurfaceWalk::find_side_crossings(const CoreWay& core, std::span<const Vec3> start,
+                                      std::span<const Vec3> end,
+                                      std::span<const std::uint32_t> seeds,
+                                      std::vector<WallCrossing>& crossings) {
+  crossings.clear();
+  const double way = core.length();
+  flood(seeds, [&](std::uint32_t t) {
+    const geometry::Triangle nodes = body_.triangles[t];
+    const auto from = corners_of(nodes, start), to = corners_of(nodes, end);
+    const double reach = way + farthest_corner(from, to);
+    if (closest(core.a0, core.b0, from).distance > reach) return false;
+    if (!may_meet(core, from, to)) return true;
+    std::optional<WallCrossing> first;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t p = nodes[k], q = nodes[(k + 1) % 3], r = nodes[(k + 2) % 3];
+      if (p > q) continue;  // each edge once: the other triangle has it the other way round
+      const std::uint32_t s = opposite_of(p, q, t);
+      const auto crossing = crossing_of_side(core, {start[p], start[q], start[r], start[s]},
+                                             {end[p], end[q], end[r], end[s]});
+      if (!crossing || (first && first->time <= crossing->time)) continue;
+      first = crossing;
+      for (std::size_t i = 0; i < 3; ++i) first->weights[(k + i) % 3] = crossing->weights[i];
+    }
+    if (first) crossings.emplace_back(*first).triangle = t;
+    return true;
+  });
+  std::ranges::sort(crossings, {}, &WallCrossing::triangle);
 }
 
 bool is_behind_nearest(std::span<const NearTriangle> near) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "deformation/contact/wall_crossing.h"
 #include "deformation/model/body.h"
 #include "modules/geometry/closest_points.h"
 
@@ -18,14 +19,6 @@ struct NearTriangle {
   geometry::SegmentAndTriangle pair;
   Vec3 away = Vec3::Zero();  ///< unit, from the triangle to the core; zero where they touch
   double facing = 0;         ///< outward normal · away: > 0 where the core sees it from its front
-};
-
-/// Where a point went through a triangle from its front to its back.
-struct WallCrossing {
-  std::uint32_t triangle = 0;
-  double time = 0;              ///< fraction of the step
-  Vec3 weights = Vec3::Zero();  ///< barycentric
-  Vec3 normal = Vec3::UnitZ();  ///< outward, at that time
 };
 
 class SurfaceWalk {
@@ -53,9 +46,17 @@ class SurfaceWalk {
                                              std::span<const Vec3> start, std::span<const Vec3> end,
                                              std::span<const std::uint32_t> seeds);
 
+  /// The first inward crossing of each triangle by a core's side, over one of its edges; of
+  /// triangles connected with the seeds.
+  void find_side_crossings(const CoreWay& core, std::span<const Vec3> start,
+                           std::span<const Vec3> end, std::span<const std::uint32_t> seeds,
+                           std::vector<WallCrossing>& crossings);
+
  private:
   std::uint32_t nearest_from(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
                              std::span<const std::uint32_t> seeds);
+  /// Of the triangle on the other side of an edge, the corner that is not on it.
+  std::uint32_t opposite_of(std::uint32_t p, std::uint32_t q, std::uint32_t triangle) const;
   /// Visits `first` and what is connected with it through triangles that `take` wants.
   template <class Take>
   void flood(std::span<const std::uint32_t> first, const Take& take);

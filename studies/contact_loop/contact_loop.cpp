@@ -185,7 +185,7 @@ class Judge {
   std::deque<std::shared_ptr<const SurfaceTopology>> meshes_;
   Contacts newest_;
   ContactModel law_;
-  bool was_inside_ = false;
+  bool was_inside_ = true;  ///< a tool that begins inside has crossed nothing
   double lost_since_ = -1;
 };
 
@@ -221,6 +221,15 @@ Tool needle() {
   return tool;
 }
 
+/// Lying on the wall: its side goes in first, its ends may never.
+Tool rod() {
+  const scene::CapsuleShape shape{2e-3, 0.04};
+  Tool tool{"rod", shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()), shape.radius, {}};
+  for (int i = 0; i <= 32; ++i)
+    tool.inside.push_back((i / 32.0 - 0.5) * shape.length * Vec3::UnitZ());
+  return tool;
+}
+
 Tool box_of(const std::string& name, const Vec3& size) {
   return {name,         scene::BoxShape{size},         {}, Quat::Identity(),
           size.y() / 2, geometry::make_box(size).nodes};
@@ -249,12 +258,14 @@ Tool tips_first(const std::string& name, const scene::ProbeShape& shape) {
 Tool make_tool(const std::string& name, double radius) {
   if (name == "ball") return ball_of(radius);
   if (name == "needle") return needle();
+  if (name == "rod") return rod();
   if (name == "box") return box_of(name, Vec3::Constant(0.01));
   if (name == "blade") return box_of(name, Vec3(1e-3, 0.02, 0.015));
   if (name == "mesh") return pebble();
   if (name == "cone") return tips_first(name, scene::ConeShape{0.002, 0.02});
   if (name == "grasper") return tips_first(name, scene::GrasperShape{0.015, 0.005, 0.003, 0.4});
-  throw InputError("tool '" + name + "': one of ball, needle, box, blade, mesh, cone, grasper");
+  throw InputError("tool '" + name +
+                   "': one of ball, needle, rod, box, blade, mesh, cone, grasper");
 }
 
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,

@@ -11,7 +11,7 @@ namespace palpate::contact_loop {
 
 struct ContactLoopOptions {
   std::vector<std::filesystem::path> scenes;  ///< empty: both stomachs and the solid liver
-  std::vector<std::string> tools;             ///< empty: ball, needle, box, blade, mesh
+  std::vector<std::string> tools;             ///< empty: all of them
   std::vector<double> radii;                  ///< of the balls [m]; empty: 0.5 to 8 mm
   std::vector<double> speeds;                 ///< [m/s]; empty: 0.05 to 2.5
   std::vector<double> rates;                  ///< of deformation [Hz]; empty: 50, 100, 250

@@ -84,6 +84,46 @@ TEST_CASE("contact reduction: the deepest are kept, sorted, in whatever order th
   }
 }
 
+TEST_CASE("contact reduction: where a place has many, what touches and its nearest are never cut") {
+  // Oracle: brute force over each place's gaps: 300 places, ten contacts with each of them.
+  RandomShapes random(85);
+  std::vector<FoundContact> found;
+  std::vector<double> nearest(300, 2), others;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    const std::uint32_t t = i % 300;
+    FoundContact c = contact(t % 2, t, {0.2, 0.3, 0.5}, random.number(-0.05, 1));
+    c.point_P = random.point(1);
+    append_contact(c, {3 * t, 3 * t + 1, 3 * t + 2}, found);
+    nearest[t] = std::min(nearest[t], c.gap);
+  }
+  std::vector<double> kept;
+  std::size_t touching = 0;
+  for (const FoundContact& c : found) {
+    touching += c.gap <= 0;
+    (c.gap <= 0 || c.gap == nearest[c.triangle] ? kept : others).push_back(c.gap);
+  }
+  const std::vector<FoundContact> all = found;
+  std::sort(others.begin(), others.end());
+  kept.insert(kept.end(), others.begin(),
+              others.begin() + static_cast<std::ptrdiff_t>(kMost.contacts - kept.size()));
+  std::sort(kept.begin(), kept.end());
+  ContactSet result;
+  reduce_contacts(found, false, kMost, result);
+  CHECK(touching > 100);
+  CHECK_FALSE(result.truncated);
+  std::vector<double> gaps;
+  for (const Contact& c : result.contacts) gaps.push_back(c.gap);
+  std::sort(gaps.begin(), gaps.end());
+  CHECK(gaps == kept);
+  // Fewer than touch, or than there are places: that is said.
+  for (const std::size_t most : {std::size_t{50}, std::size_t{299}}) {
+    found = all;
+    reduce_contacts(found, false, {most, 0, 0}, result);
+    CHECK(result.truncated);
+    CHECK(result.contacts.size() == most);
+  }
+}
+
 TEST_CASE("contact reduction: nodes on one plane are a face, all of them, and truncate nothing") {
   // Oracle: the planes they were laid on.
   RandomShapes random(83);

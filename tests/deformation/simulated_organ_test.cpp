@@ -229,6 +229,20 @@ TEST_CASE("simulated organ: a step taken again starts from what the first try st
   }
 }
 
+TEST_CASE("simulated organ: a step that is taken though a probe is not held in it is counted") {
+  // Oracle: definition: one for each step that was a last resort, none for one given back.
+  auto organ = testing::simulated_ball(2);
+  const auto crosses = [](const auto&, const auto&) { return true; };
+  std::vector<ContactRow> rows;
+  AdvanceReport report;
+  CHECK_FALSE(organ.step(0, 1e-4, rows, crosses, false, report));
+  CHECK(report.contacts_unsolved == 0);
+  for (int k = 1; k <= 2; ++k) {
+    CHECK(organ.step(0, 1e-4, rows, crosses, true, report));
+    CHECK(report.contacts_unsolved == k);
+  }
+}
+
 TEST_CASE("simulated organ: without guarding nothing is replaced") {
   // Oracle: definition.
   auto model = std::make_unique<const OrganModel>(testing::ball_model(2));

@@ -6,6 +6,7 @@
 #include "modules/bus/memory_bus.h"
 #include "modules/geometry/surface_blocks.h"
 #include "tests/deformation/organs.h"
+#include "tests/modules/geometry/tetrahedra.h"
 
 using namespace palpate;
 using namespace palpate::deformation;
@@ -33,6 +34,25 @@ struct Session {
     return stage.cycle(now);
   }
 };
+
+/// Of each block of triangles, by brute force over their corners.
+std::vector<float> boxes_of(const SurfaceTopology& surface, const NodePositions& positions) {
+  std::vector<geometry::BlockBox> boxes;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const std::uint32_t block = surface.triangle_blocks.at(t);
+    boxes.resize(std::max<std::size_t>(boxes.size(), block + 1));
+    for (const std::uint32_t node : surface.triangles[t]) {
+      const float* x = positions.positions.data() + 3 * node;
+      boxes[block].add(Vec3(x[0], x[1], x[2]));
+    }
+  }
+  std::vector<float> floats;
+  for (const geometry::BlockBox& box : boxes) {
+    floats.insert(floats.end(), box.lower.begin(), box.lower.end());
+    floats.insert(floats.end(), box.upper.begin(), box.upper.end());
+  }
+  return floats;
+}
 
 }  // namespace
 
@@ -69,26 +89,60 @@ TEST_CASE(
   // Oracle: brute force over the corners of each block's triangles.
   Session session;
   REQUIRE(session.surfaces.take(session.surface));
-  const auto& blocks = session.surface.triangle_blocks;
-  REQUIRE(blocks.size() == session.surface.triangles.size());
+  REQUIRE(session.surface.triangle_blocks.size() == session.surface.triangles.size());
   for (int cycle = 0; cycle < 3; ++cycle) {
     session.cycle(true);
     REQUIRE(session.nodes.take(session.positions));
-    std::vector<geometry::BlockBox> boxes(session.positions.block_boxes.size() / 6);
-    for (std::size_t t = 0; t < blocks.size(); ++t) {
-      REQUIRE(blocks[t] < boxes.size());
-      for (const std::uint32_t node : session.surface.triangles[t]) {
-        const float* x = session.positions.positions.data() + 3 * node;
-        boxes[blocks[t]].add(Vec3(x[0], x[1], x[2]));
-      }
-    }
-    std::vector<float> expected;
-    for (const geometry::BlockBox& box : boxes) {
-      expected.insert(expected.end(), box.lower.begin(), box.lower.end());
-      expected.insert(expected.end(), box.upper.begin(), box.upper.end());
-    }
-    CHECK(session.positions.block_boxes == expected);
+    CHECK(session.positions.block_boxes == boxes_of(session.surface, session.positions));
   }
+}
+
+TEST_CASE(
+    "deformation stage: boxes are of the mesh they come with, if it changes in every advance") {
+  // Oracle: brute force, as above, over the surface told under the generation of the positions.
+  scene::Scene scene = testing::ball_scene(0);
+  scene.organs[0].model = "nodal_pressure";
+  scene.organs[0].solid.refine.follow = true;
+  scene.organs[0].solid.refine.nodes = 2000;
+  scene.rates.deformation = 100;
+  scene.probes.push_back({"tip", scene::SphereShape{8e-3}, 0.0, scene::ScriptedDevice{}});
+  bus::MemoryBus bus;
+  bus::Reader<SurfaceTopology> surfaces = bus.reader(bus::kSurface);
+  bus::Reader<NodePositions> nodes = bus.reader(bus::kNodePositions);
+  auto probe = bus.writer(bus::kProbeState);
+  const Vec3 size(0.1, 0.1, 0.05);
+  DeformationStage stage(scene, {geometry::shape_of(geometry::testing::block(size, 5, 5, 3))}, bus);
+  std::vector<SurfaceTopology> told;
+  const auto take_told = [&] {
+    SurfaceTopology surface;
+    while (surfaces.take(surface)) told.push_back(surface);
+  };
+  take_told();
+  std::size_t changes = 0, in_a_row = 0, most_in_a_row = 0;
+  std::uint32_t generation = 1;
+  for (int cycle = 1; cycle < 60; ++cycle) {
+    ProbeState state;
+    state.pose.position = Vec3(0.05 + 0.03 * std::sin(0.4 * cycle), 0.05, 0.055);
+    state.header.source_time_ns = 10'000'000 * cycle;
+    REQUIRE(probe.write(state));
+    runtime::Cycle now;
+    now.running = true;
+    now.advance = 0.01;
+    now.now_ns = 10'000'000 * cycle;
+    stage.cycle(now);
+    take_told();
+    NodePositions positions;
+    REQUIRE(nodes.take(positions));
+    const auto of_it = std::ranges::find(told, positions.generation, &SurfaceTopology::generation);
+    REQUIRE(of_it != told.end());
+    CHECK(positions.block_boxes == boxes_of(*of_it, positions));
+    const bool changed = std::exchange(generation, positions.generation) != positions.generation;
+    changes += changed;
+    in_a_row = changed ? in_a_row + 1 : 0;
+    most_in_a_row = std::max(most_in_a_row, in_a_row);
+  }
+  CHECK(changes > 20);
+  CHECK(most_in_a_row > 2);  // else each change had a cycle for itself
 }
 
 TEST_CASE("deformation stage: a law is given by a cycle that advances, not by one that waits") {

@@ -29,6 +29,34 @@ TEST_CASE("outer seat: a wall comes off points inside it, and no further than to
   }
 }
 
+TEST_CASE("outer seat: a wall that folds over another comes off, whatever front is nearer") {
+  // Oracle: the winding number over all triangles. Two balls that overlap, as one wall: points in
+  // the one, nearer to the front of the other.
+  OrganModel model = testing::ball_model(3);
+  const double radius = model.rest_positions[0].norm();
+  const std::vector<Vec3> one = model.rest_positions;
+  const auto triangles = model.triangles;
+  const auto count = static_cast<std::uint32_t>(one.size());
+  for (const auto& [a, b, c] : triangles) {
+    model.triangles.push_back({a + count, b + count, c + count});
+  }
+  model.inverse_masses.resize(2 * one.size(), model.inverse_masses[0]);
+  model.surface_node_count = 2 * one.size();
+  collision::RandomShapes random(12);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Vec3 out = random.direction();
+    const double depth = random.number(0.02, 0.1) * radius;
+    const double gap = random.number(0.05, 0.5) * depth;
+    // The second ball's front is `gap` beside the point, which is `depth` below the first's.
+    const Vec3 p = (radius - depth) * out, beside = out.unitOrthogonal();
+    std::vector<Vec3> x = one;
+    for (const Vec3& node : one) x.push_back(node + p + (radius + gap) * beside);
+    if (geometry::winding_number(p, x, model.triangles) < 0.5) continue;
+    CHECK(seat_outside(std::vector<Vec3>{p}, model, x));
+    CHECK(geometry::winding_number(p, x, model.triangles) < 0.5);
+  }
+}
+
 TEST_CASE("outer seat: a wall that points are outside of stays, and what is held does") {
   // Oracle: the same positions.
   OrganModel model = testing::ball_model(2);

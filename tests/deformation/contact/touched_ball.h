@@ -1,6 +1,8 @@
 // A ball at rest and contacts made by hand, for tests of what a probe does with them.
 #pragma once
 
+#include <algorithm>
+
 #include "deformation/contact/probe_contacts.h"
 #include "tests/deformation/organs.h"
 
@@ -33,6 +35,38 @@ struct TouchedBall {
   OrganModel model = ball_model(1);
   OrganState state = rest_state(model);
   SurfaceWalk surface{model};
+};
+
+/// A ball of 2 mm over the organ's highest node, given the contacts of some triangles about it.
+struct Tip {
+  static constexpr double kRadius = 2e-3;
+  TouchedBall organ;
+  ProbeContacts probe{{"tip", scene::SphereShape{kRadius}, 0, scene::ScriptedDevice{}}};
+  std::uint32_t top = 0, one = 0;  ///< node, and a triangle around it
+  std::vector<ContactRow> rows;
+
+  Tip() {
+    const auto& x = organ.state.positions;
+    for (std::uint32_t i = 0; i < organ.model.surface_node_count; ++i) {
+      if (x[i].z() > x[top].z()) top = i;
+    }
+    while (std::ranges::count(organ.model.triangles[one], top) == 0) ++one;
+  }
+  Vec3 above(double height) const { return organ.state.positions[top] + height * Vec3::UnitZ(); }
+  /// From `from` to `to` over the top within a period, as it begins.
+  void go(double from, double to) {
+    probe.set_pose(pose_at(above(from)));
+    probe.begin(kPeriod);
+    probe.end();
+    probe.set_contacts(contacts_on({one}, Vec3(0, 0, -kRadius), Vec3::UnitZ()));
+    probe.set_pose(pose_at(above(to)));
+    probe.begin(kPeriod);
+    rows.clear();
+    probe.append_rows(0, organ.surface, organ.state, kPeriod, 1.0, rows);
+  }
+  bool held(const std::vector<Vec3>& end) {
+    return probe.hold_crossed(0, organ.surface, organ.state.positions, end, kPeriod, 1.0, rows);
+  }
 };
 
 }  // namespace palpate::deformation::testing

@@ -1,6 +1,7 @@
 #include "studies/contact_loop/contact_loop.h"
 
 #include <catch2/catch.hpp>
+#include <tuple>
 #include <utility>
 
 #include "modules/core/data_folder.h"
@@ -57,11 +58,29 @@ TEST_CASE("contact loop: no ball goes through the wall of the solid liver, whate
   }
 }
 
+TEST_CASE("contact loop: a mesh that changes under a small tip in a hurry loses it no contact") {
+  // Oracle: winding number over all triangles, of the surface of each search and each advance. Each
+  // of these lost contact or was crossed: searched with boxes of an earlier mesh, walled in where
+  // nodes went, crossed by its side.
+  const auto scene = scene::load_scene(data_file("scenes/liver_touch.yaml"));
+  const session::Assets assets = session::load_assets(scene);
+  for (const auto& [name, speed, rate] :
+       {std::tuple("ball", 2.5, 100.0), {"needle", 0.63, 250.0}, {"rod", 2.5, 100.0}}) {
+    const LoopCase loop{make_tool(name, 1e-3), speed, rate, 250};
+    const LoopResult result = run_loop(scene, assets, {-0.020, 0, 0.013}, loop);
+    INFO(name << " at " << speed << " m/s, " << rate << " Hz");
+    CHECK(result.lost == 0);
+    CHECK(result.troubles.lost == 0);
+    CHECK(result.crossings == 0);
+    CHECK(result.inside > 50);  // else nothing was tried
+  }
+}
+
 TEST_CASE("contact loop: no other tool is inside the stomach without a contact either") {
   // Oracle: winding numbers of the core's points and of all corners.
   const auto scene = scene::load_scene(data_file("scenes/stomach_probe.yaml"));
   const session::Assets assets = session::load_assets(scene);
-  for (const char* name : {"needle", "box", "blade", "mesh", "cone", "grasper"}) {
+  for (const char* name : {"needle", "rod", "box", "blade", "mesh", "cone", "grasper"}) {
     const Tool tool = make_tool(name, 0);
     long inside = 0;
     // Slow at 250 Hz is left to the ball above: it takes as long as the other three together.
@@ -72,9 +91,10 @@ TEST_CASE("contact loop: no other tool is inside the stomach without a contact e
       CHECK(result.lost == 0);
       CHECK(result.crossings == 0);
       CHECK(result.troubles.lost == 0);
+      CHECK(result.troubles.truncated == 0);
       inside += result.inside;
     }
-    CHECK(inside > 100);  // else nothing was tried
+    CHECK(inside > 50);  // else nothing was tried
   }
 }
 
@@ -99,7 +119,7 @@ TEST_CASE("contact loop: contact is kept when one of five messages is lost") {
 
 TEST_CASE("contact loop: a tool reaches as far before its origin as its points say") {
   // Oracle: brute force over the surface of each shape.
-  for (const char* name : {"ball", "needle", "box", "blade", "mesh", "cone", "grasper"}) {
+  for (const char* name : {"ball", "needle", "rod", "box", "blade", "mesh", "cone", "grasper"}) {
     const Tool tool = make_tool(name, 3e-3);
     const auto surface = geometry::surface_of(scene::form_of(tool.shape, tool.mesh), 1);
     double reach = 0;

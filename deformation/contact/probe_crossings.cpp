@@ -1,0 +1,83 @@
+// What keeps a round probe's core on the outer side of a wall.
+#include <algorithm>
+#include <cmath>
+
+#include "deformation/contact/probe_contacts.h"
+
+namespace palpate::deformation {
+namespace {
+
+/// Between places along a core, which are else two radii apart.
+constexpr int kMostGaps = 24;
+
+}  // namespace
+
+void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const {
+  const auto near = std::ranges::find(near_, organ, &Near::organ);
+  if (!core_ || near == near_.end() || near->inside) return;
+  const double length = (core_->b - core_->a).norm();
+  const int gaps = static_cast<int>(
+      std::min(static_cast<double>(kMostGaps), std::ceil(length / (2 * core_->radius))));
+  for (int i = 0; i <= gaps; ++i) {
+    const double at = gaps == 0 ? 0 : static_cast<double>(i) / gaps;
+    places.push_back(start_.to_world(core_->a + at * (core_->b - core_->a)));
+  }
+}
+
+/// Ends of the core through triangles, and its side over edges: crossings_.
+void ProbeContacts::find_crossings(SurfaceWalk& surface, std::span<const Vec3> start,
+                                   std::span<const Vec3> end, const Pose& before,
+                                   const Pose& after) {
+  const CoreWay core{before.to_world(core_->a), before.to_world(core_->b), after.to_world(core_->a),
+                     after.to_world(core_->b)};
+  crossings_.clear();
+  if (!core_->is_ball()) surface.find_side_crossings(core, start, end, seeds_, crossings_);
+  if (const auto a = surface.first_crossing(core.a0, core.a1, start, end, seeds_)) {
+    crossings_.push_back(*a);
+  }
+  if (core_->is_ball()) return;
+  if (const auto b = surface.first_crossing(core.b0, core.b1, start, end, seeds_)) {
+    crossings_.push_back(*b);
+    crossings_.back().along = 1;
+  }
+}
+
+/// A row where the core went through, or in the place of that triangle's.
+void ProbeContacts::hold_at(const WallCrossing& crossing, std::uint32_t organ,
+                            const SurfaceWalk& surface, std::span<const Vec3> start,
+                            const Pose& before, const Pose& after, double h,
+                            std::vector<ContactRow>& rows) {
+  CarriedContact& contact = contact_on(organ, crossing.triangle);
+  contact.barycentric = crossing.weights;
+  contact.normal_P = after.rotation.conjugate() * crossing.normal;
+  contact.point_P =
+      core_->a + crossing.along * (core_->b - core_->a) - core_->radius * contact.normal_P;
+  ContactRow row = row_of(contact, surface.body(), start, before, after, h);
+  if (contact.row == CarriedContact::kNoRow) {
+    contact.row = rows.size();
+    rows.push_back(row);
+    return;
+  }
+  row.normal_impulse = rows[contact.row].normal_impulse;
+  row.tangential_impulse = rows[contact.row].tangential_impulse;
+  rows[contact.row] = row;
+}
+
+bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
+                                 std::span<const Vec3> start, std::span<const Vec3> end, double h,
+                                 double fraction, std::vector<ContactRow>& rows) {
+  if (!may_cross(organ) || near_of(organ).inside) return false;
+  const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
+  take_seeds(near_of(organ));
+  find_crossings(surface, start, end, before, after);
+  near_of(organ).crossed = !crossings_.empty();
+  // A core on its gentle way out may swing back in; it is not kept from it at a blow.
+  const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);
+  if (out != gentle_.end() && out->core_was_inside()) return false;
+  for (const WallCrossing& crossing : crossings_) {
+    hold_at(crossing, organ, surface, start, before, after, h, rows);
+  }
+  return !crossings_.empty();
+}
+
+}  // namespace palpate::deformation
