@@ -48,7 +48,7 @@ class Session(Closing[_core.Session]):
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene)
         self._organs = {name: i for i, name in enumerate(self._scene.organs)}
         self._probes = {name: i for i, name in enumerate(self._scene.probes)}
-        files = ["" if file is None else os.fspath(file) for file in (record, from_snapshot)]
+        files = [None if file is None else os.fspath(file) for file in (record, from_snapshot)]
         self._core = _core.Session(self._scene._core, *files)
 
     def save_snapshot(self, file: str | os.PathLike[str], overwrite: bool = False) -> float:
