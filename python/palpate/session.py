@@ -30,7 +30,8 @@ class Session(Closing[_core.Session]):
 
     Args:
         scene: a Scene, or the file of one.
-        record: a recording (.mcap) of every message that carries physics goes here; close() ends it.
+        record: a recording (.mcap) of every message that carries physics goes here, in place of an earlier one; close()
+            ends it.
         from_snapshot: a snapshot (save_snapshot(), `palpate run --snapshot-at`) of the same scene; the session goes
             on there, the same bits as one never interrupted, and guides the probes that were guided. positions() are
             those of then at once; forces and contacts are zero until the next step says them.
