@@ -30,7 +30,7 @@ std::vector<McapContent> contents_of(const std::vector<Record>& records) {
   return contents;
 }
 
-std::string text_of(const std::filesystem::path& file, const char* doing, int system_error) {
+std::string why_failed(const std::filesystem::path& file, const char* doing, int system_error) {
   return file.string() + ": cannot " + doing + ": " + std::generic_category().message(system_error);
 }
 
@@ -215,7 +215,7 @@ void McapWriter::flush() {
   const int failure = write_pending();
   if (failure == 0) return;
   const bool full = failure == ENOSPC || failure == EFBIG || failure == EDQUOT;
-  if (full && end_short()) throw DiskFull(text_of(named_, "write", failure));
+  if (full && end_short()) throw DiskFull(why_failed(named_, "write", failure));
   fail("write", failure);
 }
 
@@ -287,7 +287,7 @@ void McapWriter::append_summary() {
 }
 
 void McapWriter::fail(const char* doing, int system_error) const {
-  throw std::runtime_error(text_of(named_, doing, system_error));
+  throw std::runtime_error(why_failed(named_, doing, system_error));
 }
 
 }  // namespace palpate::recording

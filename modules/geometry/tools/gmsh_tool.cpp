@@ -35,7 +35,7 @@ namespace {
 }
 
 /// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
-constexpr const char* kStopped = "stopped while Gmsh made tetrahedra";
+constexpr const char* kStoppedMeshing = "stopped while Gmsh made tetrahedra";
 
 /// @throws Interrupted if a signal of StopSignal comes, or ends the program with those of its
 ///         terminal
@@ -55,7 +55,7 @@ int run(std::vector<std::string> words, const std::filesystem::path& log) {
   }
   const int ended_by = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (stop.requested() || ended_by == SIGINT || ended_by == SIGTERM || ended_by == SIGHUP) {
-    throw Interrupted(kStopped);
+    throw Interrupted(kStoppedMeshing);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -108,7 +108,7 @@ TetMesh run_gmsh_with(const TemporaryFolder& folder, std::vector<std::string> op
   }
   try {
     TetMesh mesh = read_gmsh(output);
-    if (StopSignal().requested()) throw Interrupted(kStopped);
+    if (StopSignal().requested()) throw Interrupted(kStoppedMeshing);
     return mesh;
   } catch (const InputError& error) {  // "/tmp/…/solid.msh:12: what": nobody knows that file
     const std::string text = error.what();
