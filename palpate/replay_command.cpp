@@ -81,9 +81,9 @@ void check_replay_options(const std::vector<std::string>& given, const Playing& 
       "--start",       "--rate",   "--step",     "--session",          "--domain",
       "--secure",      "--frames", "--headless", "--frame-interval-s", "--no-visualizer",
       "--no-realtime", "--close"};
-  static const std::set<std::string> kRerun{
-      "--rerun",         "--set",      "--duration",   "--record", "--overwrite",
-      "--record-topics", "--headless", "--in-process", "--domain"};  // the last by the environment
+  static const std::set<std::string> kRerun{"--rerun",  "--set",       "--duration",
+                                            "--record", "--overwrite", "--record-topics",
+                                            "--domain"};  // the last by the environment
   const bool rerun = !playing.rerun.empty();
   if (!rerun && !run.scene.empty()) return;
   for (const std::string& option : given) {
@@ -105,18 +105,28 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
   const StopSignal stop;  // or a signal would leave the folder
   const TemporaryFolder folder;
   RunOptions again = run;
+  std::string known = run.scene.empty() ? "the scene of " + recording.string() : run.scene.string();
+  for (const std::string& setting : run.settings) known += " with --set " + setting;
   if (!playing.rerun.empty()) {
     if (run.scene.empty())
       again.scene = folder.write("recorded.yaml", recorded_scene(recording).resolved_text);
     const scene::Scene scene = scene::load_scene_with(again.scene, run.settings);
     again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
-    return rerun(recording, playing.rerun, again, !run.scene.empty(), out, log);
+    try {
+      return rerun(recording, playing.rerun, again, !run.scene.empty(), out, log);
+    } catch (const InputError& error) {
+      throw told_of(error, again.scene, known);
+    }
   }
   const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),
                                                   recording, folder.path(), log);
   again.settings.clear();
   again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
-  return run_command(again, out, log);
+  try {
+    return run_command(again, out, log);
+  } catch (const InputError& error) {
+    throw told_of(error, again.scene, known);
+  }
 }
 
 }  // namespace palpate::launcher

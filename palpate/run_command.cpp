@@ -74,6 +74,7 @@ class Run {
       while (next_cycle() && !is_over()) report_each_second();
     }
     finish();
+    if (!refusal_.empty()) throw InputError(refusal_);
     return exit_code_;
   }
 
@@ -101,8 +102,7 @@ class Run {
   bool joins() {
     if (scene_told_) return true;
     if (!session_.fault().empty()) {
-      log_ << "error: " << options_.scene.string() << ": " << session_.fault() << std::endl;
-      exit_code_ = kExitBadInput;
+      refusal_ = options_.scene.string() + ": " + session_.fault();
       joined_ = true;  // the session goes on without us
       return false;
     }
@@ -190,6 +190,11 @@ class Run {
       exit_code_ = end.bad_input ? kExitBadInput : kExitFailed;
       failures_[end.module] = end.how;
     }
+    if (end.module == "recorder" && !end.failed && goes_on()) {
+      recording_end_ = fmt::format("ended {:.1f} s into the session",
+                                   session_.time(runtime::monotonic_now_ns()));
+      if (!end.last_error.empty()) recording_end_ += "; it said: " + end.last_error;
+    }
     log_ << fmt::format("palpate: {} ended: {}", end.module, end.how);
     if (!end.last_error.empty()) log_ << fmt::format("; it said: {}", end.last_error);
     log_ << std::endl;
@@ -214,6 +219,7 @@ class Run {
     if (!begun()) return;
     end.last_words = modules_.last_words();
     end.restarts = modules_.restarts();
+    end.recording = recording_end_;
     const std::string text = summary(monitor_.tally(), end);
     write_run_summary(options_, text, out_);
     if (window) wait_for_window();
@@ -252,6 +258,8 @@ class Run {
   bool ended_ = false;   ///< the run; its window may stay
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
+  std::string refusal_;        ///< of another scene than the session's
+  std::string recording_end_;  ///< where that came before the session's
   HangWatch hangs_;
 };
 
@@ -291,7 +299,13 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
     RunOptions changed = options;
     changed.settings.clear();
     changed.scene = folder.write("scene.yaml", scene::resolved_text(scene));
-    return run_command(changed, out, log);
+    try {
+      return run_command(changed, out, log);
+    } catch (const InputError& error) {
+      std::string known = options.scene.string() + " with";
+      for (const std::string& setting : options.settings) known += " --set " + setting;
+      throw told_of(error, changed.scene, known);
+    }
   }
   if (options.only.empty()) {
     const scene::Scene scene = scene::load_scene(options.scene);

@@ -222,4 +222,19 @@ std::string random_session_name() {
   return name;
 }
 
+InputError told_of(const InputError& error, const std::filesystem::path& scene,
+                   const std::string& known) {
+  std::string text = error.what();
+  const std::string file = scene.string();
+  for (auto at = text.find(file); at != std::string::npos; at = text.find(file, at)) {
+    std::size_t end = at + file.size();
+    const std::size_t digits = text.find_first_not_of("0123456789", end + 1);
+    const bool line = end < text.size() && text[end] == ':' && digits != end + 1;
+    if (line) end = std::min(digits, text.size());
+    text.replace(at, end - at, known);
+    at += known.size();
+  }
+  return InputError(text);
+}
+
 }  // namespace palpate::launcher

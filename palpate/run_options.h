@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "modules/bus/bus.h"
+#include "modules/core/error.h"
 
 namespace palpate::launcher {
 
@@ -92,5 +93,10 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
 
 /// A name no other session has: "s" and 8 random hex digits.
 std::string random_session_name();
+
+/// The same error, of a scene that lies in a folder nobody knows, by what it is known as; lines of
+/// that file mean nothing.
+InputError told_of(const InputError& error, const std::filesystem::path& scene,
+                   const std::string& known);
 
 }  // namespace palpate::launcher

@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 #include "modules/core/units.h"
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/wiring.h"
@@ -44,6 +45,7 @@ void check_snapshots(const RunOptions& options) {
   runtime::check_snapshot_name(options.snapshot, options.overwrite);
   if (!options.lockstep) return;
   // Parts are taken away in the end: none may be a file that somebody keeps.
+  check_writable(snapshot_part(options, "part"));
   const auto folder = std::filesystem::absolute(options.snapshot).parent_path();
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string module = entry.path().extension().string();

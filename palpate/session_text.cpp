@@ -133,6 +133,7 @@ std::string summary(const SessionTally& tally, const SessionEnd& end) {
     text += fmt::format("started again: {}, {}\n", module,
                         times == 1 ? "once" : fmt::format("{} times", times));
   }
+  if (!end.recording.empty()) text += fmt::format("recording: {}\n", end.recording);
   for (const auto& [module, failure] : end.failures) {
     text += fmt::format("FAILED: {}: {}\n", module, failure);
     const auto words = end.last_words.find(module);

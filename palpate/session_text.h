@@ -19,6 +19,7 @@ struct SessionEnd {
   std::map<std::string, std::string> failures;    ///< module → how it ended
   bool lockstep = false;                          ///< no cycle was early or late
   std::map<std::string, int> restarts = {};       ///< module → how often it was started again
+  std::string recording = {};                     ///< why it ended earlier; empty: it did not
 };
 
 /// One screen.

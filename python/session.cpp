@@ -129,7 +129,7 @@ double Session::save_snapshot(const std::string& file, bool overwrite) {
   open();
   // cppcheck-suppress unreadVariable
   const Unlocked unlocked;
-  runtime::check_snapshot_name(file, overwrite);
+  runtime::check_snapshot_name(file, overwrite, "overwrite=True");
   runtime::Snapshot now = session_->snapshot();
   std::vector<std::uint32_t> probes;
   for (std::uint32_t probe = 0; probe < guided_.size(); ++probe) {

@@ -1,6 +1,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <optional>
+
+#include "modules/core/error.h"
 #include "python/bindings.h"
 #include "python/numbers.h"
 #include "python/session.h"
@@ -22,20 +25,32 @@ void guide_probe(Session& session, std::size_t probe, py::handle position, py::h
   session.guide_probe(probe, pose, twist);
 }
 
+/// None is no file; an empty name is a mistake, not none.
+std::string file_named(const std::optional<std::string>& file, const char* argument) {
+  if (file && file->empty()) {
+    throw InputError(std::string(argument) + ": an empty path names no file");
+  }
+  return file.value_or("");
+}
+
 }  // namespace
 
 void bind_session(py::module_& module) {
   py::class_<Session>(module, "Session")
-      .def(py::init([](const scene::SceneDocument& scene, const std::string& record,
-                       const std::string& from_snapshot) {
-             return std::make_unique<Session>(scene.scene(), record, from_snapshot);
+      .def(py::init([](const scene::SceneDocument& scene, const std::optional<std::string>& record,
+                       const std::optional<std::string>& from_snapshot) {
+             return std::make_unique<Session>(scene.scene(), file_named(record, "record"),
+                                              file_named(from_snapshot, "from_snapshot"));
            }),
            py::arg("scene"), py::arg("record"), py::arg("from_snapshot"))
       .def("run_until", &Session::run_until)
       .def("step", &Session::step)
       .def("settle", &Session::settle)
       .def("run_keeping", &Session::run_keeping)
-      .def("save_snapshot", &Session::save_snapshot)
+      .def("save_snapshot",
+           [](Session& session, const std::string& file, bool overwrite) {
+             return session.save_snapshot(file_named(file, "file"), overwrite);
+           })
       .def("close", &Session::close)
       .def("guide_probe", &guide_probe)
       .def("ask_for_volume", &Session::ask_for_volume)

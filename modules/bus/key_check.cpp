@@ -34,9 +34,21 @@ constexpr const char* kCopyAll =
   throw InputError("keys: " + file.string() + ": " + what + advice);
 }
 
+/// As ssh does: whoever may write there could put an authority of his own beside or in its place.
+void check_unwritable(const fs::path& place) {
+  constexpr fs::perms kOthers = fs::perms::group_write | fs::perms::others_write;
+  std::error_code none;
+  const fs::file_status status = fs::status(place, none);
+  if (!fs::exists(status) || (status.permissions() & kOthers) == fs::perms::none) return;
+  refuse(place, "others may write to it", "; chmod go-w it, and make new keys if they did");
+}
+
 Bio opened(const fs::path& file) {
+  std::error_code none;
+  const bool is_there = fs::exists(file, none);
+  if (is_there && !fs::is_regular_file(file, none)) refuse(file, "is no regular file", kCopyAll);
   if (const std::string why = why_not_readable(file); !why.empty())
-    refuse(file, why, "; `palpate keys` makes them");
+    refuse(file, why, is_there ? "" : "; `palpate keys` makes them");
   Bio bio(BIO_new_file(file.c_str(), "r"), BIO_free_all);
   if (bio == nullptr) refuse(file, std::strerror(errno), "");
   return bio;
@@ -155,6 +167,11 @@ void check_keys(const fs::path& folder, std::string_view role) {
   if (find_role(role) == nullptr)
     throw InputError("keys: there is no role '" + std::string(role) + "'");
   const KeyFiles files = key_files(folder, role);
+  check_unwritable(folder);
+  for (const fs::path& file :
+       {files.authority, files.governance, files.certificate, files.permissions}) {
+    check_unwritable(file);
+  }
   const Certificate authority = certificate_in(files.authority);
   check_time(files.authority, authority.get());
   check_certificate(files, role, authority.get());

@@ -12,8 +12,9 @@ struct KeyFiles {
 };
 KeyFiles key_files(const std::filesystem::path& folder, std::string_view role);
 
-/// All files of the role are there, its key is its owner's alone, they belong together, are signed
-/// by the folder's authority, name the role and hold now.
+/// All files of the role are there, its key is its owner's alone, nobody else may write to the
+/// folder or what is in it, they belong together, are signed by the folder's authority, name the
+/// role and hold now.
 /// @throws InputError which file, what is wrong with it and what to do
 void check_keys(const std::filesystem::path& folder, std::string_view role);
 

@@ -1,13 +1,31 @@
 #include "modules/core/output_file.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 #include "modules/core/error.h"
 
 namespace palpate {
+
+namespace {
+
+/// Root may write to any folder by its mode; /proc takes no files all the same.
+std::string why_takes_no_file(const std::filesystem::path& folder) {
+  std::string name = (folder / ".palpate-XXXXXX").string();
+  const int number = ::mkostemp(name.data(), O_CLOEXEC);
+  if (number < 0)
+    return "the folder " + folder.string() + " takes no file: " + std::strerror(errno);
+  ::close(number);
+  ::unlink(name.c_str());
+  return "";
+}
+
+}  // namespace
 
 std::string why_not_writable(const std::filesystem::path& file) {
   const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -18,7 +36,7 @@ std::string why_not_writable(const std::filesystem::path& file) {
   if (there.type() == std::filesystem::file_type::none) return none.message();  // a name too long
   const bool is_there = std::filesystem::exists(there);
   if (is_there && ::access(file.c_str(), W_OK) != 0) return "it may not be written to";
-  if (::access(folder.c_str(), W_OK | X_OK) == 0) return "";
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return why_takes_no_file(folder);
   return "the folder " + folder.string() + " may not be written to";
 }
 

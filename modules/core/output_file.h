@@ -7,9 +7,8 @@
 
 namespace palpate {
 
-/// Why it cannot: its folder is missing or closed to us (what is written whole comes to be beside
-/// its place), or it is there, and is a folder or closed;
-/// empty if it can.
+/// Why it cannot: its folder is missing, closed to us or takes no file (what is written whole comes
+/// to be beside its place), or it is there, and is a folder or closed; empty if it can.
 std::string why_not_writable(const std::filesystem::path& file);
 
 /// @throws InputError naming file and reason

@@ -1,6 +1,8 @@
 #include "modules/core/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -61,23 +63,39 @@ std::string process_word() {
   return std::string(host.data()) + "-" + std::to_string(::getpid());
 }
 
-FileInTheMaking::FileInTheMaking(const std::filesystem::path& file)
+FileInTheMaking::FileInTheMaking(const std::filesystem::path& file, Writers writers)
     : file_(named_by(file)), part_(file_) {
   check_writable(file_);
   std::error_code none;
   if (std::filesystem::exists(file_, none) && !std::filesystem::is_regular_file(file_, none)) {
     throw InputError(file.string() + ": cannot be written: it is there and no regular file");
   }
-  part_.replace_filename(file_.filename().string().substr(0, kPartOfName) + "." + process_word() +
-                         ".part");
+  const std::string beside = file_.filename().string().substr(0, kPartOfName);
+  part_.replace_filename(beside + (writers == Writers::kOne ? "" : "." + process_word()) + ".part");
   if (const std::string why = why_not_writable(part_); !why.empty()) {
     throw InputError(file.string() + ": cannot be written: " + why);
   }
+  if (writers == Writers::kOne) lock_part();
   for (auto& part : parts_in_the_making) {
     const char* free = nullptr;
     if (part.compare_exchange_strong(free, part_.c_str())) break;
   }
   heed_signals();
+}
+
+/// Until it is sure that what is locked still has the name: an earlier writer may just have ended.
+void FileInTheMaking::lock_part() {
+  struct stat held {
+  }, named{};
+  do {
+    if (lock_ >= 0) ::close(lock_);
+    lock_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_ < 0) cannot_write(file_, errno);
+    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) continue;
+    ::close(lock_);
+    throw InputError(file_.string() + ": another program is writing it");
+  } while (::fstat(lock_, &held) != 0 || ::stat(part_.c_str(), &named) != 0 ||
+           held.st_ino != named.st_ino);
 }
 
 FileInTheMaking::~FileInTheMaking() {
@@ -87,6 +105,7 @@ FileInTheMaking::~FileInTheMaking() {
     const char* own = part_.c_str();
     if (part.compare_exchange_strong(own, nullptr)) break;
   }
+  if (lock_ >= 0) ::close(lock_);
 }
 
 void FileInTheMaking::finish() {
@@ -98,14 +117,14 @@ void FileInTheMaking::finish() {
   if (std::rename(part_.c_str(), file_.c_str()) != 0) cannot_write(file_, errno);
 }
 
-WholeFile::WholeFile(const std::filesystem::path& file)
-    : making_(file), file_(file), stream_(making_.part(), std::ios::binary) {
+WholeFile::WholeFile(const std::filesystem::path& file, Writers writers)
+    : making_(file, writers), file_(file), stream_(making_.part(), std::ios::binary) {
   if (!stream_) cannot_write(file_, errno);
 }
 
 WholeFile::WholeFile(const std::filesystem::path& file, std::string_view beginning,
                      const std::string& kind)
-    : WholeFile((check_replaces_its_like(file, beginning, kind), file)) {
+    : WholeFile((check_replaces_its_like(file, beginning, kind), file), Writers::kOne) {
   stream_ << beginning;
 }
 

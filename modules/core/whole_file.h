@@ -2,6 +2,7 @@
 // Ctrl-C.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
@@ -13,13 +14,17 @@ namespace palpate {
 /// "HOST-PID": of this process alone on a shared file system.
 std::string process_word();
 
+/// Whether several may write one file at a time; the last then takes the place of the others'.
+enum class Writers : std::uint8_t { kSeveral, kOne };
+
 /// A place beside the file, under a name of this process, to write to; finish() puts what is there
 /// in the file's place. Without finish() nothing is left behind, nor when SIGINT, SIGTERM or SIGHUP
 /// ends a process that does not heed them.
 class FileInTheMaking {
  public:
-  /// @throws InputError if the file cannot be written, or is there and no regular file
-  explicit FileInTheMaking(const std::filesystem::path& file);
+  /// @throws InputError if the file cannot be written, is there and no regular file, or is to have
+  /// one writer and has one
+  explicit FileInTheMaking(const std::filesystem::path& file, Writers writers = Writers::kSeveral);
   ~FileInTheMaking();
   FileInTheMaking(const FileInTheMaking&) = delete;
   FileInTheMaking& operator=(const FileInTheMaking&) = delete;
@@ -30,14 +35,18 @@ class FileInTheMaking {
   void finish();
 
  private:
+  void lock_part();
+
   std::filesystem::path file_, part_;
+  int lock_ = -1;  ///< on the part, of its one writer; the kernel gives it back
 };
 
 class WholeFile {
  public:
   /// @throws InputError as FileInTheMaking
-  explicit WholeFile(const std::filesystem::path& file);
-  /// Of a kind that is written anew each time, and begins with these words, which are written.
+  explicit WholeFile(const std::filesystem::path& file, Writers writers = Writers::kSeveral);
+  /// By one writer, of a kind that is written anew each time, and begins with these words, which
+  /// are written.
   /// @throws InputError as check_replaces_its_like(), too
   WholeFile(const std::filesystem::path& file, std::string_view beginning, const std::string& kind);
 

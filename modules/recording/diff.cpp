@@ -14,6 +14,7 @@
 #include "modules/messages/csv.h"
 #include "modules/messages/values.h"
 #include "modules/recording/recorder.h"
+#include "modules/runtime/wiring.h"
 
 namespace palpate::recording {
 namespace {
@@ -139,10 +140,12 @@ class Comparison {
   bool compare_values(const std::string& topic, const std::string& key, TopicDifference& into) {
     std::map<std::string_view, double> largest;  // of the fields that differ
     std::set<std::string_view> texts;            // of these
+    const bool same_scene = is_same_scene();
     const std::size_t count = std::min(values_a_.size(), values_b_.size());
     for (std::size_t i = 0; i < count; ++i) {
       const Value &a = values_a_[i], &b = values_b_[i];
       if (a.same_as(b) || options_.ignore.contains(a.field)) continue;
+      if (same_scene && (a.field == "name" || a.field == "resolved_text")) continue;
       double& most = largest[a.field];
       if (a.kind == Value::Kind::kText) texts.insert(a.field);
       if (a.field == b.field) most = std::max(most, std::abs(a.real - b.real));
@@ -160,6 +163,13 @@ class Comparison {
       if (csv_) write_row(topic, key, field, total.is_text, difference);
     }
     return !largest.empty();
+  }
+
+  /// What a scene and its files are called is no difference, as for its digest.
+  bool is_same_scene() const {
+    const auto* a = std::get_if<SceneDescription>(&message_a_);
+    const auto* b = std::get_if<SceneDescription>(&message_b_);
+    return a != nullptr && b != nullptr && a->digest == b->digest;
   }
 
   void note(const std::string& topic, const std::string& key, const std::string& field,
@@ -221,6 +231,19 @@ bool is_of_real_time(const std::filesystem::path& file) {
   return clock != session.end() && clock->second == kTimeOfDay;
 }
 
+/// Fields in which no two runs of real time agree: whose clock, how many before, and the simulated
+/// time, of which is told how far pairs are apart. Topics that tell of the machine, where only one
+/// of both has a clock.
+std::set<std::string, std::less<>> beyond_compare(bool real_a, bool real_b) {
+  std::set<std::string, std::less<>> names;
+  if (real_a || real_b) names = {"source_time_ns", "sim_time_ns", "sequence_number"};
+  if (real_a == real_b) return names;
+  for (const bus::TopicInfo& topic : bus::all_topics()) {
+    if (runtime::find_wire(topic.name) == nullptr) names.emplace(topic.name);
+  }
+  return names;
+}
+
 /// When the streams of a session in lockstep begin, simulated [ns]; none of one in real time.
 std::optional<std::int64_t> beginning_of(const std::filesystem::path& file) {
   SampleReader reader(file);
@@ -264,8 +287,11 @@ RecordingDifference compare(const DiffOptions& options, std::size_t most_waiting
   check_names(options);
   const auto from_ns = common_beginning(options);
   SampleReader a(options.a), b(options.b);
-  const bool by_time = is_of_real_time(options.a) || is_of_real_time(options.b);
-  Comparison comparison(options, most_waiting, by_time);
+  const bool real_a = is_of_real_time(options.a), real_b = is_of_real_time(options.b);
+  const std::set<std::string, std::less<>> left_out = beyond_compare(real_a, real_b);
+  DiffOptions judged = options;
+  judged.ignore.insert(left_out.begin(), left_out.end());
+  Comparison comparison(judged, most_waiting, real_a || real_b);
   // In turns: of recordings of one session little waits for the other.
   for (bool more_a = true, more_b = true; more_a || more_b;) {
     auto sample_a = more_a ? next_since(from_ns, a) : std::nullopt;
@@ -277,6 +303,7 @@ RecordingDifference compare(const DiffOptions& options, std::size_t most_waiting
   }
   RecordingDifference difference = comparison.finish();
   difference.from_ns = from_ns;
+  difference.left_out = left_out;
   for (const SampleReader* file : {&a, &b}) {
     for (std::string& line : file->warnings()) difference.warnings.push_back(std::move(line));
   }
@@ -288,9 +315,11 @@ void print_difference(const RecordingDifference& difference, std::ostream& out) 
     out << "compared from " << seconds_from_ns(*difference.from_ns)
         << " s of the session on, where one of them begins\n\n";
   }
-  if (difference.by_time && !difference.equal()) {
+  if (difference.by_time) {
     out << "recorded in real time: each sample beside the one nearest in simulated time, at most "
-        << seconds_from_ns(difference.farthest_ns) << " s away\n\n";
+        << seconds_from_ns(difference.farthest_ns) << " s away; not compared:";
+    for (const std::string& name : difference.left_out) out << ' ' << name;
+    out << "\n\n";
   }
   if (difference.first) {
     const Difference& first = *difference.first;

@@ -53,6 +53,8 @@ struct RecordingDifference {
   std::optional<std::int64_t> from_ns;
   bool by_time = false;          ///< samples were paired by simulated time
   std::int64_t farthest_ns = 0;  ///< then: between two of a pair
+  /// Then: fields in which no two runs agree, and topics that only one of them can have.
+  std::set<std::string, std::less<>> left_out = {};
   bool equal() const;
 };
 

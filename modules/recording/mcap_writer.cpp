@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
@@ -19,12 +20,18 @@ namespace palpate::recording {
 namespace {
 
 constexpr std::size_t kFlushBytes = 1u << 20;
+/// Places to end at on a full disk: between them and its end the summary has room.
+constexpr std::size_t kMarks = 64;
 
 template <class Record>
 std::vector<McapContent> contents_of(const std::vector<Record>& records) {
   std::vector<McapContent> contents;
   for (const Record& record : records) contents.push_back(content_of(record));
   return contents;
+}
+
+std::string why_failed(const std::filesystem::path& file, const char* doing, int system_error) {
+  return file.string() + ": cannot " + doing + ": " + std::generic_category().message(system_error);
 }
 
 /// A scene, or a mesh it names, given as the recording by mistake.
@@ -66,6 +73,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem:
   pending_.assign(kMcapMagic.begin(), kMcapMagic.end());
   appended(kMcapMagic.size());
   append(McapOpcode::kHeader, content_of(McapHeader{"", "palpate"}));  // no profile: schemas tell
+  marks_.clear();                                                      // none without a header
   flush();
 }
 
@@ -116,9 +124,11 @@ void McapWriter::add_message(const McapMessage& message, std::span<const std::ui
 
 void McapWriter::end_chunk() {
   if (chunk_.empty()) return;
+  mark();
   const std::size_t before = pending_.size();
   chunks_.push_back(chunk_.finish(offset_, pending_));
   ++statistics_.chunk_count;
+  in_chunks_ = statistics_;
   appended(pending_.size() - before);
 }
 
@@ -148,6 +158,7 @@ void McapWriter::add_attachment(const McapAttachment& attachment) {
 
 void McapWriter::append(McapOpcode opcode, std::span<const std::uint8_t> content) {
   PALPATE_DEMAND(descriptor_ >= 0);
+  mark();
   const std::size_t before = pending_.size();
   append_record(pending_, opcode, content);
   appended(pending_.size() - before);
@@ -155,41 +166,90 @@ void McapWriter::append(McapOpcode opcode, std::span<const std::uint8_t> content
 
 void McapWriter::appended(std::size_t bytes) {
   offset_ += bytes;
+  crc_ = crc32(std::span(pending_).last(bytes), crc_);
   if (pending_.size() >= kFlushBytes) flush();
 }
 
-void McapWriter::flush() {
-  std::size_t done = 0;
-  const auto count = [&] {
-    crc_ = crc32(std::span(pending_).first(done), crc_);
-    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(done));
-  };
-  while (done < pending_.size()) {
-    const ssize_t written = ::write(descriptor_, pending_.data() + done, pending_.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const int reason = errno;
-      count();
-      fail("write", reason);
-    }
-    done += static_cast<std::size_t>(written);
+void McapWriter::mark() {
+  marks_.push_back({offset_, crc_, schemas_.size(), channels_.size(), chunks_.size(),
+                    attachment_indexes_.size(), metadata_indexes_.size(), in_chunks_});
+  if (marks_.size() > kMarks) marks_.pop_front();
+}
+
+void McapWriter::go_back_to(const Mark& mark) {
+  offset_ = mark.offset;
+  crc_ = mark.crc;
+  pending_.clear();
+  schemas_.resize(mark.schemas);
+  channels_.resize(mark.channels);
+  chunks_.resize(mark.chunks);
+  attachment_indexes_.resize(mark.attachments);
+  metadata_indexes_.resize(mark.metadata);
+  statistics_ = mark.messages;
+  statistics_.schema_count = static_cast<std::uint16_t>(mark.schemas);
+  statistics_.channel_count = static_cast<std::uint32_t>(mark.channels);
+  statistics_.chunk_count = static_cast<std::uint32_t>(mark.chunks);
+  statistics_.attachment_count = static_cast<std::uint32_t>(mark.attachments);
+  statistics_.metadata_count = static_cast<std::uint32_t>(mark.metadata);
+}
+
+/// Where no more can be written: at the latest place from which the summary fits.
+/// @returns false if there is none
+bool McapWriter::end_short() {
+  const std::uint64_t written = offset_ - pending_.size();
+  const std::deque<Mark> places = std::exchange(marks_, {});
+  for (auto place = places.rbegin(); place != places.rend(); ++place) {
+    if (place->offset > written) continue;
+    const auto end = static_cast<off_t>(place->offset);
+    if (::ftruncate(descriptor_, end) != 0 || ::lseek(descriptor_, end, SEEK_SET) != end) break;
+    go_back_to(*place);
+    append_end();
+    if (write_pending() != 0) continue;
+    ::close(std::exchange(descriptor_, -1));
+    return true;
   }
-  count();
+  return false;
+}
+
+void McapWriter::flush() {
+  const int failure = write_pending();
+  if (failure == 0) return;
+  const bool full = failure == ENOSPC || failure == EFBIG || failure == EDQUOT;
+  if (full && end_short()) throw DiskFull(why_failed(named_, "write", failure));
+  fail("write", failure);
+}
+
+/// @returns the system's reason where not all could be; 0 if all was
+int McapWriter::write_pending() {
+  std::size_t done = 0;
+  int failure = 0;
+  while (done < pending_.size() && failure == 0) {
+    const ssize_t written = ::write(descriptor_, pending_.data() + done, pending_.size() - done);
+    if (written >= 0) done += static_cast<std::size_t>(written);
+    if (written < 0 && errno != EINTR) failure = errno;
+  }
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(done));
+  return failure;
 }
 
 void McapWriter::close() {
   if (descriptor_ < 0) return;
   end_chunk();
   flush();
+  append_end();
+  flush();
+  if (::close(std::exchange(descriptor_, -1)) != 0) fail("close", errno);
+}
+
+/// With the CRC of all before it.
+void McapWriter::append_end() {
   McapContent content;
-  ByteWriter(content).u32(crc_);  // of all before
-  append(McapOpcode::kDataEnd, content);
-  flush();
+  ByteWriter(content).u32(crc_);
+  mark();
+  const std::size_t before = pending_.size();
+  append_record(pending_, McapOpcode::kDataEnd, content);
+  offset_ += pending_.size() - before;
   append_summary();
-  flush();
-  const int closed = ::close(descriptor_);
-  descriptor_ = -1;
-  if (closed != 0) fail("close", errno);
 }
 
 // Each kind of record as one group, then one offset per group.
@@ -227,8 +287,7 @@ void McapWriter::append_summary() {
 }
 
 void McapWriter::fail(const char* doing, int system_error) const {
-  throw std::runtime_error(named_.string() + ": cannot " + doing + ": " +
-                           std::generic_category().message(system_error));
+  throw std::runtime_error(why_failed(named_, doing, system_error));
 }
 
 }  // namespace palpate::recording

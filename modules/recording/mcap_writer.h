@@ -2,8 +2,10 @@
 // CRCs. A file whose writer was killed is whole up to its last chunk.
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <span>
+#include <stdexcept>
 #include <vector>
 
 #include "modules/recording/mcap_chunk.h"
@@ -15,6 +17,12 @@ namespace palpate::recording {
 /// @throws InputError if the folder is missing or cannot be written to, or if there is something
 /// of that name that is no recording
 void check_recording_target(const std::filesystem::path& file);
+
+/// No room is left. What had been written was ended whole, as by close(), shorter by as much as the
+/// summary takes.
+struct DiskFull : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// Messages are gathered into chunks of half a second or a megabyte. Whole chunks and the other
 /// records, which lie beside them, are written by flush(), by close(), and when a megabyte has
@@ -42,7 +50,7 @@ class McapWriter {
 
   /// Ends the chunk that messages are gathered in.
   void end_chunk();
-  /// @throws std::runtime_error naming the file and the system's reason (disk full, …)
+  /// @throws DiskFull; std::runtime_error naming the file and the system's reason
   void flush();
   /// Ends the data section, writes the summary and the footer, closes. A second call does nothing.
   void close();
@@ -52,7 +60,20 @@ class McapWriter {
   std::uint64_t bytes_written() const { return offset_; }
 
  private:
+  /// A place where the file may end: all before it is whole.
+  struct Mark {
+    std::uint64_t offset = 0;
+    std::uint32_t crc = 0;
+    std::size_t schemas = 0, channels = 0, chunks = 0, attachments = 0, metadata = 0;
+    McapStatistics messages;  ///< of the chunks
+  };
+
   void empty();
+  void mark();
+  void go_back_to(const Mark& mark);
+  bool end_short();
+  int write_pending();
+  void append_end();
   void append(McapOpcode opcode, std::span<const std::uint8_t> content);
   void appended(std::size_t bytes);
   void append_summary();
@@ -62,7 +83,9 @@ class McapWriter {
   int descriptor_ = -1;
   std::uint64_t offset_ = 0;
   std::vector<std::uint8_t> pending_;
-  std::uint32_t crc_ = 0;  ///< of what was flushed
+  std::uint32_t crc_ = 0;     ///< of all but the summary
+  std::deque<Mark> marks_;    ///< the newest
+  McapStatistics in_chunks_;  ///< of those that have ended
   McapChunkBuilder chunk_;
   std::vector<McapSchema> schemas_;
   std::vector<McapChannel> channels_;

@@ -33,9 +33,8 @@ void say(const std::string& what) {
   if (!what.empty()) std::cerr << "[recorder] " << what << std::endl;
 }
 
-void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file,
-            const Words& topics) {
-  if (!options.lockstep.empty()) return record_in_lockstep(options, file, topics);
+void record_in_real_time(const palpate::runtime::ModuleOptions& options,
+                         const std::filesystem::path& file, const Words& topics) {
   const palpate::bus::BusOptions& session = options.bus;
   const palpate::StopSignal stop;
   const palpate::recording::TopicSelection selection(
@@ -52,6 +51,16 @@ void record(const palpate::runtime::ModuleOptions& options, const std::filesyste
   say(file.string() + ": " + std::to_string(recorder.file().statistics().message_count) +
       " samples, " + std::to_string(bytes) + " bytes, " +
       palpate::recording::cost_text(cost, bytes));
+}
+
+void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file,
+            const Words& topics) {
+  if (!options.lockstep.empty()) return record_in_lockstep(options, file, topics);
+  try {
+    record_in_real_time(options, file, topics);
+  } catch (const palpate::recording::DiskFull& full) {
+    say(full.what() + std::string(": the recording ends there, whole; the session goes on"));
+  }
 }
 
 }  // namespace

@@ -33,7 +33,16 @@ runtime::Health RecorderStage::cycle(const runtime::Cycle&) {
 
 void RecorderStage::finish(const runtime::Cycle&) {
   write_all();
-  file_.close();
+  while_there_is_room([this] { file_.close(); });
+}
+
+/// @throws std::runtime_error that says how far the recording goes where there is none
+void RecorderStage::while_there_is_room(const std::function<void()>& write) const {
+  try {
+    write();
+  } catch (const DiskFull& full) {
+    throw std::runtime_error(full.what() + std::string("; the recording is whole up to there"));
+  }
 }
 
 void RecorderStage::write_all() {
@@ -56,8 +65,10 @@ void RecorderStage::write_all() {
                    [](const TopicSample& a, const TopicSample& b) {
                      return a.received_time_ns < b.received_time_ns;
                    });
-  for (const TopicSample& sample : samples_) file_.add(sample);
-  file_.flush();
+  while_there_is_room([this] {
+    for (const TopicSample& sample : samples_) file_.add(sample);
+    file_.flush();
+  });
   space_.look(seconds_from_ns(runtime::monotonic_now_ns()), file_.bytes_written());
   if (!space_.full()) return;
   file_.close();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -27,6 +28,7 @@ class RecorderStage : public runtime::Stage {
 
  private:
   void write_all();
+  void while_there_is_room(const std::function<void()>& write) const;
 
   std::vector<std::unique_ptr<bus::Input>> inputs_;
   std::vector<TopicSample> samples_;

@@ -53,7 +53,12 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   add_lockstep_options(command, options);
   if (program.add_options) program.add_options(command);
   return command.run(argc, argv, [&] {
-    run(options);
+    try {
+      run(options);
+    } catch (const Interrupted& stop) {  // no error: it was asked for
+      spdlog::info("{}", stop.what());
+      return kExitStopped;
+    }
     return kExitDone;
   });
 }

@@ -77,19 +77,19 @@ std::span<const std::uint8_t> checked(std::span<const std::uint8_t> bytes,
 
 }  // namespace
 
-void check_snapshot_name(const std::filesystem::path& file, bool overwrite) {
+void check_snapshot_name(const std::filesystem::path& file, bool overwrite,
+                         const std::string& to_overwrite) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const std::string why = why_not_writable(file.string() + ".part");  // what it is at first
-  if (!why.empty()) throw InputError(file.string() + ": cannot be written: " + why);
-  const fs::file_type type = fs::symlink_status(file, error).type();
-  if (type == fs::file_type::not_found) return;
+  const fs::file_type type = fs::status(file, error).type();  // of a link what it names
   if (type == fs::file_type::none) throw InputError(file.string() + ": " + error.message());
-  if (type != fs::file_type::regular || !begins_as_snapshot(file)) {
+  const bool is_there = type != fs::file_type::not_found;
+  if (is_there && (type != fs::file_type::regular || !begins_as_snapshot(file))) {
     throw InputError(file.string() + ": is no snapshot, and is not replaced by one");
   }
-  if (!overwrite) {
-    throw InputError(file.string() + ": is there already; give another name, or --overwrite");
+  const FileInTheMaking making(file);  // nothing comes of it yet
+  if (is_there && !overwrite) {
+    throw InputError(file.string() + ": is there already; give another name, or " + to_overwrite);
   }
 }
 

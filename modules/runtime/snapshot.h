@@ -33,9 +33,11 @@ void add_to(Snapshot& snapshot, const std::string& module, LockstepCursor& curso
             std::span<bus::Output* const> outputs);
 
 /// Whether a snapshot may be written there: a folder that is there, and nothing of that name but,
-/// to be replaced, a snapshot.
+/// to be replaced, a snapshot, or a link to one, which stays.
+/// @param to_overwrite  how to ask for that, for the message
 /// @throws InputError if not
-void check_snapshot_name(const std::filesystem::path& file, bool overwrite);
+void check_snapshot_name(const std::filesystem::path& file, bool overwrite,
+                         const std::string& to_overwrite = "--overwrite");
 
 /// Appears whole or not at all.
 /// @throws std::runtime_error if it cannot be written

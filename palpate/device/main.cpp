@@ -165,6 +165,9 @@ int main(int argc, char** argv) {
       "--csv", options.table,
       "Place and force of each period, written at the end; an earlier one is replaced");
   program.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
+  program.footer(
+      "Exit code: 0 if it moved the probe until the session ended, its time was up or it was "
+      "stopped, 1 if the session did not run, 2 for bad input, 130 if it was stopped before.");
   return program.run(argc, argv, [&] {
     attach(options);
     return kExitDone;

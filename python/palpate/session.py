@@ -30,7 +30,8 @@ class Session(Closing[_core.Session]):
 
     Args:
         scene: a Scene, or the file of one.
-        record: a recording (.mcap) of every message that carries physics goes here; close() ends it.
+        record: a recording (.mcap) of every message that carries physics goes here, in place of an earlier one; close()
+            ends it.
         from_snapshot: a snapshot (save_snapshot(), `palpate run --snapshot-at`) of the same scene; the session goes
             on there, the same bits as one never interrupted, and guides the probes that were guided. positions() are
             those of then at once; forces and contacts are zero until the next step says them.
@@ -48,7 +49,7 @@ class Session(Closing[_core.Session]):
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene)
         self._organs = {name: i for i, name in enumerate(self._scene.organs)}
         self._probes = {name: i for i, name in enumerate(self._scene.probes)}
-        files = ["" if file is None else os.fspath(file) for file in (record, from_snapshot)]
+        files = [None if file is None else os.fspath(file) for file in (record, from_snapshot)]
         self._core = _core.Session(self._scene._core, *files)
 
     def save_snapshot(self, file: str | os.PathLike[str], overwrite: bool = False) -> float:

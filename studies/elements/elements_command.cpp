@@ -121,7 +121,7 @@ int run_elements(const ElementsOptions& options, const std::function<bool()>& st
     if (!options.out.empty()) write_csv(options.out / ("elements_" + name + ".csv"), runs);
     if (!stopped) continue;
     log << "stopped" << std::endl;
-    return kExitFailed;
+    return kExitStopped;
   }
   return kExitDone;
 }

@@ -17,7 +17,7 @@ struct ElementsOptions {
 
 /// Runs the cases from coarse to fine, prints for each a table of errors and the observed orders,
 /// and writes elements_<case>.csv. Ends early, with what is done, when `stop` says so.
-/// @return kExitDone, or kExitFailed if stopped
+/// @return kExitDone, or kExitStopped
 /// @throws InputError
 int run_elements(const ElementsOptions& options, const std::function<bool()>& stop,
                  std::ostream& out, std::ostream& log);

@@ -5,6 +5,7 @@
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
 #include "studies/elements/elements_command.h"
+#include "studies/report/progress.h"
 
 int main(int argc, char** argv) {
   using namespace palpate;
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   program.add("--reference", options.reference_folder, "Folder of the reference tables")
       .shows_default();
   program.flag("--quick", options.quick, "Coarse meshes, small loads: about a minute");
+  program.footer(std::string(report::kExitCodesHelp) + " A solve under way is finished first.");
   return program.run(argc, argv, [&] {
     if (std::count(options.cases.begin(), options.cases.end(), "all") > 0) options.cases.clear();
     const StopSignal signal;

@@ -196,6 +196,7 @@ Run vibrating_ball(double size, const Setting& setting) {
   if (setting.stop()) throw report::Stopped{};
   const auto vibration =
       modal_analysis(solid, std::vector<char>(solid.displacement_count(), 0), count);
+  if (setting.stop()) throw report::Stopped{};
   std::size_t next = 6;
   for (const std::size_t row : wanted) {
     const double members = reference.at("multiplicity", row),

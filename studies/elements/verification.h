@@ -16,7 +16,7 @@ namespace palpate::elements_bench {
 struct Setting {
   std::filesystem::path reference_folder;
   bool quick = false;                                   ///< fewer load steps
-  std::function<bool()> stop;                           ///< asked between load steps
+  std::function<bool()> stop;                           ///< asked between solves
   std::function<void(const std::string& line)> report;  ///< progress
 };
 

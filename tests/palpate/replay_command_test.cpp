@@ -48,10 +48,13 @@ TEST_CASE("replay: options that a recording alone, or a rerun, would pass over a
     CHECK_THROWS_AS(check_replay_options({option}, shown, run), InputError);
     CHECK_NOTHROW(check_replay_options({option}, rerun, run));
   }
-  for (const char* option : {"--frames", "--secure", "--session", "--rate", "--start", "--step"}) {
+  for (const char* option :
+       {"--frames", "--secure", "--session", "--rate", "--start", "--step", "--headless"}) {
     CHECK_THROWS_AS(check_replay_options({option}, rerun, run), InputError);
     CHECK_NOTHROW(check_replay_options({option}, shown, run));
   }
+  // It is of one process anyway.
+  CHECK_THROWS_AS(check_replay_options({"--in-process"}, rerun, run), InputError);
   run.scene = "a.yaml";
   CHECK_NOTHROW(check_replay_options({"--summary", "--only", "--lockstep"}, shown, run));
 }

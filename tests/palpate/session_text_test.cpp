@@ -87,6 +87,14 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
                        !Contains("bye"));
 }
 
+TEST_CASE("summary: a recording that ended before its session is told of") {
+  // Oracle: the words given.
+  SessionEnd end{"stomach_probe", 12, 12.1, {}, {}, false};
+  CHECK_THAT(summary(stomach_tally(), end), !Contains("recording"));
+  end.recording = "ended 3.1 s into the session";
+  CHECK_THAT(summary(stomach_tally(), end), Contains("recording: ended 3.1 s into the session\n"));
+}
+
 TEST_CASE("summary: a force says what of it is the mesh's, as it was when it was greatest") {
   // Oracle: the numbers given.
   SessionTally tally = stomach_tally();

@@ -53,9 +53,11 @@ class SameBitsTest(unittest.TestCase):
             with palpate.Session(BALL) as session:
                 session.run_until(0.4)
                 self.assertEqual(session.save_snapshot(own), 0.4)
-                with self.assertRaises(palpate.InputError):
+                with self.assertRaisesRegex(palpate.InputError, "another name, or overwrite=True$"):
                     session.save_snapshot(own)
                 self.assertEqual(session.save_snapshot(own, overwrite=True), 0.4)
+                with self.assertRaisesRegex(palpate.InputError, "^file: an empty path names no file$"):
+                    session.save_snapshot("")
                 then = session.positions().tobytes()
                 session.run_until(1.0)
                 end = session.positions().tobytes()
@@ -69,6 +71,9 @@ class SameBitsTest(unittest.TestCase):
             commands = Path(folder) / "commands.mcap"
             subprocess.run([*run, "--duration", "1", "--from-snapshot", own, "--record", commands], check=True, **quiet)
             self.assertEqual(commands.read_bytes(), rest.read_bytes())
+            for argument in ("record", "from_snapshot"):
+                with self.assertRaisesRegex(palpate.InputError, f"^{argument}: an empty path names no file$"):
+                    palpate.Session(BALL, **{argument: ""})
             with self.assertRaisesRegex(palpate.InputError, "of scene 'ball_squeeze'"):
                 palpate.Session(STOMACH, from_snapshot=own)
 

@@ -126,8 +126,12 @@ TEST_CASE("emulated device: says what it waits for, and waits no longer than it 
   CHECK_THAT(device.said(), Contains(name + " has not begun within 10 s\n"));
 
   // Stopped before there is anything to sum up.
-  Device stopped(scene.file(), session, {});
+  const std::string table = (scene.folder() / "table.csv").string();
+  Device stopped(scene.file(), session, {"--csv", table});
   REQUIRE(stopped.wait_for_text("waiting for " + name + " to begin\n"));
+  Device second(scene.file(), session, {"--csv", table});  // which would write over the first's
+  CHECK(second.wait_for_end() == kExitBadInput);
+  CHECK_THAT(second.said(), Contains(table + ": another program is writing it"));
   stopped.child().signal(SIGTERM);
   CHECK(stopped.wait_for_end() == kExitStopped);
   CHECK_THAT(stopped.said(), Contains("stopped; " + name + " had not begun") &&

@@ -1,8 +1,10 @@
 // `palpate run` as a person uses it.
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <set>
 #include <sstream>
 
+#include "tests/scratch_folder.h"
 #include "tests/system/launched.h"
 
 using namespace palpate;
@@ -183,6 +185,22 @@ TEST_CASE("launcher: a module that refuses its input ends the start with exit co
   CHECK(run.wait_for_end() == 2);
   CHECK_THAT(run.said(), Contains("palpate: haptics ended: exit code 2") && Contains("motion.csv"));
   CHECK(run.processes().empty());
+}
+
+TEST_CASE("launcher: stopped while Gmsh fills an organ, it says so and no error") {
+  // Oracle: exit code 0, and the words; a Gmsh that never ends.
+  const ScratchFolder folder;
+  const auto gmsh = folder.write("gmsh", "#!/bin/sh\necho > \"$0.began\"\nexec sleep 100\n");
+  std::filesystem::permissions(gmsh, std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", (gmsh.parent_path().string() + ":" + path).c_str(), 1);
+  Running run(bin("palpate"), joined({"run", "liver_solid", "--headless"}, own_bus_options()));
+  CHECK(wait_until([&] { return std::filesystem::exists(folder / "gmsh.began"); }));
+  run.child().signal(SIGTERM);
+  CHECK(run.wait_for_end() == 0);
+  ::setenv("PATH", path.c_str(), 1);
+  CHECK_THAT(run.said(), Contains("[deformation] info: stopped while Gmsh made tetrahedra\n") &&
+                             !Contains("error"));
 }
 
 TEST_CASE("launcher: a recording can be replayed as the input of a new run") {

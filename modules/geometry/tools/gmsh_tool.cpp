@@ -35,6 +35,8 @@ namespace {
 }
 
 /// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
+constexpr const char* kStoppedMeshing = "stopped while Gmsh made tetrahedra";
+
 /// @throws Interrupted if a signal of StopSignal comes, or ends the program with those of its
 ///         terminal
 int run(std::vector<std::string> words, const std::filesystem::path& log) {
@@ -53,7 +55,7 @@ int run(std::vector<std::string> words, const std::filesystem::path& log) {
   }
   const int ended_by = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (stop.requested() || ended_by == SIGINT || ended_by == SIGTERM || ended_by == SIGHUP) {
-    throw Interrupted(words[0] + ": interrupted");
+    throw Interrupted(kStoppedMeshing);
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -106,7 +108,7 @@ TetMesh run_gmsh_with(const TemporaryFolder& folder, std::vector<std::string> op
   }
   try {
     TetMesh mesh = read_gmsh(output);
-    if (StopSignal().requested()) throw Interrupted("gmsh: interrupted");
+    if (StopSignal().requested()) throw Interrupted(kStoppedMeshing);
     return mesh;
   } catch (const InputError& error) {  // "/tmp/…/solid.msh:12: what": nobody knows that file
     const std::string text = error.what();

@@ -110,7 +110,27 @@ TEST_CASE("key check: what is no file is told from one before it is opened", "[b
         std::array{own.authority, own.governance, own.certificate, own.key, own.permissions}[k];
     fs::remove(file);
     REQUIRE(::mkfifo(file.c_str(), 0600) == 0);
-    CHECK(said_of(keys).starts_with("keys: " + file.string() + ": is a FIFO, not a file"));
+    CHECK(said_of(keys).starts_with("keys: " + file.string() + ": is no regular file; copy "));
+  }
+}
+
+TEST_CASE("key check: a folder, or a file in it, that others may write to is refused", "[bus]") {
+  // Oracle: the rule of ssh for what is trusted: nobody else could have put it there.
+  const ScratchFolder scratch;
+  const fs::path keys = scratch / "keys";
+  make_keys(keys, kKeyHour);
+  const KeyFiles own = key_files(keys, "haptics");
+  for (const fs::path& place :
+       {keys, own.authority, own.governance, own.certificate, own.permissions}) {
+    const fs::perms before = fs::status(place).permissions();
+    for (const fs::perms right : {fs::perms::group_write, fs::perms::others_write}) {
+      fs::permissions(place, right, fs::perm_options::add);
+      CHECK(said_of(keys) == "keys: " + place.string() +
+                                 ": others may write to it; chmod go-w it, and make new keys if "
+                                 "they did");
+      fs::permissions(place, before);
+      CHECK(said_of(keys) == "accepted");
+    }
   }
 }
 

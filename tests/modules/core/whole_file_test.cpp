@@ -81,6 +81,25 @@ TEST_CASE("whole file: a name as long as one may be is written") {
   CHECK(folder.file_count() == 1);
 }
 
+TEST_CASE("whole file: of one writer, a second is refused while the first is at work") {
+  // Oracle: the message by hand, and the first one's text. One that was killed keeps nobody out.
+  const ScratchFolder folder;
+  const auto file = folder / "a.csv";
+  const auto write = [&](const std::string& text) {
+    WholeFile whole(file, Writers::kOne);
+    whole.stream() << text;
+    CHECK_THROWS_WITH(WholeFile(file, Writers::kOne),
+                      file.string() + ": another program is writing it");
+    whole.finish();
+  };
+  write("one");
+  CHECK(text_in(file) == "one");
+  folder.write("a.csv.part", "left behind");
+  write("two");
+  CHECK(text_in(file) == "two");
+  CHECK(folder.file_count() == 1);
+}
+
 TEST_CASE("whole file: where nothing can be written it says so") {
   // Oracle: the messages by hand.
   CHECK_THROWS_WITH(WholeFile("/nowhere/a.csv"),

@@ -113,7 +113,7 @@ TEST_CASE("diff: a table that cannot be finished is not there, and replaces noth
 }
 
 TEST_CASE("diff: of texts it says that they differ, not by how much") {
-  // Oracle: two scenes that differ in their name alone.
+  // Oracle: two scenes that differ in their names and digests.
   const ScratchFolder folder;
   const auto record_scene = [&](const std::string& name) {
     const auto file = folder / (name + ".mcap");
@@ -121,7 +121,7 @@ TEST_CASE("diff: of texts it says that they differ, not by how much") {
     SceneDescription scene;
     scene.name = name;
     scene.header = {1, 0, 1};
-    scene.digest = "0123456789abcdef";
+    scene.digest = "0123456789abcde" + name.substr(2, 1);
     scene.resolved_text = "palpate_scene: 1\n";
     recording.add(raw_sample(bus::kScene, scene, 1, 1));
     recording.close();
@@ -135,6 +135,28 @@ TEST_CASE("diff: of texts it says that they differ, not by how much") {
   std::ostringstream rows;
   rows << std::ifstream(folder / "differences.csv").rdbuf();
   CHECK_THAT(rows.str(), Catch::Contains(",scene,,name,text\n"));
+}
+
+TEST_CASE("diff: a scene of the same content is the same, whatever it and its files are called") {
+  // Oracle: the digest, and the text that tells two such scenes apart.
+  const ScratchFolder folder;
+  const auto record_scene = [&](const std::string& name, const std::string& digest) {
+    const auto file = folder / (name + ".mcap");
+    SampleFile recording(file);
+    SceneDescription scene;
+    scene.header = {1, 0, 1};
+    scene.name = name;
+    scene.digest = digest;
+    scene.resolved_text = "file: " + name;
+    recording.add(raw_sample(bus::kScene, scene, 1, 1));
+    recording.close();
+    return file;
+  };
+  const auto a = record_scene("a", "0123456789abcdef"),
+             copy = record_scene("b", "0123456789abcdef");
+  CHECK(compare({a, copy}).equal());
+  const auto other = compare({a, record_scene("c", "0123456789abcdee")});
+  CHECK(other.topics.at("scene").fields.size() == 3);
 }
 
 TEST_CASE("diff: samples that one recording lacks are counted") {
@@ -181,6 +203,34 @@ TEST_CASE("diff: a sample of real time is compared with the nearest in simulated
     CHECK_THAT(said.str(), Catch::StartsWith("recorded in real time: each sample beside the one "
                                              "nearest in simulated time, at most 0.0003 s away"));
   }
+}
+
+TEST_CASE("diff: of real time, what no two runs agree in is left out, and said") {
+  // Oracle: one that was copied on another clock is the same; its status, which a session without a
+  // clock has not, is nobody's. Pressures that differ still do.
+  const ScratchFolder folder;
+  const auto record_at = [&](SampleFile recording, std::int64_t clock_ns, double pressure) {
+    NodePositions nodes = node_positions(std::uint64_t(1 + clock_ns), 1e-3, pressure);
+    nodes.header.sim_time_ns = 4'000'000;
+    nodes.header.source_time_ns = clock_ns + 4'000'000;
+    recording.add(raw_sample(bus::kNodePositions, nodes, nodes.header.source_time_ns, 1));
+    if (clock_ns > 0) recording.add(raw_sample(bus::kModuleStatus, ModuleStatus{}, clock_ns, 2));
+    recording.close();
+  };
+  record_at(SampleFile(folder / "a.mcap", {}), 70, 10);
+  record_at(SampleFile(folder / "b.mcap"), 0, 10);
+  record_at(SampleFile(folder / "c.mcap"), 0, 11);
+  const auto copied = compare({folder / "a.mcap", folder / "b.mcap"});
+  CHECK(copied.equal());
+  CHECK_FALSE(copied.topics.contains("module_status"));
+  std::ostringstream said;
+  print_difference(copied, said);
+  CHECK_THAT(said.str(), Catch::Contains("not compared: clock module_status") &&
+                             Catch::Contains(" sequence_number") &&
+                             Catch::Contains(" source_time_ns"));
+  const auto other = compare({folder / "a.mcap", folder / "c.mcap"});
+  REQUIRE(other.first);
+  CHECK(other.first->field == "pressure_pa");
 }
 
 TEST_CASE("diff: what is to be ignored makes no difference, and must exist") {

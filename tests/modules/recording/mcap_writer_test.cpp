@@ -5,8 +5,11 @@
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "modules/recording/mcap_bytes.h"
+#include "modules/recording/mcap_reader.h"
+#include "tests/file_size_limit.h"
 #include "tests/modules/recording/mcap_sample_file.h"
 #include "tests/modules/recording/recording_files.h"
 
@@ -202,6 +205,51 @@ TEST_CASE("mcap writer: statistics count messages per channel and span the log t
 TEST_CASE("mcap writer: a full disk is reported with the file and the system's reason") {
   // Oracle: the kernel's device that is always full.
   CHECK_THROWS_WITH(McapWriter("/dev/full"), "/dev/full: cannot write: No space left on device");
+}
+
+TEST_CASE("mcap writer: a disk that is full at once leaves a file that is whole, but shorter") {
+  // Oracle: the reader, which checks both CRCs: not torn, its first messages in order, as many as
+  // the statistics say. A limit on the size of files fails where a full disk does, at any byte of
+  // the file.
+  const ScratchFolder folder;
+  for (const rlim_t limit : {3'000, 20'000, 20'001, 70'123, 299'999}) {
+    INFO(limit);
+    const auto file = folder / "a.mcap";
+    std::uint64_t written = 0;
+    {
+      const FileSizeLimit full(limit);
+      McapWriter writer(file);
+      const auto channel =
+          writer.add_channel({0, writer.add_schema({0, "S", "id", "d"}), "t", "cdr", {}});
+      const auto write_all = [&] {
+        std::mt19937 random(1);
+        for (std::uint32_t k = 0; k < 3000; ++k) {
+          std::vector<std::uint8_t> payload(200);
+          for (auto& byte : payload) byte = static_cast<std::uint8_t>(random());
+          writer.add_message({channel, k, 1'000'000ull * k, 0, {}}, payload);
+          if (k % 10 != 9) continue;
+          writer.end_chunk();
+          writer.flush();
+        }
+      };
+      CHECK_THROWS_AS(write_all(), DiskFull);
+      CHECK_NOTHROW(writer.close());
+      written = writer.statistics().message_count;
+    }
+    CHECK(std::filesystem::file_size(file) <= limit);
+    McapReader reader(file);
+    std::uint64_t read = 0;
+    while (const auto record = reader.next()) {
+      const auto* message = std::get_if<McapMessage>(&*record);
+      if (message == nullptr) continue;
+      CHECK(message->sequence == read);
+      ++read;
+    }
+    CHECK_FALSE(reader.torn());
+    CHECK(read == written);
+    CHECK(reader.statistics().value().message_count == read);
+    CHECK(std::filesystem::file_size(file) + 3'000 > limit);  // a chunk has less
+  }
 }
 
 TEST_CASE("mcap writer: a file that another one writes is refused and keeps what it has") {

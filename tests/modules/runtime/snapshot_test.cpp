@@ -45,12 +45,21 @@ TEST_CASE("snapshot: nothing but a snapshot is replaced by one, and that only if
   const auto text = folder.write("text", "palpate snaps");
   std::filesystem::create_symlink(folder / "nowhere", folder / "link");
   std::filesystem::create_symlink(folder / "old", folder / "linked");
-  for (const std::filesystem::path& kept : {text, folder / "link", folder / "linked", folder.path(),
-                                            std::filesystem::path("/dev/full")}) {
+  // A link to one is followed, and stays; one to nothing is refused.
+  CHECK(name_refusal(folder / "link", false).find("cannot be written") != std::string::npos);
+  CHECK(name_refusal(folder / "linked", true) == "");
+  CHECK(name_refusal(folder / "linked", false).find("or --overwrite") != std::string::npos);
+  write_snapshot(folder / "linked", scene, {.time_ns = 7});
+  CHECK(std::filesystem::is_symlink(folder / "linked"));
+  CHECK(read_snapshot(folder / "old", scene).time_ns == 7);
+  std::filesystem::create_symlink(text, folder / "to_text");
+  for (const std::filesystem::path& kept :
+       {text, folder / "to_text", folder.path(), std::filesystem::path("/dev/full")}) {
     INFO(kept.string());
     CHECK(name_refusal(kept, true).find("is no snapshot, and is not replaced") !=
           std::string::npos);
   }
+  CHECK(name_refusal("/proc/x", false).find("/proc takes no file") != std::string::npos);
   CHECK(name_refusal(folder / "no/new", true).find("there is no folder") != std::string::npos);
   CHECK(name_refusal(folder / std::string(300, 'n'), true).find("too long") != std::string::npos);
 }
