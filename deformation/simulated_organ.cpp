@@ -181,7 +181,7 @@ bool SimulatedOrgan::finish(double period, AdvanceReport& report) {
   if (guarding_ == Guarding::kOff) return true;
   const bool thorough = ++advances_ >= kThoroughCheckEvery;
   Violation seen = thorough ? detector_->check_thoroughly(state_, period, *dynamics_)
-                            : detector_->check_bounds(state_, period);
+                            : detector_->check(state_, period, *dynamics_);
   if (collapsed_time_ > kCollapsedTime) seen = Violation::kCollapsed;
   if (seen != Violation::kNone) {
     recover(seen, report);

@@ -16,14 +16,22 @@
 // side and that in turns, would be shaken by it forever. Only pushes faster than kPushedSpeed
 // count: below 0.05 m/s those of an organ pressed flat with 1 kN add up to as much, and it is as
 // healthy as can be. And only those faster than the probe's surface moves: what it crosses unseen
-// it would have pushed away itself, with the same work. An organ is shaken once so much was
-// injected and its surface moves about its mean faster than any probe does, or for long faster than
-// one push can make it.
+// it would have pushed away itself, with the same work.
 //
-// Judged is motion: kinetic energy, and only what is more than one push out of a probe gives the
-// whole organ. Elastic energy that nobody gave is suspicious, no more: a step that is not solved to
-// the end leaves some in tissue crushed by a fast, small probe, and what it does as it comes free
-// is motion. The budget is never below 0: work that took more was overestimated.
+// Judged is motion about the mean: nothing inner moves the centre of mass, so what throws an organ
+// as a whole is no instability of it. The energy grew if it moves faster than any probe moves it,
+// or for long faster than one push can make it, and holds more, moving and stored, than at the
+// check before: tenfold, or if it was as fast then, too, at all. Tissue that springs free or was
+// thrown only loses. And nobody did the work: either
+//   it is shaken, its surface moving so, and more was injected than one push gives; or
+//   its motion is ten times what it may hold, and a tenth of what it holds or more: an unstable
+//   step turns the one into the other, tissue crushed by a probe holds much and hardly moves.
+// Whatever moves faster than one push can make it is looked at closely for that in every check, and
+// for whether it is inside out.
+//
+// Elastic energy that nobody gave is suspicious, no more: a step that is not solved to the end
+// leaves some in tissue crushed by a fast, small probe. The budget is never below 0: work that took
+// more was overestimated.
 #pragma once
 
 #include <span>
@@ -48,8 +56,9 @@ inline constexpr double kCalmSpeed = 0.05;
 /// Injected energy is forgotten by 1/e in this time [s]; no more is plausible at a time than pushes
 /// the whole organ out of a probe once, J·v⁺ = m kMaxSeparationSpeed².
 inline constexpr double kInjectionMemory = 10.0;
-/// Root mean square of how a surface's nodes moved since the last check, about their mean: faster
-/// than any probe moves them, or for so long faster than one push can [m/s], [s].
+/// Root mean square of how a surface's nodes moved since the last check, or of how all move now,
+/// about their mean: faster than any probe moves them, or for so long faster than one push can
+/// [m/s], [s].
 inline constexpr double kShakenSpeed = kMaxProbeSpeed;
 inline constexpr double kShakenForLongSpeed = kMaxSeparationSpeed;
 inline constexpr double kShakenTime = 0.5;
@@ -74,11 +83,12 @@ class DivergenceDetector {
   void add_work(double h, std::span<const ContactRow> rows, double volume_change,
                 const OrganState& state);
 
-  /// One pass over the nodes, for every advance.
+  /// For every advance: one pass over the nodes; of an organ in motion also all energy and the sign
+  /// of the volume.
   /// @param period  since the last check [s]
-  Violation check_bounds(const OrganState& state, double period);
+  Violation check(const OrganState& state, double period, OrganDynamics& dynamics);
 
-  /// check_bounds(), then all energy and the sign of the volume. Brings the energy budget down.
+  /// The same, closely in any case. Brings the energy budget down.
   Violation check_thoroughly(const OrganState& state, double period, OrganDynamics& dynamics);
 
   /// The last check passed, but the energy was more than it should be: a step too large shows
@@ -88,8 +98,8 @@ class DivergenceDetector {
   double energy_budget() const { return energy_budget_; }  ///< what it may hold [J]
 
   void exchange(StateArchive& archive) {
-    archive(energy_budget_, injected_energy_, kinetic_energy_, shaking_squared_, first_moment_,
-            shaken_time_, seen_, suspicious_);
+    archive(energy_budget_, injected_energy_, kinetic_energy_, inner_energy_, energy_,
+            shaking_squared_, first_moment_, shaken_time_, seen_, suspicious_, was_fast_);
   }
 
   /// What add_work() changes, for steps that are taken back.
@@ -106,18 +116,23 @@ class DivergenceDetector {
   bool is_finite(const OrganState& state) const;
   void give(double work);
   double may_hold() const { return energy_budget_ + calm_energy_; }  ///< [J]
-  Violation judge_motion();
+  Violation check_bounds(const OrganState& state, double period);
+  Violation look_closely(const OrganState& state, OrganDynamics& dynamics);
+  bool moves() const;
   Violation explain(const OrganState& state, double period) const;
 
   const Body& body_;
   bool knows_energy_;
   double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_injected_energy_ = 0;
   double energy_budget_ = 0, injected_energy_ = 0, kinetic_energy_ = 0;  ///< [J]
+  double inner_energy_ = 0;           ///< kinetic, about the mean [J]
+  double energy_ = 0;                 ///< all, at the last check; 0: not looked at [J]
   double shaking_squared_ = 0;        ///< kShakenSpeed's, now [m²/s²]
   double shaken_time_ = 0;            ///< faster than kShakenForLongSpeed until now [s]
   Vec3 first_moment_ = Vec3::Zero();  ///< Σ m x, under gravity [kg·m]
   std::vector<Vec3> seen_;            ///< positions of the last check [m]
   bool suspicious_ = false;
+  bool was_fast_ = false;  ///< at the last check
 };
 
 }  // namespace palpate::deformation

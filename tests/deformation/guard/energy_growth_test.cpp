@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "deformation/guard/divergence_detector.h"
+#include "tests/deformation/guard/torn_organ.h"
+#include "tests/deformation/volume/rules/method_checks.h"
+
+namespace palpate::deformation {
+namespace {
+
+constexpr double kGrowthPeriod = 5e-4;  // [s]
+constexpr double kLongGrowth = 1;       // in which a node may come as far as the tests put it [s]
+
+TEST_CASE("divergence detector: falling is not gaining, nor is what the fall gives") {
+  // Oracle: m g s for what moves about the mean as the ball lands; without gravity it is too much.
+  const auto organ = testing::undamped_ball_with("implicit_volume");
+  for (const double g : {9.81, 0.0}) {
+    const auto model = testing::ball_model(1, organ, Vec3(0, 0, -g));
+    auto dynamics = testing::constrained(model);
+    DivergenceDetector detector(model, true);
+    OrganState state = rest_state(model);
+    detector.begin(state, 0);
+    for (int s = 1; s <= 1000; ++s) {
+      for (auto& v : state.velocities) v.z() = -9.81 * s * kGrowthPeriod;
+      for (auto& p : state.positions) p.z() -= 9.81 * s * kGrowthPeriod * kGrowthPeriod;
+      REQUIRE((s % 10 == 0 ? detector.check_thoroughly(state, kGrowthPeriod, dynamics)
+                           : detector.check(state, kGrowthPeriod, dynamics)) == Violation::kNone);
+    }
+    CHECK_FALSE(detector.suspicious());
+    if (g == 0) detector.begin(rest_state(model), 0);
+    testing::tear(model, 9.81 * 0.5 / std::sqrt(testing::moving_share(model)), state);
+    CHECK(detector.check(state, kLongGrowth, dynamics) ==
+          (g > 0 ? Violation::kNone : Violation::kEnergyGrew));
+  }
+}
+
+TEST_CASE(
+    "divergence detector: elastic energy that nobody gave is suspicious, what it does as it comes "
+    "free is too much") {
+  // Oracle: definitions; a ball swollen by a third holds a hundred times what it may, at rest. What
+  // it does with a tenth of that and more is judged.
+  auto organ = testing::undamped_ball_with("mass_spring");
+  organ.tissue.youngs_modulus *= 1000;
+  const auto model = testing::ball_model(2, organ);
+  auto dynamics = testing::constrained(model);
+  DivergenceDetector detector(model, true);
+  OrganState state = rest_state(model);
+  detector.begin(state, 0);
+  for (Vec3& p : state.positions) p *= 4.0 / 3;
+  double mass = 0;
+  for (const double m : model.masses) mass += m;
+  const double stored = dynamics.elastic_energy(state);
+  REQUIRE(stored > 10 * kEnergyGain * mass * kCalmSpeed * kCalmSpeed / 2);
+  CHECK(detector.check_thoroughly(state, kLongGrowth, dynamics) == Violation::kNone);
+  CHECK(detector.suspicious());
+  CHECK(detector.energy_budget() == 0);  // it is not given to it
+  const double moving = testing::moving_share(model) * mass;
+  const double speed_of_tenth = std::sqrt(2 * stored / (9 * moving));
+  REQUIRE(speed_of_tenth > kShakenSpeed);
+  for (const double share : {0.9, 1.1}) {
+    DivergenceDetector judge(model, true);
+    judge.begin(rest_state(model), 0);
+    CHECK(judge.check(state, kLongGrowth, dynamics) == Violation::kNone);
+    OrganState free = state;
+    testing::tear(model, share * speed_of_tenth, free);
+    CHECK(judge.check(free, kLongGrowth, dynamics) ==
+          (share > 1 ? Violation::kEnergyGrew : Violation::kNone));
+  }
+}
+
+TEST_CASE("divergence detector: what throws an organ as a whole is no instability of it") {
+  // Oracle: nothing inner moves the centre of mass; the same energy about it is too much.
+  const auto model = testing::ball_model(2);
+  auto dynamics = testing::constrained(model);
+  for (const bool inner : {false, true}) {
+    DivergenceDetector detector(model, true);
+    OrganState state = rest_state(model);
+    detector.begin(state, 0);
+    const double speed = 4 * kShakenSpeed;
+    if (inner) testing::tear(model, speed, state);
+    if (!inner) std::ranges::fill(state.velocities, Vec3(speed, 0, 0));
+    CHECK(detector.check(state, kLongGrowth, dynamics) ==
+          (inner ? Violation::kEnergyGrew : Violation::kNone));
+    CHECK(detector.suspicious() == inner);
+  }
+}
+
+TEST_CASE("divergence detector: energy has to grow, at once tenfold or from check to check") {
+  // Oracle: definition. A motion that nobody gave is known when it comes from calm; one that only
+  // loses is tissue come free, one that gains while it is fast is not.
+  const auto organ = testing::undamped_ball_with("mass_spring");
+  const auto model = testing::ball_model(2, organ);
+  auto dynamics = testing::constrained(model);
+  const auto last_of = [&](std::initializer_list<double> speeds) {
+    DivergenceDetector detector(model, true);
+    OrganState state = rest_state(model);
+    detector.begin(state, 0);
+    Violation seen = Violation::kNone;
+    for (const double speed : speeds) {
+      testing::tear(model, speed, state);
+      seen = detector.check(state, kLongGrowth, dynamics);
+    }
+    return seen;
+  };
+  const double slow = 0.75 * kShakenSpeed, fast = 1.5 * kShakenSpeed;
+  CHECK(last_of({fast}) == Violation::kEnergyGrew);
+  CHECK(last_of({slow}) == Violation::kNone);
+  CHECK(last_of({slow, fast}) == Violation::kNone);
+  CHECK(last_of({slow, fast, 0.99 * fast}) == Violation::kNone);
+  CHECK(last_of({slow, fast, 1.01 * fast}) == Violation::kEnergyGrew);
+  CHECK(last_of({slow, 4 * fast}) == Violation::kEnergyGrew);
+}
+
+TEST_CASE("divergence detector: an organ in motion is looked at closely") {
+  // Oracle: definition. A mirrored ball encloses −V₀; at rest that is left to the next thorough
+  // check.
+  const auto model = testing::ball_model(2);
+  auto dynamics = testing::constrained(model);
+  for (const bool in_motion : {false, true}) {
+    DivergenceDetector detector(model, true);
+    OrganState state = rest_state(model);
+    detector.begin(state, 0);
+    for (Vec3& p : state.positions) p.x() = -p.x();
+    if (in_motion) testing::tear(model, 1.5 * kMaxSeparationSpeed, state);
+    CHECK(detector.check(state, kLongGrowth, dynamics) ==
+          (in_motion ? Violation::kTurnedInside : Violation::kNone));
+  }
+}
+
+}  // namespace
+}  // namespace palpate::deformation
