@@ -42,11 +42,11 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
   }
   return compliance->solve(
       positions_ahead, touched, steps, gradient,
-      [&](const Patch& patch, double stiffness_share, double damping_share, Eigen::MatrixXf& sum) {
+      [&](const Patch& patch, Eigen::MatrixXf& stiffness, Eigen::MatrixXf& damping) {
         if (springs) {
-          springs->add(positions_ahead, patch, stiffness_share, damping_share, sum);
+          springs->add(positions_ahead, patch, stiffness, damping);
         } else {
-          simulated.dynamics().add_stiffness(patch, stiffness_share, sum);
+          simulated.dynamics().add_stiffness(patch, stiffness);
         }
       },
       simulated.dynamics().step_matrix());

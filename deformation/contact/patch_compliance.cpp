@@ -61,17 +61,11 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   const std::size_t most = near_nodes(last);
   grow_patch(model_, neighbours_, positions, touched_, centre, most, patch_);
   const auto size = static_cast<Eigen::Index>(3 * patch_.nodes.size());
-  Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
-  const bool is_explicit = !model_.is_solid() && !steps.implicit && steps.count > 1;
-  if (is_explicit) {
-    pressed_.stiffness = pressed_.damping = A;
-    add_stiffness(patch_, 1, 0, pressed_.stiffness);
-    add_stiffness(patch_, 0, 1, pressed_.damping);
-    A = static_cast<float>(shares.stiffness) * pressed_.stiffness +
-        static_cast<float>(shares.damping) * pressed_.damping;
-  } else {
-    add_stiffness(patch_, shares.stiffness, shares.damping, A);
-  }
+  pressed_.stiffness.setZero(size, size);
+  pressed_.damping.setZero(size, size);
+  add_stiffness(patch_, pressed_.stiffness, pressed_.damping);
+  Eigen::MatrixXf A = static_cast<float>(shares.stiffness) * pressed_.stiffness +
+                      static_cast<float>(shares.damping) * pressed_.damping;
   double mass = 0;
   const double springs = A.trace();
   for (const std::uint32_t node : patch_.nodes) {
@@ -81,6 +75,7 @@ Eigen::MatrixXd PatchCompliance::solve(const std::vector<Vec3>& positions,
   }
   const Eigen::Index far = extend(positions, centre, springs / mass, rows, shares, last, A);
   const Eigen::MatrixXd evenly = answers(A, far, shares.mass, rows, gradient);
+  const bool is_explicit = !model_.is_solid() && !steps.implicit && steps.count > 1;
   if (!is_explicit || far > 0) return evenly;
   return shortfall(evenly, rows, steps, gradient) * evenly;
 }

@@ -28,9 +28,9 @@
 
 namespace palpate::deformation {
 
-/// Adds shares of K and D of the patch to the lower triangle.
-using AddStiffness = std::function<void(const Patch& patch, double stiffness_share,
-                                        double damping_share, Eigen::MatrixXf& sum)>;
+/// Adds K and D of the patch to the lower triangles.
+using AddStiffness =
+    std::function<void(const Patch& patch, Eigen::MatrixXf& stiffness, Eigen::MatrixXf& damping)>;
 
 class PatchCompliance {
  public:
@@ -99,7 +99,7 @@ class PatchCompliance {
   std::vector<std::uint32_t> touched_;
   Patch patch_;
   std::vector<Push> pushes_;  ///< buffer
-  PressedPatch pressed_;      ///< K and D in explicit steps
+  PressedPatch pressed_;      ///< K and D of patch_; the rest in explicit steps
   std::optional<SolidAnswers> solid_;
   std::optional<FarAnswers> far_;  ///< of springs, once they reach beyond the patch
 };

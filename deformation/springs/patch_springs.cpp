@@ -11,19 +11,33 @@ namespace {
 
 constexpr float kTinySquare = 1e-20f;  // [m²]: no direction, no force
 
-/// What moving an end of a spring is resisted with; d from end to end [m].
-Block4f block_of(const Spring& spring, double spring_damping, const Vec4f& d, double stiffness,
-                 double damping) {
+/// What moving an end of a spring is resisted with.
+struct Resistance {
+  Block4f stiffness, damping;
+};
+
+/// @param damping  axial [N·s/m]  @param d  from end to end [m]
+Resistance resistance_of(const Spring& spring, double damping, const Vec4f& d) {
   const float square = d.squaredNorm();
-  if (square < kTinySquare) return {Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
-  const auto k = static_cast<float>(stiffness * spring.stiffness);
+  const Block4f none{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
+  if (square < kTinySquare) return {none, none};
+  const auto k = static_cast<float>(spring.stiffness);
   const float stretch = 1 - static_cast<float>(spring.rest_length) / std::sqrt(square);
   const float across = k * std::max(stretch, 0.0f);
-  const float along = (k + static_cast<float>(damping * spring_damping) - across) / square;
-  const Vec4f scaled = along * d;
-  Block4f block{scaled.x() * d, scaled.y() * d, scaled.z() * d};
-  for (int axis = 0; axis < 3; ++axis) block[static_cast<std::size_t>(axis)][axis] += across;
-  return block;
+  Block4f stiffness = outer(d, (k - across) / square * d);
+  for (int axis = 0; axis < 3; ++axis) stiffness[static_cast<std::size_t>(axis)][axis] += across;
+  return {stiffness, outer(d, static_cast<float>(damping) / square * d)};
+}
+
+void add_to(Block4f& sum, const Block4f& block) {
+  for (std::size_t k = 0; k < 3; ++k) sum[k] += block[k];
+}
+
+/// Adds the block to rows 3 i … and columns 3 j ….
+void add_at(Eigen::MatrixXf& sum, int i, int j, const Block4f& block, float share) {
+  for (int axis = 0; axis < 3; ++axis) {
+    sum.block<3, 1>(3 * i, 3 * j + axis) += share * block[static_cast<std::size_t>(axis)].head<3>();
+  }
 }
 
 }  // namespace
@@ -44,22 +58,25 @@ PatchSprings::PatchSprings(const SpringNetwork& network, std::size_t node_count)
 }
 
 void PatchSprings::add(const std::vector<Vec3>& positions, const Patch& patch,
-                       double stiffness_share, double damping_share, Eigen::MatrixXf& sum) const {
+                       Eigen::MatrixXf& stiffness, Eigen::MatrixXf& damping) const {
   for (const std::uint32_t node : patch.nodes) {
     const int i = patch.place(node);
+    const Block4f none{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
+    Resistance own{none, none};  // of all its springs, kept in registers
     for (auto at = starts_[node]; at < starts_[node + 1]; ++at) {
       const Spring& spring = network_.springs[springs_[at]];
       const std::uint32_t other = spring.node_a == node ? spring.node_b : spring.node_a;
-      const Block4f block =
-          block_of(spring, network_.damping[springs_[at]], wide(positions[other] - positions[node]),
-                   stiffness_share, damping_share);
+      const Resistance one = resistance_of(spring, network_.damping[springs_[at]],
+                                           wide(positions[other] - positions[node]));
+      add_to(own.stiffness, one.stiffness);
+      add_to(own.damping, one.damping);
       const int j = patch.place(other);
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto column = block[static_cast<std::size_t>(axis)].head<3>();
-        sum.block<3, 1>(3 * i, 3 * i + axis) += column;
-        if (j >= 0 && j < i) sum.block<3, 1>(3 * i, 3 * j + axis) -= column;
-      }
+      if (j < 0 || j >= i) continue;
+      add_at(stiffness, i, j, one.stiffness, -1);
+      add_at(damping, i, j, one.damping, -1);
     }
+    add_at(stiffness, i, i, own.stiffness, 1);
+    add_at(damping, i, i, own.damping, 1);
   }
 }
 

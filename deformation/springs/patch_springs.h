@@ -14,11 +14,11 @@ class PatchSprings {
   /// @param network  outlives this
   PatchSprings(const SpringNetwork& network, std::size_t node_count);
 
-  /// Adds stiffness K and damping D of the patch at these positions [m] to the lower triangle of
-  /// `sum`: stiffness_share K + damping_share D. Of the part across a spring only tension counts,
-  /// as in projected_spring_stiffness.h.
-  void add(const std::vector<Vec3>& positions, const Patch& patch, double stiffness_share,
-           double damping_share, Eigen::MatrixXf& sum) const;
+  /// Adds stiffness K and damping D of the patch at these positions [m] to the lower triangles of
+  /// two matrices. Of the part across a spring only tension counts, as in
+  /// projected_spring_stiffness.h.
+  void add(const std::vector<Vec3>& positions, const Patch& patch, Eigen::MatrixXf& stiffness,
+           Eigen::MatrixXf& damping) const;
 
  private:
   const SpringNetwork& network_;

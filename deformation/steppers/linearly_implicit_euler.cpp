@@ -40,10 +40,9 @@ StepReport LinearlyImplicitEuler::step(double h, std::span<ContactRow> rows, Org
   return {};
 }
 
-void LinearlyImplicitEuler::add_stiffness(const Patch& patch, double share,
-                                          Eigen::MatrixXf& sum) const {
+void LinearlyImplicitEuler::add_stiffness(const Patch& patch, Eigen::MatrixXf& sum) const {
   if (!(step_ > 0)) return;
-  const double scale = share / (step_ * step_);
+  const double scale = 1 / (step_ * step_);
   elements_->add_block(patch, static_cast<float>(scale), sum);
   for (const std::uint32_t node : patch.nodes) {
     sum.diagonal().segment<3>(3 * patch.place(node)).array() -=

@@ -35,7 +35,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
 
   double largest_step() const override { return kLargestStep; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  void add_stiffness(const Patch& patch, double share, Eigen::MatrixXf& sum) const override;
+  void add_stiffness(const Patch& patch, Eigen::MatrixXf& sum) const override;
   StepMatrix step_matrix() const override {
     if (!(step_ > 0)) return {};
     return {.elements = elements_.get(), .shift = shift_, .step = step_};

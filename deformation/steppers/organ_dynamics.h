@@ -38,11 +38,9 @@ class OrganDynamics {
   /// Whether the elastic forces of a step are those at its end, else at its start.
   virtual bool is_implicit() const { return true; }
 
-  /// Of a solid: adds `share` of the elastic stiffness of the patch as it was in the last step, all
-  /// other nodes held, to the lower triangle of `sum` [N/m]. A model that has none to tell adds
-  /// none.
-  virtual void add_stiffness(const Patch& /*patch*/, double /*share*/,
-                             Eigen::MatrixXf& /*sum*/) const {}
+  /// Of a solid: adds the elastic stiffness of the patch as it was in the last step, all other
+  /// nodes held, to the lower triangle of `sum` [N/m]. A model that has none to tell adds none.
+  virtual void add_stiffness(const Patch& /*patch*/, Eigen::MatrixXf& /*sum*/) const {}
 
   /// Of a solid that keeps one.
   virtual StepMatrix step_matrix() const { return {}; }

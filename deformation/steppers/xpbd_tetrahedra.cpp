@@ -122,7 +122,7 @@ double XpbdTetrahedra::relax(std::size_t element, double h) {
 }
 
 /// Gauss–Newton: of each tetrahedron μ V g_a·g_b I + λ/V b_a b_bᵀ, b = ∂v/∂x.
-void XpbdTetrahedra::add_stiffness(const Patch& patch, double share, Eigen::MatrixXf& sum) const {
+void XpbdTetrahedra::add_stiffness(const Patch& patch, Eigen::MatrixXf& sum) const {
   for (std::size_t e = 0; e < tetrahedra_.size(); ++e) {
     const auto& corners = tetrahedra_.corners[e];
     std::array<int, 4> places;
@@ -138,7 +138,7 @@ void XpbdTetrahedra::add_stiffness(const Patch& patch, double share, Eigen::Matr
         if (j < 0 || j > i) continue;
         const Mat3 block = law_.shear_modulus * volume * shape(a, b) * Mat3::Identity() +
                            law_.volume_modulus / volume * areas.col(a) * areas.col(b).transpose();
-        sum.block<3, 3>(3 * i, 3 * j) += (share * block).cast<float>();
+        sum.block<3, 3>(3 * i, 3 * j) += block.cast<float>();
       }
     }
   }

@@ -44,7 +44,7 @@ class XpbdTetrahedra : public OrganDynamics {
 
   double largest_step() const override { return largest_step_; }
   StepReport step(double h, std::span<ContactRow> rows, OrganState& state) override;
-  void add_stiffness(const Patch& patch, double share, Eigen::MatrixXf& sum) const override;
+  void add_stiffness(const Patch& patch, Eigen::MatrixXf& sum) const override;
   /// ∫ ψ(F) − ψ(1) dV₀ [J]
   double elastic_energy(const OrganState& state) override;
 

@@ -35,8 +35,10 @@ TEST_CASE("far answers: A⁻¹ of a push along each axis, and what couples it to
   grow_patch(model, neighbours, positions, touched, centre, model.node_count(), patch);
   const auto size = static_cast<Eigen::Index>(3 * patch.nodes.size());
   REQUIRE(patch.nodes.size() == model.node_count());
-  Eigen::MatrixXf lower = Eigen::MatrixXf::Zero(size, size);
-  springs.add(positions, patch, shares.stiffness, shares.damping, lower);
+  Eigen::MatrixXf stiffness = Eigen::MatrixXf::Zero(size, size), damping = stiffness;
+  springs.add(positions, patch, stiffness, damping);
+  const Eigen::MatrixXf lower = static_cast<float>(shares.stiffness) * stiffness +
+                                static_cast<float>(shares.damping) * damping;
   Eigen::MatrixXd A = lower.selfadjointView<Eigen::Lower>().toDenseMatrix().cast<double>();
   Eigen::MatrixXd push = Eigen::MatrixXd::Zero(size, 3), X = push;
   for (std::size_t i = 0; i < patch.nodes.size(); ++i) {

@@ -32,8 +32,8 @@ struct SwollenBall {
     return patch;
   }
   AddStiffness add() const {
-    return [this](const Patch& patch, double stiffness, double damping, Eigen::MatrixXf& sum) {
-      springs.add(state.positions, patch, stiffness, damping, sum);
+    return [this](const Patch& patch, Eigen::MatrixXf& stiffness, Eigen::MatrixXf& damping) {
+      springs.add(state.positions, patch, stiffness, damping);
     };
   }
 };
@@ -66,8 +66,7 @@ TEST_CASE("patch springs: stiffness and damping are the derivatives of the sprin
   const Patch whole = ball.whole();
   const auto size = static_cast<Eigen::Index>(3 * whole.nodes.size());
   Eigen::MatrixXf stiffness = Eigen::MatrixXf::Zero(size, size), damping = stiffness;
-  ball.springs.add(ball.state.positions, whole, 1, 0, stiffness);
-  ball.springs.add(ball.state.positions, whole, 0, 1, damping);
+  ball.springs.add(ball.state.positions, whole, stiffness, damping);
   const auto forces = [&](OrganState state, Eigen::Index column, double by, bool move) {
     auto& moved = move ? state.positions : state.velocities;
     moved[static_cast<std::size_t>(column / 3)][column % 3] += by;
@@ -105,9 +104,11 @@ TEST_CASE("patch compliance: of a patch that is the whole organ it is C A⁻¹ C
     const PeriodSteps steps{0.01, 4, implicit};
     const double T = steps.period, moving = implicit ? 1 : 0.75,
                  displaced = implicit ? 0.625 : 0.375;
-    Eigen::MatrixXf lower = Eigen::MatrixXf::Zero(size, size);
-    ball.springs.add(ball.state.positions, ball.whole(), displaced, moving / T, lower);
-    Eigen::MatrixXd A = symmetric(lower);
+    PressedPatch pressed;
+    pressed.stiffness = pressed.damping = Eigen::MatrixXf::Zero(size, size);
+    ball.springs.add(ball.state.positions, ball.whole(), pressed.stiffness, pressed.damping);
+    Eigen::MatrixXd A =
+        displaced * symmetric(pressed.stiffness) + moving / T * symmetric(pressed.damping);
     for (Eigen::Index i = 0; i < size; ++i) {
       A(i, i) += ball.model.masses[static_cast<std::size_t>(i / 3)] *
                  (1 + T * ball.model.drag * moving) / (T * T);
@@ -132,10 +133,6 @@ TEST_CASE("patch compliance: of a patch that is the whole organ it is C A⁻¹ C
     CHECK((found_free - scale(found_free, free) * free).cwiseAbs().maxCoeff() < tolerance);
     CHECK((found_kept - scale(found_kept, kept) * kept).cwiseAbs().maxCoeff() < tolerance);
     if (implicit) continue;
-    PressedPatch pressed;
-    pressed.stiffness = pressed.damping = Eigen::MatrixXf::Zero(size, size);
-    ball.springs.add(ball.state.positions, ball.whole(), 1, 0, pressed.stiffness);
-    ball.springs.add(ball.state.positions, ball.whole(), 0, 1, pressed.damping);
     pressed.push = C.transpose() * Eigen::Vector3d(0.6, 0, -0.8);
     pressed.drag = ball.model.drag;
     pressed.volume = Eigen::VectorXd::Zero(size);
@@ -162,9 +159,9 @@ TEST_CASE("patch compliance: what goes along beyond a small patch is counted on 
   const PatchSprings springs(model.network(), model.node_count());
   std::vector<Vec3> positions = model.rest_positions;
   for (Vec3& x : positions) x *= 1.02;
-  const AddStiffness add = [&](const Patch& patch, double stiffness, double damping,
-                               Eigen::MatrixXf& sum) {
-    springs.add(positions, patch, stiffness, damping, sum);
+  const AddStiffness add = [&](const Patch& patch, Eigen::MatrixXf& stiffness,
+                               Eigen::MatrixXf& damping) {
+    springs.add(positions, patch, stiffness, damping);
   };
   std::vector<ComplianceRow> rows;
   const Neighbours neighbours(model, {});
@@ -184,8 +181,10 @@ TEST_CASE("patch compliance: what goes along beyond a small patch is counted on 
     grow_patch(model, neighbours, positions, touched, centre, nodes, patch);
     const auto size = static_cast<Eigen::Index>(3 * patch.nodes.size());
     const double T = steps.period;
-    Eigen::MatrixXf A = Eigen::MatrixXf::Zero(size, size);
-    add(patch, steps.displaced(), steps.moving() / T, A);
+    Eigen::MatrixXf stiffness = Eigen::MatrixXf::Zero(size, size), damping = stiffness;
+    add(patch, stiffness, damping);
+    Eigen::MatrixXf A = static_cast<float>(steps.displaced()) * stiffness +
+                        static_cast<float>(steps.moving() / T) * damping;
     Eigen::VectorXf push = Eigen::VectorXf::Zero(size);
     for (const std::uint32_t node : patch.nodes) {
       A.diagonal().segment<3>(3 * patch.place(node)).array() +=
@@ -218,8 +217,8 @@ TEST_CASE("patch compliance: a solid goes along beyond the patch") {
   const auto dynamics = make_dynamics(organ, model, 0.01);
   OrganState state = rest_state(model);
   dynamics->step(0.01, {}, state);
-  const AddStiffness add = [&](const Patch& patch, double stiffness, double, Eigen::MatrixXf& sum) {
-    dynamics->add_stiffness(patch, stiffness, sum);
+  const AddStiffness add = [&](const Patch& patch, Eigen::MatrixXf& stiffness, Eigen::MatrixXf&) {
+    dynamics->add_stiffness(patch, stiffness);
   };
   const Neighbours neighbours(model, model.mesh().tetrahedra);
   const PeriodSteps steps{0.01, 1, true};

@@ -39,8 +39,8 @@ struct SteppedCube {
       all.nodes.push_back(i);
     }
     Eigen::MatrixXf lower = Eigen::MatrixXf::Zero(size(), size());
-    dynamics->add_stiffness(all, shares.stiffness, lower);
-    A = lower.selfadjointView<Eigen::Lower>().toDenseMatrix().cast<double>();
+    dynamics->add_stiffness(all, lower);
+    A = shares.stiffness * lower.selfadjointView<Eigen::Lower>().toDenseMatrix().cast<double>();
     for (std::uint32_t i = 0; i < model.node_count(); ++i) {
       const auto at = static_cast<Eigen::Index>(3 * i);
       A.diagonal().segment<3>(at).array() += shares.mass * model.masses[i];

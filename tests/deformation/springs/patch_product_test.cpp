@@ -63,9 +63,11 @@ TEST_CASE("patch product: of any shares of mass, damping and stiffness") {
   const SpringShares shares{.mass = 2e3, .damping = 30, .stiffness = 0.7};
   at.springs.linearise(at.positions, shares, at.slices);
   const auto size = static_cast<Eigen::Index>(3 * at.patch.nodes.size());
-  Eigen::MatrixXf lower = Eigen::MatrixXf::Zero(size, size);
+  Eigen::MatrixXf stiffness = Eigen::MatrixXf::Zero(size, size), damping = stiffness;
   PatchSprings(at.model.network(), at.model.node_count())
-      .add(at.positions, at.patch, shares.stiffness, shares.damping, lower);
+      .add(at.positions, at.patch, stiffness, damping);
+  const Eigen::MatrixXf lower = static_cast<float>(shares.stiffness) * stiffness +
+                                static_cast<float>(shares.damping) * damping;
   Eigen::MatrixXd A = lower.selfadjointView<Eigen::Lower>().toDenseMatrix().cast<double>();
   const auto p = at.direction();
   Eigen::VectorXd x(size);

@@ -1,5 +1,6 @@
 // Writers that a reader hears and must not believe: of another session under the same name, and of
 // a program whose partition "*" matches every session.
+#include <catch2/catch.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>

@@ -103,11 +103,14 @@ TEST_CASE("wall: a ball filled with fluid between plates follows another package
 }
 
 TEST_CASE("wall: a small dent is resisted as a shell that bends, and softer for its thickness") {
-  // Oracle: w = F √(12(1−ν²)) R/(8 E t²), E. Reissner, "Stresses and small displacements of shallow
-  // spherical shells", J. Math. Phys. 25, 1946, R of the middle of the wall; and Hertz on a
-  // half-space, (3F/(4 E* √r))^(2/3). That is too stiff: such a shell does not shear, which is 12 %
-  // of its compliance here, F/(2π 5/6 G t) ln of some 3, and does not soften as the dent, a sixth
-  // of the wall, grows. Springs find less than a tenth (docs/calibration.md).
+  // Oracles. Solved again by somebody else's program in other elements (18-node wedges, pressure
+  // constant and linear in each, contact by an augmented penalty): this wall of flat triangles, its
+  // corner under the tip, 7.771 mN, good to 0.3 %; a round one, axisymmetric, 8.593 mN, for a
+  // corner gives way by a few hundredths of a millimetre. And by hand a shell and a contact in a
+  // row: w = F √(12(1−ν²)) R/(8 E t²), E. Reissner, "Stresses and small displacements of shallow
+  // spherical shells", J. Math. Phys. 25, 1946, R of the middle of the wall, and Hertz,
+  // (3F/(4 E* √r))^(2/3), 1/r = 1/tip + 1/R, stiffer by 10 % than the round wall: its dent is small
+  // and its ball shallow. Springs find less than a tenth (docs/calibration.md).
   const Body body{wall_under(geometry::make_ball(kRadius, 3), kThickness).mesh,
                   {kYoungsModulus, 0.5},
                   [](const Vec3& x) { return x.z() < -0.03; },
@@ -122,7 +125,8 @@ TEST_CASE("wall: a small dent is resisted as a shell that bends, and softer for 
   const double middle = kRadius - kThickness / 2, nu = 0.5;
   const double shell =
       8 * kYoungsModulus * kThickness * kThickness / (middle * std::sqrt(12 * (1 - nu * nu)));
-  const double hertz = 4.0 / 3 * kYoungsModulus / kStarRatio * std::sqrt(kTip);
+  const double rounding = 1 / (1 / kTip + 1 / kRadius);  // of both at the touch [m]
+  const double hertz = 4.0 / 3 * kYoungsModulus / kStarRatio * std::sqrt(rounding);
   double low = 0, high = 1;  // [N]
   for (int i = 0; i < 60; ++i) {
     const double force = (low + high) / 2;
@@ -130,9 +134,10 @@ TEST_CASE("wall: a small dent is resisted as a shell that bends, and softer for 
   }
   INFO(truths[0].forces[0].z() << " ± " << truths[0].bars[0] << " N, of " << truths[0].node_count
                                << " nodes; in a row " << low << " N");
-  CHECK(truths[0].forces[0].z() < low);
-  CHECK(truths[0].forces[0].z() > 0.7 * low);
+  const double solved_again = 7.771e-3;  // [N]
+  CHECK(std::abs(truths[0].forces[0].z() - solved_again) < truths[0].bars[0]);
   CHECK(truths[0].bars[0] < 0.05 * low);
+  CHECK(truths[0].forces[0].z() < low);
 }
 
 TEST_CASE("wall: where a probe came through it, nothing is at rest under the probe") {
