@@ -81,9 +81,10 @@ Eigen::VectorXd QuasiStaticNewton::residual(const SolidState& state,
 }
 
 bool QuasiStaticNewton::factor(const SolidState& state, const std::optional<Inertia>& inertia,
-                               bool positive) {
+                               bool positive, const std::function<void()>& keep_going) {
   ElementMatrix matrix;
   return factor_.factor([&](std::size_t e) -> Eigen::Ref<const Eigen::MatrixXd> {
+    keep_going();
     solid_.tangent(e, state, matrix, positive);
     if (contact_) contact_->add_tangent(e, state, matrix, positive);
     if (fluid_ && !positive) fluid_->add_tangent(e, state, matrix);
@@ -101,11 +102,13 @@ bool QuasiStaticNewton::factor(const SolidState& state, const std::optional<Iner
 
 // [K B; Bᵀ −C] has one negative pivot per pressure while K is positive (on what C leaves).
 bool QuasiStaticNewton::factor_descending(const SolidState& state,
-                                          const std::optional<Inertia>& inertia) {
-  if (factor(state, inertia) && factor_.negative_pivots() == solid_.mesh().corner_count) {
+                                          const std::optional<Inertia>& inertia,
+                                          const std::function<void()>& keep_going) {
+  if (factor(state, inertia, false, keep_going) &&
+      factor_.negative_pivots() == solid_.mesh().corner_count) {
     return true;
   }
-  return factor(state, inertia, true);
+  return factor(state, inertia, true, keep_going);
 }
 
 double QuasiStaticNewton::norm(const Eigen::VectorXd& residual) const {
@@ -181,16 +184,18 @@ bool QuasiStaticNewton::search(const Eigen::VectorXd& direction,
 }
 
 NewtonReport QuasiStaticNewton::solve(SolidState& state, std::optional<Inertia> inertia,
-                                      const NewtonGoal& goal) {
+                                      const NewtonGoal& goal,
+                                      const std::function<void()>& keep_going) {
   NewtonReport report;
   bool is_useful = false;  // the factorisation there is, of a state before
   Eigen::VectorXd r = residual(state, inertia);
   while (r.size() > 0 && r.allFinite()) {
     while (norm(r) > goal.force_tolerance) {
+      keep_going();
       if (++report.iterations > kMostIterations) return report;
       if (!is_useful) {
         ++report.factorisations;
-        if (!factor_descending(state, inertia)) return report;
+        if (!factor_descending(state, inertia, keep_going)) return report;
       }
       const double before = norm(r);
       const Eigen::VectorXd direction = step(r, state);

@@ -2,6 +2,7 @@
 // method.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -52,8 +53,11 @@ class QuasiStaticNewton {
   ///   2. no point penetrates by more than most_penetration · size, and friction is settled: else
   ///      λ is augmented and 1. starts anew;
   /// not converged after kMostIterations, or where no step along Newton's direction keeps J > 0.
-  NewtonReport solve(SolidState& state, std::optional<Inertia> inertia = {},
-                     const NewtonGoal& goal = {});
+  /// @param keep_going  asked in each iteration and factorisation; may throw, and then the state is
+  ///                    somewhere on the way
+  NewtonReport solve(
+      SolidState& state, std::optional<Inertia> inertia = {}, const NewtonGoal& goal = {},
+      const std::function<void()>& keep_going = [] {});
 
   /// Residual of the whole; empty if J ≤ 0 somewhere. Constrained coordinates have their reactions'
   /// sign turned: r is the force the support has to exert [N]. V₀ − V of a fluid is the last.
@@ -61,13 +65,15 @@ class QuasiStaticNewton {
 
   /// Factors the tangent. @param positive  as in TaylorHoodElements::tangent()
   /// @returns false if it is singular
-  bool factor(const SolidState& state, const std::optional<Inertia>& inertia,
-              bool positive = false);
+  bool factor(
+      const SolidState& state, const std::optional<Inertia>& inertia, bool positive = false,
+      const std::function<void()>& keep_going = [] {});
   const MultifrontalLdlt& factorisation() const { return factor_; }
 
  private:
   /// Factors a tangent whose K is positive: the true one where it is.
-  bool factor_descending(const SolidState& state, const std::optional<Inertia>& inertia);
+  bool factor_descending(const SolidState& state, const std::optional<Inertia>& inertia,
+                         const std::function<void()>& keep_going);
   double norm(const Eigen::VectorXd& residual) const;
   /// Newton's step from there, by the factorisation; of a fluid, whose row is dense, bordered.
   Eigen::VectorXd step(const Eigen::VectorXd& residual, const SolidState& state) const;

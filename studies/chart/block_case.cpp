@@ -171,8 +171,7 @@ Measurement measure_beam(const Setting& setting, const KeepGoing& keep_going) {
   scene.rates.deformation = setting.rate;
   rigs::PressedOrgan pressed(scene, shape, {});
   const auto tip = weights_at(shape, {kLength, 0, 0});
-  keep_going();
-  pressed.settle(kLongest);
+  pressed.settle(kLongest, keep_going);
   Measurement result = summary(pressed, shape);
   Sample sample;
   sample.load = kWeight.norm();

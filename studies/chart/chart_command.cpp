@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ostream>
 
 #include "modules/core/data_folder.h"
@@ -13,6 +12,7 @@
 #include "studies/chart/accuracy_tables.h"
 #include "studies/chart/truth_cube.h"
 #include "studies/report/measures.h"
+#include "studies/report/pace.h"
 #include "studies/report/plot_script.h"
 #include "studies/report/progress.h"
 
@@ -48,11 +48,8 @@ std::vector<std::string> wanted_models(const ChartOptions& options) {
 }
 
 std::string line_of(const Outlook& outlook) {
-  std::string line = fmt::format("{} of {}: {}", outlook.done + 1, outlook.total, outlook.job);
-  if (!std::isnan(outlook.seconds_left)) {
-    line += fmt::format("; about {:.0f} min left", std::ceil(outlook.seconds_left / 60));
-  }
-  return line;
+  return fmt::format("{} of {}: {}", outlook.done + 1, outlook.total, outlook.job) +
+         report::text_of_time_left(outlook.seconds_left);
 }
 
 /// How well the beads of the Truth Cube themselves are known.

@@ -3,13 +3,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "deformation/models.h"
 #include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 #include "studies/chart/reference_solutions.h"
+#include "studies/report/pace.h"
 
 namespace palpate::chart {
 namespace {
@@ -50,24 +50,6 @@ bool is_wanted(const std::vector<std::string>& models, const std::string& model)
   return std::find(models.begin(), models.end(), model) != models.end();
 }
 
-/// How much is left, from what the points of this run took.
-class Pace {
- public:
-  void begin() { start_ = Clock::now(); }
-  void finish(double weight) {
-    seconds_ += std::chrono::duration<double>(Clock::now() - start_).count();
-    weight_ += weight;
-  }
-  double seconds_for(double weight) const {
-    return weight_ > 0 ? seconds_ / weight_ * weight : kUnknown;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_;
-  double seconds_ = 0, weight_ = 0;
-};
-
 /// One thing to measure, and where its result goes.
 struct Job {
   std::string name;
@@ -84,7 +66,7 @@ report::Share run(std::vector<Job>& jobs, const PointStore& store, report::Claim
   for (const Job& job : jobs) {
     if (!store.read(job.of, job.key, *job.result)) left += job.weight;
   }
-  Pace pace;
+  report::Pace pace;
   std::vector<report::Point> points;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     const Job& job = jobs[i];

@@ -28,7 +28,9 @@ int main(int argc, char** argv) {
   program.flag("--verify", options.verify,
                "Afterwards judge the choice by a truth on finer meshes, at other instants");
   program.flag("--json", options.json, "Print JSON");
-  program.add("--points", options.points, "Folder that shards share; what they left is used");
+  program.add(
+      "--points", options.points,
+      "Folder of what was found: shards share it, and a run that was stopped goes on from it");
   std::string shard;
   program.add("--shard", shard,
               "I/N, one of N runs on the same --points: judges candidates that no other run does, "

@@ -22,13 +22,15 @@
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
-#include "studies/plan/plan.h"
 #include "studies/plan/plan_report.h"
 #include "studies/plan/probe_paths.h"
+#include "studies/plan/rivals.h"
 #include "studies/plan/standard.h"
+#include "studies/plan/verdict.h"
 #include "studies/plan/verdict_store.h"
 #include "studies/report/claims.h"
 #include "studies/report/measures.h"
+#include "studies/report/pace.h"
 #include "studies/report/progress.h"
 
 namespace palpate::plan {
@@ -74,24 +76,48 @@ struct Sharing {
   std::set<std::string> machines = {};  ///< that loads were measured on
 };
 
-/// @param scene  of one organ
+/// What the cheapest reach spares dearer ones.
+std::vector<Candidate> cheapest_first(const scene::Scene& scene, const Standard& standard) {
+  auto candidates = candidates_of(scene, standard.touched(), standard.radius());
+  std::ranges::stable_sort(
+      candidates, {}, [&](const Candidate& each) { return weight_of(each, standard.radius()); });
+  return candidates;
+}
+
+/// "3 of 94: …; about 2 min left".
+std::string line_of(std::size_t i, const std::vector<Candidate>& candidates, double radius,
+                    const report::Pace& pace) {
+  double left = 0;
+  for (std::size_t k = i; k < candidates.size(); ++k) left += weight_of(candidates[k], radius);
+  return fmt::format("{} of {}: {}", i + 1, candidates.size(), candidates[i].name()) +
+         report::text_of_time_left(pace.seconds_for(left));
+}
+
+/// @param scene     of one organ
+/// @param one_rate  see Rivals
 std::vector<Verdict> measure_all(const scene::Scene& scene, const PlanOptions& options,
-                                 Sharing& sharing, std::ostream& log,
+                                 bool one_rate, Sharing& sharing, std::ostream& log,
                                  const std::function<void()>& keep_going) {
   Standard standard(scene, options);
-  const auto candidates = candidates_of(scene, standard.touched(), standard.radius());
+  const auto candidates = cheapest_first(scene, standard);
+  Rivals rivals(scene.needs, standard.truths(), one_rate);
+  report::Pace pace;
   const std::string& organ = scene.organs[0].name;
   std::map<std::size_t, StoredVerdict> measured;
   const auto measure = [&](std::size_t i) {
     standard.find(log, keep_going);
-    log << fmt::format("{} of {}: {}", i + 1, candidates.size(), candidates[i].name()) << std::endl;
+    log << line_of(i, candidates, standard.radius(), pace) << std::endl;
+    pace.begin();
     const auto candidate_scene = scene_with(scene, candidates[i]);
     const auto shape = scene::load_organ(candidate_scene.organs[0]);
-    const Course course = run_course(candidate_scene, shape, standard.marks(), options.seconds,
-                                     standard.held(), keep_going);
+    const Course course = run_course(
+        candidate_scene, shape, standard.marks(), options.seconds, standard.held(), keep_going,
+        [&](const Course& so_far) { return rivals.why_stop(candidates[i], so_far); });
     measured[i] = {judge(scene.needs, candidates[i], course, standard.errors_of(course)),
                    report::machine_name()};
-    if (options.shard) sharing.store.write(organ, measured[i]);
+    rivals.add(measured[i].verdict, course);
+    pace.finish(weight_of(candidates[i], standard.radius()));
+    if (!options.points.empty()) sharing.store.write(organ, measured[i]);
   };
   std::vector<Verdict> verdicts;
   std::vector<report::Point> points;
@@ -173,6 +199,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     throw InputError("--shard needs --points, the folder that all shards share");
   }
   const std::filesystem::path output = options.shard ? "" : output_of(scene, options);
+  if (!options.points.empty()) report::make_out_folder(options.points);
   Sharing sharing{{options.points / "claims", options.shard},
                   {options.points, told(scene, options)}};
   const StopSignal stop;
@@ -187,7 +214,10 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       alone.organs = {organ};
       if (scene.organs.size() > 1) log << "organ '" << organ.name << "'" << std::endl;
       plans.push_back(
-          {organ.name, measure_all(alone, options, sharing, log, keep_going), nullptr, {}});
+          {organ.name,
+           measure_all(alone, options, scene.organs.size() > 1, sharing, log, keep_going),
+           nullptr,
+           {}});
     }
     if (options.shard) {
       out << report::text_of(sharing.share, *options.shard);
@@ -213,7 +243,9 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
                  : print_text(scene, plans, sharing.machines, file, out);
     return is_met ? kExitDone : kExitFailed;
   } catch (const report::Stopped&) {
-    log << "stopped; nothing was written" << std::endl;
+    log << (options.points.empty() ? "stopped; nothing was written"
+                                   : "stopped; what was found stays in " + options.points.string())
+        << std::endl;
     return kExitStopped;
   }
 }

@@ -17,6 +17,7 @@ std::string machines_text(const std::set<std::string>& machines) {
 
 /// "12.3 ± 2.1%", or of what has no bar "12.3%".
 std::string percent(double part, double bar) {
+  if (std::isnan(part)) return "–";
   if (!std::isfinite(part)) return "diverged";
   return bar > 0 ? fmt::format("{:.1f} ± {:.1f}%", 100 * part, 100 * bar)
                  : fmt::format("{:.1f}%", 100 * part);
@@ -90,6 +91,7 @@ void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>
       row["feel"]["uneven"] = v.errors.feel.uneven;
       row["feel"]["in_motion"] = v.errors.feel.moving;
       row["feel"]["sideways"] = v.errors.feel.sideways;
+      row["run_to_its_end"] = !v.is_cut;
       row["chosen"] = &v == plan.chosen;
       row["misses"] = Json::arrayValue;
       for (const auto& failure : v.failures) row["misses"].append(failure);

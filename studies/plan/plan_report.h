@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "studies/plan/plan.h"
+#include "studies/plan/verdict.h"
 
 namespace palpate::plan {
 

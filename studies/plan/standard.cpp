@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <mutex>
+#include <numeric>
 #include <ostream>
 #include <thread>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "studies/plan/probe_paths.h"
+#include "studies/report/progress.h"
 
 namespace palpate::plan {
 namespace {
@@ -72,21 +75,32 @@ truth::Body body_of(const scene::Organ& organ, bool solid, std::ostream& log) {
 std::vector<TrueTouch> truths_at(const scene::Scene& scene, const ProbePaths& paths,
                                  const std::vector<double>& times, const std::vector<Vec3>& marks,
                                  double fineness, std::ostream& log, const KeepGoing& keep_going) {
+  report::Progress progress(log, [] { return false; });
+  progress.begin(
+      fmt::format("truth: equilibria of quadratic elements at {} instants", times.size()));
   const auto body = body_of(scene.organs[0], is_solid(scene), log);
   std::vector<std::optional<TrueTouch>> found(times.size());
   std::mutex lock;
+  std::vector<double> parts(times.size(), 0);  // done
+  const auto say = [&](std::size_t i, double part) {
+    const std::lock_guard guard(lock);
+    parts[i] = part;
+    progress.at(std::accumulate(parts.begin(), parts.end(), 0.0), double(times.size()), "instants");
+  };
   std::size_t done = 0;
   const auto find = [&](std::size_t i) {
     const auto until = std::chrono::steady_clock::now() + kLongest;
     TrueTouch touch{times[i], {}, {}};
     auto question = paths.question_at(times[i], touch.probes);
     question.marks = marks;
-    const auto truths =
-        truth::force_truth(body, question, {nullptr, fineness, [&] {
+    const auto truths = truth::force_truth(body, question,
+                                           {nullptr, fineness,
+                                            [&] {
                                               keep_going();
                                               if (std::chrono::steady_clock::now() > until)
                                                 throw TooLong{};
-                                            }});
+                                            },
+                                            [&](double part) { say(i, part / 2); }});
     if (truths.empty()) return;
     touch.truth = truths[0];
     found[i] = touch;
@@ -100,6 +114,7 @@ std::vector<TrueTouch> truths_at(const scene::Scene& scene, const ProbePaths& pa
       was_too_long = true;
     }
     const std::lock_guard guard(lock);
+    parts[i] = 1;
     log << fmt::format("  {} of {}: ", ++done, times.size());
     if (found[i]) {
       log << text_of(*found[i]) << std::endl;
@@ -134,6 +149,19 @@ Standard::Standard(const scene::Scene& scene, const PlanOptions& options)
   if (is_solid(scene)) touched_ = paths.regions();
 }
 
+Errors Standard::errors_of(const Course& course) const {
+  if (course.stopped.empty()) {
+    return truths_.empty() ? compare(course, reference_) : compare(course, truths_);
+  }
+  if (!course.held_forces.empty()) {
+    return compare(course, std::span(truths_).first(course.held_forces.size()));
+  }
+  Errors errors;
+  errors.force = errors.surface = std::numeric_limits<double>::quiet_NaN();
+  errors.volume = course.volume_error;
+  return errors;
+}
+
 void Standard::find(std::ostream& log, const KeepGoing& keep_going) {
   if (std::exchange(is_known_, true)) return;
   is_judged_by_truth(scene_) ? find_truths(log, keep_going) : run_references(log, keep_going);
@@ -143,8 +171,6 @@ void Standard::find(std::ostream& log, const KeepGoing& keep_going) {
 void Standard::find_truths(std::ostream& log, const KeepGoing& keep_going) {
   const ProbePaths paths(scene_, scene::load_skin(scene_.organs[0]), options_.seconds);
   const auto times = paths.touching(options_.touches);
-  log << fmt::format("truth: equilibria of quadratic elements at {} instants", times.size())
-      << std::endl;
   truths_ = truths_at(scene_, paths, times, marks_, 1, log, keep_going);
   for (const TrueTouch& touch : truths_) held_.push_back(touch.time);
   if (truths_.empty() && !is_solid(scene_)) return run_references(log, keep_going);
@@ -188,7 +214,7 @@ Verification verified(const scene::Scene& scene, const Candidate& chosen,
   for (const double time : paths.touching(2 * options.touches + 1)) {
     if (std::ranges::find(planned, time) == planned.end()) times.push_back(time);
   }
-  log << fmt::format("verifying: a finer truth at {} other instants", times.size()) << std::endl;
+  log << "verifying by a finer truth at other instants" << std::endl;
   const auto truths = truths_at(scene, paths, times, {}, kFiner, log, keep_going);
   if (truths.empty()) throw std::runtime_error("no equilibrium was found to verify by");
   times.clear();

@@ -6,9 +6,9 @@
 #include <iosfwd>
 #include <vector>
 
-#include "studies/plan/plan.h"
 #include "studies/plan/plan_command.h"
 #include "studies/plan/plan_report.h"
+#include "studies/plan/verdict.h"
 
 namespace palpate::plan {
 
@@ -28,9 +28,9 @@ class Standard {
   /// @throws std::runtime_error if there is none; what `keep_going` throws
   void find(std::ostream& log, const KeepGoing& keep_going);
 
-  Errors errors_of(const Course& course) const {
-    return truths_.empty() ? compare(course, reference_) : compare(course, truths_);
-  }
+  /// Of a course that was stopped: where it was held until then, NaN if nowhere.
+  Errors errors_of(const Course& course) const;
+  const std::vector<TrueTouch>& truths() const { return truths_; }
   const std::vector<Vec3>& marks() const { return marks_; }
   const std::vector<double>& held() const { return held_; }  ///< where the truth is known [s]
   /// Places that probes touch, of a solid; and the radius of the smallest probe [m].

@@ -49,6 +49,7 @@ bool VerdictStore::read(const std::string& organ, const Candidate& candidate,
   for (const Json::Value& failure : json["misses"]) {
     out.verdict.failures.push_back(failure.asString());
   }
+  out.verdict.is_cut = json["is_cut"].asBool();
   out.machine = json["machine"].asString();
   return true;
 }
@@ -62,6 +63,7 @@ void VerdictStore::write(const std::string& organ, const StoredVerdict& stored) 
   json["nodes"] = Json::UInt64(verdict.node_count);
   json["misses"] = Json::arrayValue;
   for (const std::string& failure : verdict.failures) json["misses"].append(failure);
+  json["is_cut"] = verdict.is_cut;
   json["machine"] = stored.machine;
   report::store_json(folder_ / (key(organ, verdict.candidate) + ".json"), of_, std::move(json));
 }

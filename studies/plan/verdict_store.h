@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "studies/plan/plan.h"
+#include "studies/plan/verdict.h"
 
 namespace palpate::plan {
 

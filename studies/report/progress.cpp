@@ -3,6 +3,8 @@
 #include <iomanip>
 #include <ostream>
 
+#include "studies/report/pace.h"
+
 namespace palpate::report {
 namespace {
 
@@ -16,7 +18,8 @@ Progress::Progress(std::ostream& log, std::function<bool()> stop)
 void Progress::begin(const std::string& job) {
   job_ = job;
   log_ << job_ << std::endl;
-  next_line_ = std::chrono::steady_clock::now() + kLineEvery;
+  begin_ = std::chrono::steady_clock::now();
+  next_line_ = begin_ + kLineEvery;
 }
 
 void Progress::at(double done, double total, const char* unit) {
@@ -25,7 +28,12 @@ void Progress::at(double done, double total, const char* unit) {
   if (now < next_line_) return;
   next_line_ = now + kLineEvery;
   log_ << job_ << ": " << std::fixed << std::setprecision(total < 100 ? 1 : 0) << done << " of "
-       << total << ' ' << unit << std::endl;
+       << total << ' ' << unit;
+  if (done > 0) {
+    const double taken = std::chrono::duration<double>(now - begin_).count();
+    log_ << text_of_time_left(taken * (total - done) / done);
+  }
+  log_ << std::endl;
 }
 
 }  // namespace palpate::report

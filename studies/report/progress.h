@@ -25,7 +25,7 @@ class Progress {
   Progress(std::ostream& log, std::function<bool()> stop);
 
   void begin(const std::string& job);
-  /// Prints "job: done of total unit", at most every two seconds.
+  /// Prints "job: done of total unit; about … left", at most every two seconds.
   /// @throws Stopped if the job is to stop
   void at(double done, double total, const char* unit);
 
@@ -33,7 +33,7 @@ class Progress {
   std::ostream& log_;
   std::function<bool()> stop_;
   std::string job_;
-  std::chrono::steady_clock::time_point next_line_;
+  std::chrono::steady_clock::time_point begin_, next_line_;
 };
 
 }  // namespace palpate::report

@@ -97,16 +97,18 @@ void PressedOrgan::move_and_settle(const std::vector<Vec3>& to, double speed,
     }
     advance(poses);
   }
-  keep_going();
-  settle(kLongestSettling);
+  settle(kLongestSettling, keep_going);
 }
 
-void PressedOrgan::settle(double longest) {
+void PressedOrgan::settle(double longest, const std::function<void()>& keep_going) {
   const std::vector<Pose> poses = poses_;
   const int steps = std::max(1, static_cast<int>(std::lround(kCheckEvery / period_)));
   std::vector<double> last(poses.size(), -1);
   for (double waited = 0; waited < longest; waited += steps * period_) {
-    for (int i = 0; i < steps; ++i) advance(poses);
+    for (int i = 0; i < steps; ++i) {
+      keep_going();
+      advance(poses);
+    }
     const NodePositions& organ = session_.node_positions(0);
     bool still = organ.kinetic_energy <= kEnergyShare * organ.elastic_energy;
     for (std::uint32_t i = 0; i < poses.size(); ++i) {

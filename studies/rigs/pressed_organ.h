@@ -34,7 +34,8 @@ class PressedOrgan {
 
   /// The probes stay until, over 0.1 s, no force changed by more than 2e-4 of it and the kinetic
   /// energy is below 1e-6 of the elastic energy; at most `longest` [s].
-  void settle(double longest);
+  /// @param keep_going  asked before each period; may throw
+  void settle(double longest, const std::function<void()>& keep_going);
 
   double period() const { return period_; }
   const Pose& pose(std::size_t probe) const { return poses_[probe]; }

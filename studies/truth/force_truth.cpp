@@ -173,8 +173,11 @@ std::vector<Truth> force_truth(const Body& body, const Question& question, const
   auto state = coarse.rest_state();
   for (std::size_t i = 0; i < question.stations.size(); ++i) {
     const Station& from = i == 0 ? question.free : question.stations[i - 1];
-    if (!coarse.press(from, question.stations[i], state, effort.keep_going)) break;
-    if (!coarse.settle(question.stations[i], state)) break;
+    const auto at = [&](double part) {
+      effort.at((static_cast<double>(i) + part) / static_cast<double>(question.stations.size()));
+    };
+    if (!coarse.press(from, question.stations[i], state, effort.keep_going, at)) break;
+    if (!coarse.settle(question.stations[i], state, effort.keep_going)) break;
     reached.push_back({state, coarse.equilibrium(state, question.marks), {}});
   }
   const auto fine_mesh = refined_at(body.mesh, places, kFiner * effort.fineness, far);
@@ -183,7 +186,7 @@ std::vector<Truth> force_truth(const Body& body, const Question& question, const
     effort.keep_going();
     PressedSolid fine(fine_mesh, body, question.stations);
     auto fine_state = fine.refined(coarse, reached[i].state);
-    if (!fine.settle(question.stations[i], fine_state)) return;
+    if (!fine.settle(question.stations[i], fine_state, effort.keep_going)) return;
     reached[i].truth =
         truth_between(reached[i].coarse, fine.equilibrium(fine_state, question.marks));
     reached[i].truth->node_count = fine.node_count();

@@ -43,6 +43,8 @@ struct Effort {
   /// Edges of all tetrahedra, over those usual: less than 1 for a truth that judges truths.
   double fineness = 1;
   std::function<void()> keep_going = [] {};  ///< asked often, by any thread of these; may throw
+  /// Told what part of the way on the coarser mesh is done, which takes about half of the time.
+  std::function<void(double part)> at = [](double) {};
 };
 
 /// One per station; fewer if from some load on no equilibrium is found: where the surface folds.

@@ -183,12 +183,12 @@ PressedSolid::PressedSolid(const geometry::TetMesh& mesh, const Body& body,
                    constrained_nodes(mesh, body), stations, body.is_filled) {}
 
 bool PressedSolid::press(const Station& from, const Station& to, SolidState& state,
-                         const std::function<void()>& keep_going) {
+                         const std::function<void()>& keep_going,
+                         const std::function<void(double)>& at) {
   const double longest = kStride / way(from, to);
   double done = 0, stride = longest, last = 0;
   SolidState before = state;
   while (done < 1) {
-    keep_going();
     const double next = done + stride * (1 + 1e-9) >= 1 ? 1 : done + stride;
     contact_.set_obstacles(obstacles_at(between(from, to, next)));
     const double beyond = last > 0 ? (next - done) / last : 0;
@@ -198,15 +198,16 @@ bool PressedSolid::press(const Station& from, const Station& to, SolidState& sta
     }
     found.pressures += beyond * (state.pressures - before.pressures);
     found.fluid_pressure += beyond * (state.fluid_pressure - before.fluid_pressure);
-    auto report = solver_.solve(found, {}, kOnTheWay);
+    auto report = solver_.solve(found, {}, kOnTheWay, keep_going);
     if (!report.converged && beyond > 0) {
       found = state;
-      report = solver_.solve(found, {}, kOnTheWay);
+      report = solver_.solve(found, {}, kOnTheWay, keep_going);
     }
     if (report.converged) {
       before = std::exchange(state, std::move(found));
       last = next - done;
       done = next;
+      at(done);
       continue;
     }
     stride = std::min(stride, next - done) / 2;
@@ -216,11 +217,12 @@ bool PressedSolid::press(const Station& from, const Station& to, SolidState& sta
   return true;
 }
 
-bool PressedSolid::settle(const Station& station, SolidState& state) {
+bool PressedSolid::settle(const Station& station, SolidState& state,
+                          const std::function<void()>& keep_going) {
   contact_.set_obstacles(obstacles_at(station));
   const deformation::NewtonGoal goal{kForceTolerance, kMostPenetration * radius_ / solid_.size(),
                                      true};
-  return solver_.solve(state, {}, goal).converged && !is_behind_skin(station, state);
+  return solver_.solve(state, {}, goal, keep_going).converged && !is_behind_skin(station, state);
 }
 
 /// Walls are thin, and only faces resist: a probe that came through one is felt no more.

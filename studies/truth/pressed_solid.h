@@ -49,14 +49,20 @@ class PressedSolid {
 
   /// Moves the probes in straight lines, stride by stride, an equilibrium after each.
   /// @param from  where `state` is an equilibrium
+  /// @param keep_going  as QuasiStaticNewton::solve()
+  /// @param at          told after each stride what part of the way is done
   /// @returns false if Newton's method fails, however short the strides; `state` is then the last
   ///          equilibrium
-  bool press(const Station& from, const Station& to, deformation::SolidState& state,
-             const std::function<void()>& keep_going);
+  bool press(
+      const Station& from, const Station& to, deformation::SolidState& state,
+      const std::function<void()>& keep_going,
+      const std::function<void(double part)>& at = [](double) {});
 
   /// The equilibrium under probes at `station`, from a state near it. @returns false if none is
   /// found, or one that has a probe's core behind its skin
-  bool settle(const Station& station, deformation::SolidState& state);
+  bool settle(
+      const Station& station, deformation::SolidState& state,
+      const std::function<void()>& keep_going = [] {});
 
   /// Of the last equilibrium.
   Equilibrium equilibrium(const deformation::SolidState& state,

@@ -13,8 +13,8 @@
 #include "modules/core/error.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
-#include "studies/plan/plan.h"
 #include "studies/plan/probe_paths.h"
+#include "studies/plan/verdict.h"
 #include "tests/modules/geometry/tetrahedra.h"
 #include "tests/studies/chart/folders.h"
 

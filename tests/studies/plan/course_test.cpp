@@ -1,0 +1,76 @@
+#include "studies/plan/course.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "modules/geometry/primitives.h"
+
+namespace palpate::plan {
+namespace {
+
+Course course_of(double force, double surface) {
+  Course course;
+  course.forces = {{Vec3(0, 0, 0)}, {Vec3(0, 0, force)}};
+  course.surfaces = {{Vec3::Zero(), Vec3::Zero()}, {Vec3(surface, 0, 0), Vec3::Zero()}};
+  return course;
+}
+
+TEST_CASE("plan: errors of a course are root mean squares against the reference") {
+  // Oracle: by hand.
+  const Errors errors = compare(course_of(1.1, 3e-3), course_of(1, 1e-3));
+  CHECK(errors.force == Approx(0.1));
+  CHECK(errors.surface == Approx(std::sqrt(4e-6 / 4)));
+  Course cut = course_of(1, 0);
+  cut.forces.pop_back();
+  CHECK(std::isinf(compare(cut, course_of(1, 0)).force));
+}
+
+TEST_CASE("plan: of a solid the force along the true one is judged, where the probes were held") {
+  // Oracle: by hand. True forces of 1 and 2 N, known to 0.1 N; found 1.2 and 2.4 N along them,
+  // 0.3 N across, and 0.5 N more in motion at the first.
+  TrueTouch first{0.1, {1}, {{Vec3(0, 0, 1)}, {0.1}, {Vec3::Zero()}, 1e-4}};
+  TrueTouch second{0.2, {1}, {{Vec3(0, 2, 0)}, {0.1}, {Vec3(1e-3, 0, 0)}, 1e-4}};
+  Course course;
+  course.held_forces = {{Vec3(9, 9, 9), Vec3(0.3, 0, 1.2)}, {Vec3(9, 9, 9), Vec3(0, 2.4, 0.3)}};
+  course.moving_forces = {{Vec3(9, 9, 9), Vec3(0.3, 0, 1.7)}, {Vec3(9, 9, 9), Vec3(0, 2.4, 0.3)}};
+  course.held_surfaces = {{Vec3(2e-3, 0, 0)}, {Vec3(1e-3, 0, 0)}};
+  const Errors errors = compare(course, std::vector{first, second});
+  CHECK(errors.force == Approx(0.2));
+  CHECK(errors.force_bar == Approx(std::sqrt(0.02 / 5) * 1.2));
+  CHECK(errors.surface == Approx(std::sqrt(4e-6 / 2)));
+  CHECK(errors.surface_bar == Approx(1e-4));
+  CHECK(errors.feel.stiffness == Approx(0.2));
+  CHECK(errors.feel.uneven == Approx(0).margin(1e-7));
+  CHECK(errors.feel.moving == Approx(std::sqrt(0.25 / 5)));
+  CHECK(errors.feel.sideways == Approx(std::sqrt(0.18 / 5)));
+  course.held_forces.pop_back();
+  CHECK(std::isinf(compare(course, std::vector{first, second}).force));
+}
+
+TEST_CASE("plan: a course that need not run on ends where somebody says so, and tells why") {
+  // Oracle: who is asked; the probe is held once, at 0.3 s, until all is still.
+  scene::Scene scene;
+  scene.organs.push_back({});
+  scene.rates.deformation = scene.rates.collision = 100;
+  scene::ScriptedDevice still;
+  still.start = Vec3(0, 0, 0.2);
+  scene.probes.push_back({"tip", scene::SphereShape{0.01}, 0.0, still});
+  const geometry::OrganShape ball(geometry::make_ball(0.05, 2));
+  std::size_t asked = 0;
+  const auto course = run_course(
+      scene, ball, {}, 5, {0.3}, [] {},
+      [&](const Course& so_far) {
+        ++asked;
+        CHECK(so_far.deformation_cost > 0);
+        return so_far.held_forces.empty() ? std::string() : std::string("enough");
+      });
+  CHECK(course.stopped == "enough");
+  CHECK(course.held_forces.size() == 1);
+  CHECK(asked == 2);  // after 0.25 s, and where it was held
+  CHECK(course.time < 0.3 + 1.5 + 0.02);
+  CHECK(run_course(scene, ball, {}, 0.2, {}, [] {}).stopped.empty());
+}
+
+}  // namespace
+}  // namespace palpate::plan
