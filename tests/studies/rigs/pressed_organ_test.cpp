@@ -36,7 +36,7 @@ TEST_CASE("pressed organ: a ball answers with the force the pipeline gives") {
     pose.position.z() = 0.05 - 0.008 * i / 100;
     pressed.advance({pose});
   }
-  pressed.settle(3);
+  pressed.settle(3, [] {});
   const double expected = pipeline.contact_model(0).force().z();
   REQUIRE(expected > 0.03);
   CHECK(pressed.force(0).z() == Approx(expected).epsilon(0.005));
@@ -53,7 +53,7 @@ TEST_CASE("pressed organ: untouched, nothing is felt and nothing moves") {
   pose.position = Vec3(0, 0, 0.1);
   pose.rotation = Quat(0, 1, 0, 0);
   PressedOrgan pressed(scene, geometry::make_ball(0.05, 1), {pose});
-  pressed.settle(0.2);
+  pressed.settle(0.2, [] {});
   CHECK(pressed.force(0) == Vec3::Zero());
   CHECK(pressed.changes() == 0);
   CHECK(pressed.skin().nodes == geometry::make_ball(0.05, 1).nodes);
