@@ -25,6 +25,15 @@ bool has_known_shape(const scene::Probe& probe) {
 
 }  // namespace
 
+std::vector<double> spread(const std::vector<double>& times, std::size_t count) {
+  if (times.size() <= count) return times;
+  std::vector<double> chosen;
+  for (std::size_t i = 0; i < count; ++i) {
+    chosen.push_back(times[(2 * i + 1) * times.size() / (2 * count)]);
+  }
+  return chosen;
+}
+
 bool has_known_shapes(const scene::Scene& scene) {
   return std::ranges::all_of(scene.probes, has_known_shape);
 }
@@ -70,12 +79,7 @@ std::vector<double> ProbePaths::touching(std::size_t count) const {
     }
     if (touches) times.push_back(time);
   }
-  if (times.size() <= count) return times;
-  std::vector<double> chosen;
-  for (std::size_t i = 0; i < count; ++i) {
-    chosen.push_back(times[(2 * i + 1) * times.size() / (2 * count)]);
-  }
-  return chosen;
+  return spread(times, count);
 }
 
 /// Along the normal where each probe is nearest, until it touches nothing.

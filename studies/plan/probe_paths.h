@@ -38,6 +38,9 @@ class ProbePaths {
   std::vector<std::vector<Pose>> poses_;         ///< per probe, at kRate
 };
 
+/// At most `count` of them, evenly spread.
+std::vector<double> spread(const std::vector<double>& times, std::size_t count);
+
 /// Whether the truth knows the shapes of all probes: spheres and capsules.
 bool has_known_shapes(const scene::Scene& scene);
 /// @throws InputError naming the probe of which it does not
