@@ -9,7 +9,7 @@
 namespace palpate::plan {
 namespace {
 
-Course course_of(double force, double surface) {
+Course course_to(double force, double surface) {
   Course course;
   course.forces = {{Vec3(0, 0, 0)}, {Vec3(0, 0, force)}};
   course.surfaces = {{Vec3::Zero(), Vec3::Zero()}, {Vec3(surface, 0, 0), Vec3::Zero()}};
@@ -18,12 +18,12 @@ Course course_of(double force, double surface) {
 
 TEST_CASE("plan: errors of a course are root mean squares against the reference") {
   // Oracle: by hand.
-  const Errors errors = compare(course_of(1.1, 3e-3), course_of(1, 1e-3));
+  const Errors errors = compare(course_to(1.1, 3e-3), course_to(1, 1e-3));
   CHECK(errors.force == Approx(0.1));
   CHECK(errors.surface == Approx(std::sqrt(4e-6 / 4)));
-  Course cut = course_of(1, 0);
+  Course cut = course_to(1, 0);
   cut.forces.pop_back();
-  CHECK(std::isinf(compare(cut, course_of(1, 0)).force));
+  CHECK(std::isinf(compare(cut, course_to(1, 0)).force));
 }
 
 TEST_CASE("plan: of a solid the force along the true one is judged, where the probes were held") {

@@ -10,7 +10,7 @@ std::vector<TrueTouch> two_truths() {
   return {{0.1, {0}, {{Vec3(0, 0, 1)}, {0.0}, {}, 0}}, {0.2, {0}, {{Vec3(0, 0, 2)}, {0.0}, {}, 0}}};
 }
 
-Course course_of(double load, std::vector<double> forces) {
+Course loaded_course(double load, std::vector<double> forces) {
   Course course;
   course.deformation_cost = load;
   course.time = 0.5;
@@ -39,12 +39,12 @@ TEST_CASE("rivals: who loads a core far too much is stopped after a short piece"
   const auto needs = needs_of_force(0.2);
   const auto truths = two_truths();
   Rivals rivals(needs, truths, false);
-  CHECK(rivals.why_stop({}, course_of(2, {})).empty());
-  CHECK_THAT(rivals.why_stop({}, course_of(4, {})),
+  CHECK(rivals.why_stop({}, loaded_course(2, {})).empty());
+  CHECK_THAT(rivals.why_stop({}, loaded_course(4, {})),
              Catch::Contains("load of the core of deformation 4 > 0.8 in its first 0.5 s"));
-  add(rivals, needs, truths, course_of(0.1, {1.1, 2.2}));
-  CHECK_FALSE(rivals.why_stop({}, course_of(2, {})).empty());
-  CHECK(rivals.why_stop({}, course_of(1, {})).empty());
+  add(rivals, needs, truths, loaded_course(0.1, {1.1, 2.2}));
+  CHECK_FALSE(rivals.why_stop({}, loaded_course(2, {})).empty());
+  CHECK(rivals.why_stop({}, loaded_course(1, {})).empty());
 }
 
 TEST_CASE(
@@ -53,16 +53,16 @@ TEST_CASE(
   const auto needs = needs_of_force(0.2);
   const auto truths = two_truths();
   Rivals rivals(needs, truths, false);
-  add(rivals, needs, truths, course_of(0.1, {1.1, 2.2}));
+  add(rivals, needs, truths, loaded_course(0.1, {1.1, 2.2}));
   CHECK_THAT(
-      rivals.why_stop({}, course_of(0.15, {1.2})),
+      rivals.why_stop({}, loaded_course(0.15, {1.2})),
       Catch::Contains("by 1 of 2 instants more load and more error than nodal_pressure, 100"));
-  CHECK(rivals.why_stop({}, course_of(0.15, {1.05})).empty());
+  CHECK(rivals.why_stop({}, loaded_course(0.15, {1.05})).empty());
   CHECK_THAT(
-      rivals.why_stop({}, course_of(0.25, {1.0})),
+      rivals.why_stop({}, loaded_course(0.25, {1.0})),
       Catch::Contains("times the load of nodal_pressure, 100 nodes, 100 Hz, which meets all"));
-  CHECK(rivals.why_stop({}, course_of(0.105, {1.2})).empty());      // as loaded, but for noise
-  CHECK(rivals.why_stop({}, course_of(0.25, {1.2, 2.4})).empty());  // it is at its end
+  CHECK(rivals.why_stop({}, loaded_course(0.105, {1.2})).empty());      // as loaded, but for noise
+  CHECK(rivals.why_stop({}, loaded_course(0.25, {1.2, 2.4})).empty());  // it is at its end
 }
 
 TEST_CASE("rivals: beside one that misses a need, only what misses it for sure is stopped") {
@@ -71,9 +71,9 @@ TEST_CASE("rivals: beside one that misses a need, only what misses it for sure i
   const auto needs = needs_of_force(0.2);
   const auto truths = two_truths();
   Rivals rivals(needs, truths, false);
-  add(rivals, needs, truths, course_of(0.1, {1.3, 2.6}));
-  CHECK(rivals.why_stop({}, course_of(0.15, {1.4})).empty());
-  CHECK_FALSE(rivals.why_stop({}, course_of(0.15, {1.5})).empty());
+  add(rivals, needs, truths, loaded_course(0.1, {1.3, 2.6}));
+  CHECK(rivals.why_stop({}, loaded_course(0.15, {1.4})).empty());
+  CHECK_FALSE(rivals.why_stop({}, loaded_course(0.15, {1.5})).empty());
 }
 
 TEST_CASE("rivals: where all organs are to have one rate, those of another are none") {
@@ -81,15 +81,15 @@ TEST_CASE("rivals: where all organs are to have one rate, those of another are n
   const auto needs = needs_of_force(0.2);
   const auto truths = two_truths();
   Rivals rivals(needs, truths, true);
-  add(rivals, needs, truths, course_of(0.1, {1.1, 2.2}));
-  CHECK(rivals.why_stop({"modal", 100, 200}, course_of(0.3, {1.2})).empty());
-  CHECK_FALSE(rivals.why_stop({"modal", 100, 100}, course_of(0.3, {1.2})).empty());
+  add(rivals, needs, truths, loaded_course(0.1, {1.1, 2.2}));
+  CHECK(rivals.why_stop({"modal", 100, 200}, loaded_course(0.3, {1.2})).empty());
+  CHECK_FALSE(rivals.why_stop({"modal", 100, 100}, loaded_course(0.3, {1.2})).empty());
 }
 
 TEST_CASE("rivals: what is cut is not chosen, shows no way out and says why") {
   // Oracle: the rule; its errors so far are none.
   const auto needs = needs_of_force(0.2);
-  Course cut = course_of(0.01, {});
+  Course cut = loaded_course(0.01, {});
   cut.stopped = "for a reason";
   std::vector<Verdict> verdicts{judge(needs, {}, cut, {})};
   CHECK(verdicts[0].is_cut);

@@ -8,7 +8,7 @@
 namespace palpate::plan {
 namespace {
 
-Course course_of(double force, double surface) {
+Course costly_course(double force, double surface) {
   Course course;
   course.forces = {{Vec3(0, 0, 0)}, {Vec3(0, 0, force)}};
   course.surfaces = {{Vec3::Zero(), Vec3::Zero()}, {Vec3(surface, 0, 0), Vec3::Zero()}};
@@ -23,8 +23,9 @@ TEST_CASE("plan: the cheapest that meets all needs is chosen, and losers know wh
   // Oracle: by hand.
   scene::Needs needs;
   needs.force_error = 0.2;
-  const Course reference = course_of(1, 1e-3);
-  Course dear = course_of(1.05, 1e-3), wrong = course_of(1.5, 1e-3), slow = course_of(1, 1e-3);
+  const Course reference = costly_course(1, 1e-3);
+  Course dear = costly_course(1.05, 1e-3), wrong = costly_course(1.5, 1e-3),
+         slow = costly_course(1, 1e-3);
   dear.deformation_cost = 0.3;
   slow.deformation_cost = 2;
   std::vector<Verdict> verdicts;
