@@ -180,7 +180,11 @@ void NearSurface::gather_front(const OrganStep& step, const Core& core, double r
   const Bounds hull{core.a.cwiseMin(core.b), core.a.cwiseMax(core.b)};
   const Wanted wanted(step.motion, hull, core.radius + reach);
   find_blocks(step, wanted);
-  if (find_places(step, core, wanted) <= kManyTriangles) return gather_from_blocks(step, wanted);
+  std::size_t most = 0;  // of the triangles within reach: few enough need not be counted
+  for (const std::uint32_t block : blocks_) most += step.organ.blocks().corners_of(block).size();
+  if (most <= kManyTriangles || find_places(step, core, wanted) <= kManyTriangles) {
+    return gather_from_blocks(step, wanted);
+  }
   const Wanted touching(step.motion, hull, core.radius);
   const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
   std::erase_if(blocks_, [&](std::uint32_t block) {

@@ -159,7 +159,7 @@ class ForceErrors {
 class Outputs {
  public:
   Outputs(bus::Bus& bus, const OwnOrgans& organs, std::size_t probes, std::size_t process)
-      : organs_(organs), models_(bus.writer(bus::kContactModel)), force_errors_(probes) {
+      : bus_(bus), organs_(organs), models_(bus.writer(bus::kContactModel)), force_errors_(probes) {
     for (std::size_t organ = 0; organ < organs.count(); ++organ) {
       surfaces_.push_back(bus.writer(bus::kSurface));
       positions_.push_back(bus.writer(bus::kNodePositions));
@@ -202,6 +202,7 @@ class Outputs {
     }
   }
 
+  /// The hand feels them: they leave before anything larger is made ready.
   /// @returns whether the stiffness of one was bounded
   bool publish_laws(double sim_time, const DeformationWorld& world, const ProbeInputs& inputs,
                     std::int64_t now_ns) {
@@ -221,6 +222,7 @@ class Outputs {
       model_.force_error = model_.touching() ? force_errors_.of(probe) : 0;
       models_.write(model_);
     }
+    bus_.flush();
     return any_bounded;
   }
 
@@ -251,6 +253,7 @@ class Outputs {
     next_blocks_[organ].blocks.reset();
   }
 
+  bus::Bus& bus_;
   const OwnOrgans& organs_;
   // By organ: what each writer counts does not depend on who else is in its process.
   std::vector<bus::Writer<SurfaceTopology>> surfaces_;
@@ -342,12 +345,12 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
     impl_->world.take_next_meshes();
   }
   const double sim_time = impl_->time.on_session_clock(impl_->world.time());
-  impl_->outputs.publish_next_surfaces(impl_->world);
-  impl_->outputs.publish_positions(sim_time, impl_->world);
   if (now.running) {
     impl_->law_bounded =
         impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
   }
+  impl_->outputs.publish_next_surfaces(impl_->world);
+  impl_->outputs.publish_positions(sim_time, impl_->world);
   health.least_advance = least_advance(impl_->world, impl_->period);
   health.contacts = impl_->troubles;
   return health;

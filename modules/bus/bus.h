@@ -100,8 +100,9 @@ class Bus {
   virtual std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) = 0;
   virtual std::unique_ptr<RawReader> raw_reader(const TopicInfo& topic, Keep keep) = 0;
 
-  /// Sends what waits to travel together; who writes streams with every_sample calls it before it
-  /// waits for anything.
+  /// Sends what waits to travel together, topic by topic in the order their writers were made: what
+  /// others wait for comes first. Who writes streams with every_sample calls it before it waits for
+  /// anything.
   virtual void flush() {}
 
   /// All readers alive, in the order they were made.

@@ -186,10 +186,11 @@ bool DdsBus::is_bundled(const TopicInfo& topic) const {
 }
 
 std::shared_ptr<BundleSender> DdsBus::sender_of(const TopicInfo& topic) {
-  std::weak_ptr<BundleSender>& known = senders_[topic.name];
-  if (auto alive = known.lock()) return alive;
+  std::erase_if(senders_, [](const auto& known) { return known.second.expired(); });
+  const auto known = std::ranges::find(senders_, topic.name, [](const auto& s) { return s.first; });
+  if (known != senders_.end()) return known->second.lock();
   auto made = std::make_shared<BundleSender>(std::make_unique<DdsWriter>(*participant_, topic));
-  known = made;
+  senders_.emplace_back(topic.name, made);
   return made;
 }
 

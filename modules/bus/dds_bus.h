@@ -1,7 +1,8 @@
 // The bus between processes: Fast DDS, behind a header that knows no DDS.
 #pragma once
 
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "modules/bus/bus.h"
 
@@ -38,7 +39,8 @@ class DdsBus : public Bus {
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<HostClocks> clocks_;  ///< none on one host, and in lockstep
   std::unique_ptr<ClockExchanger> exchanger_;
-  std::map<std::string_view, std::weak_ptr<BundleSender>> senders_;  ///< by topic; users own them
+  /// By topic, in the order they were made, which is that of sending; users own them.
+  std::vector<std::pair<std::string_view, std::weak_ptr<BundleSender>>> senders_;
 };
 
 }  // namespace palpate::bus
