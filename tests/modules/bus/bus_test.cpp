@@ -222,31 +222,6 @@ TEST_CASE("bus: a message that is not valid never leaves, and takes no sequence 
   CHECK(pair.reader.statistics().dropped == 0);
 }
 
-// Oracle: one thread receives a participant's datagrams one after another and stamps each.
-TEST_CASE("bus: in lockstep what travels together leaves topic by topic as the writers were made",
-          "[bus]") {
-  BusOptions options = testing::own_options();
-  options.every_sample = true;
-  DdsBus from(options), to(options);
-  auto first = from.writer(kProbeState);
-  auto second = from.writer(kHapticForce);  // before the other by its name
-  const auto of_first = to.raw_reader(info_of(kProbeState), Keep::kNewest);
-  const auto of_second = to.raw_reader(info_of(kHapticForce), Keep::kNewest);
-  REQUIRE(
-      wait_until([&] { return first.matched_readers() == 1 && second.matched_readers() == 1; }));
-  for (int flush = 0; flush < 10; ++flush) {
-    HapticForce force;
-    ProbeState state;
-    REQUIRE(second.write(force));
-    REQUIRE(first.write(state));
-    from.flush();
-    RawSample early, late;
-    REQUIRE(wait_until([&] { return of_second->take(late); }));
-    REQUIRE(wait_until([&] { return of_first->take(early); }));
-    CHECK(early.received_time_ns < late.received_time_ns);
-  }
-}
-
 TEST_CASE("bus: domains and session names that are not acceptable are refused by name", "[bus]") {
   // Oracle: the texts that the contract promises.
   const auto message_of = [](const BusOptions& options) -> std::string {
