@@ -112,6 +112,39 @@ TEST_CASE("divergence detector: energy has to grow, at once tenfold or from chec
   CHECK(last_of({slow, 4 * fast}) == Violation::kEnergyGrew);
 }
 
+/// Stores what the test says.
+class StoredByHand : public OrganDynamics {
+ public:
+  double stored = 0;  ///< [J]
+  double largest_step() const override { return 1; }
+  StepReport step(double, std::span<ContactRow>, OrganState&) override { return {}; }
+  double elastic_energy(const OrganState&) override { return stored; }
+};
+
+TEST_CASE("divergence detector: motion is not paid for by energy below nothing") {
+  // Oracle: the fast halves gain a tenth of their speed, which nobody gave. Stored energy that
+  // falls by as much pays for it; below 0 there is none to pay with.
+  const auto model = testing::ball_model(2);
+  double mass = 0;
+  for (const double m : model.masses) mass += m;
+  const double slow = 0.75 * kShakenSpeed, fast = 1.5 * kShakenSpeed;
+  const double much = mass * fast * fast;  // more than all motion here [J]
+  for (const double from : {much, 0.0}) {
+    DivergenceDetector detector(model, true);
+    StoredByHand dynamics;
+    OrganState state = rest_state(model);
+    detector.begin(state, 0);
+    Violation seen = Violation::kNone;
+    dynamics.stored = from;
+    for (const double speed : {slow, fast, 1.1 * fast}) {
+      testing::tear(model, speed, state);
+      seen = detector.check(state, kLongGrowth, dynamics);
+      if (speed >= fast) dynamics.stored = from - much;
+    }
+    CHECK(seen == (from > 0 ? Violation::kNone : Violation::kEnergyGrew));
+  }
+}
+
 TEST_CASE("divergence detector: an organ in motion is looked at closely") {
   // Oracle: definition. A mirrored ball encloses −V₀; at rest that is left to the next thorough
   // check.
