@@ -5,16 +5,12 @@
 #include <limits>
 
 #include "modules/geometry/primitives.h"
+#include "tests/studies/plan/courses.h"
 
 namespace palpate::plan {
 namespace {
 
-Course course_to(double force, double surface) {
-  Course course;
-  course.forces = {{Vec3(0, 0, 0)}, {Vec3(0, 0, force)}};
-  course.surfaces = {{Vec3::Zero(), Vec3::Zero()}, {Vec3(surface, 0, 0), Vec3::Zero()}};
-  return course;
-}
+using testing::course_to;
 
 TEST_CASE("plan: errors of a course are root mean squares against the reference") {
   // Oracle: by hand.

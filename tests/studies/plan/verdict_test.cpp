@@ -4,14 +4,13 @@
 #include <limits>
 
 #include "modules/core/data_folder.h"
+#include "tests/studies/plan/courses.h"
 
 namespace palpate::plan {
 namespace {
 
 Course costly_course(double force, double surface) {
-  Course course;
-  course.forces = {{Vec3(0, 0, 0)}, {Vec3(0, 0, force)}};
-  course.surfaces = {{Vec3::Zero(), Vec3::Zero()}, {Vec3(surface, 0, 0), Vec3::Zero()}};
+  Course course = testing::course_to(force, surface);
   course.deformation_cost = 0.1;
   course.collision_cost = 0.01;
   course.publishing_cost = 0.002;
