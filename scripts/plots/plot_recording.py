@@ -101,6 +101,7 @@ def draw_rates(axes, folder):
 
 def draw_ages(axes, folder):
     axes.set_ylabel("age of inputs [ms]")
+    axes.set_prop_cycle(color=matplotlib.colormaps["tab20"].colors)  # more lines than ten
     goodbyes = {
         (module, sequence)
         for module, table in tables(folder, "module_status")

@@ -34,9 +34,9 @@ namespace {
   ::_exit(127);
 }
 
-/// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
 constexpr const char* kStoppedMeshing = "stopped while Gmsh made tetrahedra";
 
+/// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
 /// @throws Interrupted if a signal of StopSignal comes, or ends the program with those of its
 ///         terminal
 int run(std::vector<std::string> words, const std::filesystem::path& log) {
