@@ -23,6 +23,11 @@ std::string percent(double part, double bar) {
                  : fmt::format("{:.1f}%", 100 * part);
 }
 
+/// "–" of a candidate that was dropped before anything was to compare, as of its force.
+std::string millimetres(double metres) {
+  return std::isnan(metres) ? "–" : fmt::format("{:.3g}", 1e3 * metres);
+}
+
 std::string text_of(const Feel& feel) {
   return fmt::format("{:.0f}% too {}, uneven by {:.0f}%, in motion {:.0f}%, sideways {:.0f}%",
                      100 * std::abs(feel.stiffness), feel.stiffness > 0 ? "hard" : "soft",
@@ -43,9 +48,9 @@ void print(const OrganPlan& plan, bool by_truth, std::ostream& out) {
   for (const Verdict& v : plan.verdicts) {
     std::string why = &v == plan.chosen ? "CHOSEN" : fmt::format("{}", fmt::join(v.failures, "; "));
     if (why.empty()) why = why_not(v, plan.chosen);
-    out << fmt::format("{:<62} {:>7} {:>6.1f}% {:>14} {:>11.3g} {:>9.1e}  {}\n", v.candidate.name(),
+    out << fmt::format("{:<62} {:>7} {:>6.1f}% {:>14} {:>11} {:>9.1e}  {}\n", v.candidate.name(),
                        v.node_count, 100 * v.total_load,
-                       percent(v.errors.force, v.errors.force_bar), 1e3 * v.errors.surface,
+                       percent(v.errors.force, v.errors.force_bar), millimetres(v.errors.surface),
                        v.errors.volume, why);
     if (by_truth && std::isfinite(v.errors.force)) {
       out << "    " << text_of(v.errors.feel) << '\n';

@@ -1,6 +1,7 @@
 #include "studies/plan/plan_report.h"
 
 #include <catch2/catch.hpp>
+#include <limits>
 #include <sstream>
 
 namespace palpate::plan {
@@ -19,6 +20,21 @@ TEST_CASE("plan report: it names every machine that loads were measured on") {
   CHECK_THAT(text.str(), Catch::Contains("on one, 2 cores; two, 64 cores") &&
                              Catch::Contains("nothing meets the needs"));
   CHECK_THAT(json.str(), Catch::Contains("\"one, 2 cores; two, 64 cores\""));
+}
+
+TEST_CASE("plan report: of what was dropped before anything was to compare no error is shown") {
+  // Oracle: a dash, and null, for what is not known.
+  OrganPlan organ;
+  organ.verdicts.resize(1);
+  Verdict& dropped = organ.verdicts[0];
+  dropped.failures = {"too slow"};
+  dropped.is_cut = true;
+  dropped.errors.force = dropped.errors.surface = std::numeric_limits<double>::quiet_NaN();
+  std::ostringstream text, json;
+  print_text({}, {organ}, {}, {}, text);
+  print_json({organ}, {}, {}, json);
+  CHECK_THAT(text.str(), !Catch::Contains("nan") && Catch::Contains("–"));
+  CHECK_THAT(json.str(), !Catch::Contains("NaN") && Catch::Contains("\"surface_error_m\" : null"));
 }
 
 }  // namespace
