@@ -2,6 +2,8 @@
 // it.
 #include "tests/system/running_session.h"
 
+#include <catch2/catch.hpp>
+
 using namespace palpate;
 using namespace palpate::testing;
 

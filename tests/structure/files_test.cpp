@@ -1,6 +1,8 @@
 // What every file keeps to, whatever it includes.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <regex>
 #include <set>
 
 #include "tests/structure/source_tree.h"
@@ -48,6 +50,15 @@ std::set<std::string> tested_elsewhere() {
           "scenes/meshes/level_set.cpp"};
 }
 
+/// Itself, or by a header of tests.
+bool includes_catch(const std::string& file) {
+  const auto headers = includes_of(file);
+  return std::ranges::any_of(headers, [](const Include& include) {
+    return include.header.starts_with("catch2/") ||
+           (include.header.starts_with("tests/") && includes_catch(include.header));
+  });
+}
+
 bool is_generated(const std::string& file) { return file.find("PubSubTypes") != std::string::npos; }
 
 }  // namespace
@@ -62,6 +73,19 @@ TEST_CASE("structure: no generated code is in the tree, and every main is short"
     for (const auto& line : lines_of(file)) lines += lines > 0 || line.starts_with("int main(");
     CHECK(lines > 0);
     CHECK(lines <= 40);
+  }
+}
+
+TEST_CASE("structure: what tests checks includes Catch2, not its neighbours in a batch") {
+  // Oracle: a build without batches and precompiled headers, as the sanitizers' is, needs it.
+  const std::regex checks(R"(\b(CHECK|CHECK_FALSE|CHECK_THAT|REQUIRE|TEST_CASE)\()");
+  for (const auto& file : sources("tests")) {
+    const auto lines = lines_of(file);
+    const bool any = std::ranges::any_of(lines, [&](const std::string& line) {
+      return std::regex_search(line, checks) && line.find("//") == std::string::npos;
+    });
+    INFO(file);
+    if (any) CHECK(includes_catch(file));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "deformation/steppers/modal.h"
 
+#include <catch2/catch.hpp>
+
 #include "deformation/steppers/modal_analysis.h"
 #include "deformation/steppers/newton_backward_euler.h"
 #include "squeeze.h"

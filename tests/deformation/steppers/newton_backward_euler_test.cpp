@@ -1,5 +1,7 @@
-#include "deformation/steppers/newton_backward_euler.h"
+#include <catch2/catch.hpp>
+
 #include "deformation/organ_messages.h"
+#include "deformation/steppers/newton_backward_euler.h"
 
 #include <utility>
 

@@ -1,4 +1,6 @@
 // All that influences the steps to come is in the state.
+#include <catch2/catch.hpp>
+
 #include "modules/scene/models.h"
 #include "modules/scene/schema.h"
 #include "squeeze.h"

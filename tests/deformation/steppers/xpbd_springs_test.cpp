@@ -1,6 +1,7 @@
 #include "deformation/steppers/xpbd_springs.h"
 
 #include <Eigen/LU>
+#include <catch2/catch.hpp>
 
 #include "deformation/steppers/symplectic_euler.h"
 #include "squeeze.h"

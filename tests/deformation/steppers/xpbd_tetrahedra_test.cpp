@@ -1,5 +1,7 @@
 #include "deformation/steppers/xpbd_tetrahedra.h"
 
+#include <catch2/catch.hpp>
+
 #include "modules/core/error.h"
 #include "squeeze.h"
 

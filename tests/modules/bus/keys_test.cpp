@@ -1,6 +1,7 @@
 #include "modules/bus/keys.h"
 
 #include <sys/stat.h>
+#include <catch2/catch.hpp>
 
 #include <thread>
 

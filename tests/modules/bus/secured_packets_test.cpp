@@ -2,6 +2,7 @@
 // forges others in its processes' names: from their addresses and ports, replayed, changed, cut and
 // mixed with words of his own.
 
+#include <catch2/catch.hpp>
 #include <iostream>
 #include <map>
 

@@ -1,4 +1,6 @@
 // What holds for every neighbour method, made as a scene makes it.
+#include <catch2/catch.hpp>
+
 #include "method_checks.h"
 #include "modules/core/error.h"
 #include "modules/scene/models.h"

@@ -1,5 +1,7 @@
 #include "deformation/volume/rules/baumgarte.h"
 
+#include <catch2/catch.hpp>
+
 #include "deformation/volume/rules/explicit_step.h"
 #include "method_checks.h"
 

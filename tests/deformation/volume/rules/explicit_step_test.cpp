@@ -1,5 +1,7 @@
 #include "deformation/volume/rules/explicit_step.h"
 
+#include <catch2/catch.hpp>
+
 #include "method_checks.h"
 
 namespace palpate::deformation {

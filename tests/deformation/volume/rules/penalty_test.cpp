@@ -1,5 +1,7 @@
 #include "deformation/volume/rules/penalty.h"
 
+#include <catch2/catch.hpp>
+
 #include "method_checks.h"
 #include "tests/deformation/analytic/plates.h"
 

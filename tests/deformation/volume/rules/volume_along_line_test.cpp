@@ -1,5 +1,7 @@
 #include "deformation/volume/rules/volume_along_line.h"
 
+#include <catch2/catch.hpp>
+
 #include "method_checks.h"
 #include "tests/dense_algebra.h"
 
