@@ -88,11 +88,10 @@ function(palpate_sources result recurse)
   set(${result} ${found} PARENT_SCOPE)
 endfunction()
 
-# palpate_library(NAME [RECURSE] [INSTALLED] [APART] [EXCEPT pattern …] [DEPENDS …] [PRIVATE_DEPENDS …])
-# All sources of the folder but main.cpp. INSTALLED: part of the package for other projects. APART:
-# each file compiled alone, for code whose speed is measured.
+# palpate_library(NAME [RECURSE] [INSTALLED] [EXCEPT pattern …] [DEPENDS …] [PRIVATE_DEPENDS …])
+# All sources of the folder but main.cpp. INSTALLED: part of the package for other projects.
 function(palpate_library name)
-  cmake_parse_arguments(ARG "RECURSE;INSTALLED;APART" "" "SOURCES;EXCEPT;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "RECURSE;INSTALLED" "" "SOURCES;EXCEPT;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   if(NOT ARG_SOURCES)
     palpate_sources(ARG_SOURCES ${ARG_RECURSE} main.cpp ${ARG_EXCEPT})
   endif()
@@ -103,9 +102,6 @@ function(palpate_library name)
                         PRIVATE ${ARG_PRIVATE_DEPENDS} $<BUILD_INTERFACE:palpate_warnings>
                                 $<BUILD_INTERFACE:palpate_shareable>)
   palpate_precompile(palpate_${name} core)
-  if(ARG_APART)
-    set_target_properties(palpate_${name} PROPERTIES UNITY_BUILD OFF)
-  endif()
   if(ARG_INSTALLED)
     palpate_install_library(${name})
   endif()

@@ -8,9 +8,9 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr int kMaxSweeps = 500;
+constexpr int kMaxOrganSweeps = 500;
 /// At least this part of a contact's inverse mass is kept when volumes take freedom from it.
-constexpr double kLeastMobility = 1e-3;
+constexpr double kLeastOrganMobility = 1e-3;
 
 Vec3 velocity_of(const OrganPlace& place, const TouchedOrgan& organ) {
   Vec3 velocity = Vec3::Zero();
@@ -19,7 +19,7 @@ Vec3 velocity_of(const OrganPlace& place, const TouchedOrgan& organ) {
 }
 
 /// A row with what Gauss–Seidel needs at every visit.
-struct PreparedRow {
+struct PreparedOrganRow {
   std::array<Vec3, 2> couplings;  ///< Σ ± w W g of the places' organs [m²/kg]
   double normal_inverse_mass = 0, tangential_inverse_mass = 0;  ///< [1/kg]
 };
@@ -31,9 +31,9 @@ struct VolumeAnswer {
   double sigma() const { return denominator > 0 ? velocity / denominator : 0; }
 };
 
-class Solver {
+class OrganSolver {
  public:
-  Solver(std::span<OrganContactRow> rows, std::span<TouchedOrgan> organs)
+  OrganSolver(std::span<OrganContactRow> rows, std::span<TouchedOrgan> organs)
       : rows_(rows), organs_(organs), volumes_(organs.size()), prepared_(rows.size()) {
     for (std::size_t i = 0; i < organs.size(); ++i) {
       const VolumeGradient* volume = organs[i].volume;
@@ -89,7 +89,7 @@ class Solver {
     return sum;
   }
 
-  void prepare(const OrganContactRow& row, PreparedRow& prepared) const {
+  void prepare(const OrganContactRow& row, PreparedOrganRow& prepared) const {
     const auto& [first, second] = row.places;
     prepared.couplings = {-coupling(first), coupling(second)};
     if (first.organ == second.organ) {
@@ -103,7 +103,7 @@ class Solver {
       const double along = row.normal.dot(prepared.couplings[s]);
       if (denominator > 0) held += along * along / denominator;
     }
-    prepared.normal_inverse_mass = std::max(inverse - held, kLeastMobility * inverse);
+    prepared.normal_inverse_mass = std::max(inverse - held, kLeastOrganMobility * inverse);
     prepared.tangential_inverse_mass = inverse;
   }
 
@@ -139,7 +139,7 @@ class Solver {
 
   double relax_normal(std::size_t r) {
     OrganContactRow& row = rows_[r];
-    const PreparedRow& prepared = prepared_[r];
+    const PreparedOrganRow& prepared = prepared_[r];
     const double parting = row.normal.dot(velocity(r)) + row.approach;
     const double change = press(row, parting, prepared.normal_inverse_mass);
     if (change == 0) return 0;
@@ -158,7 +158,7 @@ class Solver {
   std::span<OrganContactRow> rows_;
   std::span<TouchedOrgan> organs_;
   std::vector<VolumeAnswer> volumes_;
-  std::vector<PreparedRow> prepared_;
+  std::vector<PreparedOrganRow> prepared_;
 };
 
 }  // namespace
@@ -193,11 +193,11 @@ OrganContactReport solve_organ_contacts(std::span<OrganContactRow> rows,
   OrganContactReport report;
   for (TouchedOrgan& organ : organs) organ.volume_impulse = 0;
   if (rows.empty()) return report;
-  Solver solver(rows, organs);
+  OrganSolver solver(rows, organs);
   do {
     report.converged = solver.sweep() <= kOrganVelocityTolerance;
     ++report.sweeps;
-  } while (!report.converged && report.sweeps < kMaxSweeps);
+  } while (!report.converged && report.sweeps < kMaxOrganSweeps);
   solver.apply_volumes();
   return report;
 }

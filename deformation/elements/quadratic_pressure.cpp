@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "deformation/elements/quadrature.h"
+#include "deformation/materials/volume_ratio.h"
 #include "modules/core/error.h"
 
 namespace palpate::deformation {
@@ -36,12 +37,6 @@ const std::array<PointShapes, 4>& point_shapes() {
     return all;
   }();
   return shapes;
-}
-
-Mat3 cofactor(const Mat3& m) {
-  Mat3 c;
-  c << m.col(1).cross(m.col(2)), m.col(2).cross(m.col(0)), m.col(0).cross(m.col(1));
-  return c;
 }
 
 Mat3 metric_of(const kernel::QuadraticBatch& batch, std::size_t lane) {

@@ -6,7 +6,7 @@
 namespace palpate::deformation {
 namespace {
 
-const dense::Functions& functions_of(InstructionSet set) {
+const dense::Functions& dense_functions_of(InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::kAvx2) return dense::avx2_functions();
   if (set == InstructionSet::kAvx512) return dense::avx512_functions();
@@ -30,7 +30,7 @@ void subtract(InstructionSet set, const DenseProduct::ConstBlock& a,
                                  size(c.cols()),
                                  size(a.cols()),
                                  lower};
-  const dense::Functions& functions = functions_of(set);
+  const dense::Functions& functions = dense_functions_of(set);
   const std::size_t wanted = functions.scratch_size(operands);
   if (scratch.size() < wanted) scratch.resize(wanted);
   functions.subtract(operands, scratch.data());

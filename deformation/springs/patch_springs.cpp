@@ -9,7 +9,7 @@ namespace palpate::deformation {
 
 namespace {
 
-constexpr float kTinySquare = 1e-20f;  // [m²]: no direction, no force
+constexpr float kTinyPatchSquare = 1e-20f;  // [m²]: no direction, no force
 
 /// What moving an end of a spring is resisted with.
 struct Resistance {
@@ -20,7 +20,7 @@ struct Resistance {
 Resistance resistance_of(const Spring& spring, double damping, const Vec4f& d) {
   const float square = d.squaredNorm();
   const Block4f none{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};
-  if (square < kTinySquare) return {none, none};
+  if (square < kTinyPatchSquare) return {none, none};
   const auto k = static_cast<float>(spring.stiffness);
   const float stretch = 1 - static_cast<float>(spring.rest_length) / std::sqrt(square);
   const float across = k * std::max(stretch, 0.0f);

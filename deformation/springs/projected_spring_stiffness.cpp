@@ -5,7 +5,7 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr float kTinySquare = 1e-20f;  // [m²]
+constexpr float kTinyProjectedSquare = 1e-20f;  // [m²]
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void ProjectedSpringStiffness::linearise(const std::vector<Vec3>& positions, dou
     const Vec4f d = positions_[coupling.b] - positions_[coupling.a];
     const float square = d.squaredNorm();
     coupling.along = coupling.across = 0;
-    if (square < kTinySquare) continue;  // no direction, no force
+    if (square < kTinyProjectedSquare) continue;  // no direction, no force
     const float inverse_square = 1 / square;
     const float stretch = 1 - spring.rest_length * std::sqrt(inverse_square);
     const float h_k = step * spring.stiffness;

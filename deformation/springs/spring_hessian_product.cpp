@@ -14,7 +14,7 @@ namespace {
 using kernel::kBlockNumbers;
 using kernel::kLanes;
 
-const kernel::ProductFunctions& functions_of(InstructionSet set) {
+const kernel::ProductFunctions& product_functions_of(InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::kAvx512) return kernel::avx512_product_functions();
   if (set == InstructionSet::kAvx2) return kernel::avx2_product_functions();
@@ -38,7 +38,7 @@ SpringHessianProduct::SpringHessianProduct(const Body& body, const SpringNetwork
                                            InstructionSet set)
     : body_(body),
       runner_(runner),
-      functions_(functions_of(set)),
+      functions_(product_functions_of(set)),
       layout_(body, network, with_volume) {
   const kernel::Layout layout = layout_.view();
   const std::size_t rows = layout.slice_count * kLanes;

@@ -6,12 +6,12 @@
 namespace palpate::bus {
 namespace {
 
-constexpr std::uint32_t kMagic = 0x31434c50;  // "PLC1"
+constexpr std::uint32_t kChunkMagic = 0x31434c50;  // "PLC1"
 constexpr std::size_t kInGroup = 3;
 constexpr std::size_t kMostBytes = 65'536;
 
 struct ChunkHeader {
-  std::uint32_t magic = kMagic;
+  std::uint32_t magic = kChunkMagic;
   std::uint32_t number = 0;
   std::uint16_t index = 0, data = 0;  ///< of the chunk; how many hold data
   std::uint32_t total = 0;            ///< bytes of the packet
@@ -35,7 +35,7 @@ bool is_chunk(std::span<const std::uint8_t> datagram) {
   std::uint32_t word = 0;
   if (datagram.size() <= sizeof(ChunkHeader) + kTailBytes) return false;
   std::memcpy(&word, datagram.data(), sizeof word);
-  return word == kMagic;
+  return word == kChunkMagic;
 }
 
 PacketChunks::PacketChunks(std::span<const std::uint8_t> packet, std::uint32_t number) {

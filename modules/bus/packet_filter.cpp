@@ -13,11 +13,11 @@
 namespace palpate::bus {
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using Octets = std::span<const std::uint8_t>;
 
-constexpr std::size_t kHeaderBytes = 20, kSubmessageHeaderBytes = 4;
-constexpr std::size_t kPrefixAt = 8, kPrefixBytes = 12;
-constexpr std::array<std::uint8_t, 5> kMagic{'R', 'T', 'P', 'S', 2};
+constexpr std::size_t kRtpsHeaderBytes = 20, kSubmessageHeaderBytes = 4;
+constexpr std::size_t kPrefixAt = 8, kGuidPrefixBytes = 12;
+constexpr std::array<std::uint8_t, 5> kRtpsMagic{'R', 'T', 'P', 'S', 2};
 constexpr std::uint8_t kFirstVendorKind = 0x80;
 constexpr std::uint32_t kMaxSetBits = 256;  // of sequence and fragment numbers, by the standard
 constexpr std::size_t kLocatorBytes = 24;
@@ -46,8 +46,8 @@ enum Flag : std::uint8_t {
 
 struct Submessage {
   std::uint8_t kind = 0, flags = 0;
-  Bytes content;
-  Bytes owner;  ///< prefix of the packet's participant
+  Octets content;
+  Octets owner;  ///< prefix of the packet's participant
   const SampleRules& rules;
   bool has(Flag flag) const { return (flags & flag) != 0; }
   Cursor cursor() const { return {content, has(kLittleEndian)}; }
@@ -65,13 +65,13 @@ bool set_fits(Cursor& cursor) {
 }
 
 // What a parameter list may say of its owner; a user's list has none.
-using Owner = Bytes;  // 12 bytes, or none
+using Owner = Octets;  // 12 bytes, or none
 
 bool is_guid(std::uint16_t parameter) {
   return parameter == 0x50 || parameter == 0x5a || parameter == 0x70;  // participant, endpoint, key
 }
 
-bool owned(std::uint16_t parameter, Bytes value, Owner owner) {
+bool owned(std::uint16_t parameter, Octets value, Owner owner) {
   return !is_guid(parameter) || owner.empty() ||
          std::equal(owner.begin(), owner.end(), value.begin());
 }
@@ -109,7 +109,7 @@ bool carries_parameters(std::uint32_t writer) {
   }
 }
 
-PacketFault check_payload(const Submessage& message, std::uint32_t writer, Bytes payload) {
+PacketFault check_payload(const Submessage& message, std::uint32_t writer, Octets payload) {
   if (!message.has(kPayload) && !message.has(kKey)) return PacketFault::kNone;
   if (payload.size() < 4) return PacketFault::kLength;  // encapsulation
   if (!built_in(writer) && message.has(kPayload) &&
@@ -281,7 +281,7 @@ bool ends_key(const Submessage& message) {
 }
 
 // The bytes that a sub-message with this header takes; none if it ends beyond the packet.
-std::optional<std::size_t> size_of(Bytes rest) {
+std::optional<std::size_t> size_of(Octets rest) {
   if (rest.size() < kSubmessageHeaderBytes) return {};
   const bool little = (rest[1] & kLittleEndian) != 0;
   const std::size_t length = Cursor(rest.subspan(2, 2), little).two();
@@ -291,8 +291,8 @@ std::optional<std::size_t> size_of(Bytes rest) {
   return size;
 }
 
-bool is_rtps(Bytes packet) {
-  return packet.size() >= kHeaderBytes && std::equal(kMagic.begin(), kMagic.end(), packet.begin());
+bool is_rtps(Octets packet) {
+  return packet.size() >= kRtpsHeaderBytes && std::equal(kRtpsMagic.begin(), kRtpsMagic.end(), packet.begin());
 }
 
 }  // namespace
@@ -313,20 +313,20 @@ const char* text_of(PacketFault fault) {
   return kTexts.at(static_cast<std::size_t>(fault));
 }
 
-FilteredPacket filter_packet(Bytes packet, const SampleRules& rules,
+FilteredPacket filter_packet(Octets packet, const SampleRules& rules,
                              std::vector<std::uint8_t>& kept) {
   if (!is_rtps(packet)) return {{}, PacketFault::kHeader};
   PacketFault last = PacketFault::kNone;
   kept.clear();
   SecuredWords secured;
-  std::size_t sound = kHeaderBytes;  // bytes from the beginning that lost nothing
-  for (Bytes rest = packet.subspan(kHeaderBytes); !rest.empty();) {
+  std::size_t sound = kRtpsHeaderBytes;  // bytes from the beginning that lost nothing
+  for (Octets rest = packet.subspan(kRtpsHeaderBytes); !rest.empty();) {
     const std::optional<std::size_t> size = size_of(rest);
     if (!size) return {{}, PacketFault::kLength};
     const bool vendor = rest[0] >= kFirstVendorKind;
     const Submessage message{rest[0], rest[1],
                              rest.subspan(kSubmessageHeaderBytes, *size - kSubmessageHeaderBytes),
-                             packet.subspan(kPrefixAt, kPrefixBytes), rules};
+                             packet.subspan(kPrefixAt, kGuidPrefixBytes), rules};
     if (rules.secured && !secured.follows(rest.first(*size))) return {{}, PacketFault::kSecured};
     const PacketFault fault = vendor ? PacketFault::kNone : check(message);
     if (fault != PacketFault::kNone) last = fault;
@@ -343,8 +343,8 @@ FilteredPacket filter_packet(Bytes packet, const SampleRules& rules,
     rest = rest.subspan(*size);
   }
   if (!secured.complete()) return {{}, PacketFault::kSecured};
-  const Bytes passed = kept.empty() ? packet.first(sound) : Bytes(kept);
-  return {passed.size() > kHeaderBytes ? passed : Bytes(), last};
+  const Octets passed = kept.empty() ? packet.first(sound) : Octets(kept);
+  return {passed.size() > kRtpsHeaderBytes ? passed : Octets(), last};
 }
 
 }  // namespace palpate::bus

@@ -15,7 +15,7 @@ using kernel::kTetrahedronLanes;
 
 constexpr std::size_t kRowFloats = 12;  ///< of a node's block
 
-const kernel::ElementFunctions& functions_of(InstructionSet set) {
+const kernel::ElementFunctions& element_functions_of(InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::kAvx512) return kernel::avx512_element_functions();
   if (set == InstructionSet::kAvx2) return kernel::avx2_element_functions();
@@ -42,7 +42,7 @@ KernelElements::KernelElements(LinearTetrahedra tetrahedra, bool with_volumes, C
     : mesh_(std::move(tetrahedra)),
       with_volumes_(with_volumes),
       runner_(runner),
-      functions_(functions_of(set)),
+      functions_(element_functions_of(set)),
       parts_(mesh_) {
   const std::size_t slots = parts_.slot_count(), groups = parts_.group_count();
   positions_.assign(4 * slots, 0);

@@ -8,7 +8,7 @@
 namespace palpate::deformation {
 namespace {
 
-const kernel::Functions& functions_of(InstructionSet set) {
+const kernel::Functions& spring_functions_of(InstructionSet set) {
 #if defined(__x86_64__)
   if (set == InstructionSet::kAvx512) return kernel::avx512_functions();
   if (set == InstructionSet::kAvx2) return kernel::avx2_functions();
@@ -51,7 +51,7 @@ SpringKernel::SpringKernel(const Body& body, const SpringNetwork& network, bool 
     : body_(body),
       with_volume_(with_volume),
       runner_(runner),
-      functions_(functions_of(set)),
+      functions_(spring_functions_of(set)),
       layout_(body, network, with_volume) {
   const kernel::Layout layout = layout_.view();
   virtual_forces_.resize(kForces * layout.virtual_node_count * layout.chunk_count);
