@@ -298,8 +298,14 @@ constexpr const char* kCompletion = R"(_palpate() {
 complete -o default -F _palpate palpate
 )";
 
+constexpr const char* kCompletionMeaning = "Words for the shell: source <(palpate completion)";
+
 /// Without words the script, with them what may stand in the place of the last.
 int completion(const Program& program, const std::vector<std::string>& words) {
+  if (words == std::vector<std::string>{"--help"}) {
+    std::cout << kCompletionMeaning << "\n\n" << runtime::kExitCodes << '\n';
+    return kExitDone;
+  }
   if (words.empty() || words == std::vector<std::string>{"bash"}) {
     std::cout << kCompletion;
     return kExitDone;
@@ -345,7 +351,7 @@ int palpate_command(int argc, char** argv) {
   add_token(program, session);
   add_keys(program, keys);
   for (const Study& study : studies()) add_study(program, study);
-  program.command_with_words("completion", "Words for the shell: source <(palpate completion)",
+  program.command_with_words("completion", kCompletionMeaning,
                              [&program](const auto& words) { return completion(program, words); });
   return program.run(argc, argv);
 }

@@ -48,9 +48,11 @@ void solve_on_the_right(const DenseProduct::ConstBlock& lower, DenseProduct::Blo
 
 /// Eliminates all columns of the lower trapezium `a`, panel by panel: L D afterwards in `scaled`
 /// below each panel, L and D in `a`.
-bool eliminate(Eigen::MatrixXd& a, Eigen::MatrixXd& scaled, DenseProduct& product) {
+bool eliminate(Eigen::MatrixXd& a, Eigen::MatrixXd& scaled, DenseProduct& product,
+               const std::function<void()>& keep_going) {
   const Eigen::Index size = a.rows(), count = a.cols();
   for (Eigen::Index begin = 0; begin < count; begin += kPanel) {
+    keep_going();
     const Eigen::Index width = std::min(kPanel, count - begin), end = begin + width;
     auto block = a.block(begin, begin, width, width);
     if (!factor_diagonal_block(block)) return false;
@@ -231,7 +233,7 @@ void MultifrontalLdlt::assemble(const MatrixOf& matrix_of, const Front& front,
   }
 }
 
-bool MultifrontalLdlt::factor(const MatrixOf& matrix_of) {
+bool MultifrontalLdlt::factor(const MatrixOf& matrix_of, const std::function<void()>& keep_going) {
   stack_.resize(stack_size_);
   double* top = stack_.data();
   DenseProduct product;
@@ -243,8 +245,9 @@ bool MultifrontalLdlt::factor(const MatrixOf& matrix_of) {
     front.columns.resize(size, front.eliminated);
     assemble(matrix_of, front, top, {front.columns, waiting});
     scaled.resize(size, front.eliminated);
-    if (!eliminate(front.columns, scaled, product)) return false;
+    if (!eliminate(front.columns, scaled, product, keep_going)) return false;
     for (Eigen::Index begin = 0; begin < front.eliminated; begin += kDepth) {
+      keep_going();
       const Eigen::Index depth = std::min(kDepth, front.eliminated - begin);
       product.subtract_lower(front.columns.block(front.eliminated, begin, count, depth),
                              scaled.block(front.eliminated, begin, count, depth), waiting);

@@ -34,8 +34,10 @@ class MultifrontalLdlt {
   MultifrontalLdlt(std::size_t dof_count, std::vector<std::vector<int>> dofs,
                    std::vector<Vec3> centres);
 
+  /// @param keep_going  asked several times a second; may throw, and then as for false:
   /// @returns false if a pivot was zero or not finite: then solve() may not be called
-  bool factor(const MatrixOf& matrix_of);
+  bool factor(
+      const MatrixOf& matrix_of, const std::function<void()>& keep_going = [] {});
 
   /// Solves in place for every column; unknowns left out come out as zero.
   /// @param b  (dof_count × any)

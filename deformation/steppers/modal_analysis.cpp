@@ -62,14 +62,14 @@ class MassOperator {
 
 // With K̂ + s M factored: X = (K̂ + s M)⁻¹ M Y. Ritz values θ of (XᵀMY, XᵀMX) are ω² + s.
 Eigenmodes modal_analysis(const TaylorHoodElements& solid, const std::vector<char>& constrained,
-                          std::size_t count) {
+                          std::size_t count, const std::function<void()>& keep_going) {
   const MassOperator mass(solid, constrained);
   // A shear wave across the body gives the order of ω²; the shift makes a free body's K̂ regular.
   const double wave_speed_squared = solid.tissue().shear_modulus() / solid.density();
   const double shift = wave_speed_squared / (solid.size() * solid.size());
   QuasiStaticNewton solver(solid, constrained, nullptr);
   const SolidState rest = solid.rest_state();
-  if (!solver.factor(rest, Inertia{shift, rest.positions})) {
+  if (!solver.factor(rest, Inertia{shift, rest.positions}, false, keep_going)) {
     throw std::runtime_error("modal analysis: the stiffness matrix is singular");
   }
   const auto wanted = static_cast<Eigen::Index>(count);
@@ -77,6 +77,7 @@ Eigenmodes modal_analysis(const TaylorHoodElements& solid, const std::vector<cha
   Eigen::MatrixXd y = mass * start_vectors(static_cast<Eigen::Index>(solid.dof_count()), vectors);
   Eigen::VectorXd earlier = Eigen::VectorXd::Zero(vectors);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    keep_going();
     Eigen::MatrixXd x = y;  // y = M Y
     solver.factorisation().solve(x);
     const Eigen::MatrixXd mass_x = mass * x;

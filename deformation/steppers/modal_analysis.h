@@ -3,6 +3,7 @@
 //   Int. J. Numer. Methods Eng. 6, 1973.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "deformation/elements/taylor_hood.h"
@@ -19,8 +20,10 @@ struct Eigenmodes {
 /// The lowest modes. Stops when no ω² changes by more than 1e-8 of the highest one wanted.
 /// @param constrained   as in QuasiStaticNewton
 /// @param count  of modes wanted, ≥ 1, far fewer than coordinates
+/// @param keep_going  as QuasiStaticNewton::solve()
 /// @throws std::runtime_error if the iteration did not converge
-Eigenmodes modal_analysis(const TaylorHoodElements& solid, const std::vector<char>& constrained,
-                          std::size_t count);
+Eigenmodes modal_analysis(
+    const TaylorHoodElements& solid, const std::vector<char>& constrained, std::size_t count,
+    const std::function<void()>& keep_going = [] {});
 
 }  // namespace palpate::deformation

@@ -83,8 +83,7 @@ Eigen::VectorXd QuasiStaticNewton::residual(const SolidState& state,
 bool QuasiStaticNewton::factor(const SolidState& state, const std::optional<Inertia>& inertia,
                                bool positive, const std::function<void()>& keep_going) {
   ElementMatrix matrix;
-  return factor_.factor([&](std::size_t e) -> Eigen::Ref<const Eigen::MatrixXd> {
-    keep_going();
+  const auto matrix_of = [&](std::size_t e) -> Eigen::Ref<const Eigen::MatrixXd> {
     solid_.tangent(e, state, matrix, positive);
     if (contact_) contact_->add_tangent(e, state, matrix, positive);
     if (fluid_ && !positive) fluid_->add_tangent(e, state, matrix);
@@ -97,7 +96,8 @@ bool QuasiStaticNewton::factor(const SolidState& state, const std::optional<Iner
       }
     }
     return matrix;
-  });
+  };
+  return factor_.factor(matrix_of, keep_going);
 }
 
 // [K B; Bᵀ −C] has one negative pivot per pressure while K is positive (on what C leaves).

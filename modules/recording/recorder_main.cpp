@@ -80,6 +80,7 @@ int main(int argc, char** argv) {
   palpate::runtime::add_lockstep_options(program, options);
   program.add_input("--scene", options.scene,
                     "Scene file; needed in lockstep, which follows its rates");
+  program.footer(palpate::runtime::kModuleExitCodes);
   return program.run(argc, argv, [&] {
     record(options, file, topics);
     return palpate::kExitDone;

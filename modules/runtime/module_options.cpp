@@ -51,6 +51,7 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   add_bus_options(command, options.bus);
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
   add_lockstep_options(command, options);
+  command.footer(kModuleExitCodes);
   if (program.add_options) program.add_options(command);
   return command.run(argc, argv, [&] {
     try {

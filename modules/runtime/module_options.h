@@ -23,6 +23,11 @@ struct ModuleOptions {
   std::filesystem::path snapshot;       ///< --snapshot: … its part of one, a snapshot of itself
 };
 
+/// What --help of a module says last.
+inline constexpr const char* kModuleExitCodes =
+    "Exit code: 0 if its session ended or it was stopped, 1 if something failed, 2 for bad input, "
+    "130 if it was stopped while an organ was filled.";
+
 struct ModuleProgram {
   std::string name;     ///< "haptics"; the program is palpate-haptics
   std::string purpose;  ///< one sentence for --help
@@ -41,7 +46,8 @@ void start_log(const std::string& name);
 
 /// The whole of a module's main: parses, starts the log, runs,
 /// and reports what is thrown in one line.
-/// @return kExitDone, kExitBadInput for an InputError or a wrong command line, else kExitFailed
+/// @return kExitDone, kExitStopped while an organ was filled, kExitBadInput for an InputError or a
+/// wrong command line, else kExitFailed
 int run_module(int argc, char** argv, const ModuleProgram& program,
                const std::function<void(const ModuleOptions&)>& run);
 

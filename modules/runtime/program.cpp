@@ -168,6 +168,7 @@ Program::Program(std::unique_ptr<CLI::App> app)
         std::cerr << name << ": " << what << '\n';
       }) {
   app_->set_version_flag("--version", version_text());
+  footer(kExitCodes);  // of every command, too
 }
 
 Program::~Program() = default;

@@ -16,6 +16,11 @@ class Option;
 
 namespace palpate::runtime {
 
+/// What --help of a program or command says last, unless that says more.
+inline constexpr const char* kExitCodes =
+    "Exit code: 0 if it did what was asked, 1 if something failed, 2 for bad input, 130 if it was "
+    "stopped (Ctrl-C).";
+
 /// What --version prints: "palpate 0.1.0, protocol 2". Programs with the same protocol can share a
 /// session.
 std::string version_text();
@@ -59,7 +64,7 @@ class Options {
   Option add_each(const char* names, std::vector<std::string>& value, const std::string& help);
   Option flag(const char* names, bool& value, const std::string& help);
   Option flag_off(const char* names, bool& value, const std::string& help);  ///< makes it false
-  void footer(const std::string& text);  ///< what --help says last
+  void footer(const std::string& text);  ///< what --help says last; else the exit codes of all
 
  private:
   friend class Program;

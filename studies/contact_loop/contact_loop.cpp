@@ -269,7 +269,7 @@ Tool make_tool(const std::string& name, double radius) {
 }
 
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
-                    const LoopCase& loop) {
+                    const LoopCase& loop, const std::function<void()>& keep_going) {
   session::InProcess session(scene_of(scene, loop), {assets.organs, {loop.tool.mesh}},
                              options_of(loop.loss));
   const Vec3 skin(place.x(), rigs::front_of(assets.organs[0].surface, place.x(), place.z()),
@@ -282,6 +282,7 @@ LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, co
   result.presses = presses;
   Judge judge(session, loop.tool);
   while (session.time() < duration) {
+    keep_going();
     session.tick();
     judge.look(result);
   }

@@ -58,8 +58,10 @@ struct LoopResult {
 };
 
 /// The first organ of the scene and one tool, from the front (-y) at `place` (x, z) [m].
-/// @param scene  its probes are replaced
-LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
-                    const LoopCase& loop);
+/// @param scene       its probes are replaced
+/// @param keep_going  asked in each tick; may throw
+LoopResult run_loop(
+    const scene::Scene& scene, const session::Assets& assets, const Vec3& place,
+    const LoopCase& loop, const std::function<void()>& keep_going = [] {});
 
 }  // namespace palpate::contact_loop

@@ -87,7 +87,7 @@ void print_line(const std::string& scene, const Vec3& place, const LoopCase& loo
 
 }  // namespace
 
-int run_contact_loop(const ContactLoopOptions& options, const std::function<bool()>& stop,
+int run_contact_loop(const ContactLoopOptions& options, const std::function<void()>& keep_going,
                      std::ostream& out) {
   const auto folder = data_file("scenes");
   using Files = std::vector<std::filesystem::path>;
@@ -128,8 +128,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<bool
         places_on(assets.organs.at(0).surface, is_liver ? kOnLiver : kOnStomach, options.places);
     for (const Vec3& place : places) {
       for (const LoopCase& loop : loops_of(tools, speeds, rates, searches)) {
-        if (stop()) return kExitFailed;
-        const LoopResult result = run_loop(scene, assets, place, loop);
+        const LoopResult result = run_loop(scene, assets, place, loop, keep_going);
         print_line(file.stem().string(), place, loop, result, out);
         sum.add(loop.tool, result);
       }

@@ -21,12 +21,11 @@ struct ContactLoopOptions {
 };
 
 /// Runs every combination, prints a line for each with what its searches found, and their sum.
-/// Ends early when `stop` says so.
+/// @param keep_going  asked often; may throw
 /// @return kExitDone if no search inside an organ was without contact, none left contacts out, and
-/// no
-///         wall was crossed
-/// @throws InputError
-int run_contact_loop(const ContactLoopOptions& options, const std::function<bool()>& stop,
+/// no wall was crossed; else kExitFailed
+/// @throws InputError; what keep_going throws
+int run_contact_loop(const ContactLoopOptions& options, const std::function<void()>& keep_going,
                      std::ostream& out);
 
 }  // namespace palpate::contact_loop

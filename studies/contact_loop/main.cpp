@@ -1,5 +1,6 @@
 #include <iostream>
 
+#include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
 #include "studies/contact_loop/contact_loop_command.h"
@@ -21,9 +22,17 @@ int main(int argc, char** argv) {
   program.add("--places", options.places, "On the organ's front; from the second on at random")
       .range(1, 1000);
   program.flag("--quick", options.quick, "A few balls: about a minute");
+  program.footer(
+      "Exit code: 0 if no search inside an organ was without contact, none left contacts out and "
+      "no "
+      "wall was crossed, 1 if one was, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
     const StopSignal signal;
     return contact_loop::run_contact_loop(
-        options, [&] { return signal.requested(); }, std::cout);
+        options,
+        [&] {
+          if (signal.requested()) throw Interrupted("stopped");
+        },
+        std::cout);
   });
 }

@@ -10,7 +10,6 @@
 #include "modules/core/error.h"
 #include "modules/core/whole_file.h"
 #include "studies/report/measures.h"
-#include "studies/report/progress.h"
 
 namespace palpate::elements_bench {
 namespace {
@@ -94,24 +93,24 @@ double observed_order(double coarse_error, double fine_error, double coarse_size
   return std::log(std::abs(coarse_error / fine_error)) / std::log(coarse_size / fine_size);
 }
 
-int run_elements(const ElementsOptions& options, const std::function<bool()>& stop,
+int run_elements(const ElementsOptions& options, const std::function<void()>& keep_going,
                  std::ostream& out, std::ostream& log) {
   if (!options.out.empty()) report::make_out_folder(options.out);
   for (const auto& name : options.cases.empty() ? case_names() : options.cases) {
     out << '\n' << heading(name) << '\n';
     std::vector<Run> runs;
-    bool stopped = false;
+    std::string stopped;  // why
     for (const double size :
          options.sizes.empty() ? default_sizes(name, options.quick) : options.sizes) {
       const auto start = std::chrono::steady_clock::now();
-      const Setting setting{options.reference_folder, options.quick, stop,
+      const Setting setting{options.reference_folder, options.quick, keep_going,
                             [&](const std::string& line) {
                               log << name << " size " << size << ": " << line << std::endl;
                             }};
       try {
         runs.push_back(run_case(name, size, setting));
-      } catch (const report::Stopped&) {
-        stopped = true;
+      } catch (const Interrupted& stop) {
+        stopped = stop.what();
         break;
       }
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -119,8 +118,8 @@ int run_elements(const ElementsOptions& options, const std::function<bool()>& st
     }
     print_convergence(runs, out);
     if (!options.out.empty()) write_csv(options.out / ("elements_" + name + ".csv"), runs);
-    if (!stopped) continue;
-    log << "stopped" << std::endl;
+    if (stopped.empty()) continue;
+    log << stopped << std::endl;
     return kExitStopped;
   }
   return kExitDone;

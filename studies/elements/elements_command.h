@@ -16,10 +16,11 @@ struct ElementsOptions {
 };
 
 /// Runs the cases from coarse to fine, prints for each a table of errors and the observed orders,
-/// and writes elements_<case>.csv. Ends early, with what is done, when `stop` says so.
+/// and writes elements_<case>.csv. Ends early, with what is done, where `keep_going` throws
+/// Interrupted.
 /// @return kExitDone, or kExitStopped
 /// @throws InputError
-int run_elements(const ElementsOptions& options, const std::function<bool()>& stop,
+int run_elements(const ElementsOptions& options, const std::function<void()>& keep_going,
                  std::ostream& out, std::ostream& log);
 
 /// Order between two meshes from the errors |e| and sizes: ln(e₁/e₂)/ln(h₁/h₂).

@@ -1,5 +1,4 @@
 #include "studies/elements/load_path.h"
-#include "studies/report/progress.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@ bool LoadPath::attempt(double load, const Apply& apply) {
   const auto before = state_;
   apply(load, state_);
   const auto multipliers = contact_ ? contact_->multipliers() : std::vector<double>{};
-  const auto report = solver_.solve(state_);
+  const auto report = solver_.solve(state_, {}, {}, setting_.keep_going);
   iterations_ += report.iterations;
   char line[120];
   std::snprintf(line, sizeof line, "load %-9.4g %2d iterations%s", load, report.iterations,
@@ -35,7 +34,6 @@ bool LoadPath::attempt(double load, const Apply& apply) {
 bool LoadPath::advance_to(double load, const Apply& apply) {
   double stride = longest_stride_;
   while (load_ < load) {
-    if (setting_.stop()) throw report::Stopped{};
     const double left = load - load_;
     const double next = left > stride ? load_ + left / std::ceil(left / stride - 1e-9) : load;
     if (attempt(next, apply)) continue;

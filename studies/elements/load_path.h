@@ -22,7 +22,7 @@ class LoadPath {
   /// Equal strides up to `load`, halved after a failure.
   /// @returns false if the longest stride fails even when halved that often; the state is the last
   ///          equilibrium.
-  /// @throws Stopped
+  /// @throws what Setting::keep_going does
   bool advance_to(double load, const Apply& apply);
 
   const deformation::SolidState& state() const { return state_; }

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "modules/core/data_folder.h"
+#include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/program.h"
 #include "studies/elements/elements_command.h"
@@ -22,11 +23,15 @@ int main(int argc, char** argv) {
   program.add("--reference", options.reference_folder, "Folder of the reference tables")
       .shows_default();
   program.flag("--quick", options.quick, "Coarse meshes, small loads: about a minute");
-  program.footer(std::string(report::kExitCodesHelp) + " A solve under way is finished first.");
+  program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
     if (std::count(options.cases.begin(), options.cases.end(), "all") > 0) options.cases.clear();
     const StopSignal signal;
     return elements_bench::run_elements(
-        options, [&] { return signal.requested(); }, std::cout, std::cerr);
+        options,
+        [&] {
+          if (signal.requested()) throw Interrupted("stopped");
+        },
+        std::cout, std::cerr);
   });
 }

@@ -8,7 +8,6 @@
 #include "modules/core/error.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "studies/elements/load_path.h"
-#include "studies/report/progress.h"
 #include "studies/report/reference_table.h"
 #include "studies/rigs/indented_block.h"
 
@@ -193,10 +192,8 @@ Run vibrating_ball(double size, const Setting& setting) {
     wanted.push_back(row);
     count += static_cast<std::size_t>(reference.at("multiplicity", row));
   }
-  if (setting.stop()) throw report::Stopped{};
-  const auto vibration =
-      modal_analysis(solid, std::vector<char>(solid.displacement_count(), 0), count);
-  if (setting.stop()) throw report::Stopped{};
+  const auto vibration = modal_analysis(solid, std::vector<char>(solid.displacement_count(), 0),
+                                        count, setting.keep_going);
   std::size_t next = 6;
   for (const std::size_t row : wanted) {
     const double members = reference.at("multiplicity", row),

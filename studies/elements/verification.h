@@ -16,7 +16,7 @@ namespace palpate::elements_bench {
 struct Setting {
   std::filesystem::path reference_folder;
   bool quick = false;                                   ///< fewer load steps
-  std::function<bool()> stop;                           ///< asked between solves
+  std::function<void()> keep_going;                     ///< asked several times a second; may throw
   std::function<void(const std::string& line)> report;  ///< progress
 };
 
@@ -42,7 +42,7 @@ const std::vector<std::string>& case_names();
 std::vector<double> default_sizes(const std::string& name, bool quick);
 
 /// Runs one case on one mesh.
-/// @throws InputError if gmsh or a reference table is missing; Stopped
+/// @throws InputError if gmsh or a reference table is missing; what keep_going throws
 Run run_case(const std::string& name, double size, const Setting& setting);
 
 }  // namespace palpate::elements_bench

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/core/error.h"
 #include "tests/deformation/elements/solids.h"
 #include "tests/dense_algebra.h"
 
@@ -79,6 +80,34 @@ TEST_CASE("multifrontal LDLᵀ: pivots count negative eigenvalues, one per press
   matrix.setZero();
   CHECK_FALSE(
       factor.factor([&](std::size_t) -> Eigen::Ref<const Eigen::MatrixXd> { return matrix; }));
+}
+
+TEST_CASE("multifrontal LDLᵀ: asks to go on within fronts, and factors anew after it was stopped") {
+  // Oracle: a factorisation that was never stopped, to the bit.
+  const System system;
+  MultifrontalLdlt factor(system.solid.dof_count(), system.dofs, system.centres);
+  ElementMatrix matrix;
+  const auto matrix_of = [&](std::size_t e) -> Eigen::Ref<const Eigen::MatrixXd> {
+    system.solid.tangent(e, system.state, matrix);
+    return matrix;
+  };
+  int asked = 0;
+  REQUIRE(factor.factor(matrix_of, [&] { ++asked; }));
+  const int most = asked;
+  for (const int stop : {1, most / 2, most}) {
+    asked = 0;
+    const auto keep_going = [&] {
+      if (++asked == stop) throw Interrupted("stopped");
+    };
+    CHECK_THROWS_AS(factor.factor(matrix_of, keep_going), Interrupted);
+  }
+  REQUIRE(factor.factor(matrix_of));
+  MultifrontalLdlt never_stopped(system.solid.dof_count(), system.dofs, system.centres);
+  REQUIRE(never_stopped.factor(matrix_of));
+  Eigen::MatrixXd x = Eigen::MatrixXd::Ones(system.dense.rows(), 1), expected = x;
+  factor.solve(x);
+  never_stopped.solve(expected);
+  CHECK(x == expected);
 }
 
 }  // namespace
