@@ -42,10 +42,6 @@ constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
 /// After a pause, and after the start, all have heard each other by then, and statuses say so.
 constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
 
-std::string joined(const std::vector<std::string>& names) {
-  return fmt::format("{}", fmt::join(names, ", "));
-}
-
 /// One run from start to summary.
 class Run {
  public:
@@ -62,9 +58,7 @@ class Run {
         conductor_(bus_),
         scenes_(bus_.writer(bus::kScene)),
         monitor_(bus_, scene_),
-        loop_(scene_.rates.deformation) {
-    duration_ = options.duration > 0 ? options.duration : scene_.duration;
-  }
+        loop_(scene_.rates.deformation) {}
 
   int perform() {
     if (options_.only.empty()) tell_scene();
@@ -128,9 +122,9 @@ class Run {
       if (exit_code_ != kExitDone) return false;
       if (waiting.empty() || loop_.woke_ns() < line_ns) continue;
       line_ns += kWaitingLineEveryNs;
-      const auto named = monitor_.waited_for(waiting);
-      log_ << "palpate: waiting for " << joined(named)
-           << (options_.secure.empty() ? "" : "; only who has keys of the same folder is heard")
+      log_ << "palpate: "
+           << waiting_line(monitor_.waited_for(waiting), !options_.secure.empty(),
+                           bus_.packets_refused())
            << std::endl;
     }
     return false;
@@ -148,7 +142,10 @@ class Run {
   }
 
   bool is_over() {
-    const bool duration_reached = duration_ > 0 && session_.time(loop_.woke_ns()) >= duration_;
+    // A scene's is its session's: whoever conducts that ends it.
+    double duration = options_.duration;
+    if (duration <= 0 && !joined_) duration = scene_.duration;
+    const bool duration_reached = duration > 0 && session_.time(loop_.woke_ns()) >= duration;
     return duration_reached || session_.phase() == runtime::SessionPhase::kStopped;
   }
 
@@ -198,9 +195,12 @@ class Run {
     log_ << fmt::format("palpate: {} ended: {}", end.module, end.how);
     if (!end.last_error.empty()) log_ << fmt::format("; it said: {}", end.last_error);
     log_ << std::endl;
-    if (goes_on() && !end.returns && modules_.any_running()) {
-      log_ << "palpate: the rest goes on; to start it again: " << end.start_again << std::endl;
-    }
+    if (!goes_on() || end.returns || !modules_.any_running()) return;
+    const bool is_disk_full = end.module == "recorder" && !end.failed && !end.last_error.empty();
+    log_ << "palpate: the rest goes on; "
+         << (is_disk_full ? "free space first, then part 2 is recorded by: "
+                          : "to start it again: ")
+         << end.start_again << std::endl;
   }
 
   void finish() {
@@ -250,7 +250,6 @@ class Run {
   bus::Writer<SceneDescription> scenes_;
   SessionMonitor monitor_;
   runtime::PeriodicLoop loop_;
-  double duration_ = 0;  ///< 0: until stopped [s]
   std::int64_t began_ns_ = 0, line_ns_ = 0;
   std::int64_t stood_ns_ = 0;  ///< when it was last paused or had not begun; 0: never
   bool scene_told_ = false;

@@ -116,6 +116,16 @@ std::string status_line(const SessionTally& tally) {
   return line;
 }
 
+std::string waiting_line(const std::vector<std::string>& names, bool secured,
+                         const bus::Refusals& refused) {
+  std::string line = fmt::format("waiting for {}", fmt::join(names, ", "));
+  if (secured) line += "; only who has keys of the same folder is heard";
+  if (refused.count > 0) {
+    line += fmt::format("; {} packets refused, the last: {}", refused.count, refused.last);
+  }
+  return line;
+}
+
 std::string summary(const SessionTally& tally, const SessionEnd& end) {
   // A session that was paused takes longer on the wall: what counts is the session's own clock.
   const double simulated = end.lockstep ? end.session_time : tally.sim_time();

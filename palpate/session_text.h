@@ -3,13 +3,20 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "modules/bus/bus.h"
 #include "palpate/session_tally.h"
 
 namespace palpate::launcher {
 
 /// "  12.0 s  real time 1.00  V/V0 stomach 1.000000  force probe 0.53 N  haptics 1000 Hz …"
 std::string status_line(const SessionTally& tally);
+
+/// "waiting for deformation; …": and what may be why.
+/// @param secured  only who has keys is heard  @param refused  by the launcher
+std::string waiting_line(const std::vector<std::string>& names, bool secured,
+                         const bus::Refusals& refused);
 
 struct SessionEnd {
   std::string scene;

@@ -29,6 +29,7 @@ void record_in_lockstep(const palpate::runtime::ModuleOptions& options,
   });
 }
 
+/// What is no "info: " is why it ended early, or might.
 void say(const std::string& what) {
   if (!what.empty()) std::cerr << "[recorder] " << what << std::endl;
 }
@@ -48,7 +49,7 @@ void record_in_real_time(const palpate::runtime::ModuleOptions& options,
   }
   const auto cost = recorder.close();
   const std::uint64_t bytes = recorder.file().bytes_written();
-  say(file.string() + ": " + std::to_string(recorder.file().statistics().message_count) +
+  say("info: " + file.string() + ": " + std::to_string(recorder.file().statistics().message_count) +
       " samples, " + std::to_string(bytes) + " bytes, " +
       palpate::recording::cost_text(cost, bytes));
 }

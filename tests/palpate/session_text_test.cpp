@@ -60,6 +60,14 @@ TEST_CASE("status line: one line with time, speed, volume, force, rates and trou
                        Contains("[slower than real time]"));
 }
 
+TEST_CASE("waiting line: names who has not been heard, and what may be why") {
+  // Oracle: the words given.
+  CHECK(waiting_line({"haptics", "deformation"}, false, {}) == "waiting for haptics, deformation");
+  CHECK(waiting_line({"collision"}, true, {7, "it was late"}) ==
+        "waiting for collision; only who has keys of the same folder is heard; 7 packets refused, "
+        "the last: it was late");
+}
+
 TEST_CASE("summary: one screen with what the session was and what failed") {
   // Oracle: the numbers given.
   SessionEnd end{"stomach_probe",

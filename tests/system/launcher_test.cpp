@@ -4,6 +4,8 @@
 #include <set>
 #include <sstream>
 
+#include "modules/recording/inspect.h"
+#include "tests/file_size_limit.h"
 #include "tests/scratch_folder.h"
 #include "tests/system/launched.h"
 
@@ -144,16 +146,45 @@ TEST_CASE("launcher: a module that dies is named, the rest goes on, it can be st
   CHECK(wait_until([&] { return again.ended().has_value(); }));  // the session's stop reaches it
 }
 
-TEST_CASE("launcher: a second one with --only joins the session and leaves it running") {
-  // Oracle: what both say; the process table.
+TEST_CASE(
+    "launcher: a recording on a full disk ends whole, the rest goes on, and part 2 is offered") {
+  // Oracle: the recording itself, read again, and what was said; exit code 0.
   const BallScene scene;
-  Launched first(scene, {"--only", "deformation,haptics"});
+  const auto recording = scene.folder() / "r.mcap";
+  const FileSizeLimit full(400'000);  // a second's, as `ulimit -f` sets it for all of a session
+  Launched run(scene, {"--record", recording.string()});
+  REQUIRE(run.wait_for_text("palpate: recorder ended: exit code 0; it said: [recorder] " +
+                            recording.string() + ": cannot write: File too large"));
+  REQUIRE(run.wait_for_text("the rest goes on; free space first, then part 2 is recorded by: "));
+  CHECK(run.processes().count("palpate-recorder") == 0);
+  const auto said = run.said().size();
+  CHECK(
+      wait_until([&] { return run.listened().find(" s  real time", said) != std::string::npos; }));
+  run.child().signal(SIGTERM);
+  CHECK(run.wait_for_end() == 0);
+  CHECK_THAT(run.said(), Contains("palpate-recorder " + (scene.folder() / "r.part2.mcap").string() +
+                                  " --session"));
+  CHECK_THAT(run.said(), !Contains("to start it again") && Contains("recording: ended "));
+  const recording::RecordingSummary read = recording::summarize(recording);
+  CHECK_FALSE(read.torn);
+  CHECK(read.topics.size() >= 8);
+  for (const auto& topic : read.topics) CHECK((topic.thinned || topic.missing == 0));
+  CHECK_FALSE(std::filesystem::exists(scene.folder() / "r.part2.mcap"));
+}
+
+TEST_CASE("launcher: a second one with --only joins the session and leaves it running") {
+  // Oracle: what both say; the process table. The scene's duration is the first one's to keep.
+  const BallScene scene("mouse: {start_m: [0, 0, 0.09]}", "duration_s: 1\n");
+  Launched first(scene, {"--only", "deformation,haptics", "--duration", "100"});
   REQUIRE(first.wait_for_text(" s  real time"));
   Launched second(scene, {"--only", "collision"}, first.options());
   const bool joined = second.wait_for_text("joining the session that already runs");
   INFO(first.said() << second.said());
   REQUIRE(joined);
   REQUIRE(second.processes().size() == 4);  // the two launchers share a name
+  REQUIRE(first.wait_for_text("2.0 s  real time"));
+  REQUIRE(second.wait_for_text(" s  real time"));
+  CHECK_FALSE(second.child().ended().has_value());
   second.child().signal(SIGINT);
   CHECK(second.wait_for_end() == 0);
   REQUIRE(first.wait_for_text("3.0 s  real time"));
