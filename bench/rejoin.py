@@ -86,6 +86,10 @@ class Module:
 
     def __init__(self, name, live, launcher, recording):
         self.name, self.live, self.launcher, self.recording = name, live, launcher, recording
+        self.earlier_parts = self.parts()
+
+    def parts(self):
+        return set(self.recording.parent.glob("*.mcap"))
 
     def process(self):
         return recorder_of(self.launcher) if self.name == "recorder" else int(status(self.live, self.name)["process_id"])
@@ -93,7 +97,7 @@ class Module:
     def runs(self):
         if self.name != "recorder":
             return status(self.live, self.name)["state"] in (2, 4, "running", "degraded")
-        return max(self.recording.parent.glob("*.mcap"), key=lambda part: part.stat().st_mtime).stat().st_size > 100_000
+        return any(part.stat().st_size > 100_000 for part in self.parts() - self.earlier_parts)
 
 
 def lose(module, number):

@@ -79,9 +79,8 @@ std::vector<std::filesystem::path> parts_of(const std::filesystem::path& recordi
                                             std::vector<std::string>& warnings) {
   std::vector<std::filesystem::path> parts{recording};
   McapMap before = session_of(recording);
-  std::error_code error;
-  for (int number = 2; std::filesystem::exists(part_of(recording, number), error); ++number) {
-    const auto part = part_of(recording, number);
+  for (auto number = part_after(recording, 1); number; number = part_after(recording, *number)) {
+    const auto part = part_of(recording, *number);
     try {
       McapMap session = session_of(part);
       if (!goes_on(before, session)) {

@@ -27,6 +27,22 @@ std::filesystem::path part_of(const std::filesystem::path& recording, int number
   return part;
 }
 
+std::optional<int> part_after(const std::filesystem::path& recording, int number) {
+  const std::string begin = recording.stem().string() + ".part";
+  std::optional<int> next;
+  std::error_code error;
+  const auto folder = std::filesystem::absolute(recording).parent_path();
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    int found = 0;
+    if (!name.starts_with(begin)) continue;
+    std::from_chars(name.data() + begin.size(), name.data() + name.size(), found);
+    if (found <= number || part_of(recording, found).filename() != name) continue;
+    next = std::min(next.value_or(found), found);
+  }
+  return next;
+}
+
 bool goes_on(const McapMap& before, const McapMap& later) {
   const auto entry = [](const McapMap& about, const char* key) {
     const auto found = about.find(key);
@@ -52,12 +68,11 @@ std::optional<RecordedSample> SampleReader::next() {
 }
 
 void SampleReader::look_for_next_part() {
-  std::error_code error;
   if (std::exchange(looked_for_later_, true)) return;
-  for (int number = part_ + 1; std::filesystem::exists(part_of(recording_, number), error);
-       ++number) {
+  for (auto number = part_after(recording_, part_); number;
+       number = part_after(recording_, *number)) {
     try {
-      later_ = part_that_goes_on(number);
+      later_ = part_that_goes_on(*number);
       return;
     } catch (const InputError& unreadable) {
       left_out_.push_back(std::string(unreadable.what()) + "; this part is left out");

@@ -31,6 +31,10 @@ inline constexpr const char* kThinned = "at_most_hz";
 /// @param number  1: the recording's own name
 std::filesystem::path part_of(const std::filesystem::path& recording, int number);
 
+/// The next one there is after that number; nothing if none is. A recorder that ended before it had
+/// made its file leaves a number out.
+std::optional<int> part_after(const std::filesystem::path& recording, int number);
+
 /// Whether a part whose session's metadata are `later` goes on where one of `before` ended: an
 /// earlier recording of that name may have left parts behind.
 bool goes_on(const McapMap& before, const McapMap& later);

@@ -6,6 +6,7 @@
 #include "modules/core/error.h"
 #include "modules/recording/idl_text.h"
 #include "modules/recording/mcap_bytes.h"
+#include "modules/recording/repair.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 
@@ -72,6 +73,32 @@ TEST_CASE("sample reader: goes on in the parts of a recorder that was started ag
   CHECK(reader.file_bytes() ==
         std::filesystem::file_size(file) + std::filesystem::file_size(part_of(file, 2)));
   CHECK_FALSE(reader.torn());
+}
+
+TEST_CASE("sample reader: numbers of parts may be missing, and are read in their order") {
+  // Oracle: what was written; names that are no part's are passed over.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  for (const int part : {1, 4, 10}) {
+    SampleFile writer(part_of(file, part), {});
+    writer.add(raw_sample(bus::kProbeState, probe_state(1, 0, 1, {4, 5, 6}), part, 1));
+    writer.close();
+  }
+  for (const char* name : {"a.part2.txt", "a.part03.mcap", "a.partx.mcap", "ab.part2.mcap"})
+    write_bytes(folder / name, {});
+  CHECK(part_after(file, 1) == 4);
+  CHECK(part_after(file, 4) == 10);
+  CHECK_FALSE(part_after(file, 10).has_value());
+  SampleReader reader(file);
+  std::vector<std::int64_t> times;
+  while (auto sample = reader.next()) times.push_back(sample->received_time_ns);
+  CHECK(times == std::vector<std::int64_t>{1, 4, 10});
+  CHECK(reader.parts() == 3);
+  CHECK(repair(file, folder / "whole.mcap").warnings.empty());
+  SampleReader repaired(folder / "whole.mcap");
+  times.clear();
+  while (auto sample = repaired.next()) times.push_back(sample->received_time_ns);
+  CHECK(times == std::vector<std::int64_t>{1, 4, 10});
 }
 
 TEST_CASE("sample reader: a later part that is no recording is left out, and named") {
