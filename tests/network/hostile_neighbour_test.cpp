@@ -7,11 +7,13 @@
 #include "tests/modules/bus/hostile_packets.h"
 #include "tests/modules/bus/stranger.h"
 #include "tests/network/two_hosts.h"
+#include "tests/system/resident_memory.h"
 
 using namespace palpate;
 using namespace palpate::testing;
 using palpate::bus::testing::any_packet;
 using palpate::bus::testing::Bytes;
+using palpate::bus::testing::packets_to_send;
 using palpate::bus::testing::Stranger;
 
 namespace {
@@ -19,12 +21,6 @@ namespace {
 constexpr int kPortsInUse = 2 * 5;  // launcher, recorder and three modules
 constexpr int kBurst = 20;  // a thousand times a second; more at once would not fit the socket
 constexpr int kLookEvery = 2000;  // packets: at memory
-
-/// Packets to send; by hand PALPATE_HOSTILE_PACKETS=1000000.
-int hostile_packets() {
-  const char* const asked = std::getenv("PALPATE_HOSTILE_PACKETS");
-  return asked == nullptr ? 60'000 : std::atoi(asked);
-}
 
 /// Resident memory of a program and its children [kB].
 std::map<pid_t, double> memory_of(pid_t program) {
@@ -34,10 +30,7 @@ std::map<pid_t, double> memory_of(pid_t program) {
   for (pid_t child = 0; listed >> child;) all.push_back(child);
   std::map<pid_t, double> memory;
   for (const pid_t each : all) {
-    std::ifstream status("/proc/" + std::to_string(each) + "/status");
-    for (std::string line; std::getline(status, line);) {
-      if (line.starts_with("VmRSS:")) memory[each] = std::stod(line.substr(6));
-    }
+    if (const double resident = resident_memory(each); resident > 0) memory[each] = resident;
   }
   return memory;
 }
@@ -105,7 +98,7 @@ TEST_CASE("hostile neighbour: a session goes on pressing under packets from the 
   REQUIRE(before.size() >= 5);
   std::map<pid_t, double> most = before;
   std::mt19937_64 random(1);
-  const int count = hostile_packets();
+  const int count = packets_to_send(60'000);
   auto burst_at = std::chrono::steady_clock::now();
   for (int sent = 0; sent < count; ++sent) {
     stranger.send(any_packet(random, overheard), Stranger::kFirstOffset + sent % kPortsInUse);

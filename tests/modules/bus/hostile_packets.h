@@ -1,11 +1,18 @@
 // Packets that mean ill, at random.
 #pragma once
 
+#include <cstdlib>
 #include <random>
 
 #include "tests/modules/bus/rtps_packets.h"
 
 namespace palpate::bus::testing {
+
+/// How many; by hand PALPATE_HOSTILE_PACKETS=1000000.
+inline int packets_to_send(int usual) {
+  const char* const asked = std::getenv("PALPATE_HOSTILE_PACKETS");
+  return asked == nullptr ? usual : std::atoi(asked);
+}
 
 /// A sub-message of the kinds that move something in a participant, with numbers of any size.
 inline Bytes any_message(std::mt19937_64& random, const Bytes& prefix) {
