@@ -12,6 +12,7 @@
 #include "modules/core/temporary_folder.h"
 #include "modules/recording/commands.h"
 #include "modules/recording/player.h"
+#include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/module_group.h"
@@ -32,7 +33,8 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   }
   recording::check_start(recording, playing.start);  // before anybody is started to look at it
   // Samples of then among those of now would move a running session's organs.
-  const SessionClaim claim(run.bus.session, run.bus.domain);
+  const SessionClaim claim(run.bus.session, run.bus.domain,
+                           {runtime::kModules.begin(), runtime::kModules.end()});
   const StopSignal stop;
   const TemporaryFolder folder;
   RunOptions viewing = run;

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <optional>
 #include <ostream>
 
 #include "modules/bus/dds_bus.h"
@@ -313,12 +312,16 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
     }
   }
   if (options.in_process) return run_in_process(options, out, log);
-  check_keys_of(module_commands(options, program_folder(),
-                                scene::process_count(scene::load_scene(options.scene))));
+  const auto commands = module_commands(options, program_folder(),
+                                        scene::process_count(scene::load_scene(options.scene)));
+  check_keys_of(commands);
   if (options.lockstep) return run_lockstep(options, out, log);
-  std::optional<SessionClaim> claim;
-  if (options.only.empty() || !options.hosts.empty())
-    claim.emplace(options.bus.session, options.bus.domain);
+  std::vector<std::string> modules;
+  for (const auto& command : commands) modules.push_back(command.module);
+  const bool joins = !options.only.empty() && options.hosts.empty();
+  const bus::BusOptions& bus = options.bus;
+  const SessionClaim claim = joins ? SessionClaim::joining(bus.session, bus.domain, modules)
+                                   : SessionClaim(bus.session, bus.domain, modules);
   return Run(options, out, log).perform();
 }
 

@@ -1,22 +1,31 @@
-// One launcher a session on a host: two of one name would conduct each other's processes.
+// One launcher a session on a host: two of one name would conduct each other's processes. Others
+// join it with modules of their own.
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace palpate::launcher {
 
 /// Held as long as this object lives, and given back by the kernel should the program die. Nothing
-/// is left on disk: it is the name of an abstract socket.
+/// is left on disk: they are names of abstract sockets.
 class SessionClaim {
  public:
-  /// @throws InputError naming the session if another launcher of this host holds it
-  SessionClaim(const std::string& session, int domain);
+  /// The whole of a session, for a launcher that starts these modules.
+  /// @throws InputError naming the session if another launcher of this host holds it, or one of the
+  /// modules
+  SessionClaim(const std::string& session, int domain, const std::vector<std::string>& modules);
+  /// Modules that join it, but for those of which there may be several: a viewer, a recorder.
+  static SessionClaim joining(const std::string& session, int domain,
+                              const std::vector<std::string>& modules);
   ~SessionClaim();
+  SessionClaim(SessionClaim&&) = default;
   SessionClaim(const SessionClaim&) = delete;
   SessionClaim& operator=(const SessionClaim&) = delete;
 
  private:
-  int socket_ = -1;
+  SessionClaim() = default;
+  std::vector<int> sockets_;
 };
 
 }  // namespace palpate::launcher
