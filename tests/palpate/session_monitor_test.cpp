@@ -37,7 +37,10 @@ TEST_CASE("session monitor: knows who is ready and hears forces and nodes") {
   }));
   CHECK(monitor.waited_for(both) == std::vector<std::string>{"collision"});
   // It has started, and waits for what another host has to say.
-  CHECK(monitor.waited_for(three) == std::vector<std::string>{"deformation"});
+  CHECK(palpate::testing::wait_until([&] {
+    monitor.poll();
+    return monitor.waited_for(three) == std::vector<std::string>{"deformation"};
+  }));
   status.state = ModuleState::kReady;
   statuses.write(status);
   CHECK(palpate::testing::wait_until([&] {
