@@ -100,23 +100,32 @@ class ProbeInputs {
   Contacts newest_;
 };
 
-/// Simulated time on the session's clock: a world that joins late begins at the time it joins.
+/// Simulated time on the session's clock: a world that joins late begins at the time it joins, and
+/// one whose session is begun anew, by a launcher that has come back, with that.
 class SimulatedTime {
  public:
-  /// Only the first call counts. @param session_time  [s]
-  void begin(double session_time) {
-    if (!begin_) begin_ = session_time;
+  /// Before each advance. @param session_time, world_time  [s]
+  void pass(double session_time, double world_time) {
+    const bool anew = session_time < latest_ - kAnew;
+    latest_ = session_time;
+    if (begin_ && !anew) return;
+    begin_ = session_time;
+    world_begin_ = world_time;
   }
-  double on_session_clock(double world_time) const { return begin_.value_or(0) + world_time; }
+  double on_session_clock(double world_time) const {
+    return begin_.value_or(0) + (world_time - world_begin_);
+  }
   /// Simulated per wall second, after an advance in the cycle that woke at `session_time`.
   double factor(double session_time, double world_time, double period) const {
-    return world_time / (session_time - begin_.value_or(0) + period);
+    return (world_time - world_begin_) / (session_time - begin_.value_or(0) + period);
   }
 
-  void exchange(StateArchive& archive) { archive(begin_); }
+  void exchange(StateArchive& archive) { archive(begin_, world_begin_, latest_); }
 
  private:
+  static constexpr double kAnew = 0.5;  ///< [s]: clocks of hosts are known better
   std::optional<double> begin_;
+  double world_begin_ = 0, latest_ = 0;
 };
 
 /// The smallest advance that is a whole sub-step of some organ, at most the period [s].
@@ -295,7 +304,7 @@ struct DeformationStage::Impl {
   }
 
   runtime::Health advance(const runtime::Cycle& now) {
-    time.begin(now.time());
+    time.pass(now.time(), world.time());
     report = world.advance(now.advance);
     report.law_bounded = law_bounded;
     troubles.unsolved += static_cast<std::uint64_t>(report.contacts_unsolved) +

@@ -85,6 +85,29 @@ TEST_CASE(
 }
 
 TEST_CASE(
+    "deformation stage: where its session's time begins anew, so does what it has simulated") {
+  // Oracle: cycles of a period each; a launcher that is killed and comes back counts from 0.
+  Session session;
+  double since = 0, factor = 0;
+  const auto cycle_at = [&](double time) {
+    runtime::Cycle now;
+    now.running = true;
+    now.advance = kPeriod;
+    now.sim_time_ns = ns_from_seconds(time);
+    factor = session.stage.cycle(now).real_time_factor;
+    REQUIRE(session.nodes.take(session.positions));
+    since = seconds_from_ns(session.positions.header.sim_time_ns);
+  };
+  for (int k = 0; k < 250; ++k) cycle_at(7 + k * kPeriod);
+  CHECK(since == Approx(7 + 250 * kPeriod));
+  CHECK(factor == Approx(1));
+  for (int k = 0; k < 10; ++k) cycle_at(k * kPeriod);
+  CHECK(since == Approx(10 * kPeriod));
+  CHECK(factor == Approx(1));
+  CHECK(session.stage.world().time() == Approx(260 * kPeriod));
+}
+
+TEST_CASE(
     "deformation stage: tells the box of every block of triangles, of the positions it tells") {
   // Oracle: brute force over the corners of each block's triangles.
   Session session;
