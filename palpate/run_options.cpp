@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <random>
+#include <stdexcept>
 #include <string_view>
 
 #include "modules/bus/addresses.h"
@@ -136,6 +137,11 @@ void apply_hosts(RunOptions& options) {
     throw InputError(fmt::format("{}: host {}: address {} is none of this host, which has {}",
                                  options.hosts.string(), own.name, own.address,
                                  fmt::join(here, ", ")));
+  }
+  if (!bus::has_link(own.address)) {
+    throw std::runtime_error(
+        fmt::format("{}: host {}: address {} has no link: start it when that is up",
+                    options.hosts.string(), own.name, own.address));
   }
   options.only = own.modules;
   options.everywhere = hosts.all_modules();

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <ifaddrs.h>
+#include <net/if.h>
 #include <netinet/in.h>
 
 #include <algorithm>
@@ -10,8 +11,15 @@
 #include "modules/core/error.h"
 
 namespace palpate::bus {
-std::vector<std::string> addresses_of_this_host() {
-  std::vector<std::string> addresses;
+namespace {
+
+struct InterfaceAddress {
+  std::string address;
+  bool runs = false;
+};
+
+std::vector<InterfaceAddress> interface_addresses() {
+  std::vector<InterfaceAddress> addresses;
   ifaddrs* interfaces = nullptr;
   if (getifaddrs(&interfaces) != 0) return addresses;
   for (const ifaddrs* i = interfaces; i != nullptr; i = i->ifa_next) {
@@ -20,13 +28,11 @@ std::vector<std::string> addresses_of_this_host() {
     // By void*: the general address is known to be an IPv4 one here.
     const void* const ipv4 = i->ifa_addr;
     inet_ntop(AF_INET, &static_cast<const sockaddr_in*>(ipv4)->sin_addr, text, sizeof text);
-    addresses.emplace_back(text);
+    addresses.push_back({text, (i->ifa_flags & IFF_RUNNING) != 0});
   }
   freeifaddrs(interfaces);
   return addresses;
 }
-
-namespace {
 
 void check_is_of_this_host(const std::string& address) {
   const std::vector<std::string> own = addresses_of_this_host();
@@ -56,6 +62,18 @@ std::vector<std::string> list_of(const char* comma_separated, const Check& check
 }
 
 }  // namespace
+
+std::vector<std::string> addresses_of_this_host() {
+  std::vector<std::string> addresses;
+  for (auto& each : interface_addresses()) addresses.push_back(std::move(each.address));
+  return addresses;
+}
+
+bool has_link(const std::string& address) {
+  return std::ranges::any_of(interface_addresses(), [&](const InterfaceAddress& each) {
+    return each.address == address && each.runs;
+  });
+}
 
 bool Addresses::over_hosts() const {
   return std::any_of(own.begin(), own.end(),

@@ -18,6 +18,10 @@ struct Addresses {
 /// IPv4, loopback among them.
 std::vector<std::string> addresses_of_this_host();
 
+/// Whether the interface that has an address runs (is up, with a link). A process that is started
+/// while it does not hears nobody there, nor itself, as long as it lives: Fast DDS passes over it.
+bool has_link(const std::string& address);
+
 /// From the environment of a process: PALPATE_INTERFACES, loopback if null or empty, and
 /// PALPATE_PEERS. Each is a comma-separated list.
 /// @throws InputError for an address of PALPATE_INTERFACES that this host does not have, and one of

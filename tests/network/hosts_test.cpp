@@ -197,6 +197,28 @@ TEST_CASE("two hosts: one that is lost and comes back gives the force back") {
   CHECK(std::abs(felt.mean_force(13, 16) / local - 1) < 0.05);
 }
 
+TEST_CASE("two hosts: one whose link is down is told so, and joins when it is up") {
+  // Oracle: exit code 1, which a service tries again, and the words; the other's session begins.
+  if (!network_or_skip()) return;
+  const BallScene scene(kHeldPress);
+  TwoHosts hosts(scene);
+  const auto set_link = [&](const std::string& state) {
+    std::string command;
+    for (const auto& word : hosts.network().on(1)) command += word + ' ';
+    REQUIRE(std::system((command + "ip link set dev wire " + state).c_str()) == 0);
+  };
+  set_link("down");
+  hosts.start(1, {});
+  CHECK(hosts.running(1).wait_for_end() == 1);
+  CHECK_THAT(hosts.running(1).said(),
+             Catch::EndsWith("hosts.yaml: host second: address " + MadeNetwork::address(1) +
+                             " has no link: start it when that is up\n"));
+  set_link("up");
+  hosts.start(0, {"--duration", "1"});
+  hosts.start(1, {});
+  CHECK(hosts.finish() == std::pair(0, 0));
+}
+
 TEST_CASE("two hosts: a lockstep leaves the bytes that one process leaves") {
   // Oracle: the same session in one process, though packets are late, lost and overtake each other.
   if (!network_or_skip()) return;
