@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "modules/geometry/triangle_surface.h"
 
@@ -57,8 +58,8 @@ void DivergenceDetector::begin(const OrganState& state, double elastic_energy) {
   injected_energy_ = shaken_time_ = 0;
   first_moment_ = first_moment(body_, state.positions);
   seen_ = state.positions;
-  suspicious_ = was_fast_ = false;
-  energy_ = 0;
+  suspicious_ = false;
+  stop_looking();
 }
 
 void DivergenceDetector::take_over(const DivergenceDetector& before, const OrganState& state) {
@@ -68,6 +69,7 @@ void DivergenceDetector::take_over(const DivergenceDetector& before, const Organ
   kinetic_energy_ = before.kinetic_energy_;
   suspicious_ = before.suspicious_;
   energy_ = before.energy_;
+  paid_work_ = before.paid_work_;
   was_fast_ = before.was_fast_;
   first_moment_ = first_moment(body_, state.positions);
   seen_ = state.positions;
@@ -80,11 +82,15 @@ void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, do
     Vec3 velocity = Vec3::Zero();
     for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
-    energy_budget_ += impulse.dot(velocity);
+    const double work = impulse.dot(velocity);
+    energy_budget_ += work;
+    paid_work_ += work;
     const Vec3 parting = velocity - row.probe_velocity;
     const double pushed = -row.normal.dot(parting);
-    if (pushed > kPushedSpeed && pushed > row.probe_velocity.norm())
-      injected_energy_ += std::max(0.0, impulse.dot(parting));
+    if (!(pushed > kPushedSpeed && pushed > row.probe_velocity.norm())) continue;
+    const double injected = std::max(0.0, impulse.dot(parting));
+    injected_energy_ += injected;
+    paid_work_ -= injected;
   }
   give(state.pressure * volume_change);
 }
@@ -93,6 +99,7 @@ void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, do
 /// is no number stays so.
 void DivergenceDetector::give(double work) {
   energy_budget_ += work;
+  paid_work_ += work;
   if (energy_budget_ < 0) energy_budget_ = 0;
 }
 
@@ -143,9 +150,13 @@ Violation DivergenceDetector::check(const OrganState& state, double period,
   const Violation seen = check_bounds(state, period);
   if (seen != Violation::kNone) return seen;
   if (moves()) return look_closely(state, dynamics);
-  energy_ = 0;
-  was_fast_ = false;
+  stop_looking();
   return Violation::kNone;
+}
+
+void DivergenceDetector::stop_looking() {
+  energy_ = paid_work_ = 0;
+  was_fast_ = false;
 }
 
 Violation DivergenceDetector::check_thoroughly(const OrganState& state, double period,
@@ -171,13 +182,16 @@ Violation DivergenceDetector::look_closely(const OrganState& state, OrganDynamic
   const double volume = geometry::enclosed_volume(state.positions, body_.triangles);
   if (volume < -kTurnedVolume * body_.rest_volume) return Violation::kTurnedInside;
   if (!knows_energy_) return Violation::kNone;
-  const double before = energy_;
+  const double before = std::exchange(energy_, 0);
+  const double paid = std::max(std::exchange(paid_work_, 0), 0.0);
   const bool was_fast = was_fast_, for_long = shaken_time_ > kShakenTime;
   energy_ = kinetic_energy_ + std::max(dynamics.elastic_energy(state), 0.0);
   const bool shakes = for_long || shaking_squared_ > kShakenSpeed * kShakenSpeed;
   const bool hurries = for_long || inner_energy_ > total_mass_ * kShakenSpeed * kShakenSpeed / 2;
   was_fast_ = shakes || hurries;
-  const bool grows = !(energy_ <= kEnergyGain * before) || (was_fast && energy_ > before);
+  const bool grows =
+      before > 0 ? !(energy_ <= kEnergyGain * before) || (was_fast && energy_ > before + paid)
+                 : !(inner_energy_ <= energy_ / kEnergyGain);
   const bool shaken = shakes && injected_energy_ > largest_injected_energy_;
   const bool unearned =
       hurries && inner_energy_ > std::max(kEnergyGain * may_hold(), energy_ / kEnergyGain);

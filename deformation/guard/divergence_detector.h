@@ -21,8 +21,10 @@
 // Judged is motion about the mean: nothing inner moves the centre of mass, so what throws an organ
 // as a whole is no instability of it. The energy grew if it moves faster than any probe moves it,
 // or for long faster than one push can make it, and holds more, moving and stored, than at the
-// check before: tenfold, or if it was as fast then, too, at all. Tissue that springs free or was
-// thrown only loses. And nobody did the work: either
+// check before: tenfold, or if it was as fast then, too, by more than the work done since, without
+// what was injected. Tissue that springs free or was thrown only loses; a probe that drives it on
+// pays. Where none was looked at before, growth is not known: then a tenth must be motion, for
+// tissue crushed by a probe holds much and hardly moves. And nobody did the work: either
 //   it is shaken, its surface moving so, and more was injected than one push gives; or
 //   its motion is ten times what it may hold, and a tenth of what it holds or more: an unstable
 //   step turns the one into the other, tissue crushed by a probe holds much and hardly moves.
@@ -98,18 +100,19 @@ class DivergenceDetector {
   double energy_budget() const { return energy_budget_; }  ///< what it may hold [J]
 
   void exchange(StateArchive& archive) {
-    archive(energy_budget_, injected_energy_, kinetic_energy_, inner_energy_, energy_,
+    archive(energy_budget_, injected_energy_, kinetic_energy_, inner_energy_, energy_, paid_work_,
             shaking_squared_, first_moment_, shaken_time_, seen_, suspicious_, was_fast_);
   }
 
   /// What add_work() changes, for steps that are taken back.
   struct Ledger {
-    double energy_budget = 0, injected_energy = 0;  ///< [J]
+    double energy_budget = 0, injected_energy = 0, paid_work = 0;  ///< [J]
   };
-  Ledger ledger() const { return {energy_budget_, injected_energy_}; }
+  Ledger ledger() const { return {energy_budget_, injected_energy_, paid_work_}; }
   void put_back(const Ledger& ledger) {
     energy_budget_ = ledger.energy_budget;
     injected_energy_ = ledger.injected_energy;
+    paid_work_ = ledger.paid_work;
   }
 
  private:
@@ -119,6 +122,7 @@ class DivergenceDetector {
   Violation check_bounds(const OrganState& state, double period);
   Violation look_closely(const OrganState& state, OrganDynamics& dynamics);
   bool moves() const;
+  void stop_looking();
   Violation explain(const OrganState& state, double period) const;
 
   const Body& body_;
@@ -127,6 +131,7 @@ class DivergenceDetector {
   double energy_budget_ = 0, injected_energy_ = 0, kinetic_energy_ = 0;  ///< [J]
   double inner_energy_ = 0;           ///< kinetic, about the mean [J]
   double energy_ = 0;                 ///< all, at the last check; 0: not looked at [J]
+  double paid_work_ = 0;              ///< given since then, but what was injected [J]
   double shaking_squared_ = 0;        ///< kShakenSpeed's, now [m²/s²]
   double shaken_time_ = 0;            ///< faster than kShakenForLongSpeed until now [s]
   Vec3 first_moment_ = Vec3::Zero();  ///< Σ m x, under gravity [kg·m]
