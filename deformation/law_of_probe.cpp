@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "deformation/contact/closing_rows.h"
+#include "deformation/contact/condensed_contacts.h"
 #include "deformation/contact/contact_law.h"
 
 namespace palpate::deformation {

@@ -34,10 +34,10 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
   const PeriodSteps steps{period, simulated.substeps(period), simulated.dynamics().is_implicit()};
   Eigen::MatrixXd own = simulated.dynamics().compliance(touched, steps);
   if (own.size() > 0) return own;
-  look_ahead(period * steps.displaced());
+  const bool moved = look_ahead(period * steps.displaced());
   std::span<const Vec3> gradient;
   if (keeps_volume) {
-    evaluate_volume(simulated.model(), positions_ahead, volume);
+    if (moved) evaluate_volume(simulated.model(), positions_ahead, volume);
     gradient = volume.gradient;
   }
   return compliance->solve(
@@ -54,17 +54,23 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
 
 /// Where nodes are that nothing stops. That is where an implicit step takes its forces, and
 /// explicit ones in the mean over a period: a thin wall under a probe that comes is stiffer there.
-void WorldOrgan::look_ahead(double time) {
+/// @returns false if they are where they were at the last look, which another probe's law took
+bool WorldOrgan::look_ahead(double time) {
   const OrganState& state = simulated.state();
+  bool moved = positions_ahead.size() != state.positions.size();
   positions_ahead.resize(state.positions.size());
   for (std::size_t i = 0; i < positions_ahead.size(); ++i) {
-    positions_ahead[i] = state.positions[i] + time * state.velocities[i];
+    const Vec3 ahead = state.positions[i] + time * state.velocities[i];
+    moved |= ahead != positions_ahead[i];
+    positions_ahead[i] = ahead;
   }
+  return moved;
 }
 
 /// What is kept of the model beside it.
 void WorldOrgan::know_model() {
   const OrganModel& model = simulated.model();
+  positions_ahead.clear();
   std::vector<geometry::Tetrahedron> tetrahedra;
   if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
   surface = std::make_unique<SurfaceWalk>(model);

@@ -60,7 +60,7 @@ struct WorldOrgan {
  private:
   friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
                                ChunkRunner*, Guarding);
-  void look_ahead(double time);
+  bool look_ahead(double time);
   void take(OrganMesh mesh, std::span<const Vec3> outside);
   void know_model();
 };

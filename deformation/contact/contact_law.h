@@ -1,35 +1,9 @@
-// The touched patch of one organ condensed to the rows of a local law (LocalLaw, core/touch.h).
+// What the rows of a local law (LocalLaw, core/touch.h) resist a probe with.
 #pragma once
 
-#include <vector>
-
-#include "deformation/contact/patch_compliance.h"
-#include "deformation/contact/probe_contacts.h"
+#include "modules/core/touch.h"
 
 namespace palpate::deformation {
-
-/// A contact, or several as one: their forces keep their proportions.
-struct CondensedContact {
-  std::uint32_t organ = 0;
-  LawRow row;
-  std::vector<std::pair<std::uint32_t, double>> weights;  ///< of the organ's nodes
-};
-
-/// The radius of a row is 0 for a flat probe, and for a round one on a triangle's face: sliding
-/// there, it finds the same normal. Of several taken together it is that of most of the force.
-/// All contacts of a probe at the end of an advance, at most kMaxLawRows: those that press, then
-/// the nearest others. Where more than that press, neighbours are taken together about places far
-/// from each other, with the sum of their forces at its middle.
-/// @param bodies, states  by organ
-std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
-                                                const std::vector<const Body*>& bodies,
-                                                const std::vector<const OrganState*>& states,
-                                                double period);
-
-/// Appends the compliance rows of a condensed contact: along its normal, or the columns of
-/// contact_basis().
-void append_compliance_rows(const CondensedContact& contact, std::size_t directions,
-                            std::vector<ComplianceRow>& rows);
 
 /// −∂f/∂x of a law's rows that press [N/m].
 struct RowStiffness {

@@ -94,14 +94,19 @@ Eigen::MatrixXd PatchCompliance::answers_of_masses(std::span<const ComplianceRow
       volume[r] += model_.inverse_masses[node] * gradient[node].dot(pushes_.back().push);
     }
   }
-  std::ranges::stable_sort(pushes_, {}, &Push::node);
-  for (auto first = pushes_.begin(); first != pushes_.end();) {
-    const auto last = std::find_if(first, pushes_.end(),
-                                   [&](const Push& push) { return push.node != first->node; });
-    const double inverse_mass = model_.inverse_masses[first->node];
-    for (auto a = first; a != last; ++a) {
-      for (auto b = first; b != last; ++b) {
-        answers(a->row, b->row) += inverse_mass * a->push.dot(b->push);
+  // By nodes, of one as they stand: numbers sort faster than pushes.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+  for (std::uint32_t i = 0; i < pushes_.size(); ++i) places.push_back({pushes_[i].node, i});
+  std::ranges::sort(places);
+  for (auto first = places.begin(); first != places.end();) {
+    const auto last =
+        std::find_if(first, places.end(), [&](const auto& p) { return p.first != first->first; });
+    const double inverse_mass = model_.inverse_masses[first->first];
+    for (auto i = first; i != last; ++i) {
+      const Push& a = pushes_[i->second];
+      for (auto k = first; k != last; ++k) {
+        const Push& b = pushes_[k->second];
+        answers(a.row, b.row) += inverse_mass * a.push.dot(b.push);
       }
     }
     first = last;

@@ -49,16 +49,22 @@ void grow_patch(const Body& body, const Neighbours& neighbours, const std::vecto
   for (const std::uint32_t node : patch.nodes) patch.places[node] = -1;
   patch.nodes.clear();
   std::vector<std::uint32_t> ring(touched.begin(), touched.end());
+  std::vector<std::pair<double, std::uint32_t>> by_distance;
   for (std::size_t first = 0; !ring.empty() && patch.nodes.size() < most;) {
     sort_unique(ring);
     std::erase_if(ring, [&](std::uint32_t node) {
       return patch.places[node] >= 0 || body.inverse_masses[node] == 0;
     });
-    std::stable_sort(ring.begin(), ring.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return (positions[a] - centre).squaredNorm() < (positions[b] - centre).squaredNorm();
-    });
-    ring.resize(std::min(ring.size(), most - patch.nodes.size()));
+    // A plate touches thousands: only those taken are put in order.
+    by_distance.clear();
     for (const std::uint32_t node : ring) {
+      by_distance.push_back({(positions[node] - centre).squaredNorm(), node});
+    }
+    const auto end = by_distance.begin() +
+                     static_cast<std::ptrdiff_t>(std::min(ring.size(), most - patch.nodes.size()));
+    std::partial_sort(by_distance.begin(), end, by_distance.end());
+    by_distance.erase(end, by_distance.end());
+    for (const auto& [squared, node] : by_distance) {
       patch.places[node] = static_cast<std::int32_t>(patch.nodes.size());
       patch.nodes.push_back(node);
     }

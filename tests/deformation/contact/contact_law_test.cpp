@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "deformation/contact/condensed_contacts.h"
 #include "deformation/models.h"
 #include "haptics/local_law.h"
 #include "modules/scene/models.h"
@@ -133,6 +134,35 @@ TEST_CASE(
   }
   CHECK((force - expected).norm() < 1e-12 * expected.norm());
   CHECK((torque - turn).norm() < 0.02 * expected.norm() * testing::kBallRadius);
+}
+
+TEST_CASE("contact law: neighbours are taken together about places far from each other") {
+  // Oracle: the plain search. The strongest is the first place, then always the contact furthest
+  // from all places; a contact belongs to the first of the places nearest to it.
+  Plate plate;
+  plate.press(250, [](std::size_t i) { return 1e-3 * (1 + double((37 * i) % 251)); });
+  std::vector<CarriedContact> pressing = plate.probe.contacts();
+  std::ranges::sort(pressing, std::greater{}, [](const auto& c) { return c.pushed.norm(); });
+  const auto distance = [](const CarriedContact& a, const CarriedContact& b) {
+    return (a.point_P - b.point_P).norm();
+  };
+  std::vector<CarriedContact> places{pressing.front()};
+  const auto nearest = [&](const CarriedContact& c) {
+    return std::ranges::min_element(places, {}, [&](const auto& p) { return distance(c, p); });
+  };
+  while (places.size() < kMaxLawRows) {
+    const auto apart = [&](const CarriedContact& c) { return distance(c, *nearest(c)); };
+    places.push_back(*std::ranges::max_element(pressing, {}, apart));
+  }
+  std::vector<Vec3> expected(places.size(), Vec3::Zero());
+  for (const CarriedContact& c : pressing) {
+    expected[static_cast<std::size_t>(nearest(c) - places.begin())] += c.pushed / Plate::kPeriod;
+  }
+  const auto contacts = plate.condense();
+  REQUIRE(contacts.size() == places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    CHECK((contacts[i].row.force - expected[i]).norm() < 1e-12 * expected[i].norm());
+  }
 }
 
 TEST_CASE("contact law: a round probe's normal turns over nodes and edges, not over a face") {
