@@ -8,6 +8,10 @@ namespace {
 /// A contact further from its tissue or its probe's origin is none [m]. Searches reach a metre.
 constexpr double kFarthestContact = 10;
 
+bool is_within_reach(const Vec3& way) {  // not of one that is no number
+  return way.squaredNorm() <= kFarthestContact * kFarthestContact;
+}
+
 bool names_a_triangle(std::span<const WorldOrgan> organs, const Contact& contact) {
   return contact.organ < organs.size() &&
          contact.triangle < organs[contact.organ].simulated.model().triangles.size();
@@ -19,8 +23,8 @@ bool is_near(const SimulatedOrgan& organ, const Contact& contact, const Pose& pr
   for (int k = 0; k < 3; ++k) {
     tissue += contact.barycentric[k] * organ.state().positions[nodes[k]];
   }
-  return contact.point_P.stableNorm() <= kFarthestContact &&
-         (probe.to_world(contact.point_P) - tissue).stableNorm() <= kFarthestContact;
+  return is_within_reach(contact.point_P) &&
+         is_within_reach(probe.to_world(contact.point_P) - tissue);
 }
 
 /// Puts what was found on an earlier mesh, a contact or a node, on that of now.
@@ -51,7 +55,7 @@ std::span<const Contact> ContactIntake::take(std::span<const WorldOrgan> organs,
     take_if_plausible(organs, contact, contacts.probe_pose);
   }
   const auto place = [](const Contact& c) { return std::pair(c.organ, c.triangle); };
-  std::ranges::stable_sort(taken_, {}, place);
+  if (!std::ranges::is_sorted(taken_, {}, place)) std::ranges::stable_sort(taken_, {}, place);
   return taken_;
 }
 

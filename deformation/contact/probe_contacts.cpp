@@ -65,10 +65,11 @@ void ProbeContacts::set_contacts(std::span<const Contact> newest) {
 
 /// Of the nearest on its triangle, where a round probe has but one; each is taken once.
 void ProbeContacts::take_forces_of_previous(CarriedContact& carried) {
-  const auto on_triangle =
-      std::ranges::equal_range(previous_contacts_, triangle_of(carried), {}, triangle_of);
+  const auto triangle = triangle_of(carried);
   CarriedContact* nearest = nullptr;
-  for (CarriedContact& previous : on_triangle) {
+  for (auto at = std::ranges::lower_bound(previous_contacts_, triangle, {}, triangle_of);
+       at != previous_contacts_.end() && triangle_of(*at) == triangle; ++at) {
+    CarriedContact& previous = *at;
     if (!core_ && apart(previous, carried) > kSamePlace) continue;
     if (!nearest || apart(previous, carried) < apart(*nearest, carried)) nearest = &previous;
   }
