@@ -21,8 +21,16 @@ bool same(const FoundContact& a, const FoundContact& b) {
          (a.normal_P - b.normal_P).cwiseAbs().maxCoeff() < kSameDirection;
 }
 
+/// Contacts of nodes mostly come in order, and there may be thousands.
+template <class Before>
+void sort_unless_sorted(std::vector<FoundContact>& found, const Before& before) {
+  if (!std::is_sorted(found.begin(), found.end(), before)) {
+    std::sort(found.begin(), found.end(), before);
+  }
+}
+
 void merge_duplicates(std::vector<FoundContact>& found) {
-  std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
+  sort_unless_sorted(found, [](const FoundContact& a, const FoundContact& b) {
     if (a.organ != b.organ) return a.organ < b.organ;
     if (a.feature != b.feature) return a.feature < b.feature;
     if (a.triangle != b.triangle) return a.triangle < b.triangle;
@@ -157,24 +165,27 @@ auto plane_order(const FoundContact& c) {
 /// Nodes on one plane, sorted as they will be needed: by their triangle.
 void append_face(std::vector<FoundContact>::iterator first,
                  std::vector<FoundContact>::iterator last, ContactSet& result) {
-  std::sort(first, last, [](const FoundContact& a, const FoundContact& b) {
-    return std::tie(a.triangle, a.feature) < std::tie(b.triangle, b.feature);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> nodes;  // by their triangles
+  for (auto c = first; c != last; ++c) nodes.push_back({c->triangle, c->feature[0]});
+  std::sort(nodes.begin(), nodes.end());
+  const auto leads = std::find_if(first, last, [&](const FoundContact& c) {
+    return c.triangle == nodes[0].first && c.feature[0] == nodes[0].second;
   });
   FaceContacts face;
   face.organ = first->organ;
-  face.point_P = first->point_P;
-  face.normal_P = first->normal_P.normalized();
+  face.point_P = leads->point_P;
+  face.normal_P = leads->normal_P.normalized();
   face.gap = std::min_element(first, last, [](const FoundContact& a, const FoundContact& b) {
                return a.gap < b.gap;
              })->gap;
   face.node_count = static_cast<std::uint32_t>(last - first);
   result.faces.push_back(face);
-  for (auto c = first; c != last; ++c) result.face_nodes.push_back(c->feature[0]);
+  for (const auto& [triangle, node] : nodes) result.face_nodes.push_back(node);
 }
 
 /// Takes nodes on one plane out of `found`.
 void take_faces(std::vector<FoundContact>& found, const ContactLimits& limits, ContactSet& result) {
-  std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
+  sort_unless_sorted(found, [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(plane_order(a), std::tuple(offset(a), a.feature)) <
            std::tuple_cat(plane_order(b), std::tuple(offset(b), b.feature));
   });
@@ -242,7 +253,8 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
   const geometry::Triangle& nodes = step.organ.triangles()[contact.triangle];
   const auto corner = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
   contact.barycentric = Vec3::Unit(corner);
-  append_contact(contact, nodes, found);
+  contact.feature = {node, kNoNode, kNoNode};
+  found.push_back(contact);
 }
 
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,

@@ -32,9 +32,8 @@ void NodeContacts::change_surface(const SurfaceChange& change) {
 void NodeContacts::begin_step() {
   before_.swap(now_);
   now_.clear();
-  std::sort(before_.begin(), before_.end(), [](const Hold& a, const Hold& b) {
-    return std::tie(a.organ, a.node) < std::tie(b.organ, b.node);
-  });
+  const auto place = [](const Hold& hold) { return std::tie(hold.organ, hold.node); };
+  if (!std::ranges::is_sorted(before_, {}, place)) std::ranges::sort(before_, {}, place);
 }
 
 void NodeContacts::append_remembered(std::uint32_t organ, std::vector<std::uint32_t>& nodes) const {
@@ -62,7 +61,7 @@ std::optional<NodeContacts::Kept> NodeContacts::kept_face(const OrganStep& step,
                                                           const SweptNode& node) const {
   const Hold* hold = held(step, node.index);
   if (hold != nullptr) return Kept{{hold->point, hold->outward}, hold->depth_limit};
-  if (!node.entry || !faces(node.normal, node.entry->outward)) return {};
+  if (!node.entry || !faces(step.node_normal_end(node.index), node.entry->outward)) return {};
   return Kept{{node.entry->point, node.entry->outward}, step.depth_limit};
 }
 
@@ -74,7 +73,6 @@ void NodeContacts::find_node(const OrganStep& step, const ProbeSolid& solid, std
   node.near = solid.nearest(node.end, step.margin);
   node.entry = solid.entry(step.node_start(index), node.end, step.motion.chord_error());
   if (!node.near && !node.entry && held(step, index) == nullptr) return;
-  node.normal = step.node_normal_end(index);
 
   const bool is_outside = node.near && node.near->distance > 0;
   std::optional<Kept> kept = kept_face(step, node);
@@ -89,7 +87,7 @@ void NodeContacts::find_node(const OrganStep& step, const ProbeSolid& solid, std
       face = kept->face;
     }
   }
-  if (!face && node.near && faces(node.normal, node.near->outward)) {
+  if (!face && node.near && faces(step.node_normal_end(index), node.near->outward)) {
     // A node that was never seen entering counts only where its face is beyond doubt.
     if (std::abs(node.near->distance) > step.margin && !node.near->one_sided) return;
     face = Face{node.near->point, node.near->outward};

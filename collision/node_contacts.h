@@ -52,7 +52,7 @@ class NodeContacts {
   };
   struct SweptNode {
     std::uint32_t index = 0;
-    Vec3 end, normal;  ///< the normal is not unit
+    Vec3 end;
     std::optional<SolidPoint> near;
     std::optional<SolidEntry> entry;
   };
