@@ -127,13 +127,13 @@ class Groups {
         apart_(Numbers::Constant(size, std::numeric_limits<double>::infinity())),
         nearest_(apart_),
         organ_(size),
-        group_(Numbers::Constant(size, -1)) {}
+        group_(Eigen::ArrayXi::Constant(size, -1)) {}
 
   void put(Eigen::Index i, const Vec3& place, std::uint32_t organ) {
     x_[i] = place.x();
     y_[i] = place.y();
     z_[i] = place.z();
-    organ_[i] = organ;
+    organ_[i] = static_cast<int>(organ);
   }
   void find(int count) {
     Eigen::Index furthest = 0;
@@ -145,7 +145,7 @@ class Groups {
     }
   }
   /// Below 0: none is of its organ.
-  int of(std::size_t i) const { return static_cast<int>(group_[static_cast<Eigen::Index>(i)]); }
+  int of(std::size_t i) const { return group_[static_cast<Eigen::Index>(i)]; }
 
  private:
   using Numbers = Eigen::ArrayXd;  // of one kind: what is done with them vectorizes
@@ -154,19 +154,16 @@ class Groups {
     const double x = x_[at], y = y_[at], z = z_[at];
     squared_ = (x_ - x).square() + ((y_ - y).square() + (z_ - z).square());
     apart_ = apart_.min(squared_);
-    const double organ = organ_[at], number = group;
-    const double *squared = squared_.data(), *organs = organ_.data();
-    double *nearest = nearest_.data(), *groups = group_.data();
     for (Eigen::Index i = 0; i < squared_.size(); ++i) {
-      const bool is_nearer = (squared[i] < nearest[i]) & (organs[i] == organ);
-      groups[i] = is_nearer ? number : groups[i];
-      nearest[i] = is_nearer ? squared[i] : nearest[i];
+      if (!(squared_[i] < nearest_[i]) || organ_[i] != organ_[at]) continue;
+      nearest_[i] = squared_[i];
+      group_[i] = group;
     }
   }
 
   Numbers x_, y_, z_, squared_;
   Numbers apart_, nearest_;  ///< from any place chosen, and from those on the same organ [m²]
-  Numbers organ_, group_;
+  Eigen::ArrayXi organ_, group_;
 };
 
 /// Several as one, weighted by their force along the normals.
