@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """How long a session that presses an organ is without force when one of its processes is killed or stopped.
 
-Usage: bench/rejoin.py [--repeats N] [--how kill stop] [--modules NAME ...]     (after a build)
+Usage: bench/rejoin.py [--repeats N] [--how kill stop] [--depth deep shallow] [--modules NAME ...]     (after a build)
 Per kind and module: seconds from the signal and from the successor's start until it says that it runs (of the recorder: until
 its part grows), and until the force is back (half of what it was). A stopped process is found out after three seconds. Each
 session is recorded: its parts are read again, and what is missing within them and between them is told. At the end: what is
-left of all processes.
+left of all processes. Of collision and deformation: how often the first search of the successor, or with its tissue, had a contact
+that pushes. Deep is with the sphere's middle 8 mm behind the skin at rest, shallow with its tip 2 mm.
 """
 import argparse
+import itertools
 import json
 import os
 import shutil
@@ -32,8 +34,9 @@ organs:
      fixed: [{box: {min_m: [-0.2, 0.02, -0.2], max_m: [0.2, 0.2, 0.2]}}]}
 probes:
   - {name: tip, shape: {sphere: {radius_m: 0.008}}, device: {scripted: {start_m: [0.008, -0.08, -0.049], moves: [
-     {to_m: [0.008, -0.020, -0.049], duration_s: 1.5}]}}}
+     {to_m: [0.008, %g, -0.049], duration_s: 1.5}]}}}
 """
+DEPTHS = {"deep": -0.020, "shallow": -0.0344}  # of the sphere's middle, along y; the skin is at -0.0284 [m]
 
 
 def force(live):
@@ -59,7 +62,7 @@ def held(live, seconds=0.5):
         first = force(live)
         time.sleep(seconds)
         now = force(live)
-        if now > 0.05 and abs(now - first) < 0.1 * now:
+        if now > 1e-3 and abs(now - first) < 0.1 * now:
             return now
 
 
@@ -100,19 +103,55 @@ class Module:
         return any(part.stat().st_size > 100_000 for part in self.parts() - self.earlier_parts)
 
 
+class Searches:
+    """What searches found since this was made."""
+
+    FIELDS = {"contacts": ("source_time_ns", "deepest_gap_m"), "node_positions": ("source_time_ns",)}
+
+    def __init__(self, live):
+        self.live, self.heard = live, {topic: [] for topic in self.FIELDS}
+        for topic in self.FIELDS:
+            live.take(topic)
+
+    def listen(self):
+        for topic, fields in self.FIELDS.items():
+            came = self.live.take(topic)
+            if came.messages:
+                self.heard[topic].append(np.array([came[field] for field in fields], dtype=float))
+
+    def without_contact(self, module, restart):
+        """So many since the module's successor, started at `restart` [s], first spoke, until one had a contact that pushes."""
+        spoken = {"collision": "contacts", "deformation": "node_positions"}.get(module)
+        if spoken is None:
+            return float("nan")
+        said, found = (np.hstack(self.heard[topic]) for topic in (spoken, "contacts"))
+        begin = said[0, said[0] > 1e9 * restart].min(initial=np.inf)
+        pushes = found[1, found[0] >= begin] < 0
+        return int(np.argmax(pushes)) if pushes.any() else float("inf")
+
+
 def lose(module, number):
-    """Seconds until it runs again and until the force is back, from the signal and from the start of its successor."""
+    """Seconds until it runs again and until the force is back, from the signal and from the start of its successor; and searches
+    without a contact."""
     live = module.live
     before = held(live)
     victim = module.process()
+    searches = Searches(live)
+    searches.listen()
     begin = time.monotonic()
     os.kill(victim, number)
-    runs = wait(lambda: module.process() not in (0, victim) and module.runs())
+
+    def heard(condition):
+        searches.listen()
+        return condition()
+
+    runs = wait(lambda: heard(lambda: module.process() not in (0, victim) and module.runs()))
     since = time.monotonic() - begin
     restart = started(module.process()) - begin
     faded = force(live) < 0.5 * before
-    back = since + wait(lambda: force(live) > 0.5 * before) if faded else since
-    return runs, back, runs - restart, back - restart
+    back = since + wait(lambda: heard(lambda: force(live) > 0.5 * before)) if faded else since
+    wait(lambda: heard(lambda: False), 0.2)
+    return runs, back, runs - restart, back - restart, searches.without_contact(module.name, begin + restart)
 
 
 def read_again(recording):
@@ -131,13 +170,14 @@ def leftovers(session):
     return [pid for pid in found if pid != str(os.getpid())]
 
 
-def measure(module, how, repeats, folder):
+def measure(module, how, depth, repeats, folder):
     scene = Path(folder) / "held.yaml"
-    scene.write_text(HELD % palpate.scene_path("stomach_probe").parent.joinpath("meshes/stomach.ply"))
+    stomach = palpate.scene_path("stomach_probe").parent.joinpath("meshes/stomach.ply")
+    scene.write_text(HELD % (stomach, DEPTHS[depth]))
     times, parts = [], []
     number = {"kill": signal.SIGKILL, "stop": signal.SIGSTOP}[how]
     while len(times) < repeats:
-        name = f"rejoin{os.getpid()}x{len(times)}{module}"
+        name = f"rejoin{os.getpid()}x{len(times)}{module}{how}{depth}"
         recording = Path(folder) / name / "held.mcap"
         recording.parent.mkdir()
         log = Path(folder) / "log"
@@ -165,19 +205,21 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeats", type=int, default=8)
     parser.add_argument("--how", nargs="+", default=["kill"], choices=["kill", "stop"])
+    parser.add_argument("--depth", nargs="+", default=["deep"], choices=list(DEPTHS))
     parser.add_argument("--modules", nargs="+", default=["haptics", "collision", "deformation", "recorder"])
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for how in options.how:
-            for module in options.modules:
-                times, (files, read, missing) = measure(module, how, options.repeats, folder)
-                middle, worst = np.median(times, axis=0), np.max(times, axis=0)
-                print(
-                    f"{how:5} {module:12} {len(times):4} times: runs again after {middle[0]:.2f} s (at most {worst[0]:.2f}),"
-                    f" force back after {middle[1]:.2f} s (at most {worst[1]:.2f}); from its restart {middle[2]:.2f} s"
-                    f" ({worst[2]:.2f}) and {middle[3]:.2f} s ({worst[3]:.2f}); {files} files recorded, {read} read, {missing} samples missing",
-                    flush=True,
-                )
+        for how, depth, module in itertools.product(options.how, options.depth, options.modules):
+            times, (files, read, missing) = measure(module, how, depth, options.repeats, folder)
+            middle, worst = np.median(times, axis=0), np.max(times, axis=0)
+            lost = times[:, 4]
+            searches = "" if np.isnan(lost).all() else f"; contact at the first search {np.sum(lost == 0)} times (at most {worst[4]:.0f} without)"
+            print(
+                f"{how:5} {depth:8} {module:12} {len(times):4} times: runs again after {middle[0]:.2f} s (at most {worst[0]:.2f}),"
+                f" force back after {middle[1]:.2f} s (at most {worst[1]:.2f}); from its restart {middle[2]:.2f} s"
+                f" ({worst[2]:.2f}) and {middle[3]:.2f} s ({worst[3]:.2f}); {files} files recorded, {read} read, {missing} samples missing{searches}",
+                flush=True,
+            )
     print("left of all processes: none")
 
 

@@ -32,7 +32,7 @@ struct DeformationWorld::Impl {
   std::optional<OrganContacts> organ_contacts;  ///< none: the scene has them off
   ContactIntake intake;
   std::vector<Pose> poses;           ///< buffer of look_ahead()
-  std::vector<Vec3> places;          ///< buffer of change_meshes() [m]
+  std::vector<CoreLine> cores;       ///< buffer of change_meshes()
   std::vector<ForceHistory> forces;  ///< on each probe
   double time = 0, period = 0;       ///< simulated; of the last advance [s]
 
@@ -175,9 +175,9 @@ struct DeformationWorld::Impl {
       WorldOrgan& organ = organs[i];
       if (!organ.following) continue;
       if (organ.following->next() != nullptr) {
-        places.clear();
-        for (const auto& probe : probes) probe.append_kept_outside(i, places);
-        organ.change_mesh(places);
+        cores.clear();
+        for (const auto& probe : probes) probe.append_kept_outside(i, cores);
+        organ.change_mesh(cores);
         for (auto& probe : probes) probe.change_surface(i, organ.following->last_transfer());
       }
       report.mesh_coarser |= organ.is_coarser;

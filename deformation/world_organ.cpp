@@ -82,7 +82,7 @@ void WorldOrgan::know_model() {
        model.triangles});
 }
 
-void WorldOrgan::take(OrganMesh mesh, std::span<const Vec3> outside) {
+void WorldOrgan::take(OrganMesh mesh, std::span<const CoreLine> outside) {
   auto dynamics = following->dynamics_of(*mesh.model);
   const OrganModel &before = simulated.model(), &next = *mesh.model;
   RefinedShape& refined = mesh.refined;
@@ -104,7 +104,7 @@ void WorldOrgan::take(OrganMesh mesh, std::span<const Vec3> outside) {
   know_model();
 }
 
-void WorldOrgan::change_mesh(std::span<const Vec3> outside) {
+void WorldOrgan::change_mesh(std::span<const CoreLine> outside) {
   take(following->take_next(generation, simulated.model()), outside);
 }
 

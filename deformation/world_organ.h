@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "deformation/contact/outer_seat.h"
 #include "deformation/contact/patch_compliance.h"
 #include "deformation/contact/surface_walk.h"
 #include "deformation/following_organ.h"
@@ -50,8 +51,8 @@ struct WorldOrgan {
   Eigen::MatrixXd contact_compliance(std::span<const ComplianceRow> touched, double period);
 
   /// Of one that follows: goes on with the mesh that was made for it.
-  /// @param outside  places where probes are that it must not put its wall around [m]
-  void change_mesh(std::span<const Vec3> outside);
+  /// @param outside  cores of probes that it must not put its wall around
+  void change_mesh(std::span<const CoreLine> outside);
   /// Between two advances; one that follows takes its mesh when it reads.
   void exchange(StateArchive& archive);
   /// At rest, at time 0, with the next generation; one that follows with its coarse mesh.
@@ -61,7 +62,7 @@ struct WorldOrgan {
   friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
                                ChunkRunner*, Guarding);
   bool look_ahead(double time);
-  void take(OrganMesh mesh, std::span<const Vec3> outside);
+  void take(OrganMesh mesh, std::span<const CoreLine> outside);
   void know_model();
 };
 

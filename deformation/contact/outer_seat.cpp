@@ -9,13 +9,42 @@
 namespace palpate::deformation {
 namespace {
 
-constexpr double kOff = 1e-6;          ///< so far beyond a point its wall is put, at first [m]
-constexpr int kMostSeatings = 12;      ///< rounds over all points, each twice as far
+constexpr double kOff = 1e-6;          ///< so far beyond a core its wall is put, at first [m]
+constexpr int kMostSeatings = 12;      ///< rounds over all cores, each twice as far
 constexpr std::size_t kMostWays = 32;  ///< out of a wall that are looked at
 
 bool is_inside(const Vec3& p, const Body& body, std::span<const Vec3> positions) {
   return geometry::winding_number(p, positions.first(body.surface_node_count), body.triangles) >
          0.5;
+}
+
+/// Where the wall cuts a core, as fractions of it, and its ends; ascending.
+std::vector<double> cuts_of(const CoreLine& core, const Body& body,
+                            std::span<const Vec3> positions) {
+  std::vector<double> cuts{0, 1};
+  const Vec3 along = core.b - core.a;
+  if (along.isZero(0)) return cuts;
+  const Vec3 low = core.a.cwiseMin(core.b), high = core.a.cwiseMax(core.b);
+  for (const geometry::Triangle& t : body.triangles) {
+    const geometry::TriangleCorners x{positions[t[0]], positions[t[1]], positions[t[2]]};
+    const Vec3 from = x[0].cwiseMin(x[1]).cwiseMin(x[2]), to = x[0].cwiseMax(x[1]).cwiseMax(x[2]);
+    if ((from.array() > high.array()).any() || (to.array() < low.array()).any()) continue;
+    const auto pair = geometry::closest_of_segment_and_triangle(core.a, core.b, x);
+    if (pair.distance == 0)
+      cuts.push_back(along.dot(pair.on_segment - core.a) / along.squaredNorm());
+  }
+  std::ranges::sort(cuts);
+  return cuts;
+}
+
+/// Middles of the pieces of a core that are inside: between two cuts it is on one side.
+void append_inside(const CoreLine& core, const Body& body, std::span<const Vec3> positions,
+                   std::vector<Vec3>& middles) {
+  const std::vector<double> cuts = cuts_of(core, body, positions);
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    const Vec3 middle = core.a + (cuts[i - 1] + cuts[i]) / 2 * (core.b - core.a);
+    if (is_inside(middle, body, positions)) middles.push_back(middle);
+  }
 }
 
 /// Where a triangle is nearest to a point behind it.
@@ -76,17 +105,18 @@ void move_to(const NearPlace& wall, double off, const Body& body, std::span<Vec3
 
 }  // namespace
 
-bool seat_outside(std::span<const Vec3> points, const Body& body, std::span<Vec3> positions) {
+bool seat_outside(std::span<const CoreLine> cores, const Body& body, std::span<Vec3> positions) {
   double off = kOff;
+  std::vector<Vec3> inside;
   for (int round = 0; round <= kMostSeatings; ++round, off *= 2) {
-    bool any = false;
-    for (const Vec3& p : points) {
-      if (!is_inside(p, body, positions)) continue;
-      any = true;
-      if (round < kMostSeatings)
-        move_to(nearest_way_out(p, off, body, positions), off, body, positions);
+    inside.clear();
+    for (const CoreLine& core : cores) append_inside(core, body, positions, inside);
+    if (inside.empty()) return true;
+    if (round == kMostSeatings) break;
+    for (const Vec3& p : inside) {
+      if (!is_inside(p, body, positions)) continue;  // what moved another took it along
+      move_to(nearest_way_out(p, off, body, positions), off, body, positions);
     }
-    if (!any) return true;
   }
   return false;
 }

@@ -3,17 +3,21 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "deformation/model/body.h"
 
 namespace palpate::deformation {
 
-/// Moves free nodes around the walls nearest to points inside the closed surface, until the points
-/// are outside.
-/// @param points     that belong outside [m]
+/// A round probe's core where it is; of a ball both ends are one [m].
+struct CoreLine {
+  Vec3 a, b;
+};
+
+/// Moves free nodes around the walls nearest to what of the cores is inside the closed surface,
+/// until all along they are outside.
+/// @param cores      that belong outside
 /// @param positions  of all the body's nodes [m]
 /// @returns whether they are outside
-bool seat_outside(std::span<const Vec3> points, const Body& body, std::span<Vec3> positions);
+bool seat_outside(std::span<const CoreLine> cores, const Body& body, std::span<Vec3> positions);
 
 }  // namespace palpate::deformation

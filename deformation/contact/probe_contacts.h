@@ -7,6 +7,7 @@
 
 #include "deformation/contact/contact_solve.h"
 #include "deformation/contact/gentle_push.h"
+#include "deformation/contact/outer_seat.h"
 #include "deformation/contact/surface_walk.h"
 #include "deformation/model/organ_state.h"
 #include "modules/core/touch.h"
@@ -87,8 +88,8 @@ class ProbeContacts {
   bool may_cross(std::uint32_t organ) const {
     return core_ && (has_contacts(organ) || is_watched(organ));
   }
-  /// Appends places all along a round probe's core, where it was kept outside an organ [m].
-  void append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const;
+  /// Appends a round probe's core if it was kept outside an organ.
+  void append_kept_outside(std::uint32_t organ, std::vector<CoreLine>& cores) const;
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance

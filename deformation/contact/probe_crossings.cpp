@@ -1,27 +1,13 @@
 // What keeps a round probe's core on the outer side of a wall.
 #include <algorithm>
-#include <cmath>
 
 #include "deformation/contact/probe_contacts.h"
 
 namespace palpate::deformation {
-namespace {
-
-/// Between places along a core, which are else two radii apart.
-constexpr int kMostGaps = 24;
-
-}  // namespace
-
-void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<Vec3>& places) const {
+void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<CoreLine>& cores) const {
   const auto near = std::ranges::find(near_, organ, &Near::organ);
   if (!core_ || near == near_.end() || near->inside) return;
-  const double length = (core_->b - core_->a).norm();
-  const int gaps = static_cast<int>(
-      std::min(static_cast<double>(kMostGaps), std::ceil(length / (2 * core_->radius))));
-  for (int i = 0; i <= gaps; ++i) {
-    const double at = gaps == 0 ? 0 : static_cast<double>(i) / gaps;
-    places.push_back(start_.to_world(core_->a + at * (core_->b - core_->a)));
-  }
+  cores.push_back({start_.to_world(core_->a), start_.to_world(core_->b)});
 }
 
 /// Ends of the core through triangles, and its side over edges: crossings_.

@@ -222,9 +222,9 @@ Tool needle() {
 }
 
 /// Lying on the wall: its side goes in first, its ends may never.
-Tool rod() {
-  const scene::CapsuleShape shape{2e-3, 0.04};
-  Tool tool{"rod", shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()), shape.radius, {}};
+Tool rod_of(const std::string& name, double radius) {
+  const scene::CapsuleShape shape{radius, 0.04};
+  Tool tool{name, shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()), shape.radius, {}};
   for (int i = 0; i <= 32; ++i)
     tool.inside.push_back((i / 32.0 - 0.5) * shape.length * Vec3::UnitZ());
   return tool;
@@ -258,14 +258,15 @@ Tool tips_first(const std::string& name, const scene::ProbeShape& shape) {
 Tool make_tool(const std::string& name, double radius) {
   if (name == "ball") return ball_of(radius);
   if (name == "needle") return needle();
-  if (name == "rod") return rod();
+  if (name == "rod") return rod_of(name, 2e-3);
+  if (name == "wire") return rod_of(name, 5e-4);
   if (name == "box") return box_of(name, Vec3::Constant(0.01));
   if (name == "blade") return box_of(name, Vec3(1e-3, 0.02, 0.015));
   if (name == "mesh") return pebble();
   if (name == "cone") return tips_first(name, scene::ConeShape{0.002, 0.02});
   if (name == "grasper") return tips_first(name, scene::GrasperShape{0.015, 0.005, 0.003, 0.4});
   throw InputError("tool '" + name +
-                   "': one of ball, needle, rod, box, blade, mesh, cone, grasper");
+                   "': one of ball, needle, rod, wire, box, blade, mesh, cone, grasper");
 }
 
 LoopResult run_loop(const scene::Scene& scene, const session::Assets& assets, const Vec3& place,

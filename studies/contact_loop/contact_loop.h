@@ -25,9 +25,10 @@ struct Tool {
            std::holds_alternative<scene::CapsuleShape>(shape);
   }
 };
-/// "ball", "needle" (1 mm thick, 40 mm long), "rod" (4 mm thick, 40 mm long, side first), "box" (10
-/// mm), "blade" (1 mm thick, edge first), "mesh" (a rough pebble of 42 corners, 10 mm), "cone" (4
-/// mm thick, 20 mm long, point first), "grasper" (jaws of 15 mm, open by 0.4 rad, tips first).
+/// "ball", "needle" (1 mm thick, 40 mm long), "rod" (4 mm thick, 40 mm long, side first), "wire"
+/// (the same, 1 mm thick), "box" (10 mm), "blade" (1 mm thick, edge first), "mesh" (a rough pebble
+/// of 42 corners, 10 mm), "cone" (4 mm thick, 20 mm long, point first), "grasper" (jaws of 15 mm,
+/// open by 0.4 rad, tips first).
 /// @param radius  of the ball [m]
 /// @throws InputError for another name
 Tool make_tool(const std::string& name, double radius);

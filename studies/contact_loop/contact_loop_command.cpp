@@ -98,10 +98,10 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
                                     folder / "stomach_probe_refined.yaml"});
   using Numbers = std::vector<double>;
   using Names = std::vector<std::string>;
-  const Names names = or_else(
-      options.tools,
-      options.quick ? Names{"ball", "needle", "mesh"}
-                    : Names{"ball", "needle", "rod", "box", "blade", "mesh", "cone", "grasper"});
+  const Names names =
+      or_else(options.tools, options.quick ? Names{"ball", "needle", "mesh"}
+                                           : Names{"ball", "needle", "rod", "wire", "box", "blade",
+                                                   "mesh", "cone", "grasper"});
   const Numbers radii = or_else(
       options.radii, options.quick ? Numbers{1e-3, 4e-3} : Numbers{5e-4, 1e-3, 2e-3, 4e-3, 8e-3});
   const Numbers speeds =

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   contact_loop::ContactLoopOptions options;
   program.add("--scene", options.scenes, "Only these scene files (YAML)");
   program.add("--tool", options.tools,
-              "Only these: ball, needle, rod, box, blade, mesh, cone, grasper");
+              "Only these: ball, needle, rod, wire, box, blade, mesh, cone, grasper");
   program.add("--radius", options.radii, "Of the ball [m]").range(1e-4, 0.05);
   program.add("--speed", options.speeds, "Largest [m/s]").range(1e-3, 2.9);
   program.add("--rate", options.rates, "Of deformation [Hz]").range(1.0, 2000.0);

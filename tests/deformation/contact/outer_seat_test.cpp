@@ -9,6 +9,8 @@
 namespace palpate::deformation {
 namespace {
 
+std::vector<CoreLine> ball_at(const Vec3& p) { return {{p, p}}; }
+
 TEST_CASE("outer seat: a wall comes off points inside it, and no further than to them") {
   // Oracle: the winding number over all triangles; of least motion, a place that moves by d for
   // weights w needs |Δx| ≤ d / √Σw² ≤ √3 d of its corners, a few times over where walls fold.
@@ -18,15 +20,44 @@ TEST_CASE("outer seat: a wall comes off points inside it, and no further than to
   for (int trial = 0; trial < 50; ++trial) {
     std::vector<Vec3> x = model.rest_positions;
     const double depth = random.number(1e-4, 0.2 * radius);
-    const std::vector<Vec3> points{(radius - depth) * random.direction()};
-    CHECK(seat_outside(points, model, x));
-    CHECK(geometry::winding_number(points[0], x, model.triangles) < 0.5);
+    const Vec3 p = (radius - depth) * random.direction();
+    CHECK(seat_outside(ball_at(p), model, x));
+    CHECK(geometry::winding_number(p, x, model.triangles) < 0.5);
     double farthest = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       farthest = std::max(farthest, (x[i] - model.rest_positions[i]).norm());
     }
     CHECK(farthest < 4 * depth);
   }
+}
+
+TEST_CASE("outer seat: a wall comes off a core that it lies across, wherever between its ends") {
+  // Oracle: the winding number at 200 places along it. Both ends are outside; what is inside is
+  // a chord of any length, down to less than any two places looked at are apart.
+  const OrganModel model = testing::ball_model(3);
+  const double radius = model.rest_positions[0].norm();
+  collision::RandomShapes random(13);
+  int chords = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    std::vector<Vec3> x = model.rest_positions;
+    const Vec3 out = random.direction();
+    const Vec3 along = (out.unitOrthogonal() + 0.2 * random.direction()).normalized();
+    const Vec3 middle = (radius - random.number(0.005, 0.1) * radius) * out;
+    const double back = random.number(0.6, 2) * radius, on = random.number(0.6, 2) * radius;
+    const std::vector<CoreLine> core{{middle - back * along, middle + on * along}};
+    const auto inside = [&] {
+      int count = 0;
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 p = core[0].a + i / 199.0 * (core[0].b - core[0].a);
+        count += geometry::winding_number(p, x, model.triangles) > 0.5;
+      }
+      return count;
+    };
+    chords += inside() > 0;
+    CHECK(seat_outside(core, model, x));
+    CHECK(inside() == 0);
+  }
+  CHECK(chords > 20);
 }
 
 TEST_CASE("outer seat: a wall that folds over another comes off, whatever front is nearer") {
@@ -52,7 +83,7 @@ TEST_CASE("outer seat: a wall that folds over another comes off, whatever front 
     std::vector<Vec3> x = one;
     for (const Vec3& node : one) x.push_back(node + p + (radius + gap) * beside);
     if (geometry::winding_number(p, x, model.triangles) < 0.5) continue;
-    CHECK(seat_outside(std::vector<Vec3>{p}, model, x));
+    CHECK(seat_outside(ball_at(p), model, x));
     CHECK(geometry::winding_number(p, x, model.triangles) < 0.5);
   }
 }
@@ -62,10 +93,10 @@ TEST_CASE("outer seat: a wall that points are outside of stays, and what is held
   OrganModel model = testing::ball_model(2);
   std::vector<Vec3> x = model.rest_positions;
   const double radius = x[0].norm();
-  CHECK(seat_outside(std::vector<Vec3>{Vec3(0, 0, 1.1 * radius)}, model, x));
+  CHECK(seat_outside(ball_at({0, 0, 1.1 * radius}), model, x));
   CHECK(x == model.rest_positions);
   std::ranges::fill(model.inverse_masses, 0.0);
-  CHECK_FALSE(seat_outside(std::vector<Vec3>{Vec3(0, 0, 0.8 * radius)}, model, x));
+  CHECK_FALSE(seat_outside(ball_at({0, 0, 0.8 * radius}), model, x));
   CHECK(x == model.rest_positions);
 }
 

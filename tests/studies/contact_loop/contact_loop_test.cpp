@@ -61,13 +61,16 @@ TEST_CASE("contact loop: no ball goes through the wall of the solid liver, whate
 TEST_CASE("contact loop: a mesh that changes under a small tip in a hurry loses it no contact") {
   // Oracle: winding number over all triangles, of the surface of each search and each advance. Each
   // of these lost contact or was crossed: searched with boxes of an earlier mesh, walled in where
-  // nodes went, crossed by its side.
+  // nodes went, crossed by its side, walled in between places along it.
   const auto scene = scene::load_scene(data_file("scenes/liver_touch.yaml"));
   const session::Assets assets = session::load_assets(scene);
-  for (const auto& [name, speed, rate] :
-       {std::tuple("ball", 2.5, 100.0), {"needle", 0.63, 250.0}, {"rod", 2.5, 100.0}}) {
+  const Vec3 usual(-0.020, 0, 0.013), edge(0.020781514, 0, 0.021756684);
+  for (const auto& [name, place, speed, rate] : {std::tuple("ball", usual, 2.5, 100.0),
+                                                 {"needle", usual, 0.63, 250.0},
+                                                 {"rod", usual, 2.5, 100.0},
+                                                 {"rod", edge, 2.5, 250.0}}) {
     const LoopCase loop{make_tool(name, 1e-3), speed, rate, 250};
-    const LoopResult result = run_loop(scene, assets, {-0.020, 0, 0.013}, loop);
+    const LoopResult result = run_loop(scene, assets, place, loop);
     INFO(name << " at " << speed << " m/s, " << rate << " Hz");
     CHECK(result.lost == 0);
     CHECK(result.troubles.lost == 0);
@@ -119,7 +122,8 @@ TEST_CASE("contact loop: contact is kept when one of five messages is lost") {
 
 TEST_CASE("contact loop: a tool reaches as far before its origin as its points say") {
   // Oracle: brute force over the surface of each shape.
-  for (const char* name : {"ball", "needle", "rod", "box", "blade", "mesh", "cone", "grasper"}) {
+  for (const char* name :
+       {"ball", "needle", "rod", "wire", "box", "blade", "mesh", "cone", "grasper"}) {
     const Tool tool = make_tool(name, 3e-3);
     const auto surface = geometry::surface_of(scene::form_of(tool.shape, tool.mesh), 1);
     double reach = 0;
