@@ -75,7 +75,14 @@ Reaper::Reaper() {
 
 Reaper::~Reaper() {
   close(children_);
-  waitpid(process_id_, nullptr, 0);
+  const int process = open_process(process_id_);
+  const double most = 2 * kPatience;  // it takes one itself, where a child hangs
+  if (process < 0 || !left_after({{process, POLLIN, 0}}, static_cast<int>(1e3 * most)).empty()) {
+    kill(process_id_, SIGKILL);
+  }
+  if (process >= 0) close(process);
+  while (waitpid(process_id_, nullptr, 0) < 0 && errno == EINTR) {
+  }
 }
 
 void Reaper::watch(pid_t child) {

@@ -13,7 +13,7 @@ class Reaper {
   static constexpr double kPatience = 1.0;  ///< [s]
 
   Reaper();   ///< @throws std::runtime_error if there can be no process
-  ~Reaper();  ///< lets it go
+  ~Reaper();  ///< lets it go; one that hangs or is stopped is killed after twice kPatience
   Reaper(const Reaper&) = delete;
   Reaper& operator=(const Reaper&) = delete;
 

@@ -4,7 +4,11 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <cerrno>
+#include <chrono>
 #include <csignal>
+#include <fstream>
+#include <string>
 
 #include "tests/modules/runtime/own_bus.h"
 
@@ -64,4 +68,27 @@ TEST_CASE("reaper: goes when it is let go, and ends nobody who is not its own") 
   ::kill(bystander, SIGKILL);
   CHECK(waitpid(bystander, nullptr, 0) == bystander);
   CHECK(waitpid(-1, nullptr, WNOHANG) == -1);
+}
+
+TEST_CASE("reaper: one that is stopped keeps nobody waiting, and does not stay behind") {
+  // Oracle: the clock: less than three times its patience, for whoever lets it go waits for two;
+  // the process table.
+  const auto began = std::chrono::steady_clock::now();
+  const pid_t parent = fork();
+  if (parent == 0) {
+    {
+      Reaper reaper;
+      pid_t own = -1;
+      std::ifstream("/proc/self/task/" + std::to_string(getpid()) + "/children") >> own;
+      if (own <= 0 || ::kill(own, SIGSTOP) != 0) _exit(1);
+    }
+    _exit(waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD ? 0 : 2);
+  }
+  int status = -1;
+  const bool ended = wait_until([&] { return waitpid(parent, &status, WNOHANG) == parent; });
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
+  if (!ended) ::kill(parent, SIGKILL);
+  REQUIRE(ended);
+  CHECK(status == 0);
+  CHECK(taken.count() < 3 * Reaper::kPatience);
 }
