@@ -7,11 +7,13 @@
 #include <cerrno>
 #include <cstring>
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <stdexcept>
 #include <vector>
 
 #include "modules/bus/key_check.h"
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
+#include "modules/core/output_file.h"
 
 namespace palpate::bus {
 namespace {
@@ -19,6 +21,12 @@ namespace {
 namespace fs = std::filesystem;
 
 using Texts = std::vector<std::pair<fs::path, std::string>>;  ///< by file
+
+[[noreturn]] void fail(const fs::path& file, int system_error) {
+  const std::string said = file.string() + ": " + std::strerror(system_error);
+  if (is_disk_full(system_error)) throw std::runtime_error(said);
+  throw InputError(said);
+}
 
 /// Readable and writable by its owner alone, from the first byte on.
 void write_private(const fs::path& file, const std::string& text) {
@@ -30,14 +38,14 @@ void write_private(const fs::path& file, const std::string& text) {
                        ::fsync(number) == 0;
   const int failure = errno;
   if (number >= 0) ::close(number);
-  if (!written) throw InputError(file.string() + ": " + std::strerror(failure));
+  if (!written) fail(file, failure);
 }
 
 /// All, or none and no folder that was not there: a part of them would refuse the next try.
 void write_all(const fs::path& folder, bool is_new, const Texts& texts) {
   try {
     for (const auto& [file, text] : texts) write_private(file, text);
-  } catch (const InputError&) {
+  } catch (const std::exception&) {
     std::error_code ignored;
     for (const auto& [file, text] : texts) fs::remove(file, ignored);
     if (is_new) fs::remove(folder, ignored);
@@ -49,7 +57,7 @@ void write_all(const fs::path& folder, bool is_new, const Texts& texts) {
 bool make_folder(const fs::path& folder) {
   std::error_code failure;
   const bool is_new = fs::create_directories(folder, failure);
-  if (failure) throw InputError(folder.string() + ": " + failure.message());
+  if (failure) fail(folder, failure.value());
   if (!fs::is_empty(folder)) {
     throw InputError(folder.string() +
                      ": is not empty; keys go to a folder of their own, and are never replaced");

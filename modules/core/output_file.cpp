@@ -40,6 +40,10 @@ std::string why_not_writable(const std::filesystem::path& file) {
   return "the folder " + folder.string() + " may not be written to";
 }
 
+bool is_disk_full(int system_error) {
+  return system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
+}
+
 void check_writable(const std::filesystem::path& file) {
   const std::string why = why_not_writable(file);
   if (!why.empty()) throw InputError(file.string() + ": cannot be written: " + why);

@@ -11,6 +11,9 @@ namespace palpate {
 /// to be beside its place), or it is there, and is a folder or closed; empty if it can.
 std::string why_not_writable(const std::filesystem::path& file);
 
+/// Whether that is why: no room, a quota, or a limit on the size of files. A failure, no bad input.
+bool is_disk_full(int system_error);
+
 /// @throws InputError naming file and reason
 void check_writable(const std::filesystem::path& file);
 

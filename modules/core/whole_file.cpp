@@ -118,8 +118,11 @@ void FileInTheMaking::finish() {
 }
 
 WholeFile::WholeFile(const std::filesystem::path& file, Writers writers)
-    : making_(file, writers), file_(file), stream_(making_.part(), std::ios::binary) {
-  if (!stream_) cannot_write(file_, errno);
+    : making_(file, writers), file_(file) {
+  errno = 0;
+  if (buffer_.open(making_.part(), std::ios::out | std::ios::binary) == nullptr) {
+    cannot_write(file_, errno);
+  }
 }
 
 WholeFile::WholeFile(const std::filesystem::path& file, std::string_view beginning,
@@ -128,10 +131,30 @@ WholeFile::WholeFile(const std::filesystem::path& file, std::string_view beginni
   stream_ << beginning;
 }
 
-void WholeFile::finish() {
+std::streamsize WholeFile::Buffer::xsputn(const char* text, std::streamsize size) {
   errno = 0;
-  stream_.close();
-  if (!stream_) cannot_write(file_, errno);
+  const std::streamsize written = std::filebuf::xsputn(text, size);
+  if (written < size && failure_ == 0) failure_ = errno;
+  return written;
+}
+
+WholeFile::Buffer::int_type WholeFile::Buffer::overflow(int_type letter) {
+  errno = 0;
+  const int_type written = std::filebuf::overflow(letter);
+  if (written == traits_type::eof() && failure_ == 0) failure_ = errno;
+  return written;
+}
+
+int WholeFile::Buffer::sync() {
+  errno = 0;
+  const int failed = std::filebuf::sync();
+  if (failed != 0 && failure_ == 0) failure_ = errno;
+  return failed;
+}
+
+void WholeFile::finish() {
+  stream_.flush();
+  if (!stream_ || buffer_.close() == nullptr) cannot_write(file_, buffer_.failure());
   making_.finish();
 }
 

@@ -43,7 +43,7 @@ class FileInTheMaking {
 
 class WholeFile {
  public:
-  /// @throws InputError as FileInTheMaking
+  /// @throws InputError as FileInTheMaking; std::runtime_error naming file and reason
   explicit WholeFile(const std::filesystem::path& file, Writers writers = Writers::kSeveral);
   /// By one writer, of a kind that is written anew each time, and begins with these words, which
   /// are written.
@@ -51,13 +51,28 @@ class WholeFile {
   WholeFile(const std::filesystem::path& file, std::string_view beginning, const std::string& kind);
 
   std::ostream& stream() { return stream_; }
-  /// @throws std::runtime_error if not all of it could be written
+  /// @throws std::runtime_error naming file and reason if not all of it could be written
   void finish();
 
  private:
+  /// A stream says that it failed, not why.
+  class Buffer : public std::filebuf {
+   public:
+    int failure() const { return failure_; }  ///< the system's first reason; 0: none
+
+   protected:
+    std::streamsize xsputn(const char* text, std::streamsize size) override;
+    int_type overflow(int_type letter) override;
+    int sync() override;
+
+   private:
+    int failure_ = 0;
+  };
+
   FileInTheMaking making_;  // outlives the stream
   std::filesystem::path file_;
-  std::ofstream stream_;
+  Buffer buffer_;
+  std::ostream stream_{&buffer_};
 };
 
 /// @throws InputError, std::runtime_error if it cannot be written

@@ -31,8 +31,15 @@ std::string times_of(const Header& header, std::int64_t received_ns, std::int64_
 
 }  // namespace
 
-CsvExport::CsvExport(std::filesystem::path folder) : folder_(std::move(folder)) {
+CsvExport::CsvExport(std::filesystem::path folder)
+    : folder_(std::move(folder)), is_new_(!std::filesystem::exists(folder_)) {
   make_writable_folder(folder_, "--csv");
+}
+
+CsvExport::~CsvExport() {
+  files_.clear();
+  std::error_code not_empty;
+  if (is_new_) std::filesystem::remove(folder_, not_empty);
 }
 
 std::ostream& CsvExport::file(const std::string& name, const std::string& columns) {
@@ -69,6 +76,7 @@ void CsvExport::add_inputs(const ModuleStatus& status, const std::string& times)
 
 void CsvExport::close() {
   for (auto& [name, file] : files_) file.finish();
+  is_new_ = false;
 }
 
 }  // namespace palpate::recording

@@ -15,6 +15,10 @@ class CsvExport {
  public:
   /// Makes the folder. @throws InputError if that fails
   explicit CsvExport(std::filesystem::path folder);
+  /// Without close() the folder goes, too, if it was not there before.
+  ~CsvExport();
+  CsvExport(const CsvExport&) = delete;
+  CsvExport& operator=(const CsvExport&) = delete;
 
   /// @param start_ns  receive time at which time_s is 0
   void add(const RecordedSample& sample, const messages::AnyMessage& message,
@@ -29,6 +33,7 @@ class CsvExport {
   void add_inputs(const ModuleStatus& status, const std::string& times);
 
   std::filesystem::path folder_;
+  bool is_new_;  ///< the folder, and nothing in it is finished
   std::map<std::string, WholeFile> files_;
 };
 

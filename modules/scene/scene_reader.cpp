@@ -21,9 +21,8 @@ YAML::Node parse_yaml(std::string_view text, const Source& source) {
     }
     return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& error) {
-    const bool is_open = error.msg == YAML::ErrorMsg::DOC_IN_SCALAR;
     throw SceneError(source.name, error.mark.line + 1, "",
-                     "not valid YAML: " + (is_open ? "a quoted text is not closed" : error.msg));
+                     "not valid YAML: " + why_not_yaml(error));
   }
 }
 

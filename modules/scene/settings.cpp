@@ -8,6 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/scene/scene_error.h"
 #include "modules/scene/scene_reader.h"
+#include "modules/scene/yaml_value.h"
 
 namespace palpate::scene {
 namespace {
@@ -62,7 +63,8 @@ SceneDocument::Change change_from(const std::string& setting) {
     if (values.size() > 1) throw InputError("setting '" + key + "': must be one value");
     return {key, values.empty() ? SceneValue{} : value_of(values.front())};
   } catch (const YAML::Exception& error) {
-    throw InputError("setting '" + setting + "': its value is not valid YAML: " + error.msg);
+    throw InputError("setting '" + setting +
+                     "': its value is not valid YAML: " + why_not_yaml(error));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "modules/scene/yaml_value.h"
 
+#include <yaml-cpp/depthguard.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -81,6 +83,12 @@ std::string shortened(std::string text) {
   std::size_t cut = kLongestShown;
   while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0) == 0x80) --cut;  // UTF-8
   return text.substr(0, cut) + "…";
+}
+
+std::string why_not_yaml(const YAML::Exception& error) {
+  if (error.msg == YAML::ErrorMsg::DOC_IN_SCALAR) return "a quoted text is not closed";
+  if (dynamic_cast<const YAML::DeepRecursion*>(&error) != nullptr) return "nested too deep";
+  return error.msg;
 }
 
 int line_of(const YAML::Node& node, int otherwise) {

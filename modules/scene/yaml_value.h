@@ -20,6 +20,8 @@ struct Source {
 
 /// The part of a text that a message repeats: one line, at most 60 bytes.
 std::string shortened(std::string text);
+/// What is wrong with a text that is no YAML.
+std::string why_not_yaml(const YAML::Exception& error);
 /// Where a key, or an entry of a list, begins; one that is not of a text has the line `otherwise`.
 int line_of(const YAML::Node& node, int otherwise);
 

@@ -32,6 +32,16 @@ std::string told(const F& f) {
   return "accepted";
 }
 
+bool is_bad_input(const auto& f) {
+  try {
+    f();
+  } catch (const InputError&) {
+    return true;
+  } catch (const std::exception&) {
+  }
+  return false;
+}
+
 /// Haptics says forces, a viewer hears them.
 struct Felt {
   Felt(const fs::path& keys, const BusOptions& options)
@@ -105,7 +115,8 @@ TEST_CASE("keys: files are their owner's alone, the authority's key is not among
 
 TEST_CASE("keys: a full disk leaves none of them, nor a folder that was not there", "[bus]") {
   // Oracle: the folder; a limit on the size of files fails where a full disk does. Of the files the
-  // authority's certificate is the shortest: some are written before one is too long.
+  // authority's certificate is the shortest: some are written before one is too long. No bad input:
+  // exit code 1, as of every full disk.
   const ScratchFolder folder;
   const fs::path keys = folder / "keys", empty = folder / "empty";
   fs::create_directory(empty);
@@ -114,6 +125,7 @@ TEST_CASE("keys: a full disk leaves none of them, nor a folder that was not ther
     for (const auto& place : {keys, empty}) {
       const std::string said = told([&] { make_keys(place, kHour); });
       CHECK(said == (place / "governance.p7s").string() + ": No space left on device");
+      CHECK_FALSE(is_bad_input([&] { make_keys(place, kHour); }));
     }
   }
   CHECK_FALSE(fs::exists(keys));

@@ -31,13 +31,18 @@ TEST_CASE("whole file: without finish nothing is left, and what was there stays"
 }
 
 TEST_CASE("whole file: a full disk leaves nothing, and what was there stays") {
-  // Oracle: the folder; a limit on the size of files fails where a full disk does.
+  // Oracle: the folder, and strerror(EFBIG): a limit on the size of files fails where a full disk
+  // does. At once, in a buffer that is written later, and letter by letter.
   const ScratchFolder folder;
   const auto file = folder.write("a.csv", "old");
+  const auto refused = Catch::Equals("cannot write " + file.string() + ": File too large");
   {
-    const FileSizeLimit limit(10'000);
-    CHECK_THROWS_WITH(write_whole_file(file, std::string(100'000, 'x')),
-                      Catch::StartsWith("cannot write " + file.string()));
+    const FileSizeLimit limit(100);
+    CHECK_THROWS_WITH(write_whole_file(file, std::string(100'000, 'x')), refused);
+    CHECK_THROWS_WITH(write_whole_file(file, std::string(200, 'x')), refused);
+    WholeFile whole(file);
+    for (int k = 0; k < 20'000; ++k) whole.stream() << 'x';
+    CHECK_THROWS_WITH(whole.finish(), refused);
   }
   CHECK(text_in(file) == "old");
   CHECK(folder.file_count() == 1);

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "tests/file_size_limit.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
 #include "tests/times.h"
@@ -210,6 +211,24 @@ TEST_CASE("inspect: a module's name cannot lead out of the CSV folder") {
   write_session(folder / "a.mcap");
   summarize(folder / "a.mcap", folder / "csv");
   CHECK(std::filesystem::exists(folder / "csv/module_status____collision.csv"));
+}
+
+TEST_CASE("inspect: on a full disk no table is left, nor a folder that was not there") {
+  // Oracle: the folder; a limit on the size of files fails where a full disk does.
+  const ScratchFolder folder;
+  write_session(folder / "a.mcap");
+  std::filesystem::create_directory(folder / "there");
+  {
+    const FileSizeLimit limit(20);
+    for (const char* name : {"new", "there"}) {
+      CHECK_THROWS_WITH(summarize(folder / "a.mcap", folder / name),
+                        Catch::EndsWith(": File too large"));
+    }
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "new"));
+  CHECK(std::filesystem::is_empty(folder / "there"));
+  summarize(folder / "a.mcap", folder / "new");
+  CHECK(std::filesystem::exists(folder / "new/scene.csv"));
 }
 
 }  // namespace palpate::recording

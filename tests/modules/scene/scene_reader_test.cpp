@@ -172,6 +172,12 @@ TEST_CASE("scene reader: text that is no YAML is refused at its line") {
              Catch::StartsWith("scene.yaml:7: not valid YAML: "));
   CHECK_THAT(folder.refusal(changed("name: full", "name: *unknown_alias")),
              Catch::StartsWith("scene.yaml:2: not valid YAML: "));
+  for (const char* bracket : {"[", "{"}) {
+    std::string deep;
+    for (int k = 0; k < 20'000; ++k) deep += bracket;
+    CHECK_THAT(folder.refusal(deep), Catch::StartsWith("scene.yaml:") &&
+                                         Catch::EndsWith(": not valid YAML: nested too deep"));
+  }
 }
 
 TEST_CASE("scene reader: a file that is no scene is refused in one line") {
