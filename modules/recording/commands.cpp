@@ -90,17 +90,27 @@ void translate(const std::filesystem::path& recording, const std::filesystem::pa
   for (const auto& line : report.warnings) err << "warning: " << line << '\n';
 }
 
+void tell_repair(const std::filesystem::path& file, const RepairReport& report, std::ostream& err) {
+  err << file.string() << ": " << report.samples << " samples";
+  if (report.parts > 1) err << " of " << report.parts << " parts";
+  if (report.mended > 0) {
+    err << "; mended: " << report.mended << " types and topics, from the summary";
+  }
+  err << "; left out: " << report.skipped << " damaged pieces";
+  if (report.samples_left_out > 0) {
+    err << ", " << report.samples_left_out << " samples of damaged types and topics";
+  }
+  err << (report.torn ? " and a torn end" : "") << '\n';
+  for (const auto& line : report.warnings) err << "warning: " << line << '\n';
+}
+
 }  // namespace
 
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err) {
   return report_failure(err, [&] {
     if (!options.repaired.empty()) {
       const RepairReport report = repair(options.recording, options.repaired);
-      err << options.repaired.string() << ": " << report.samples << " samples"
-          << (report.parts > 1 ? " of " + std::to_string(report.parts) + " parts" : "")
-          << "; left out: " << report.skipped << " damaged pieces"
-          << (report.torn ? " and a torn end" : "") << '\n';
-      for (const auto& line : report.warnings) err << "warning: " << line << '\n';
+      tell_repair(options.repaired, report, err);
     }
     const auto& file = options.repaired.empty() ? options.recording : options.repaired;
     if (!options.foxglove.empty()) translate(file, options.foxglove, err);

@@ -37,6 +37,13 @@ bool is_used(std::uint8_t opcode) {
   }
 }
 
+/// By the summary.
+bool is_indexed(std::uint8_t opcode) {
+  const auto kind = static_cast<McapOpcode>(opcode);
+  return kind == McapOpcode::kChunk || kind == McapOpcode::kAttachment ||
+         kind == McapOpcode::kMetadata;
+}
+
 }  // namespace
 
 McapReader::McapReader(const std::filesystem::path& file, McapDamage damage)
@@ -80,6 +87,9 @@ std::optional<McapRecord> McapReader::next_beside_chunks() {
         chunk_ = unpacked_chunk(content_);
         chunk_place_ = 0;
         return std::nullopt;
+      case McapOpcode::kMessage:
+        if (chunked_) throw McapFieldError("a message beside the chunks");
+        [[fallthrough]];
       default:
         return parse(static_cast<McapOpcode>(opcode), content_);
     }
@@ -111,7 +121,7 @@ std::optional<McapRecord> McapReader::next_in_chunk() {
 // Reads one whole record into content_. False, and torn, where the file ends before the record.
 bool McapReader::read_envelope(std::uint8_t& opcode) {
   std::uint64_t length = 0;
-  do {
+  for (bool again = true; again;) {
     std::array<std::uint8_t, kMcapEnvelopeBytes> envelope{};
     const std::uint64_t left = file_bytes_ - offset_;
     record_offset_ = offset_;
@@ -120,17 +130,35 @@ bool McapReader::read_envelope(std::uint8_t& opcode) {
     if (left < envelope.size() || !read_bytes(envelope.data(), envelope.size())) return false;
     opcode = envelope[0];
     length = ByteReader(std::span(envelope).subspan(1)).u64();
+    if (lost_its_way(opcode, length)) continue;
     if (opcode == 0 && damage_ == McapDamage::kSkip) return false;
     if (opcode == 0) refuse(record_offset_, "opcode 0: no MCAP record begins here");
     if (length > left - envelope.size()) return false;
     offset_ += envelope.size() + length;
-  } while (passes_over(opcode, length));
+    again = passes_over(opcode, length);
+  }
   content_.resize(length);
   if (!read_bytes(content_.data(), length)) {
     offset_ = record_offset_;
     return false;
   }
   torn_ = ended_ = false;
+  return true;
+}
+
+/// A damaged length: the record would reach beyond the next one whose place is known, or another
+/// kind lies at such a place.
+bool McapReader::lost_its_way(std::uint8_t opcode, std::uint64_t length) {
+  const auto next = places_.upper_bound(record_offset_);
+  if (next == places_.end()) return false;
+  const bool reaches_beyond = length > *next - record_offset_ - kMcapEnvelopeBytes;
+  const bool another = places_.contains(record_offset_) && !is_indexed(opcode);
+  if (opcode != 0 && *next >= record_offset_ + kMcapEnvelopeBytes && !reaches_beyond && !another)
+    return false;
+  ++skipped_;
+  offset_ = *next;
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(offset_));
   return true;
 }
 
@@ -160,7 +188,7 @@ std::optional<McapRecord> McapReader::parse(McapOpcode opcode,
     }
     case McapOpcode::kMessage: {
       McapMessage message = parse_message(content);
-      check(message);
+      if (!has_channel(message)) return std::nullopt;
       return message;
     }
     case McapOpcode::kMetadata:
@@ -183,12 +211,21 @@ void McapReader::remember(const McapChannel& channel) {
   channel_ids_.insert(channel.id);
 }
 
-void McapReader::check(const McapMessage& message) {
-  if (!channel_ids_.contains(message.channel_id)) {
+bool McapReader::has_channel(const McapMessage& message) {
+  const bool defined = channel_ids_.contains(message.channel_id);
+  if (!defined && damage_ == McapDamage::kRefuse) {
     throw McapFieldError("message on channel " + std::to_string(message.channel_id) +
                          ", which was not defined before it");
   }
-  ++message_count_;
+  ++(defined ? message_count_ : undefined_messages_);
+  return defined;
+}
+
+void McapReader::take(const McapSummary& summary) {
+  for (const auto& [id, schema] : summary.schemas) schema_ids_.insert(id);
+  for (const auto& [id, channel] : summary.channels) channel_ids_.insert(id);
+  places_ = summary.places;
+  chunked_ = summary.chunked;
 }
 
 // The summary repeats what was read; only its statistics and its being whole matter here.

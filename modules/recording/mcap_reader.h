@@ -10,7 +10,7 @@
 #include <string>
 #include <variant>
 
-#include "modules/recording/mcap_records.h"
+#include "modules/recording/mcap_summary.h"
 
 namespace palpate::recording {
 
@@ -33,6 +33,10 @@ class McapReader {
   /// @throws InputError "file: offset N: …" where the bytes are not records, or a CRC is wrong
   std::optional<McapRecord> next();
 
+  /// Before the first next(), with McapDamage::kSkip: schemas and channels of the summary need no
+  /// record before their messages, and where one's length is wrong the next place is gone on from.
+  void take(const McapSummary& summary);
+
   const McapHeader& header() const { return header_; }
   /// After next() gave none: the file lacks its regular end, the writer was stopped hard.
   bool torn() const { return torn_; }
@@ -42,6 +46,8 @@ class McapReader {
   std::uint64_t record_offset() const { return record_offset_; }
   /// Chunks and other records left out with McapDamage::kSkip.
   std::uint64_t skipped() const { return skipped_; }
+  /// Messages left out with McapDamage::kSkip, for their channel's record was.
+  std::uint64_t undefined_messages() const { return undefined_messages_; }
   std::uint64_t file_bytes() const { return file_bytes_; }
   /// From the summary; none in a torn file.
   const std::optional<McapStatistics>& statistics() const { return statistics_; }
@@ -50,10 +56,11 @@ class McapReader {
   std::optional<McapRecord> next_beside_chunks();
   std::optional<McapRecord> next_in_chunk();
   bool read_envelope(std::uint8_t& opcode);
+  bool lost_its_way(std::uint8_t opcode, std::uint64_t length);
   bool passes_over(std::uint8_t opcode, std::uint64_t length);
   std::optional<McapRecord> parse(McapOpcode opcode, std::span<const std::uint8_t> content);
   void remember(const McapChannel& channel);
-  void check(const McapMessage& message);
+  bool has_channel(const McapMessage& message);
   void read_closing_part();
   void check_data_crc();
   void check_summary_crc();
@@ -78,7 +85,9 @@ class McapReader {
   std::set<std::uint16_t> schema_ids_;
   std::set<std::uint16_t> channel_ids_;
   std::uint64_t message_count_ = 0;
-  std::uint64_t skipped_ = 0;
+  std::uint64_t skipped_ = 0, undefined_messages_ = 0;
+  bool chunked_ = false;            ///< for sure
+  std::set<std::uint64_t> places_;  ///< of chunks and what lies beside them, if known
   std::optional<McapStatistics> statistics_;
   bool ended_ = false;
   bool torn_ = false;

@@ -5,20 +5,11 @@
 #include <utility>
 
 #include "modules/core/error.h"
-#include "modules/recording/foxglove_messages.h"
-#include "modules/recording/idl_text.h"
 #include "modules/recording/mcap_bytes.h"
+#include "modules/recording/own_types.h"
 #include "modules/recording/recorder.h"
 
 namespace palpate::recording {
-namespace {
-
-bool is_translation(const std::string& type) {
-  return std::ranges::find(foxglove::kTypes, type) != foxglove::kTypes.end();
-}
-
-}  // namespace
-
 std::filesystem::path part_of(const std::filesystem::path& recording, int number) {
   if (number <= 1) return recording;
   auto part = recording;
@@ -107,8 +98,7 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
                             std::move(message->data)};
     }
     if (const auto* schema = std::get_if<McapSchema>(&*record)) {
-      check(*schema);
-      schema_names_[schema->id] = schema->name;
+      add(*schema);
     } else if (const auto* channel = std::get_if<McapChannel>(&*record)) {
       add(*channel);
     } else if (const auto* metadata = std::get_if<McapMetadata>(&*record)) {
@@ -139,35 +129,17 @@ void SampleReader::read_clocks(const McapMap& session) {
   to_time_of_day_ns_ = number("start_unix_ns") - number("start_monotonic_ns");
 }
 
-void SampleReader::check(const McapSchema& schema) const {
-  if (is_translation(schema.name)) return;
-  const auto topics = bus::all_topics();
-  const auto known = std::find_if(topics.begin(), topics.end(), [&](const bus::TopicInfo& topic) {
-    return topic.type->wire_name == schema.name;
-  });
-  if (known == topics.end()) {
-    refuse("type '" + schema.name + "' is not one of Palpate's (palpate::idl::…)");
-  }
-  if (schema.encoding != "omgidl" || !same_idl(schema.data, idl_text_of(*known->type))) {
-    refuse("type '" + schema.name +
-           "' differs from the present one: recorded by another version of Palpate");
-  }
+void SampleReader::add(const McapSchema& schema) {
+  if (const std::string why = why_foreign(schema); !why.empty()) refuse(why);
+  schema_names_[schema.id] = schema.name;
 }
 
 void SampleReader::add(const McapChannel& channel) {
   const auto schema = schema_names_.find(channel.schema_id);
-  if (schema != schema_names_.end() && is_translation(schema->second)) return;
-  const bus::TopicInfo* topic = bus::find_topic(channel.topic);
-  if (topic == nullptr) refuse("topic '" + channel.topic + "' is not one of Palpate's");
-  if (schema == schema_names_.end() || schema->second != topic->type->wire_name) {
-    refuse("topic '" + channel.topic + "' must be of type '" + std::string(topic->type->wire_name) +
-           "'");
-  }
-  if (channel.message_encoding != "cdr") {
-    refuse("topic '" + channel.topic + "' is encoded as '" + channel.message_encoding +
-           "'; allowed: cdr");
-  }
-  topics_[channel.id] = topic;
+  const std::string type = schema == schema_names_.end() ? "" : schema->second;
+  if (const std::string why = why_foreign(channel, type); !why.empty()) refuse(why);
+  if (is_translation(type)) return;
+  topics_[channel.id] = bus::find_topic(channel.topic);
   about_[channel.id] = channel.metadata;
   channel_count_ =
       std::max<std::uint16_t>(channel_count_, static_cast<std::uint16_t>(channel.id + 1));

@@ -73,7 +73,7 @@ class SampleReader {
   void look_for_next_part();
   std::unique_ptr<SampleReader> part_that_goes_on(int number);
   void read_clocks(const McapMap& session);
-  void check(const McapSchema& schema) const;
+  void add(const McapSchema& schema);
   void add(const McapChannel& channel);
   [[noreturn]] void refuse(const std::string& what) const;
 
