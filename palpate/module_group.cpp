@@ -130,6 +130,22 @@ void ModuleGroup::stop(bool reporting, const std::string& but) {
   }
 }
 
+std::optional<ModuleEnd> ModuleGroup::last_end(const std::string& module) {
+  for (auto& member : members_) {
+    const auto ended = member.process->ended();
+    if (member.command.module != module || !ended) continue;
+    ModuleEnd end;
+    end.module = module;
+    end.how = describe_exit(*ended);
+    end.failed = !WIFEXITED(*ended) || WEXITSTATUS(*ended) != kExitDone;
+    if (end.failed || !is_information(member.last_line)) {
+      end.last_error = end.failed ? member.last_error : member.last_line;
+    }
+    return end;
+  }
+  return std::nullopt;
+}
+
 bool ModuleGroup::any_running() {
   return std::any_of(members_.begin(), members_.end(), [](Member& member) {
     return member.due_ns.has_value() || !member.process->ended();

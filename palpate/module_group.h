@@ -52,6 +52,10 @@ class ModuleGroup {
   /// The same, but for one module.
   void stop_all_but(const std::string& module);
 
+  /// How a module's last process ended, told to or not; none: it runs, or there is none. Of one
+  /// that did not fail `last_error` is its last line, if that is no information.
+  std::optional<ModuleEnd> last_end(const std::string& module);
+
   bool any_running();  ///< or about to run again
   bool running(const std::string& module);
   pid_t process_id(const std::string& module) const;  ///< of its last process; -1: no such module

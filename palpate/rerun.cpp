@@ -12,6 +12,7 @@
 #include "modules/recording/recorder_stage.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/session_samples.h"
+#include "modules/recording/space_watch.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
@@ -162,8 +163,10 @@ void check_stages(const std::vector<std::string>& stages, const RunOptions& run)
   }
   if (run.record.empty()) throw InputError("--rerun: where to? Give --record FILE, too");
   recording::check_recording_target(run.record);
-  if (run.overwrite || !std::filesystem::exists(run.record)) return;
-  throw InputError(run.record.string() + ": is there already; give another name, or --overwrite");
+  if (!run.overwrite && std::filesystem::exists(run.record)) {
+    throw InputError(run.record.string() + ": is there already; give another name, or --overwrite");
+  }
+  recording::check_recording_space(run.record);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "modules/core/units.h"
 #include "modules/core/whole_file.h"
 #include "modules/recording/mcap_writer.h"
+#include "modules/recording/space_watch.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
@@ -107,13 +108,15 @@ class Run {
   bool wait_until_ready() {
     auto expected = modules_.reporting_modules();
     if (options_.conducts && !options_.everywhere.empty()) expected = options_.everywhere;
-    std::erase(expected, "recorder");
+    const bool records = std::ranges::find(expected, "recorder") != expected.end();
+    if (!records && modules_.running("recorder")) expected.emplace_back("recorder");
     const std::int64_t begin_ns = runtime::monotonic_now_ns();
     const std::int64_t heard_ns = options_.secure.empty() ? kDiscoveryNs : kSecureDiscoveryNs;
     const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : heard_ns);
     std::int64_t line_ns = begin_ns + kWaitingLineEveryNs;
     while (next_cycle()) {
       if (loop_.woke_ns() >= earliest_ns && !joins()) return false;
+      if (recorder_left_) std::erase(expected, "recorder");
       auto waiting = monitor_.not_ready(expected);
       const bool started = session_.phase() != runtime::SessionPhase::kWaiting;
       if (!options_.conducts && !started) waiting.emplace_back("the host that starts the session");
@@ -186,7 +189,8 @@ class Run {
       exit_code_ = end.bad_input ? kExitBadInput : kExitFailed;
       failures_[end.module] = end.how;
     }
-    if (end.module == "recorder" && !end.failed && goes_on()) {
+    if (end.module == "recorder" && !ended_) {
+      recorder_left_ = !end.returns;
       recording_end_ = fmt::format("ended {:.1f} s into the session",
                                    session_.time(runtime::monotonic_now_ns()));
       if (!end.last_error.empty()) recording_end_ += "; it said: " + end.last_error;
@@ -213,15 +217,29 @@ class Run {
     if (!joined_) {
       conductor_.command(session_.state(), window ? SessionCommand::kPause : SessionCommand::kStop);
     }
+    const bool recorder_lives = modules_.running("recorder");
     modules_.stop_all_but(window ? "visualizer" : "");
     monitor_.poll();
     if (!begun()) return;
+    judge_recording(recorder_lives);
     end.last_words = modules_.last_words();
     end.restarts = modules_.restarts();
     end.recording = recording_end_;
     const std::string text = summary(monitor_.tally(), end);
     write_run_summary(options_, text, out_);
     if (window) wait_for_window();
+  }
+
+  /// One that was started again, and lives, goes on with what another has left.
+  void judge_recording(bool lived) {
+    const auto end = modules_.last_end("recorder");
+    if (!end) return;
+    if (lived) recording_end_.clear();
+    if (lived && (end->failed || !end->last_error.empty())) {
+      recording_end_ = "not ended well: " + end->how;
+      if (!end->last_error.empty()) recording_end_ += "; it said: " + end->last_error;
+    }
+    if (end->failed && exit_code_ == kExitDone) exit_code_ = kExitFailed;
   }
 
   bool begun() const { return began_ns_ != 0; }
@@ -252,8 +270,9 @@ class Run {
   std::int64_t began_ns_ = 0, line_ns_ = 0;
   std::int64_t stood_ns_ = 0;  ///< when it was last paused or had not begun; 0: never
   bool scene_told_ = false;
-  bool joined_ = false;  ///< another launcher conducts the session
-  bool ended_ = false;   ///< the run; its window may stay
+  bool joined_ = false;         ///< another launcher conducts the session
+  bool ended_ = false;          ///< the run; its window may stay
+  bool recorder_left_ = false;  ///< for good
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
   std::string refusal_;        ///< of another scene than the session's
@@ -270,9 +289,11 @@ void check_recording(const RunOptions& options) {
                     options.record_topics.empty() ? "--overwrite" : "--record-topics"));
   }
   recording::check_recording_target(options.record);
-  if (options.overwrite || !std::filesystem::exists(options.record)) return;
-  throw InputError(options.record.string() +
-                   ": is there already; give another name, or --overwrite");
+  if (!options.overwrite && std::filesystem::exists(options.record)) {
+    throw InputError(options.record.string() +
+                     ": is there already; give another name, or --overwrite");
+  }
+  recording::check_recording_space(options.record);
 }
 
 }  // namespace

@@ -166,6 +166,12 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
           recorder.arguments.end(),
           {"--topics", fmt::format("{}", fmt::join(options.record_topics, ","))});
     }
+    auto heard = participants_of(options, modules);
+    std::erase(heard, "recorder");
+    if (!options.lockstep && !heard.empty()) {
+      recorder.arguments.insert(recorder.arguments.end(),
+                                {"--hears", fmt::format("{}", fmt::join(heard, ","))});
+    }
     if (options.lockstep) {
       recorder.reports_status = true;
       recorder.arguments.insert(recorder.arguments.end(),

@@ -65,7 +65,7 @@ void check_recording_target(const std::filesystem::path& file) {
 }
 
 McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem::path& named)
-    : named_(named) {
+    : file_(file), named_(named) {
   refuse_to_replace_what_is_no_recording(file);
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("open", errno);
@@ -194,12 +194,17 @@ void McapWriter::go_back_to(const Mark& mark) {
 }
 
 /// Where no more can be written: at the latest place from which the summary fits.
-/// @returns false if there is none
+/// @returns false if there is none: then no message fits, and the file goes
 bool McapWriter::end_short() {
   const std::uint64_t written = offset_ - pending_.size();
+  if (marks_.empty() && statistics_.message_count == 0) remove_empty();  // not even a header fits
   const std::deque<Mark> places = std::exchange(marks_, {});
   for (auto place = places.rbegin(); place != places.rend(); ++place) {
     if (place->offset > written) continue;
+    if (place->messages.message_count == 0) {
+      remove_empty();
+      break;
+    }
     const auto end = static_cast<off_t>(place->offset);
     if (::ftruncate(descriptor_, end) != 0 || ::lseek(descriptor_, end, SEEK_SET) != end) break;
     go_back_to(*place);
@@ -211,11 +216,17 @@ bool McapWriter::end_short() {
   return false;
 }
 
+/// It would refuse the next try.
+void McapWriter::remove_empty() {
+  std::error_code none;
+  if (std::filesystem::is_regular_file(file_, none)) std::filesystem::remove(file_, none);
+  ::close(std::exchange(descriptor_, -1));
+}
+
 void McapWriter::flush() {
   const int failure = write_pending();
   if (failure == 0) return;
-  const bool full = failure == ENOSPC || failure == EFBIG || failure == EDQUOT;
-  if (full && end_short()) throw DiskFull(why_failed(named_, "write", failure));
+  if (is_disk_full(failure) && end_short()) throw DiskFull(why_failed(named_, "write", failure));
   fail("write", failure);
 }
 

@@ -18,8 +18,8 @@ namespace palpate::recording {
 /// of that name that is no recording
 void check_recording_target(const std::filesystem::path& file);
 
-/// No room is left. What had been written was ended whole, as by close(), shorter by as much as the
-/// summary takes.
+/// No room is left. What had been written, a sample at least, was ended whole, as by close(),
+/// shorter by as much as the summary takes.
 struct DiskFull : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -50,7 +50,8 @@ class McapWriter {
 
   /// Ends the chunk that messages are gathered in.
   void end_chunk();
-  /// @throws DiskFull; std::runtime_error naming the file and the system's reason
+  /// @throws DiskFull; std::runtime_error naming the file and the system's reason: of a disk that
+  /// has no room for any message, and then there is no file
   void flush();
   /// Ends the data section, writes the summary and the footer, closes. A second call does nothing.
   void close();
@@ -72,6 +73,7 @@ class McapWriter {
   void mark();
   void go_back_to(const Mark& mark);
   bool end_short();
+  void remove_empty();
   int write_pending();
   void append_end();
   void append(McapOpcode opcode, std::span<const std::uint8_t> content);
@@ -79,7 +81,7 @@ class McapWriter {
   void append_summary();
   [[noreturn]] void fail(const char* doing, int system_error) const;
 
-  std::filesystem::path named_;
+  std::filesystem::path file_, named_;
   int descriptor_ = -1;
   std::uint64_t offset_ = 0;
   std::vector<std::uint8_t> pending_;

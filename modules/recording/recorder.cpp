@@ -144,7 +144,8 @@ void SampleFile::attach_files(const SceneDescription& scene, std::uint64_t log_t
 
 Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file,
                    const TopicSelection& topics)
-    : reader_(bus, [&](std::string_view topic) { return topics.has(topic); }),
+    : bus_(bus),
+      reader_(bus, [&](std::string_view topic) { return topics.has(topic); }),
       file_(file, session),
       space_(file),
       thread_(
@@ -155,9 +156,15 @@ Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::fil
 std::string Recorder::poll() {
   thread_.check();
   for (const TopicSample& sample : reader_.take_all()) {
+    heard_scene_ |= sample.topic->name == bus::kScene.name;
     if (file_.takes(sample) && !thread_.add(sample)) file_.add_lost();
   }
   return news();
+}
+
+bool Recorder::hears(const std::vector<std::string>& modules) {
+  if (!hearing_) hearing_.emplace(bus_, modules);
+  return hearing_->complete(reader_) && heard_scene_;
 }
 
 void Recorder::end_round() {

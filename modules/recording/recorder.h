@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "modules/recording/hearing.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/session_samples.h"
 #include "modules/recording/space_watch.h"
@@ -109,6 +111,9 @@ class Recorder {
   McapMap close();
 
   int matched_writers() const { return reader_.matched_writers(); }
+  /// Whether it is on record what these modules say from now on, and the scene already. Call it
+  /// always with the same ones.
+  bool hears(const std::vector<std::string>& modules);
   /// After close().
   const SampleFile& file() const { return file_; }
 
@@ -117,7 +122,10 @@ class Recorder {
   void end_round();
   std::string news();
 
+  bus::Bus& bus_;
   SessionReader reader_;
+  std::optional<Hearing> hearing_;
+  bool heard_scene_ = false;
   SampleFile file_;
   SpaceWatch space_;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();

@@ -1,5 +1,6 @@
 // palpate-recorder: records one session until it is told to stop (Ctrl-C, SIGTERM, SIGHUP).
 #include <iostream>
+#include <optional>
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
@@ -10,6 +11,8 @@
 #include "modules/runtime/lockstep_module.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/status_reporter.h"
+#include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
 
 namespace {
@@ -34,8 +37,30 @@ void say(const std::string& what) {
   if (!what.empty()) std::cerr << "[recorder] " << what << std::endl;
 }
 
+/// What its launcher waits for. One that was started by hand says nothing: there may be several.
+class Status {
+ public:
+  Status(palpate::bus::Bus& bus, palpate::recording::Recorder& recorder, const Words& modules)
+      : recorder_(recorder), modules_(modules) {
+    if (!modules.empty()) reporter_.emplace(bus, "recorder", kPollRateHz, false);
+  }
+  void poll(const palpate::runtime::PeriodicLoop& loop) {
+    using palpate::ModuleState;
+    if (!reporter_) return;
+    reporter_->set_state(recorder_.hears(modules_) ? ModuleState::kRunning
+                                                   : ModuleState::kStarting);
+    reporter_->poll(loop.woke_ns(), 0, loop.statistics());
+  }
+
+ private:
+  palpate::recording::Recorder& recorder_;
+  const Words& modules_;
+  std::optional<palpate::runtime::StatusReporter> reporter_;
+};
+
 void record_in_real_time(const palpate::runtime::ModuleOptions& options,
-                         const std::filesystem::path& file, const Words& topics) {
+                         const std::filesystem::path& file, const Words& topics,
+                         const Words& hears) {
   const palpate::bus::BusOptions& session = options.bus;
   const palpate::StopSignal stop;
   const palpate::recording::TopicSelection selection(
@@ -43,9 +68,11 @@ void record_in_real_time(const palpate::runtime::ModuleOptions& options,
   palpate::bus::DdsBus bus(session);  // first: a bad session leaves no file
   palpate::recording::Recorder recorder(bus, session, file, selection);
   palpate::runtime::PeriodicLoop loop(kPollRateHz);
+  Status status(bus, recorder, hears);
   while (!stop.requested() && !recorder.full()) {
     loop.wait_for_period();
     say(recorder.poll());
+    status.poll(loop);
   }
   const auto cost = recorder.close();
   const std::uint64_t bytes = recorder.file().bytes_written();
@@ -54,11 +81,16 @@ void record_in_real_time(const palpate::runtime::ModuleOptions& options,
       palpate::recording::cost_text(cost, bytes));
 }
 
+void check_module(const std::string& name) {
+  if (palpate::runtime::module_named(name)) return;
+  throw palpate::InputError("--hears: there is no module '" + name + "'");
+}
+
 void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file,
-            const Words& topics) {
+            const Words& topics, const Words& hears) {
   if (!options.lockstep.empty()) return record_in_lockstep(options, file, topics);
   try {
-    record_in_real_time(options, file, topics);
+    record_in_real_time(options, file, topics, hears);
   } catch (const palpate::recording::DiskFull& full) {
     say(full.what() + std::string(": the recording ends there, whole; the session goes on"));
   }
@@ -74,16 +106,20 @@ int main(int argc, char** argv) {
   std::filesystem::path file;
   program.add_output("FILE", file, "the recording to write; one that is there is replaced")
       .required();
-  Words topics;
+  Words topics, hears;
   program.add("--topics", topics,
               "Topics to record: all, NAME, or NAME=HZ for at most so many samples a second");
+  program.add(
+      "--hears", hears,
+      "Modules of a session that waits until all of them are heard: a module_status says so");
   palpate::runtime::add_bus_options(program, options.bus);
   palpate::runtime::add_lockstep_options(program, options);
   program.add_input("--scene", options.scene,
                     "Scene file; needed in lockstep, which follows its rates");
   program.footer(palpate::runtime::kModuleExitCodes);
   return program.run(argc, argv, [&] {
-    record(options, file, topics);
+    for (const auto& module : hears) check_module(module);
+    record(options, file, topics, hears);
     return palpate::kExitDone;
   });
 }

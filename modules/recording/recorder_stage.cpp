@@ -69,11 +69,11 @@ void RecorderStage::write_all() {
     for (const TopicSample& sample : samples_) file_.add(sample);
     file_.flush();
   });
-  space_.look(seconds_from_ns(runtime::monotonic_now_ns()), file_.bytes_written());
+  const double now = seconds_from_ns(runtime::monotonic_now_ns());
+  const std::string said = space_.look(now, file_.bytes_written());
   if (!space_.full()) return;
   file_.close();
-  throw std::runtime_error(name_.string() +
-                           ": the disk is full; the recording is whole up to here");
+  throw std::runtime_error(name_.string() + ": " + said);
 }
 
 }  // namespace palpate::recording

@@ -45,6 +45,13 @@ int SessionReader::matched_writers() const {
   return count;
 }
 
+std::optional<int> SessionReader::matched_writers(std::string_view topic) const {
+  for (std::size_t i = 0; i < readers_.size(); ++i) {
+    if (readers_[i] && bus::all_topics()[i].name == topic) return readers_[i]->matched_writers();
+  }
+  return std::nullopt;
+}
+
 SessionWriter::SessionWriter(bus::Bus& bus) {
   for (const bus::TopicInfo& topic : bus::all_topics()) writers_.push_back(bus.raw_writer(topic));
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,8 @@ class SessionReader {
 
   /// Writers heard of, of all topics.
   int matched_writers() const;
+  /// Of one; none if it is not wanted.
+  std::optional<int> matched_writers(std::string_view topic) const;
 
  private:
   std::vector<std::unique_ptr<bus::RawReader>>

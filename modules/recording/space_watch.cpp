@@ -1,6 +1,7 @@
 #include "modules/recording/space_watch.h"
 
 #include <limits>
+#include <stdexcept>
 
 namespace palpate::recording {
 namespace {
@@ -18,7 +19,20 @@ std::uint64_t available_beside(const std::filesystem::path& file) {
   return error ? std::numeric_limits<std::uint64_t>::max() : space.available;
 }
 
+std::string kept_free(std::uint64_t available) {
+  return megabytes(available) + " left on the disk, of which " + megabytes(kSpaceKept) +
+         " are kept free";
+}
+
 }  // namespace
+
+void check_recording_space(const std::filesystem::path& file) {
+  std::error_code none;
+  const std::uintmax_t replaced = std::filesystem::file_size(file, none);
+  const std::uint64_t available = available_beside(file);
+  if (available >= kSpaceKept || (!none && available + replaced >= kSpaceKept)) return;
+  throw std::runtime_error(file.string() + ": cannot be recorded to: " + kept_free(available));
+}
 
 SpaceWatch::SpaceWatch(const std::filesystem::path& file)
     : SpaceWatch([file] { return available_beside(file); }) {}
@@ -30,8 +44,7 @@ std::string SpaceWatch::look(double now, std::uint64_t written) {
   const std::uint64_t available = available_();
   full_ = available < kSpaceKept;
   if (full_) {
-    return "the disk is full but for " + megabytes(available) +
-           ": the recording ends here, whole; the session goes on without it";
+    return kept_free(available) + ": the recording ends here, whole";
   }
   if (warned_ || now - began_ < kRateKnownAfter) return {};
   const double per_second = static_cast<double>(written) / (now - began_);

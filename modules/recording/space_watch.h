@@ -11,6 +11,10 @@ namespace palpate::recording {
 /// A recording ends, whole, while this is left: for its summary, and for everybody else [bytes].
 inline constexpr std::uint64_t kSpaceKept = 256u << 20;
 
+/// Before anything is begun whose recording it is to be.
+/// @throws std::runtime_error naming the file where no more than that is left
+void check_recording_space(const std::filesystem::path& file);
+
 class SpaceWatch {
  public:
   using Available = std::function<std::uint64_t()>;

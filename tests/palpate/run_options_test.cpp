@@ -41,15 +41,17 @@ TEST_CASE("run options: every module gets the scene and the session") {
         "/bin/p/palpate-haptics /scenes/a.yaml --session s1 --domain 9");
 }
 
-TEST_CASE("run options: a recorder comes first and is not waited for") {
+TEST_CASE("run options: a recorder comes first, and knows whom it is to hear") {
   // Oracle: definition.
   auto options = some_run();
   options.record = "out.mcap";
   const auto commands = module_commands(options, "/bin/p");
-  CHECK(command_text(commands[0]) == "/bin/p/palpate-recorder out.mcap --session s1 --domain 9");
+  const std::string command = "/bin/p/palpate-recorder out.mcap --session s1 --domain 9";
+  const std::string hears = " --hears deformation,collision,haptics,visualizer";
+  CHECK(command_text(commands[0]) == command + hears);
   options.record_topics = {"all", "contacts=5"};
   CHECK(command_text(module_commands(options, "/bin/p")[0]) ==
-        "/bin/p/palpate-recorder out.mcap --session s1 --domain 9 --topics all,contacts=5");
+        command + " --topics all,contacts=5" + hears);
   options.record_topics = {"contact"};
   CHECK_THROWS_AS(module_commands(options, "/bin/p"), palpate::InputError);
   options.record_topics.clear();

@@ -1,10 +1,13 @@
 // `palpate run` as a person uses it.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "modules/recording/inspect.h"
+#include "modules/recording/sample_reader.h"
 #include "tests/file_size_limit.h"
 #include "tests/scratch_folder.h"
 #include "tests/system/launched.h"
@@ -170,6 +173,45 @@ TEST_CASE(
   CHECK(read.topics.size() >= 8);
   for (const auto& topic : read.topics) CHECK((topic.thinned || topic.missing == 0));
   CHECK_FALSE(std::filesystem::exists(scene.folder() / "r.part2.mcap"));
+}
+
+TEST_CASE("launcher: a disk without room for a recording is told by summary and exit code") {
+  // Oracle: the summary, the exit code, and the folder: no empty file that would refuse the next
+  // try.
+  const BallScene scene;
+  const auto recording = scene.folder() / "r.mcap";
+  const FileSizeLimit full(300);  // less than the session's metadata take
+  Launched run(scene, {"--record", recording.string(), "--duration", "2"});
+  CHECK(run.wait_for_end() == 1);
+  CHECK_THAT(run.said(), Contains(": cannot write: File too large"));
+  for (const auto& entry : std::filesystem::directory_iterator(scene.folder())) {
+    CHECK(entry.path().extension() != ".mcap");
+  }
+}
+
+TEST_CASE("launcher: a session begins when its recorder hears it, however late that is") {
+  // Oracle: no second of the session while its recorder is stopped, for less than makes it hang;
+  // the recording: the scene, and a pose of the session's first 10 ms.
+  const BallScene scene;
+  const auto recording = scene.folder() / "r.mcap";
+  Launched run(scene, {"--record", recording.string(), "--duration", "1"});
+  REQUIRE(wait_until([&] { return run.processes().count("palpate-recorder") == 1; }));
+  const pid_t recorder = run.processes().at("palpate-recorder");
+  kill(recorder, SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  CHECK_THAT(run.listened(), !Contains(" s  real time"));
+  kill(recorder, SIGCONT);
+  CHECK(run.wait_for_end() == 0);
+  CHECK_THAT(run.said(), !Contains("recording: "));
+  recording::SampleReader reader(recording);
+  bool has_scene = false, has_beginning = false;
+  while (const auto sample = reader.next()) {
+    has_scene |= sample->topic->name == bus::kScene.name;
+    has_beginning |= sample->topic->name == bus::kProbeState.name &&
+                     messages::header_of(sample->payload).sim_time_ns < 10'000'000;
+  }
+  CHECK(has_scene);
+  CHECK(has_beginning);
 }
 
 TEST_CASE("launcher: a second one with --only joins the session and leaves it running") {

@@ -252,6 +252,29 @@ TEST_CASE("mcap writer: a disk that is full at once leaves a file that is whole,
   }
 }
 
+TEST_CASE("mcap writer: a disk without room for a message leaves no file") {
+  // Oracle: the folder, and strerror(EFBIG). One limit stops the header, one the summary of
+  // nothing, one the first chunk; a limit on the size of files fails where a full disk does.
+  const ScratchFolder folder;
+  for (const rlim_t limit : {10, 100, 400}) {
+    INFO(limit);
+    {
+      const FileSizeLimit full(limit);
+      const auto write = [&] {
+        McapWriter writer(folder / "a.mcap");
+        writer.flush();
+        const auto channel =
+            writer.add_channel({0, writer.add_schema({0, "S", "id", "d"}), "t", "cdr", {}});
+        const std::vector<std::uint8_t> payload{1, 2, 3};
+        writer.add_message({channel, 1, 1, 0, {}}, payload);
+        writer.close();
+      };
+      CHECK_THROWS_WITH(write(), (folder / "a.mcap").string() + ": cannot write: File too large");
+    }
+    CHECK(folder.file_count() == 0);
+  }
+}
+
 TEST_CASE("mcap writer: a file that another one writes is refused and keeps what it has") {
   // Oracle: the bytes of the first; after it has gone the file may be written anew.
   const ScratchFolder folder;

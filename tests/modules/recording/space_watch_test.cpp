@@ -32,7 +32,10 @@ TEST_CASE("space watch: looks at the disk of the recording") {
   here.look(0, 0);
   CHECK(here.full() == (std::filesystem::space(folder.path()).available < kSpaceKept));
   SpaceWatch full(std::filesystem::path("/proc/a.mcap"));
-  CHECK_THAT(full.look(0, 0), Catch::StartsWith("the disk is full but for 0 MiB"));
+  const std::string kept = "0 MiB left on the disk, of which 256 MiB are kept free";
+  CHECK(full.look(0, 0) == kept + ": the recording ends here, whole");
+  CHECK_THROWS_WITH(check_recording_space("/proc/a.mcap"),
+                    "/proc/a.mcap: cannot be recorded to: " + kept);
 }
 
 }  // namespace palpate::recording
