@@ -292,7 +292,8 @@ std::optional<std::size_t> size_of(Octets rest) {
 }
 
 bool is_rtps(Octets packet) {
-  return packet.size() >= kRtpsHeaderBytes && std::equal(kRtpsMagic.begin(), kRtpsMagic.end(), packet.begin());
+  return packet.size() >= kRtpsHeaderBytes &&
+         std::equal(kRtpsMagic.begin(), kRtpsMagic.end(), packet.begin());
 }
 
 }  // namespace

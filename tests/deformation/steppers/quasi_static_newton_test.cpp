@@ -58,8 +58,8 @@ double uniaxial_stress(const ElasticConstants& tissue, double stretch) {
 }
 
 TEST_CASE("quasi-static Newton: who asks it to stop is heard in the middle of a factorisation") {
-  // Oracle: it asks before each iteration and for each element of a factorisation, and what is
-  // thrown then comes out.
+  // Oracle: it asks before each iteration and for each panel of a factorisation (two at least: what
+  // is eliminated, and what waits for it), and what is thrown then comes out.
   const auto solid = testing::solid(testing::block({0.02, 0.02, 0.03}, 2, 1, 2), 0.4);
   auto constrained = testing::symmetry(solid);
   auto state = solid.rest_state();
@@ -72,8 +72,7 @@ TEST_CASE("quasi-static Newton: who asks it to stop is heard in the middle of a 
   auto untouched = state;
   const auto report = solver.solve(untouched, {}, {}, [&] { ++asked; });
   CHECK(report.converged);
-  CHECK(asked == static_cast<std::size_t>(report.iterations) +
-                     static_cast<std::size_t>(report.factorisations) * solid.element_count());
+  CHECK(asked >= static_cast<std::size_t>(report.iterations + 2 * report.factorisations));
   struct Enough {};
   asked = 0;
   const auto stop = [&] {
