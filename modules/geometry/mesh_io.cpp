@@ -1,10 +1,10 @@
 #include "modules/geometry/mesh_io.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
-#include <array>
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <fstream>
@@ -14,6 +14,7 @@
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
 #include "modules/core/units.h"
+#include "modules/geometry/off_file.h"
 #include "modules/geometry/ply_file.h"
 #include "modules/geometry/weld.h"
 
@@ -29,20 +30,20 @@ void check_file(const std::filesystem::path& file) {
   if (std::filesystem::file_size(file) == 0) refuse(file, "is empty");
 }
 
-/// By its name or its first word: assimp would know it by either.
-bool is_ply(const std::filesystem::path& file) {
+/// By either, as assimp knows a format.
+bool is_named_or_begins(const std::filesystem::path& file, const std::string& name,
+                        const std::string& word) {
   std::string extension = file.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return std::tolower(c); });
-  std::array<char, 3> first{};
-  std::ifstream(file, std::ios::binary).read(first.data(), first.size());
-  return extension == ".ply" || first == std::array{'p', 'l', 'y'};
+  std::string first(word.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(first.data(), std::ssize(first));
+  return extension == name || first == word;
 }
 
-TriangleSurface read_ply(const std::filesystem::path& file) {
+std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  return parse_ply(bytes, file);
+  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 /// assimp leaves bad indices to its post-processing, which would read past the end.
@@ -58,16 +59,6 @@ void check_indices(const aiScene& scene, const std::filesystem::path& file) {
         }
       }
     }
-  }
-}
-
-/// Its OFF reader announces polygons where there are none, and its triangulation asserts on that.
-void correct_announcements(const aiScene& scene) {
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    aiMesh& mesh = *scene.mMeshes[m];
-    bool any = false;
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) any |= mesh.mFaces[f].mNumIndices > 3;
-    if (!any) mesh.mPrimitiveTypes &= ~static_cast<unsigned>(aiPrimitiveType_POLYGON);
   }
 }
 
@@ -105,8 +96,17 @@ void check_content(const TriangleSurface& surface, const std::filesystem::path& 
   }
 }
 
+/// It would try them where it does not know a name, and they crash on damaged files.
+void leave_out_readers_of_ours(Assimp::Importer& importer) {
+  for (const char* const name : {"ply", "off"}) {
+    Assimp::BaseImporter* const reader = importer.GetImporter(name);
+    if (reader != nullptr && importer.UnregisterLoader(reader) == AI_SUCCESS) delete reader;
+  }
+}
+
 TriangleSurface read_with_assimp(const std::filesystem::path& file) {
   Assimp::Importer importer;
+  leave_out_readers_of_ours(importer);
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     refuse(file, std::string("is not a surface mesh this program reads (") +
@@ -115,7 +115,6 @@ TriangleSurface read_with_assimp(const std::filesystem::path& file) {
                      "tetrahedra and VTK or Gmsh files to one of these first");
   }
   check_indices(*scene, file);
-  correct_announcements(*scene);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr) refuse(file, "its polygons cannot be triangulated");
   TriangleSurface surface;
@@ -123,12 +122,18 @@ TriangleSurface read_with_assimp(const std::filesystem::path& file) {
   return surface;
 }
 
+TriangleSurface read_by_format(const std::filesystem::path& file) {
+  if (is_named_or_begins(file, ".ply", "ply")) return parse_ply(bytes_of(file), file);
+  if (is_named_or_begins(file, ".off", "OFF")) return parse_off(bytes_of(file), file);
+  return read_with_assimp(file);
+}
+
 }  // namespace
 
 TriangleSurface read_surface(const std::filesystem::path& file, std::string_view unit) {
   const double scale = metres_per_unit(unit);
   check_file(file);
-  TriangleSurface surface = is_ply(file) ? read_ply(file) : read_with_assimp(file);
+  TriangleSurface surface = read_by_format(file);
   check_content(surface, file);
   for (Vec3& node : surface.nodes) node *= scale;
   weld_nodes(surface);

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "modules/core/error.h"
+#include "modules/geometry/mesh_text.h"
+#include "modules/geometry/polygon_fan.h"
 
 namespace palpate::geometry {
 namespace {
@@ -56,25 +57,6 @@ struct PlyHeader {
   std::size_t bytes = 0;
 };
 
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  while (true) {
-    const auto begin = line.find_first_not_of(" \t\r");
-    if (begin == std::string_view::npos) return words;
-    line.remove_prefix(begin);
-    const auto end = std::min(line.find_first_of(" \t\r"), line.size());
-    words.push_back(line.substr(0, end));
-    line.remove_prefix(end);
-  }
-}
-
-template <class Number>
-bool is_number(std::string_view word, Number& number) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), number);
-  return parsed.ec == std::errc{} && parsed.ptr == word.data() + word.size();
-}
-
 /// Of any number, as a person would write a whole one.
 std::string text_of(double number) {
   std::array<char, 32> text{};
@@ -91,7 +73,7 @@ class HeaderReader {
     if (next_line() != "ply") refuse("must be 'ply'");
     while (true) {
       const std::string_view line = next_line();
-      const auto words = words_of(line);
+      const auto words = mesh_words(line);
       if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
       if (words.size() == 1 && words[0] == "end_header") break;
       take(words, line);
@@ -108,7 +90,7 @@ class HeaderReader {
       take_format(words[1], said);
     } else if (words[0] == "element" && words.size() == 3) {
       Element element{std::string(words[1]), 0, {}};
-      if (!is_number(words[2], element.count)) refuse(said + "must end in a number");
+      if (!is_mesh_number(words[2], element.count)) refuse(said + "must end in a number");
       header_.elements.push_back(std::move(element));
     } else if (words[0] == "property" && !header_.elements.empty()) {
       header_.elements.back().properties.push_back(property(words, said));
@@ -230,7 +212,7 @@ class Body {
     const std::string_view word = bytes_.substr(0, bytes_.find_first_of(kSpace));
     if (word.empty()) refuse("is not there: the file ends before");
     double number = 0;
-    if (!is_number(word, number)) {
+    if (!is_mesh_number(word, number)) {
       refuse("holds '" + std::string(word.substr(0, 40)) + "', which is no number");
     }
     bytes_.remove_prefix(word.size());
@@ -267,17 +249,17 @@ void read_entry(const Element& element, Body& body, Vec3& place, std::vector<dou
   }
 }
 
-void add_face(const std::vector<double>& corners, std::size_t nodes, const Body& body,
-              std::vector<Triangle>& triangles) {
+void add_face(const std::vector<double>& corners, const Body& body, TriangleSurface& surface) {
+  const std::size_t nodes = surface.nodes.size();
+  std::vector<std::uint32_t> named;
   for (const double corner : corners) {
-    if (corner >= 0 && corner < static_cast<double>(nodes)) continue;
-    body.refuse("names vertex " + text_of(corner) + "; allowed: 0 to " +
-                std::to_string(static_cast<long long>(nodes) - 1));
+    if (!(corner >= 0 && corner < static_cast<double>(nodes))) {
+      body.refuse("names vertex " + text_of(corner) + "; allowed: 0 to " +
+                  std::to_string(static_cast<long long>(nodes) - 1));
+    }
+    named.push_back(static_cast<std::uint32_t>(corner));
   }
-  const auto node = [&](std::size_t i) { return static_cast<std::uint32_t>(corners[i]); };
-  for (std::size_t i = 2; i < corners.size(); ++i) {
-    triangles.push_back({node(0), node(i - 1), node(i)});
-  }
+  add_fan(named, surface);
 }
 
 bool has(const Element& element, std::string_view name) {
@@ -318,7 +300,7 @@ TriangleSurface parse_ply(std::string_view bytes, const std::filesystem::path& f
       body.begin(element, i);
       read_entry(element, body, place, corners);
       if (element.name == "vertex") surface.nodes.push_back(place);
-      if (element.name == "face") add_face(corners, surface.nodes.size(), body, surface.triangles);
+      if (element.name == "face") add_face(corners, body, surface);
     }
   }
   return surface;

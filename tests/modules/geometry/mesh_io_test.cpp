@@ -114,8 +114,7 @@ TEST_CASE("read: points and lines alone are no surface") {
 }
 
 TEST_CASE("read: an OFF file with an empty line before its faces is read") {
-  // Oracle: both triangles are there. assimp's triangulation asserted on it, which ended the
-  // process.
+  // Oracle: both triangles are there.
   const ScratchFolder folder;
   const auto file =
       folder.write("gap.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n\n3 0 1 2\n3 0 2 3\n");

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstring>
-#include <random>
 
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
+#include "tests/modules/geometry/damaged_meshes.h"
 #include "tests/scratch_folder.h"
 
 namespace palpate::geometry {
@@ -125,19 +125,10 @@ TEST_CASE("ply file: 3,000 damaged files are read or refused") {
   write_surface(make_ball(0.05, 1), folder / "ball.ply");
   std::ifstream stream(folder / "ball.ply", std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(stream), {}};
-  std::mt19937 random(7);
-  const auto below = [&](std::size_t end) { return std::size_t(random() % end); };
+  test::DamagedFiles damaged(whole);
   int read = 0;
   for (int i = 0; i < 3000; ++i) {
-    std::string bytes = whole;
-    for (std::size_t change = 0; change <= below(6); ++change) {
-      const std::size_t at =
-          below(change % 2 == 0 ? bytes.size() : std::min<std::size_t>(250, bytes.size()));
-      const std::size_t length = below(9);
-      if (i % 3 == 0) bytes.erase(at, length);
-      if (i % 3 == 1) bytes[at] = char(random());
-      if (i % 3 == 2) bytes.insert(at, length, char(random()));
-    }
+    const std::string bytes = damaged.next();
     try {
       const TriangleSurface surface = parse_ply(bytes, "a.ply");
       ++read;
