@@ -10,7 +10,8 @@ namespace palpate::deformation {
 namespace {
 
 constexpr double kOff = 1e-6;          ///< so far beyond a core its wall is put, at first [m]
-constexpr int kMostSeatings = 12;      ///< rounds over all cores, each twice as far
+constexpr double kMostOff = 3e-5;      ///< … each round twice as far, up to this [m]
+constexpr int kMostSeatings = 24;      ///< rounds over all cores
 constexpr std::size_t kMostWays = 32;  ///< out of a wall that are looked at
 
 bool is_inside(const Vec3& p, const Body& body, std::span<const Vec3> positions) {
@@ -37,14 +38,18 @@ std::vector<double> cuts_of(const CoreLine& core, const Body& body,
   return cuts;
 }
 
-/// Middles of the pieces of a core that are inside: between two cuts it is on one side.
+/// Ends of a core that are inside, and middles of its pieces that are: between two cuts it is on
+/// one side.
 void append_inside(const CoreLine& core, const Body& body, std::span<const Vec3> positions,
-                   std::vector<Vec3>& middles) {
+                   std::vector<Vec3>& places) {
+  const auto append = [&](double at) {
+    const Vec3 place = core.a + at * (core.b - core.a);
+    if (is_inside(place, body, positions)) places.push_back(place);
+  };
   const std::vector<double> cuts = cuts_of(core, body, positions);
-  for (std::size_t i = 1; i < cuts.size(); ++i) {
-    const Vec3 middle = core.a + (cuts[i - 1] + cuts[i]) / 2 * (core.b - core.a);
-    if (is_inside(middle, body, positions)) middles.push_back(middle);
-  }
+  append(0);
+  append(1);
+  for (std::size_t i = 1; i < cuts.size(); ++i) append((cuts[i - 1] + cuts[i]) / 2);
 }
 
 /// Where a triangle is nearest to a point behind it.
@@ -72,9 +77,11 @@ std::vector<NearPlace> places_behind(const Vec3& p, const Body& body,
 
 /// The nearest place beyond which it is outside: where a wall is folded over itself that is not the
 /// nearest wall.
-NearPlace nearest_way_out(const Vec3& p, double off, const Body& body,
+/// @param along  the way a wall there was moved before: a ridge on a core is not moved to and fro
+NearPlace nearest_way_out(const Vec3& p, double off, const Vec3& along, const Body& body,
                           std::span<const Vec3> positions) {
   auto places = places_behind(p, body, positions);
+  std::erase_if(places, [&](const NearPlace& place) { return place.way.dot(along) < 0; });
   places.resize(std::min(places.size(), kMostWays));
   for (const NearPlace& place : places) {
     if (!is_inside(p - place.way * (1 + off / place.distance), body, positions)) return place;
@@ -103,19 +110,40 @@ void move_to(const NearPlace& wall, double off, const Body& body, std::span<Vec3
   for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += share_of(i) * way;
 }
 
+/// Where walls were moved, and which way.
+class Moves {
+ public:
+  void add(const Vec3& place, const Vec3& way) { moves_.push_back({place, way}); }
+  /// Zero: none yet.
+  Vec3 nearest_to(const Vec3& p) const {
+    const auto nearest = std::ranges::min_element(
+        moves_, {}, [&](const Move& move) { return (move.place - p).squaredNorm(); });
+    return nearest == moves_.end() ? Vec3::Zero() : nearest->way;
+  }
+
+ private:
+  struct Move {
+    Vec3 place, way;
+  };
+  std::vector<Move> moves_;
+};
+
 }  // namespace
 
 bool seat_outside(std::span<const CoreLine> cores, const Body& body, std::span<Vec3> positions) {
   double off = kOff;
   std::vector<Vec3> inside;
-  for (int round = 0; round <= kMostSeatings; ++round, off *= 2) {
+  Moves moves;
+  for (int round = 0; round <= kMostSeatings; ++round, off = std::min(2 * off, kMostOff)) {
     inside.clear();
     for (const CoreLine& core : cores) append_inside(core, body, positions, inside);
     if (inside.empty()) return true;
     if (round == kMostSeatings) break;
     for (const Vec3& p : inside) {
       if (!is_inside(p, body, positions)) continue;  // what moved another took it along
-      move_to(nearest_way_out(p, off, body, positions), off, body, positions);
+      const NearPlace wall = nearest_way_out(p, off, moves.nearest_to(p), body, positions);
+      moves.add(p, wall.way);
+      move_to(wall, off, body, positions);
     }
   }
   return false;
