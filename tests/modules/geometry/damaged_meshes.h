@@ -1,11 +1,24 @@
-// Files with random bytes taken out, changed and put in.
+// Files with random bytes taken out, changed and put in, and what a reader says of them.
 #pragma once
 
 #include <algorithm>
 #include <random>
 #include <string>
 
+#include "modules/core/error.h"
+
 namespace palpate::geometry::test {
+
+/// What `parse(bytes, name)` refuses them with.
+template <class Parse>
+std::string refusal_by(const Parse& parse, const std::string& bytes, const char* name) {
+  try {
+    parse(bytes, name);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
 
 /// Half of the changes lie in the first 250 bytes: in a header.
 class DamagedFiles {

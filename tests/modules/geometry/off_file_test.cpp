@@ -13,12 +13,7 @@ namespace palpate::geometry {
 namespace {
 
 std::string refusal(const std::string& bytes) {
-  try {
-    parse_off(bytes, "a.off");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by(parse_off, bytes, "a.off");
 }
 
 TEST_CASE("off file: comments, blank lines, colours, and heads as they are met") {

@@ -54,12 +54,7 @@ void check_pyramid(const TriangleSurface& surface) {
 }
 
 std::string refusal(const std::string& bytes) {
-  try {
-    parse_ply(bytes, "a.ply");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::refusal_by(parse_ply, bytes, "a.ply");
 }
 
 TEST_CASE("ply file: text and both byte orders, other elements, lists and types") {
