@@ -70,6 +70,9 @@ class SimulatedOrgan {
   void change_mesh(std::unique_ptr<const OrganModel> model, std::unique_ptr<OrganDynamics> dynamics,
                    const Carry& carry, const std::function<void(OrganState&)>& seat);
 
+  /// Moves its nodes where a step left them wrong.
+  void move_nodes(const std::function<void(std::span<Vec3>)>& move) { move(state_.positions); }
+
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
   /// The same; it is taken again from its start, with the rows there are then and the impulses

@@ -50,9 +50,8 @@ struct DeformationWorld::Impl {
       if (contacts_suspended) break;
       probe.append_rows(index, *organ.surface, organ.simulated.state(), h, to, organ.rows);
     }
-    const auto may_cross = [&](const ProbeContacts& probe) { return probe.may_cross(index); };
     SimulatedOrgan::Revise crossed;
-    if (!contacts_suspended && std::ranges::any_of(probes, may_cross)) {
+    if (!contacts_suspended && any_may_cross(index)) {
       crossed = [&](const OrganState& start, const OrganState& end) {
         bool any = false;
         for (auto& probe : probes) {
@@ -65,18 +64,20 @@ struct DeformationWorld::Impl {
     return organ.simulated.step(time + to * period, h, organ.rows, crossed, last_resort, report);
   }
 
-  void take_rows(std::uint32_t index, double h) {
+  void take_rows(std::uint32_t index, double from, double to, AdvanceReport& report) {
     WorldOrgan& organ = organs[index];
-    for (auto& probe : probes) {
-      if (organ.simulated.contacts_suspended()) break;
-      probe.take_rows(index, h, organ.rows);
-    }
+    if (organ.simulated.contacts_suspended()) return;
+    for (auto& probe : probes) probe.take_rows(index, (to - from) * period, organ.rows);
+    organ.simulated.move_nodes([&](std::span<Vec3> nodes) {
+      report.contacts_unsolved +=
+          ProbeContacts::put_back_outside(probes, index, *organ.surface, nodes, to);
+    });
   }
 
   /// The same; where rows do not hold a probe, in halves.
   void step_apart(std::uint32_t index, double from, double to, int splits, AdvanceReport& report) {
     if (step_organ(index, from, to, splits == 0, report)) {
-      return take_rows(index, (to - from) * period);
+      return take_rows(index, from, to, report);
     }
     const double middle = (from + to) / 2;
     step_apart(index, from, middle, splits - 1, report);
@@ -93,13 +94,9 @@ struct DeformationWorld::Impl {
     }
   }
 
-  bool any_may_cross() const {
-    return std::ranges::any_of(probes, [&](const ProbeContacts& probe) {
-      for (std::uint32_t i = 0; i < organs.size(); ++i) {
-        if (probe.may_cross(i)) return true;
-      }
-      return false;
-    });
+  bool any_may_cross(std::uint32_t organ) const {
+    return std::ranges::any_of(probes,
+                               [&](const ProbeContacts& probe) { return probe.may_cross(organ); });
   }
 
   /// Did what organs do to each other take one through a probe that its own step had held?
@@ -119,7 +116,8 @@ struct DeformationWorld::Impl {
   /// All organs from one fraction of the advance to another, then their contacts with each other.
   /// @returns false if a probe was not held: the organs are as before, but not as a last resort
   bool try_together(double from, double to, bool last_resort, AdvanceReport& report) {
-    const bool may_cross = any_may_cross();
+    bool may_cross = false;
+    for (std::uint32_t i = 0; i < organs.size(); ++i) may_cross |= any_may_cross(i);
     if (may_cross) {
       for (WorldOrgan& organ : organs) organ.simulated.keep(organ.start);
     }
@@ -148,7 +146,7 @@ struct DeformationWorld::Impl {
   /// The same; where rows do not hold a probe, in halves.
   void step_together(double from, double to, int splits, AdvanceReport& report) {
     if (try_together(from, to, splits == 0, report)) {
-      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i, (to - from) * period);
+      for (std::uint32_t i = 0; i < organs.size(); ++i) take_rows(i, from, to, report);
       return;
     }
     const double middle = (from + to) / 2;
@@ -178,7 +176,10 @@ struct DeformationWorld::Impl {
         cores.clear();
         for (const auto& probe : probes) probe.append_kept_outside(i, cores);
         organ.change_mesh(cores);
-        for (auto& probe : probes) probe.change_surface(i, organ.following->last_transfer());
+        for (auto& probe : probes) {
+          probe.change_surface(i, organ.following->last_transfer(), *organ.surface,
+                               organ.simulated.state().positions);
+        }
       }
       report.mesh_coarser |= organ.is_coarser;
     }
@@ -215,10 +216,7 @@ struct DeformationWorld::Impl {
   /// Impulses that a state not believed gave are no force on anybody.
   void drop_contacts(std::uint32_t organ) {
     for (auto& probe : probes) {
-      const auto& contacts = probe.contacts();
-      const bool near = std::any_of(contacts.begin(), contacts.end(),
-                                    [&](const CarriedContact& c) { return c.organ == organ; });
-      if (near) probe.reset();
+      if (probe.has_contacts(organ)) probe.reset();
     }
   }
 };

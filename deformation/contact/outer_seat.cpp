@@ -130,6 +130,13 @@ class Moves {
 
 }  // namespace
 
+bool are_outside(std::span<const CoreLine> cores, const Body& body,
+                 std::span<const Vec3> positions) {
+  std::vector<Vec3> inside;
+  for (const CoreLine& core : cores) append_inside(core, body, positions, inside);
+  return inside.empty();
+}
+
 bool seat_outside(std::span<const CoreLine> cores, const Body& body, std::span<Vec3> positions) {
   double off = kOff;
   std::vector<Vec3> inside;

@@ -1,5 +1,5 @@
-// A wall that was put elsewhere at once, by another mesh or an earlier state, is moved off the
-// cores of probes that were outside it: else they are inside, through no motion of anybody.
+// A wall is moved off the cores of probes that were outside it: where it was put elsewhere at once,
+// by another mesh or an earlier state, and where a step that no row held took it across one.
 #pragma once
 
 #include <span>
@@ -12,6 +12,11 @@ namespace palpate::deformation {
 struct CoreLine {
   Vec3 a, b;
 };
+
+/// Whether all of the cores, all along, are outside the closed surface: exact, a look at each
+/// triangle for each.
+bool are_outside(std::span<const CoreLine> cores, const Body& body,
+                 std::span<const Vec3> positions);
 
 /// Moves free nodes around the walls nearest to what of the cores is inside the closed surface,
 /// until all along they are outside.

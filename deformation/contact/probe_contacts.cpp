@@ -78,11 +78,17 @@ void ProbeContacts::take_forces_of_previous(CarriedContact& carried) {
   carried.tangential_force = std::exchange(nearest->tangential_force, Vec3::Zero());
 }
 
-void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer) {
+void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer,
+                                   const SurfaceWalk& surface, std::span<const Vec3> positions) {
   for (Near& near : near_) {
     if (near.organ != organ) continue;
     for (std::uint32_t& triangle : near.triangles) {
       triangle = transfer.place({triangle, Vec3::Constant(1.0 / 3)}).triangle;
+    }
+    // Flat triangles in the place of others may have come as near from another fold.
+    if (near.watched && !near.inside) {
+      surface.append_near(start_.to_world(core_->a), start_.to_world(core_->b), positions,
+                          core_->radius + kTouched, near.triangles);
     }
     sort_unique(near.triangles);
   }
@@ -211,8 +217,13 @@ void ProbeContacts::look_around(std::uint32_t organ, SurfaceWalk& surface, const
   const bool found_behind = std::ranges::any_of(contacts_, [&](const CarriedContact& contact) {
     return contact.organ == organ && contact.behind;
   });
-  // A search that saw a resting probe inside knows better.
-  if (near.inside || (found_behind && way() < kResting)) near.inside = is_behind_nearest(found_);
+  // A search that saw a resting probe inside knows better, unless it was of an earlier wall.
+  if (near.inside) {
+    near.inside = is_behind_nearest(found_);
+  } else if (found_behind && way() < kResting && is_behind_nearest(found_)) {
+    const CoreLine core{pose.to_world(core_->a), pose.to_world(core_->b)};
+    near.inside = !are_outside(std::span(&core, 1), surface.body(), state.positions);
+  }
   near.crossed = near.watched = false;
   near.triangles.clear();
   for (const NearTriangle& found : found_) {

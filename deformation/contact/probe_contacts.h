@@ -60,7 +60,8 @@ class ProbeContacts {
   void set_contacts(std::span<const Contact> contacts);
 
   /// An organ's surface has other triangles from now on: contacts stay where they are on it.
-  void change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer);
+  void change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer,
+                      const SurfaceWalk& surface, std::span<const Vec3> positions);
 
   /// Begins an advance of `period` [s], in which the probe moves from where it was to the newest
   /// pose. @returns false if it jumped: its contacts are dropped
@@ -82,6 +83,12 @@ class ProbeContacts {
   /// @returns the number of its own
   std::size_t take_rows(std::uint32_t organ, double h, std::span<const ContactRow> rows);
 
+  /// After take_rows() of all: a wall that the step left across the core of a round probe that was
+  /// outside is moved off it (seat_outside). @returns whether one was
+  static bool put_back_outside(std::span<ProbeContacts> probes, std::uint32_t organ,
+                               SurfaceWalk& surface, std::span<Vec3> positions, double fraction);
+
+  bool has_contacts(std::uint32_t organ) const;
   bool touches(std::uint32_t organ) const;
   /// Whether a round probe has contacts there, or had and is still near, so that it may cross the
   /// wall.
@@ -129,6 +136,11 @@ class ProbeContacts {
   void take_forces_of_previous(CarriedContact& carried);
   void unite_contacts_of_triangles();
   CarriedContact& contact_on(std::uint32_t organ, std::uint32_t triangle);
+  /// Appends the core if the step may have left it across a wall that it was outside of: no row
+  /// held it, or it lies through a triangle. No crossing within the step may have told: one over an
+  /// edge of a fold that is turned inside out looks like one from within.
+  void append_crossed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> positions,
+                      double fraction, std::vector<CoreLine>& cores);
   void find_crossings(SurfaceWalk& surface, std::span<const Vec3> start, std::span<const Vec3> end,
                       const Pose& before, const Pose& after);
   void hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
@@ -144,7 +156,6 @@ class ProbeContacts {
   /// Of the probe's origin in this advance [m].
   double way() const { return (target_.position - start_.position).norm(); }
   bool is_behind(const Contact& contact) const;
-  bool has_contacts(std::uint32_t organ) const;
   bool knows(std::uint32_t organ) const;  ///< what it is near there
   bool is_watched(std::uint32_t organ) const;
   bool is_kept_outside(std::uint32_t organ) const;

@@ -1,5 +1,6 @@
 // What keeps a round probe's core on the outer side of a wall.
 #include <algorithm>
+#include <utility>
 
 #include "deformation/contact/probe_contacts.h"
 
@@ -8,6 +9,41 @@ void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<CoreLin
   const auto near = std::ranges::find(near_, organ, &Near::organ);
   if (!core_ || near == near_.end() || near->inside) return;
   cores.push_back({start_.to_world(core_->a), start_.to_world(core_->b)});
+}
+
+void ProbeContacts::append_crossed(std::uint32_t organ, SurfaceWalk& surface,
+                                   std::span<const Vec3> positions, double fraction,
+                                   std::vector<CoreLine>& cores) {
+  if (!may_cross(organ)) return;
+  Near& near = near_of(organ);
+  const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);
+  if (out != gentle_.end() && out->core_was_inside()) return;
+  const Pose pose = pose_at(fraction);
+  const CoreLine core{pose.to_world(core_->a), pose.to_world(core_->b)};
+  if (!near.crossed) {
+    if (near.inside || core_->is_ball()) return;
+    take_seeds(near);
+    near.crossed = surface.is_cut(core.a, core.b, positions, seeds_, core_->radius + kTouched);
+  }
+  if (near.crossed) cores.push_back(core);
+}
+
+bool ProbeContacts::put_back_outside(std::span<ProbeContacts> probes, std::uint32_t organ,
+                                     SurfaceWalk& surface, std::span<Vec3> positions,
+                                     double fraction) {
+  std::vector<CoreLine> cores;
+  for (ProbeContacts& probe : probes) {
+    probe.append_crossed(organ, surface, positions, fraction, cores);
+  }
+  if (cores.empty()) return false;
+  const bool crossed = !are_outside(cores, surface.body(), positions);
+  const bool outside = !crossed || seat_outside(cores, surface.body(), positions);
+  for (ProbeContacts& probe : probes) {
+    if (!probe.may_cross(organ)) continue;
+    Near& near = probe.near_of(organ);
+    if (std::exchange(near.crossed, false)) near.inside = !outside;
+  }
+  return crossed;
 }
 
 /// Ends of the core through triangles, and its side over edges: crossings_.

@@ -45,6 +45,15 @@ bool may_meet(const CoreWay& core, const geometry::TriangleCorners& start,
          (low.array() <= wall_high.array() + kDirectionless).all();
 }
 
+/// Is a triangle's box within `reach` of the core's?
+bool may_touch(const Vec3& a, const Vec3& b, const geometry::TriangleCorners& x, double reach) {
+  const Vec3 low = a.cwiseMin(b), high = a.cwiseMax(b);
+  const Vec3 wall_low = x[0].cwiseMin(x[1]).cwiseMin(x[2]);
+  const Vec3 wall_high = x[0].cwiseMax(x[1]).cwiseMax(x[2]);
+  return (wall_low.array() <= high.array() + reach).all() &&
+         (low.array() <= wall_high.array() + reach).all();
+}
+
 double farthest_corner(const geometry::TriangleCorners& from, const geometry::TriangleCorners& to) {
   double moved = 0;
   for (int k = 0; k < 3; ++k) moved = std::max(moved, (to[k] - from[k]).norm());
@@ -158,6 +167,27 @@ void SurfaceWalk::find(const Vec3& a, const Vec3& b, std::span<const Vec3> posit
     return true;
   });
   std::ranges::sort(near, {}, &NearTriangle::index);
+}
+
+void SurfaceWalk::append_near(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
+                              double reach, std::vector<std::uint32_t>& near) const {
+  for (std::uint32_t t = 0; t < body_.triangles.size(); ++t) {
+    const auto corners = corners_of(body_.triangles[t], positions);
+    if (may_touch(a, b, corners, reach) && closest(a, b, corners).distance <= reach)
+      near.push_back(t);
+  }
+}
+
+bool SurfaceWalk::is_cut(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
+                         std::span<const std::uint32_t> seeds, double reach) {
+  bool cut = false;
+  flood(seeds, [&](std::uint32_t t) {
+    const auto corners = corners_of(body_.triangles[t], positions);
+    if (cut || !may_touch(a, b, corners, reach)) return false;
+    cut = may_touch(a, b, corners, 0) && closest(a, b, corners).distance == 0;
+    return !cut;
+  });
+  return cut;
 }
 
 std::optional<WallCrossing> SurfaceWalk::first_crossing(const Vec3& p0, const Vec3& p1,

@@ -40,6 +40,15 @@ class SurfaceWalk {
   void find(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
             std::span<const std::uint32_t> seeds, double reach, std::vector<NearTriangle>& near);
 
+  /// All triangles within `reach` [m] of the core a–b, connected or not: a look at each. Appended.
+  void append_near(const Vec3& a, const Vec3& b, std::span<const Vec3> positions, double reach,
+                   std::vector<std::uint32_t>& near) const;
+
+  /// Does the core a–b, longer than a point, lie through a triangle? Looks at those around it that
+  /// are connected with the seeds.
+  bool is_cut(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
+              std::span<const std::uint32_t> seeds, double reach);
+
   /// The first inward crossing of a point that goes from p0 to p1 while the nodes go from `start`
   /// to `end`, all along straight lines; of triangles connected with the seeds.
   std::optional<WallCrossing> first_crossing(const Vec3& p0, const Vec3& p1,

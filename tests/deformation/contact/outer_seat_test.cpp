@@ -54,8 +54,10 @@ TEST_CASE("outer seat: a wall comes off a core that it lies across, wherever bet
       return count;
     };
     chords += inside() > 0;
+    if (inside() > 0) CHECK_FALSE(are_outside(core, model, x));
     CHECK(seat_outside(core, model, x));
     CHECK(inside() == 0);
+    CHECK(are_outside(core, model, x));
   }
   CHECK(chords > 20);
 }

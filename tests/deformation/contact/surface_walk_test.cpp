@@ -37,11 +37,15 @@ TEST_CASE("surface walk: from any seed it finds what brute force finds") {
     }
     double nearest = 1;
     std::size_t within = 0;
+    std::vector<std::uint32_t> all_within, appended;
     for (std::uint32_t t = 0; t < wall.model.triangles.size(); ++t) {
       const double d = wall.surface.triangle_near(t, a, b, wall.x).pair.distance;
       nearest = std::min(nearest, d);
       within += d <= reach;
+      if (d <= reach) all_within.push_back(t);
     }
+    wall.surface.append_near(a, b, wall.x, reach, appended);
+    CHECK(appended == all_within);
     REQUIRE_FALSE(near.empty());
     CHECK(near.size() == std::max<std::size_t>(within, 1));
     CHECK(std::ranges::min(near, {}, [](const NearTriangle& n) {
@@ -49,6 +53,27 @@ TEST_CASE("surface walk: from any seed it finds what brute force finds") {
           }).pair.distance == nearest);
     CHECK(std::ranges::is_sorted(near, {}, &NearTriangle::index));
   }
+}
+
+TEST_CASE("surface walk: a core that lies through triangles is cut by one of them") {
+  // Oracle: brute force, the distance of the core to each triangle.
+  Wall wall;
+  RandomShapes random(7);
+  int cuts = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 a = random.number(0.9, 1.2) * 0.05 * random.direction();
+    const Vec3 b = a + 0.02 * random.direction();
+    std::vector<std::uint32_t> near;
+    wall.surface.append_near(a, b, wall.x, 1e-3, near);
+    const bool cut = std::ranges::any_of(near, [&](std::uint32_t t) {
+      return wall.surface.triangle_near(t, a, b, wall.x).pair.distance == 0;
+    });
+    cuts += cut;
+    if (near.empty()) continue;
+    CHECK(wall.surface.is_cut(a, b, wall.x, std::span(near).first(1), 1e-3) == cut);
+  }
+  CHECK(cuts > 20);
+  CHECK(cuts < 180);
 }
 
 TEST_CASE("surface walk: the side of the nearest triangle is the point's") {

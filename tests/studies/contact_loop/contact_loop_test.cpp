@@ -61,14 +61,20 @@ TEST_CASE("contact loop: no ball goes through the wall of the solid liver, whate
 TEST_CASE("contact loop: a mesh that changes under a small tip in a hurry loses it no contact") {
   // Oracle: winding number over all triangles, of the surface of each search and each advance. Each
   // of these lost contact or was crossed: searched with boxes of an earlier mesh, walled in where
-  // nodes went, crossed by its side, walled in between places along it.
+  // nodes went, crossed by its side, walled in between places along it, held to be inside for what
+  // an earlier search saw, over a fold turned inside out, by a fold that a new mesh brought near.
   const auto scene = scene::load_scene(data_file("scenes/liver_touch.yaml"));
   const session::Assets assets = session::load_assets(scene);
-  const Vec3 usual(-0.020, 0, 0.013), edge(0.020781514, 0, 0.021756684);
+  const Vec3 usual(-0.020, 0, 0.013), edge(0.020781514, 0, 0.021756684),
+      lobe(-0.0788558858275641, 0, -0.0525599454110841),
+      rim(0.0207815136525307, 0, 0.0217566838504579);
   for (const auto& [name, place, speed, rate] : {std::tuple("ball", usual, 2.5, 100.0),
                                                  {"needle", usual, 0.63, 250.0},
                                                  {"rod", usual, 2.5, 100.0},
-                                                 {"rod", edge, 2.5, 250.0}}) {
+                                                 {"rod", edge, 2.5, 250.0},
+                                                 {"needle", rim, 0.63, 250.0},
+                                                 {"rod", lobe, 2.5, 100.0},
+                                                 {"wire", usual, 0.63, 100.0}}) {
     const LoopCase loop{make_tool(name, 1e-3), speed, rate, 250};
     const LoopResult result = run_loop(scene, assets, place, loop);
     INFO(name << " at " << speed << " m/s, " << rate << " Hz");
