@@ -5,8 +5,9 @@ Usage: bench/rejoin.py [--repeats N] [--how kill stop] [--depth deep shallow] [-
 Per kind and module: seconds from the signal and from the successor's start until it says that it runs (of the recorder: until
 its part grows), and until the force is back (half of what it was). A stopped process is found out after three seconds. Each
 session is recorded: its parts are read again, and what is missing within them and between them is told. At the end: what is
-left of all processes. Of collision and deformation: how often the first search of the successor, or with its tissue, had a contact
-that pushes. Deep is with the sphere's middle 8 mm behind the skin at rest, shallow with its tip 2 mm.
+left of all processes. Of collision and deformation: how often the first search of the successor, or on its tissue, had a contact
+that pushes, and the greatest force until a second after it is back, over that before. Deep is with the sphere's middle 8 mm behind
+the skin at rest, shallow with its tip 2 mm.
 """
 import argparse
 import itertools
@@ -36,6 +37,7 @@ probes:
   - {name: tip, shape: {sphere: {radius_m: 0.008}}, device: {scripted: {start_m: [0.008, -0.08, -0.049], moves: [
      {to_m: [0.008, %g, -0.049], duration_s: 1.5}]}}}
 """
+HELD_GAP = 1e-8  # [m]: a contact that holds is at 0, but for nodes that travel as float32: half an ulp of 0.13 m is 7e-9
 DEPTHS = {"deep": -0.020, "shallow": -0.0344}  # of the sphere's middle, along y; the skin is at -0.0284 [m]
 
 
@@ -103,10 +105,10 @@ class Module:
         return any(part.stat().st_size > 100_000 for part in self.parts() - self.earlier_parts)
 
 
-class Searches:
-    """What searches found since this was made."""
+class Heard:
+    """What searches found, and which force the hand got, since this was made."""
 
-    FIELDS = {"contacts": ("source_time_ns", "deepest_gap_m"), "node_positions": ("source_time_ns",)}
+    FIELDS = {"contacts": ("source_time_ns", "deepest_gap_m"), "node_positions": ("source_time_ns",), "haptic_force": ("force_n",)}
 
     def __init__(self, live):
         self.live, self.heard = live, {topic: [] for topic in self.FIELDS}
@@ -117,32 +119,41 @@ class Searches:
         for topic, fields in self.FIELDS.items():
             came = self.live.take(topic)
             if came.messages:
-                self.heard[topic].append(np.array([came[field] for field in fields], dtype=float))
+                self.heard[topic].append(np.vstack([np.array(came[field], dtype=float).T for field in fields]))
 
     def without_contact(self, module, restart):
-        """So many since the module's successor, started at `restart` [s], first spoke, until one had a contact that pushes."""
-        spoken = {"collision": "contacts", "deformation": "node_positions"}.get(module)
-        if spoken is None:
+        """So many since the module's successor, started at `restart` [s], first searched, or was searched, until one had a contact
+        that pushes."""
+        if module not in ("collision", "deformation"):
             return float("nan")
-        said, found = (np.hstack(self.heard[topic]) for topic in (spoken, "contacts"))
-        begin = said[0, said[0] > 1e9 * restart].min(initial=np.inf)
-        pushes = found[1, found[0] >= begin] < 0
-        return int(np.argmax(pushes)) if pushes.any() else float("inf")
+        time, gap = np.hstack(self.heard["contacts"])
+        if module == "collision":
+            gap = gap[time > 1e9 * restart]
+        else:
+            said = np.hstack(self.heard["node_positions"])[0]
+            begin = said[said > 1e9 * restart].min(initial=np.inf)
+            # Until collision hears of it, it searches what the dead one left, which rests as the probe does: all find the same.
+            left = gap[time < begin][-1:]
+            gap = gap[time >= begin]
+            gap = gap[np.argmax(np.isinf(gap) | ~np.isin(gap, left)) :]
+        return int(np.argmax(gap < HELD_GAP)) if (gap < HELD_GAP).any() else float("inf")
+
+    def greatest_force(self):
+        return np.linalg.norm(np.hstack(self.heard["haptic_force"]), axis=0).max()
 
 
 def lose(module, number):
-    """Seconds until it runs again and until the force is back, from the signal and from the start of its successor; and searches
-    without a contact."""
+    """Seconds until it runs again and until the force is back, from the signal and from the start of its successor; searches
+    without a contact; the greatest force over that before."""
     live = module.live
     before = held(live)
     victim = module.process()
-    searches = Searches(live)
-    searches.listen()
+    said = Heard(live)
     begin = time.monotonic()
     os.kill(victim, number)
 
     def heard(condition):
-        searches.listen()
+        said.listen()
         return condition()
 
     runs = wait(lambda: heard(lambda: module.process() not in (0, victim) and module.runs()))
@@ -150,8 +161,10 @@ def lose(module, number):
     restart = started(module.process()) - begin
     faded = force(live) < 0.5 * before
     back = since + wait(lambda: heard(lambda: force(live) > 0.5 * before)) if faded else since
-    wait(lambda: heard(lambda: False), 0.2)
-    return runs, back, runs - restart, back - restart, searches.without_contact(module.name, begin + restart)
+    wait(lambda: heard(lambda: False), 1)
+    # Its start is known to a hundredth: it cannot have been before the signal.
+    lost = said.without_contact(module.name, begin + max(restart, 0))
+    return runs, back, runs - restart, back - restart, lost, said.greatest_force() / before
 
 
 def read_again(recording):
@@ -214,6 +227,7 @@ def main():
             middle, worst = np.median(times, axis=0), np.max(times, axis=0)
             lost = times[:, 4]
             searches = "" if np.isnan(lost).all() else f"; contact at the first search {np.sum(lost == 0)} times (at most {worst[4]:.0f} without)"
+            searches += f"; force at most {worst[5]:.2f} of that before"
             print(
                 f"{how:5} {depth:8} {module:12} {len(times):4} times: runs again after {middle[0]:.2f} s (at most {worst[0]:.2f}),"
                 f" force back after {middle[1]:.2f} s (at most {worst[1]:.2f}); from its restart {middle[2]:.2f} s"

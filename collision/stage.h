@@ -19,6 +19,8 @@ std::vector<geometry::ProbeForm> load_probes(const scene::Scene& scene);
 /// Each cycle: take the newest organs and probe poses, search each probe's way since the last
 /// search, publish its contacts, none included. A probe not heard of for
 /// runtime::input_stale_after() touches nothing. Ready once the surfaces of all organs are known.
+/// Who begins while a session runs hears the others one after another: until it knows where the
+/// organs are (OrganInputs::placed()), and of a probe it has never heard of, it says nothing.
 class CollisionStage : public runtime::Stage {
  public:
   /// @param scene   outlives the stage

@@ -121,6 +121,10 @@ std::vector<double> compliance_of(std::span<WorldOrgan> organs,
   return lower;
 }
 
+/// Where tissue is pushed out gently its motion is not stopped, but brought to that of the push
+/// within GentlePush::kRise: of the forces that would stop it, a period sees this part.
+double stopped_in(double period) { return std::min(1.0, period / GentlePush::kRise); }
+
 }  // namespace
 
 LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContacts> probes,
@@ -142,6 +146,7 @@ LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContact
   const auto contacts = condense_contacts(probe, bodies, states, period);
   for (const CondensedContact& contact : contacts) {
     law.rows.push_back(contact.row);
+    if (probe.is_gentle(contact.organ)) law.rows.back().velocity *= stopped_in(period);
     law.validity_radius = std::max(
         law.validity_radius, contact.row.gap + kValidityOfEdge * organs[contact.organ].mean_edge);
   }

@@ -156,6 +156,10 @@ void ProbeContacts::be_gentle(std::uint32_t organ, const OrganState& state, doub
   if (!gentle->soften(state, h, core_ && near_of(organ).inside, rows)) gentle_.erase(gentle);
 }
 
+bool ProbeContacts::is_gentle(std::uint32_t organ) const {
+  return std::ranges::find(gentle_, organ, &GentlePush::organ) != gentle_.end();
+}
+
 bool ProbeContacts::begin(double period) {
   period_ = period;
   for (CarriedContact& contact : contacts_) contact.pushed = contact.dragged = Vec3::Zero();

@@ -97,6 +97,8 @@ class ProbeContacts {
   }
   /// Appends a round probe's core if it was kept outside an organ.
   void append_kept_outside(std::uint32_t organ, std::vector<CoreLine>& cores) const;
+  /// Whether penetration of an organ that was not seen coming is being undone.
+  bool is_gentle(std::uint32_t organ) const;
   double friction() const { return friction_; }
   double radius() const { return core_ ? core_->radius : 0; }  ///< of a round probe, else 0 [m]
   const Pose& pose() const { return target_; }                 ///< at the end of the advance

@@ -5,6 +5,7 @@
 
 #include "modules/bus/memory_bus.h"
 #include "modules/geometry/primitives.h"
+#include "modules/runtime/wiring.h"
 #include "tests/times.h"
 
 using namespace palpate;
@@ -31,10 +32,11 @@ struct Session {
 
   CollisionStage stage() { return {scene, collision::load_probes(scene), bus}; }
 
-  /// @param blocks  told of it, at most one
+  /// At rest from before the session's first cycle on. @param blocks  told of it, at most one
   void publish_ball(std::size_t blocks = 0, int halvings = 2, std::uint32_t generation = 1) {
     const auto ball = geometry::make_ball(kRadius, halvings);
     SurfaceTopology surface;
+    surface.header.source_time_ns = runtime::CycleGrid::kSetUp;
     surface.generation = generation;
     surface.name = "ball";
     surface.surface_node_count = static_cast<std::uint32_t>(ball.nodes.size());
@@ -79,6 +81,26 @@ TEST_CASE("collision stage: is not ready, and says nothing, before it knows ever
   session.publish_ball();
   CHECK(stage.cycle({}).ready);
   CHECK(session.contacts.take(session.newest));
+}
+
+TEST_CASE("collision stage: of a probe that it has never heard of it says nothing") {
+  // Oracle: by hand; who begins anew hears of a finger in the ball only after some cycles, and a
+  // message without contacts would say that it touches nothing.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball();
+  runtime::Cycle now;
+  for (now.now_ns = kMs; now.now_ns < 20 * kMs; now.now_ns += 4 * kMs) {
+    CHECK(std::string(stage.cycle(now).guard).find("no news of a probe") == 0);
+    CHECK_FALSE(session.contacts.take(session.newest));
+  }
+  session.move_finger(0.055, now.now_ns);
+  CHECK(session.search(stage, now.now_ns) > 0);
+  CHECK(session.newest.deepest_gap() < 0);
+  const std::int64_t late = now.now_ns + ns_from_seconds(runtime::kInputStaleAfter) + 1;
+  session.newest.probe = 1;
+  CHECK(session.search(stage, late) == 0);  // it has fallen silent: that is said
+  CHECK(session.newest.probe == 0);
 }
 
 TEST_CASE("collision stage: a finger in the ball touches it, one far away does not") {

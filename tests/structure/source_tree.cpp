@@ -63,7 +63,7 @@ std::vector<Include> includes_of(const std::string& file) {
 }
 
 bool is_wiring(const std::string& file) {
-  static const std::regex kWiring(R"((/(stage|organ_messages)\.(h|cpp)|main\.cpp)$)");
+  static const std::regex kWiring(R"((/(stage|organ_messages|organ_inputs)\.(h|cpp)|main\.cpp)$)");
   return std::regex_search(file, kWiring);
 }
 

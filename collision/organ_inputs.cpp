@@ -1,0 +1,165 @@
+#include "collision/organ_inputs.h"
+
+#include <algorithm>
+
+#include "modules/core/error.h"
+#include "modules/core/units.h"
+#include "modules/messages/message_state.h"
+#include "modules/runtime/wiring.h"
+
+namespace palpate::collision {
+namespace {
+
+/// Surfaces of an organ that wait for their positions.
+constexpr std::size_t kMostTold = 8;
+
+void read_boxes(std::span<const float> from, std::vector<geometry::BlockBox>& boxes) {
+  boxes.resize(from.size() / 6);
+  for (geometry::BlockBox& box : boxes) {
+    std::copy_n(from.begin(), 3, box.lower.begin());
+    std::copy_n(from.begin() + 3, 3, box.upper.begin());
+    from = from.subspan(6);
+  }
+}
+
+}  // namespace
+
+OrganInputs::OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes, std::size_t organs)
+    : surfaces_(bus.reader(bus::kSurface)),
+      positions_(bus.reader(bus::kNodePositions)),
+      probes_(std::move(probes)),
+      organs_(organs) {}
+
+void OrganInputs::take() {
+  while (surfaces_.take(surface_)) take_surface();
+  while (positions_.take(newest_)) take_positions();
+}
+
+bool OrganInputs::placed() const { return std::ranges::all_of(organs_, &OrganInput::placed); }
+
+void OrganInputs::tell_generations(std::vector<std::uint32_t>& generations) const {
+  generations.clear();
+  for (const OrganInput& organ : organs_) generations.push_back(organ.generation);
+}
+
+bool OrganInputs::boxes_misfit() const {
+  return std::ranges::any_of(organs_, &OrganInput::boxes_misfit);
+}
+
+void OrganInputs::exchange(StateArchive& archive) {
+  archive.same(organs_.size());
+  for (OrganInput& organ : organs_) archive(organ);
+  bool has_finder = finder_.has_value();
+  archive(has_finder, interval_);
+  if (archive.reads() && has_finder) make_finder();
+  if (finder_) archive(*finder_);
+}
+
+void OrganInputs::OrganInput::exchange(StateArchive& archive) {
+  archive(generation, triangles, triangle_blocks, surface_node_count, rest_positions, block_count,
+          boxes_misfit, placed, came_ns);
+  std::size_t told = next.size();
+  archive(told);
+  if (told > kMostTold) throw InputError("its state holds surfaces that cannot be");
+  next.resize(told);
+  for (SurfaceTopology& surface : next) messages::exchange_message(archive, surface);
+}
+
+/// The first surface puts its organ at rest. One of the same triangles starts it anew: what was
+/// remembered of the search before no longer holds. It has not if positions told after it are
+/// there already: of a deformation that begins anew they may be heard first. One of other
+/// triangles waits for its positions: until then the organ is where it was.
+void OrganInputs::take_surface() {
+  if (surface_.organ >= organs_.size()) return;
+  OrganInput& organ = organs_[surface_.organ];
+  if (!finder_ || surface_.triangles.empty()) {
+    know(surface_, organ);
+    organ.placed = surface_.header.source_time_ns == runtime::CycleGrid::kSetUp;
+    return make_finder();
+  }
+  if (!organ.next.empty() || organ.triangles != surface_.triangles ||
+      organ.triangle_blocks != surface_.triangle_blocks) {
+    if (organ.next.size() == kMostTold) organ.next.erase(organ.next.begin());
+    organ.next.push_back(surface_);
+    return;
+  }
+  const bool heard_late =
+      surface_.generation == organ.generation && surface_.header.source_time_ns < organ.came_ns;
+  know(surface_, organ);
+  if (heard_late) return;
+  finder_->reset();
+  put_at_rest(surface_.organ);
+}
+
+void OrganInputs::know(const SurfaceTopology& surface, OrganInput& organ) {
+  organ.generation = surface.generation;
+  organ.surface_node_count = surface.surface_node_count;
+  organ.triangles = surface.triangles;
+  organ.triangle_blocks = surface.triangle_blocks;
+  organ.block_count = 0;
+  for (const std::uint32_t block : organ.triangle_blocks) {
+    organ.block_count = std::max(organ.block_count, std::size_t{block} + 1);
+  }
+  organ.rest_positions = surface.rest_positions;
+}
+
+std::vector<Vec3> OrganInputs::rest_of(const OrganInput& organ) {
+  std::vector<Vec3> rest;
+  for (std::size_t i = 0; i < organ.surface_node_count; ++i) {
+    const float* x = organ.rest_positions.data() + 3 * i;
+    rest.emplace_back(x[0], x[1], x[2]);
+  }
+  return rest;
+}
+
+/// The surface told last that positions of a generation are of, if it waits for them.
+void OrganInputs::take_next(std::size_t index, std::uint32_t generation) {
+  OrganInput& organ = organs_[index];
+  const auto told = std::find_if(
+      organ.next.rbegin(), organ.next.rend(),
+      [&](const SurfaceTopology& surface) { return surface.generation == generation; });
+  if (told == organ.next.rend()) return;
+  const std::vector<Vec3> before = rest_of(organ);
+  know(*told, organ);
+  organ.next.erase(organ.next.begin(), told.base());
+  finder_->change_organ(index, organ.triangles, organ.triangle_blocks, before, rest_of(organ));
+}
+
+void OrganInputs::put_at_rest(std::size_t organ) {
+  std::vector<float> positions = organs_[organ].rest_positions;
+  std::vector<geometry::BlockBox> boxes;
+  finder_->take_organ(organ, positions, boxes);
+}
+
+void OrganInputs::make_finder() {
+  finder_.reset();
+  std::vector<std::vector<geometry::Triangle>> triangles;
+  std::vector<std::vector<std::uint32_t>> blocks;
+  for (const OrganInput& organ : organs_) {
+    if (organ.triangles.empty()) return;
+    triangles.push_back(organ.triangles);
+    blocks.push_back(organ.triangle_blocks);
+  }
+  finder_.emplace(std::move(triangles), probes_, blocks);
+  for (std::size_t i = 0; i < organs_.size(); ++i) put_at_rest(i);
+}
+
+/// Positions of another generation than the surface's wait for their surface.
+void OrganInputs::take_positions() {
+  if (newest_.organ >= organs_.size() || !finder_) return;
+  OrganInput& organ = organs_[newest_.organ];
+  if (newest_.generation != organ.generation) take_next(newest_.organ, newest_.generation);
+  if (newest_.generation != organ.generation ||
+      newest_.positions.size() < 3 * organ.surface_node_count) {
+    return;
+  }
+  read_boxes(newest_.block_boxes, boxes_);
+  organ.boxes_misfit = !boxes_.empty() && boxes_.size() != organ.block_count;
+  finder_->take_organ(newest_.organ, newest_.positions, boxes_);
+  organ.placed = true;
+  const std::int64_t before_ns = organ.came_ns;
+  organ.came_ns = newest_.header.source_time_ns;
+  if (newest_.organ == 0 && before_ns != 0) interval_ = seconds_from_ns(organ.came_ns - before_ns);
+}
+
+}  // namespace palpate::collision
