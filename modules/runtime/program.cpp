@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "modules/core/error.h"
+#include "modules/core/standard_streams.h"
 #include "modules/messages/messages.h"
 
 namespace palpate::runtime {
@@ -159,7 +160,7 @@ Option Options::flag_off(const char* names, bool& value, const std::string& help
 void Options::footer(const std::string& text) { app_->footer(text); }
 
 Program::Program(const std::string& purpose, const std::string& name)
-    : Program(std::make_unique<CLI::App>(purpose, name)) {}
+    : Program((open_standard_descriptors(), std::make_unique<CLI::App>(purpose, name))) {}
 
 Program::Program(std::unique_ptr<CLI::App> app)
     : Options(*app),
@@ -246,6 +247,14 @@ std::vector<std::string> Program::typed(int argc, char** argv) const {
 }
 
 int Program::run(int argc, char** argv, const std::function<int()>& body) {
+  const int code = run_body(argc, argv, body);
+  const std::string lost = why_output_is_lost();
+  if (lost.empty()) return code;
+  std::cerr << app_->get_name() << ": " << lost << '\n';
+  return code == kExitDone ? kExitFailed : code;
+}
+
+int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
   const std::vector<std::string> words = typed(argc, argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   if (refuse_unknown(words)) return kExitBadInput;
