@@ -13,6 +13,7 @@
 #include "modules/bus/session_token.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
+#include "modules/core/standard_streams.h"
 #include "modules/recording/commands.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/program.h"
@@ -184,7 +185,8 @@ void add_inspect(Program& program, recording::InspectOptions& options) {
 
 void add_diff(Program& program, recording::DiffOptions& options) {
   Options command = program.command("diff", "Compare two recordings sample by sample", [&options] {
-    return recording::run_diff_command(options, std::cout, std::cerr);
+    const int code = recording::run_diff_command(options, std::cout, std::cerr);
+    return why_output_is_lost().empty() ? code : kExitBadInput;  // 1 says that they differ
   });
   command.add_input("A", options.a, "Recording (MCAP)").required();
   command.add_input("B", options.b, "Recording (MCAP)").required();

@@ -106,6 +106,10 @@ HostsFile load_hosts(const std::filesystem::path& file) {
   const std::string text = read_input(file, kMaxTextBytes);
   const scene::Source source{file.string(), file.parent_path()};
   const YamlValue root{scene::parse_yaml(text, source), 1, "", &source};
+  if (!root.node.IsMap()) {
+    throw InputError(file.string() + ":1: a file of hosts must hold the keys " + kFormatKey +
+                     " and hosts");
+  }
   check_keys(root, {kFormatKey, "hosts"});
   if (word_of(value_of(root, kFormatKey)) != kFormat)
     value_of(root, kFormatKey).refuse(std::string("must be ") + kFormat);

@@ -99,6 +99,7 @@ class DdsReader : public RawReader {
   bool take_as_it_came(RawSample& sample) {
     dds::SampleInfo info;
     sample_.into = &sample.payload;
+    const std::int64_t asked = ns_of<std::chrono::steady_clock>();
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;  // a writer has left
       if (!participant_.admit(sample.payload)) continue;
@@ -106,6 +107,7 @@ class DdsReader : public RawReader {
       sample.received_time_ns = monotonic(info.reception_timestamp.to_ns());
       return true;
     }
+    wall_shift_.nothing_waits(asked);
     return false;
   }
 
@@ -113,7 +115,7 @@ class DdsReader : public RawReader {
   std::int64_t monotonic(std::int64_t wall_ns) {
     const std::int64_t before = ns_of<std::chrono::steady_clock>();
     const std::int64_t wall_now = ns_of<std::chrono::system_clock>();
-    return wall_ns + wall_shift_.take(before, wall_now, ns_of<std::chrono::steady_clock>());
+    return wall_shift_.arrival(wall_ns, before, wall_now, ns_of<std::chrono::steady_clock>());
   }
 
   bool put_on_this_clock(RawSample& sample) const {

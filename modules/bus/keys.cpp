@@ -14,13 +14,13 @@
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
+#include "modules/core/stop_signal.h"
+#include "modules/core/whole_file.h"
 
 namespace palpate::bus {
 namespace {
 
 namespace fs = std::filesystem;
-
-using Texts = std::vector<std::pair<fs::path, std::string>>;  ///< by file
 
 [[noreturn]] void fail(const fs::path& file, int system_error) {
   const std::string said = file.string() + ": " + std::strerror(system_error);
@@ -28,8 +28,8 @@ using Texts = std::vector<std::pair<fs::path, std::string>>;  ///< by file
   throw InputError(said);
 }
 
-/// Readable and writable by its owner alone, from the first byte on.
-void write_private(const fs::path& file, const std::string& text) {
+/// Readable and writable by its owner alone, from the first byte on. @param named  in messages
+void write_private(const fs::path& file, const std::string& text, const fs::path& named) {
   const int number =
       ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
   errno = number >= 0 ? ENOSPC : errno;  // of what was written in part
@@ -38,33 +38,66 @@ void write_private(const fs::path& file, const std::string& text) {
                        ::fsync(number) == 0;
   const int failure = errno;
   if (number >= 0) ::close(number);
-  if (!written) fail(file, failure);
+  if (!written) fail(named, failure);
 }
 
-/// All, or none and no folder that was not there: a part of them would refuse the next try.
-void write_all(const fs::path& folder, bool is_new, const Texts& texts) {
-  try {
-    for (const auto& [file, text] : texts) write_private(file, text);
-  } catch (const std::exception&) {
-    std::error_code ignored;
-    for (const auto& [file, text] : texts) fs::remove(file, ignored);
-    if (is_new) fs::remove(folder, ignored);
-    throw;
-  }
-}
-
-/// @returns whether it was not there
-bool make_folder(const fs::path& folder) {
+/// A folder with a trailing slash, or a link to one, is the folder. @throws InputError
+fs::path place_of_folder(const fs::path& folder) {
   std::error_code failure;
-  const bool is_new = fs::create_directories(folder, failure);
+  const fs::path place = fs::weakly_canonical(fs::absolute(folder), failure);
   if (failure) fail(folder, failure.value());
-  if (!fs::is_empty(folder)) {
-    throw InputError(folder.string() +
+  return place.has_filename() ? place : place.parent_path();
+}
+
+/// A folder beside the one that is to be made, which gets its place when all is in it: whatever
+/// ends the program, nothing is there that would refuse the next try.
+class FolderInTheMaking {
+ public:
+  /// @throws InputError if the folder is there and not empty, or cannot be made
+  explicit FolderInTheMaking(const fs::path& folder)
+      : named_(folder), place_(place_of_folder(folder)), part_(place_) {
+    std::error_code failure;
+    if (fs::exists(place_, failure) && !fs::is_empty(place_, failure)) refuse_full();
+    if (failure) fail(named_, failure.value());
+    fs::create_directories(place_.parent_path(), failure);
+    if (failure) fail(named_, failure.value());
+    constexpr std::size_t kPartOfName = 160;  // of 255 bytes
+    part_.replace_filename(place_.filename().string().substr(0, kPartOfName) + "." +
+                           process_word() + ".part");
+    fs::remove_all(part_, failure);  // of a process of that number, long ago
+    if (::mkdir(part_.c_str(), S_IRWXU) != 0) fail(named_, errno);
+    ::chmod(part_.c_str(), S_IRWXU);  // whatever the umask
+  }
+  ~FolderInTheMaking() {
+    std::error_code ignored;
+    fs::remove_all(part_, ignored);
+  }
+  FolderInTheMaking(const FolderInTheMaking&) = delete;
+  FolderInTheMaking& operator=(const FolderInTheMaking&) = delete;
+
+  /// @throws std::runtime_error for a full disk, Interrupted, else InputError; naming the file
+  void write(const fs::path& file, const std::string& text) const {
+    write_private(part_ / file.filename(), text, file);
+    heed_signals();
+  }
+  void heed_signals() const {
+    if (stop_.requested()) throw Interrupted(named_.string() + ": stopped while keys were made");
+  }
+  void finish() const {
+    if (::rename(part_.c_str(), place_.c_str()) == 0) return;
+    if (errno == ENOTEMPTY || errno == EEXIST) refuse_full();
+    fail(named_, errno);
+  }
+
+ private:
+  [[noreturn]] void refuse_full() const {
+    throw InputError(named_.string() +
                      ": is not empty; keys go to a folder of their own, and are never replaced");
   }
-  fs::permissions(folder, fs::perms::owner_all);
-  return is_new;
-}
+
+  StopSignal stop_;  // outlives the folder
+  fs::path named_, place_, part_;
+};
 
 // Elements in the order of the schemas of DDS Security 1.1, which readers insist on.
 constexpr const char* kXml = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
@@ -120,17 +153,17 @@ void make_keys(const fs::path& folder, std::chrono::seconds valid_for) {
 }
 
 void write_keys(const fs::path& folder, const Authority& authority, const Validity& validity) {
-  const bool is_new = make_folder(folder);
-  Texts texts{{key_files(folder, "").authority, authority.certificate()},
-              {key_files(folder, "").governance, authority.signed_text(governance())}};
+  const FolderInTheMaking made(folder);
+  made.write(key_files(folder, "").authority, authority.certificate());
+  made.write(key_files(folder, "").governance, authority.signed_text(governance()));
   for (const Role& role : roles()) {
     const KeyFiles files = key_files(folder, role.name);
     const Identity identity = authority.identity(std::string(role.name), validity);
-    texts.emplace_back(files.key, identity.key);
-    texts.emplace_back(files.certificate, identity.certificate);
-    texts.emplace_back(files.permissions, authority.signed_text(permissions(role, validity)));
+    made.write(files.key, identity.key);
+    made.write(files.certificate, identity.certificate);
+    made.write(files.permissions, authority.signed_text(permissions(role, validity)));
   }
-  write_all(folder, is_new, texts);
+  made.finish();
 }
 
 void apply_keys(const fs::path& folder, const std::string& role,

@@ -3,7 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <iterator>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
 
 #include "modules/core/error.h"
 
@@ -32,9 +34,12 @@ std::ifstream open_input(const std::filesystem::path& file) {
   if (const std::string why = why_not_readable(file); !why.empty()) {
     throw InputError(file.string() + ": " + why);
   }
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": may not be read");
-  return stream;
+  if (stream) return stream;
+  const std::string why = file.string() + ": cannot be opened: " + std::strerror(errno);
+  if (errno == EMFILE || errno == ENFILE || errno == ENOMEM) throw std::runtime_error(why);
+  throw InputError(why);
 }
 
 void check_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {
@@ -48,7 +53,14 @@ void check_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {
 std::string read_input(const std::filesystem::path& file, std::uintmax_t most_bytes) {
   check_input(file, most_bytes);
   std::ifstream stream = open_input(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  std::string text, block(1 << 16, '\0');
+  errno = 0;
+  while (stream.read(block.data(), std::ssize(block)) || stream.gcount() > 0) {
+    text.append(block, 0, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.bad()) return text;
+  const std::string why = errno == 0 ? "" : std::string(": ") + std::strerror(errno);
+  throw InputError(file.string() + ": cannot be read" + why);
 }
 
 }  // namespace palpate

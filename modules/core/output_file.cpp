@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "modules/core/error.h"
+#include "modules/core/signals_held_back.h"
 
 namespace palpate {
 
@@ -16,6 +17,7 @@ namespace {
 
 /// Root may write to any folder by its mode; /proc takes no files all the same.
 std::string why_takes_no_file(const std::filesystem::path& folder) {
+  const SignalsHeldBack held;
   std::string name = (folder / ".palpate-XXXXXX").string();
   const int number = ::mkostemp(name.data(), O_CLOEXEC);
   if (number < 0)
@@ -35,6 +37,9 @@ std::string why_not_writable(const std::filesystem::path& file) {
   const auto there = std::filesystem::symlink_status(file, none);
   if (there.type() == std::filesystem::file_type::none) return none.message();  // a name too long
   const bool is_there = std::filesystem::exists(there);
+  if (is_there && !std::filesystem::exists(file, none)) {
+    return "it is a link that leads to no file";
+  }
   if (is_there && ::access(file.c_str(), W_OK) != 0) return "it may not be written to";
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return why_takes_no_file(folder);
   return "the folder " + folder.string() + " may not be written to";

@@ -14,6 +14,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
+#include "modules/core/signals_held_back.h"
 
 namespace palpate {
 namespace {
@@ -65,6 +66,7 @@ std::string process_word() {
 
 FileInTheMaking::FileInTheMaking(const std::filesystem::path& file, Writers writers)
     : file_(named_by(file)), part_(file_) {
+  const SignalsHeldBack held;  // until the handler knows the part's name
   check_writable(file_);
   std::error_code none;
   if (std::filesystem::exists(file_, none) && !std::filesystem::is_regular_file(file_, none)) {

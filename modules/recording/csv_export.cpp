@@ -20,6 +20,12 @@ std::string file_part(const std::string& key) {
   return part;
 }
 
+/// A loop of links, or a name too long, is for who makes it to refuse.
+bool is_there(const std::filesystem::path& folder) {
+  std::error_code none;
+  return std::filesystem::exists(folder, none);
+}
+
 std::string times_of(const Header& header, std::int64_t received_ns, std::int64_t start_ns) {
   std::ostringstream stream;
   messages::write_seconds(stream, received_ns - start_ns);
@@ -32,7 +38,7 @@ std::string times_of(const Header& header, std::int64_t received_ns, std::int64_
 }  // namespace
 
 CsvExport::CsvExport(std::filesystem::path folder)
-    : folder_(std::move(folder)), is_new_(!std::filesystem::exists(folder_)) {
+    : folder_(std::move(folder)), is_new_(!is_there(folder_)) {
   make_writable_folder(folder_, "--csv");
 }
 

@@ -1,13 +1,16 @@
 #include "modules/runtime/program.h"
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
+#include <new>
 #include <optional>
 
 #include "modules/core/error.h"
+#include "modules/core/standard_streams.h"
 #include "modules/messages/messages.h"
 
 namespace palpate::runtime {
@@ -23,6 +26,20 @@ void refuse_nan(const CLI::App& app) {
     }
   }
   for (const CLI::App* command : app.get_subcommands()) refuse_nan(*command);
+}
+
+/// The parser takes -1, and what is too large, for the largest number there is.
+void refuse_wrapped(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().find("UINT") == std::string::npos) continue;
+    for (const std::string& text : option->results()) {
+      errno = 0;
+      std::strtoull(text.c_str(), nullptr, 0);
+      if (errno != ERANGE && text.find('-') == std::string::npos) continue;
+      throw CLI::ValidationError(option->get_name(), text + " is not between 0 and 2^64 - 1");
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands()) refuse_wrapped(*command);
 }
 
 /// "a,,b": the parser passes over what is not there.
@@ -159,7 +176,7 @@ Option Options::flag_off(const char* names, bool& value, const std::string& help
 void Options::footer(const std::string& text) { app_->footer(text); }
 
 Program::Program(const std::string& purpose, const std::string& name)
-    : Program(std::make_unique<CLI::App>(purpose, name)) {}
+    : Program((open_standard_descriptors(), std::make_unique<CLI::App>(purpose, name))) {}
 
 Program::Program(std::unique_ptr<CLI::App> app)
     : Options(*app),
@@ -246,6 +263,14 @@ std::vector<std::string> Program::typed(int argc, char** argv) const {
 }
 
 int Program::run(int argc, char** argv, const std::function<int()>& body) {
+  const int code = run_body(argc, argv, body);
+  const std::string lost = why_output_is_lost();
+  if (lost.empty()) return code;
+  std::cerr << app_->get_name() << ": " << lost << '\n';
+  return code == kExitDone ? kExitFailed : code;
+}
+
+int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
   const std::vector<std::string> words = typed(argc, argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   if (refuse_unknown(words)) return kExitBadInput;
@@ -256,6 +281,7 @@ int Program::run(int argc, char** argv, const std::function<int()>& body) {
     refuse_empty_entries(*app_, words);
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // it takes the last first
     refuse_nan(*app_);
+    refuse_wrapped(*app_);
     refuse_overwriting(*files_);
     return job_ ? job_() : body();
   } catch (const CLI::ParseError& error) {
@@ -266,6 +292,9 @@ int Program::run(int argc, char** argv, const std::function<int()>& body) {
   } catch (const Interrupted& error) {
     report_(error.what());
     return kExitStopped;
+  } catch (const std::bad_alloc&) {
+    report_("not enough memory");
+    return kExitFailed;
   } catch (const std::exception& error) {
     report_(error.what());
     return kExitFailed;

@@ -75,6 +75,7 @@ class Options {
 
 class Program : public Options {
  public:
+  /// First thing in a program: standard descriptors that are closed are opened on /dev/null.
   /// @param purpose  a sentence for --help  @param name  as it is typed
   Program(const std::string& purpose, const std::string& name);
   ~Program();
@@ -98,11 +99,13 @@ class Program : public Options {
   /// Parses the command line and runs `body`, or the command that was given. "help WORD" is
   /// "WORD --help".
   /// @return what that returns; kExitDone after --help or --version; kExitBadInput for an
-  /// InputError or a wrong command line, kExitFailed for any other exception
+  /// InputError or a wrong command line, kExitFailed for any other exception, and where all was
+  /// done but what was printed could not be written
   int run(int argc, char** argv, const std::function<int()>& body = {});
 
  private:
   explicit Program(std::unique_ptr<CLI::App> app);
+  int run_body(int argc, char** argv, const std::function<int()>& body);
   bool refuse_unknown(const std::vector<std::string>& words) const;
   std::vector<std::string> typed(int argc, char** argv) const;
 

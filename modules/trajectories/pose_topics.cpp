@@ -1,11 +1,28 @@
 #include "modules/trajectories/pose_topics.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/ranges.h>
+
+#include <algorithm>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 
 namespace palpate::trajectories {
+namespace {
+
+constexpr std::size_t kFramesTold = 10;
+constexpr std::size_t kFrameLetters = 80;
+
+/// ROS 1 writes "/world" and "world" for the same.
+std::string frame_text(std::string_view name) {
+  if (name.starts_with('/')) name.remove_prefix(1);
+  std::string text(name.substr(0, kFrameLetters));
+  for (char& c : text) c = static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return "'" + text + "'";
+}
+
+}  // namespace
 
 PoseTopic PoseTopics::choose(const scene::TrajectoryDevice& config) const {
   std::string all, readable;
@@ -50,7 +67,8 @@ PoseTopic PoseTopics::choose(const scene::TrajectoryDevice& config) const {
 
 StampedPoses::StampedPoses(const scene::TrajectoryDevice& config, PoseTopic topic,
                            RosEncoding encoding, std::vector<std::string>& warnings)
-    : topic_(std::move(topic)),
+    : file_(config.file.string()),
+      topic_(std::move(topic)),
       encoding_(encoding),
       metre_(metres_per_unit(config.length_unit)),
       poses_(config.file.string(), ": message ", warnings) {}
@@ -61,10 +79,32 @@ void StampedPoses::add(std::span<const std::uint8_t> message) {
   if (const auto wrong = decode_pose(topic_.type, encoding_, message, stamped); !wrong.empty()) {
     return poses_.leave_out(count_, wrong);
   }
+  note_frame(stamped);
   if (!origin_) origin_ = stamped.seconds;
   const double time = double(stamped.seconds - *origin_) + 1e-9 * stamped.nanoseconds;
   stamped.pose.position *= metre_;
   poses_.add(count_, time, stamped.pose);
+}
+
+void StampedPoses::note_frame(const StampedPose& stamped) {
+  if (!frames_.empty() && stamped.frame == frame_ && stamped.child_frame == child_frame_) return;
+  frame_ = stamped.frame;
+  child_frame_ = stamped.child_frame;
+  std::string frame = frame_text(stamped.frame);
+  if (!stamped.child_frame.empty()) frame = frame_text(stamped.child_frame) + " in " + frame;
+  if (frames_.size() < kFramesTold && std::ranges::find(frames_, frame) == frames_.end()) {
+    frames_.push_back(std::move(frame));
+  }
+}
+
+std::vector<TimedPose> StampedPoses::finish() && {
+  if (frames_.size() > 1) {
+    throw InputError(fmt::format(
+        "{}: topic '{}' holds poses of several frames ({}{}), which are no single motion; write "
+        "the one that is meant to a topic of its own",
+        file_, topic_.name, fmt::join(frames_, ", "), frames_.size() == kFramesTold ? ", …" : ""));
+  }
+  return std::move(poses_).finish(count_);
 }
 
 }  // namespace palpate::trajectories

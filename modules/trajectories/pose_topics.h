@@ -33,18 +33,24 @@ class StampedPoses {
   StampedPoses(const scene::TrajectoryDevice& config, PoseTopic topic, RosEncoding encoding,
                std::vector<std::string>& warnings);
 
-  /// The topic's next message. @throws InputError as PoseCollector does
+  /// The topic's next message. @throws InputError as PoseCollector does, and for a topic that
+  /// holds the motions of several frames, which would be played as one
   void add(std::span<const std::uint8_t> message);
   std::size_t count() const { return count_; }  ///< messages so far
-  std::vector<TimedPose> finish() && { return std::move(poses_).finish(count_); }
+  std::vector<TimedPose> finish() &&;
 
  private:
+  void note_frame(const StampedPose& stamped);
+
+  std::string file_;
   PoseTopic topic_;
   RosEncoding encoding_;
   double metre_;
   PoseCollector poses_;
   std::size_t count_ = 0;
   std::optional<std::int64_t> origin_;  ///< [s]
+  std::vector<std::string> frames_;     ///< "'tool' in 'world'", each once
+  std::string frame_, child_frame_;     ///< of the last message
 };
 
 }  // namespace palpate::trajectories

@@ -45,10 +45,14 @@ class Values {
     at_ += sizeof(T);
     return value;
   }
-  void skip_text() {
+  /// Without the zero that ends it in CDR.
+  std::string_view text() {
     const auto size = next<std::uint32_t>();
     fits_ = fits_ && size <= bytes_.size() - at_;
-    if (fits_) at_ += size;
+    if (!fits_) return {};
+    const std::string_view text(reinterpret_cast<const char*>(bytes_.data()) + at_, size);
+    at_ += size;
+    return text.substr(0, text.find('\0'));
   }
   bool fits() const { return fits_; }
 
@@ -76,8 +80,8 @@ std::string decode_pose(std::string_view type, RosEncoding encoding,
   out.seconds = encoding == RosEncoding::kRos1 ? std::int64_t{values.next<std::uint32_t>()}
                                                : std::int64_t{values.next<std::int32_t>()};
   out.nanoseconds = values.next<std::uint32_t>();
-  values.skip_text();
-  if (layout.child_frame) values.skip_text();
+  out.frame = values.text();
+  out.child_frame = layout.child_frame ? values.text() : std::string_view();
   out.pose = {};
   for (double& x : out.pose.position) x = values.next<double>();
   if (layout.rotation) {

@@ -20,6 +20,8 @@ struct StampedPose {
   std::int64_t seconds = 0;       ///< of the header's stamp
   std::uint32_t nanoseconds = 0;  ///< of it
   Pose pose;                      ///< of a point: without rotation
+  std::string_view frame;         ///< the header's, in the message's bytes
+  std::string_view child_frame;   ///< of a transform: what moves; else empty
 };
 
 /// @param type  "geometry_msgs/PoseStamped" or, of ROS 2, "geometry_msgs/msg/PoseStamped"

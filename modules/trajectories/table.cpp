@@ -60,6 +60,7 @@ class TableReader {
 
   std::vector<TimedPose> read() {
     std::ifstream stream = open_input(config_.file);
+    refuse_database(stream);
     const double bytes = double(std::filesystem::file_size(config_.file));
     double read = 0;
     for (std::string line; next_line(stream, line);) {
@@ -75,6 +76,30 @@ class TableReader {
   }
 
  private:
+  void refuse_database(std::istream& stream) const {
+    constexpr std::string_view kBegins = "SQLite format 3";
+    std::string first(kBegins.size(), '\0');
+    stream.read(first.data(), std::ssize(first));
+    if (stream.gcount() == std::ssize(first) && first == kBegins) {
+      throw InputError(fmt::format(
+          "{0}: is a bag of ROS 2 in SQLite, which is not read; make one in MCAP of it: `ros2 bag "
+          "convert -i {0} -o out.yaml`, where out.yaml holds `output_bags: [{{uri: bag, "
+          "storage_id: "
+          "mcap, all: true}}]`",
+          config_.file.string()));
+    }
+    stream.clear();
+    stream.seekg(0);
+  }
+
+  /// Line ends of old Macs: the file would be one line, and its rows columns.
+  void refuse_carriage_returns(std::string_view line) const {
+    const std::size_t at = line.find('\r');
+    if (at == std::string_view::npos || line.find_first_not_of('\r', at) == std::string_view::npos)
+      return;
+    refuse("its lines end with a carriage return alone; write line feeds (tr '\\r' '\\n')");
+  }
+
   /// Bounded: a long file may have no end of a line.
   bool next_line(std::istream& stream, std::string& line) {
     stream.getline(buffer_.data(), std::ssize(buffer_));
@@ -82,6 +107,7 @@ class TableReader {
     if (stream.fail()) {
       if (count + 1 < std::ssize(buffer_)) return false;
       ++line_;
+      refuse_carriage_returns({buffer_.data(), static_cast<std::size_t>(count)});
       refuse("the line is longer than 64 KiB");
     }
     line.assign(buffer_.data(), static_cast<std::size_t>(stream.eof() ? count : count - 1));
@@ -103,6 +129,7 @@ class TableReader {
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == std::string_view::npos || line[begin] == '#') return;
     if (columns_.count == 0) {
+      refuse_carriage_returns(line);
       find_columns_in(line);
       if (columns_.headed) return;
     }

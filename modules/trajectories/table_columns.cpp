@@ -77,17 +77,33 @@ TableColumns by_own_names(const std::vector<std::string>& first, bool scalar_fir
   return columns;
 }
 
+/// @throws InputError for a column that is to be two things
+void refuse_column_twice(const TableColumns& columns, const std::vector<std::string>& names,
+                         const std::vector<std::size_t>& slots) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (columns.of[slots[i]] != columns.of[slots[k]]) continue;
+      throw InputError(fmt::format(
+          "key columns is [{}]: '{}' and '{}' are the same column, {}; each must be another",
+          fmt::join(names, ", "), names[k], names[i], columns.of[slots[i]] + 1));
+    }
+  }
+}
+
 TableColumns by_names(const std::vector<std::string>& first, const std::vector<std::string>& names,
                       bool scalar_first) {
   TableColumns columns;
   columns.wanted = names.size();
+  std::vector<std::size_t> slots;
   bool numbers = true;  // in the first line, where numbers are wanted
   for (std::size_t i = 0; i < names.size(); ++i) {
     // w x y z → x y z w
     const std::size_t slot = i < 4 || !scalar_first ? i : i == 4 ? kScalar : i - 1;
+    slots.push_back(slot);
     columns.of[slot] = place_of(names[i], first);
     numbers = numbers && is_number(first[columns.of[slot]]);
   }
+  refuse_column_twice(columns, names, slots);
   columns.headed = !numbers;
   return columns;
 }

@@ -96,6 +96,10 @@ TEST_CASE("hosts file: what is wrong is named with its line and what is allowed"
         std::string::npos);
   CHECK(refusal("palpate_hosts: 1\nhosts: []\n").find("must have at least one entry") !=
         std::string::npos);
+  for (const char* text : {"", "# nothing yet\n", "bench\n"}) {
+    CHECK(refusal(text) ==
+          "hosts.yaml:1: a file of hosts must hold the keys palpate_hosts and hosts");
+  }
   CHECK_THROWS_WITH(load_hosts("/nowhere/hosts.yaml"), "/nowhere/hosts.yaml: no such file");
   CHECK_THROWS_WITH(load_hosts("/"), "/: is a folder, not a file");
 }

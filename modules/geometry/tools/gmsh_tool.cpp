@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -36,7 +37,8 @@ namespace {
 
 constexpr const char* kStoppedMeshing = "stopped while Gmsh made tetrahedra";
 
-/// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found
+/// Runs the program found in PATH, both outputs into `log`. @returns exit status, 127 if not found,
+/// or not loaded
 /// @throws Interrupted if a signal of StopSignal comes, or ends the program with those of its
 ///         terminal
 int run(std::vector<std::string> words, const std::filesystem::path& log) {
@@ -72,6 +74,24 @@ std::string complaints(const std::filesystem::path& log) {
   return found;
 }
 
+bool is_in_path(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "/bin:/usr/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (::access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+/// Of one that is there: its loader's words, of memory that a limit denies, say.
+std::string why_not_started(const std::filesystem::path& log) {
+  std::ifstream stream(log);
+  std::string words;
+  std::getline(stream, words);
+  return "gmsh: is installed, but cannot be started; is there memory for it?" +
+         (words.empty() ? "" : " " + words);
+}
+
 std::string number(double value) {
   std::ostringstream text;
   text.precision(17);
@@ -99,6 +119,7 @@ TetMesh run_gmsh_with(const TemporaryFolder& folder, std::vector<std::string> op
   std::vector<std::string> words{"gmsh", "-format", "msh22", "-nt", "1", "-o", output.string()};
   words.insert(words.end(), options.begin(), options.end());
   const int status = run(std::move(words), log);
+  if (status == 127 && is_in_path("gmsh")) throw std::runtime_error(why_not_started(log));
   if (status == 127) {
     throw InputError("gmsh: not found; tetrahedra are made by it (apt-get install gmsh)");
   }

@@ -1,6 +1,9 @@
 #include "modules/core/input_file.h"
 
+#include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 
@@ -29,4 +32,30 @@ TEST_CASE("input file: what is no file is told from one before it is opened") {
   folder.write("file", "x");
   std::string word;
   CHECK((open_input(folder / "file") >> word && word == "x"));
+}
+
+TEST_CASE("input file: why it cannot be opened, or read further, is what the system says") {
+  // Oracle: strerror(EMFILE), no fault of the file; and of a read that fails: nothing is mapped at
+  // the beginning of a process's memory (EIO).
+  const ScratchFolder folder;
+  const auto file = folder.write("file", "x");
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_NOFILE, &before) == 0);
+  const int next = ::dup(STDIN_FILENO);
+  ::close(next);
+  rlimit none_left = before;
+  none_left.rlim_cur = static_cast<rlim_t>(next);
+  REQUIRE(::setrlimit(RLIMIT_NOFILE, &none_left) == 0);
+  std::string said;
+  try {
+    open_input(file);
+  } catch (const InputError&) {
+    said = "bad input";
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  CHECK(said == file.string() + ": cannot be opened: Too many open files");
+  CHECK_THROWS_WITH(read_input("/proc/self/mem", 1),
+                    "/proc/self/mem: cannot be read: Input/output error");
 }

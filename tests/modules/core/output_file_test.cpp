@@ -22,6 +22,8 @@ TEST_CASE("output file: what cannot be written is known before") {
   CHECK(why_not_writable(folder / "old/new") == "there is no folder " + at + "/old");
   CHECK(why_not_writable("/proc/x").starts_with("the folder /proc takes no file: "));
   CHECK(folder.file_count() == 1);
+  std::filesystem::create_symlink(folder / "nowhere", folder / "link");
+  CHECK(why_not_writable(folder / "link") == "it is a link that leads to no file");
   CHECK_THROWS_AS(check_writable(folder.path()), InputError);
   CHECK_NOTHROW(check_writable("/dev/null"));
 }

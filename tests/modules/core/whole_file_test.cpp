@@ -113,5 +113,34 @@ TEST_CASE("whole file: where nothing can be written it says so") {
                     "/dev/null: cannot be written: it is there and no regular file");
 }
 
+TEST_CASE("whole file: a signal leaves nothing, at whatever place of the making it comes") {
+  // Oracle: the folder, and kill(2) at times that differ by a few microseconds.
+  const ScratchFolder folder;
+  const auto file = folder / "a.csv";
+  for (int round = 0; round < 400; ++round) {
+    int ready[2];
+    REQUIRE(::pipe(ready) == 0);
+    const pid_t process = ::fork();
+    if (process == 0) {
+      std::signal(SIGTERM, SIG_DFL);  // Catch2 has its own
+      // The handler is there from the first file on, which is the state in which the second begins.
+      FileInTheMaking(folder / "first.csv", Writers::kOne);
+      if (::write(ready[1], "x", 1) != 1) ::_exit(1);
+      while (true) FileInTheMaking(file, Writers::kOne);
+    }
+    char letter = 0;
+    REQUIRE(::read(ready[0], &letter, 1) == 1);
+    ::usleep(static_cast<useconds_t>(3 * round));
+    ::kill(process, SIGTERM);
+    int status = 0;
+    ::waitpid(process, &status, 0);
+    ::close(ready[0]);
+    ::close(ready[1]);
+    CAPTURE(round);
+    REQUIRE(WIFSIGNALED(status));
+    REQUIRE(folder.file_count() == 0);
+  }
+}
+
 }  // namespace
 }  // namespace palpate

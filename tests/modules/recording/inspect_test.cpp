@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <sstream>
 
+#include "modules/core/error.h"
 #include "tests/file_size_limit.h"
 #include "tests/modules/recording/payloads.h"
 #include "tests/modules/recording/recording_files.h"
@@ -203,6 +204,20 @@ TEST_CASE("inspect: writes one CSV file per topic and key") {
       Catch::Contains("a.mcap': must be a folder that can be written (Not a directory)"));
   CHECK(std::filesystem::exists(folder / "csv/module_status_haptics.csv"));
   CHECK_FALSE(std::filesystem::exists(folder / "csv/haptic_force_0.csv"));  // none was valid
+}
+
+TEST_CASE("inspect: a folder for CSV that no name can be is bad input") {
+  // Oracle: ELOOP and ENAMETOOLONG, as strerror has them.
+  const ScratchFolder folder;
+  write_session(folder / "a.mcap");
+  std::filesystem::create_symlink(folder / "loop", folder / "loop");
+  for (const auto& [name, why] : std::vector<std::pair<std::string, std::string>>{
+           {"loop", "Too many levels of symbolic links"},
+           {std::string(300, 'n'), "File name too long"}}) {
+    CHECK_THROWS_WITH(summarize(folder / "a.mcap", folder / name),
+                      Catch::StartsWith("--csv '") && Catch::Contains(why));
+    CHECK_THROWS_AS(summarize(folder / "a.mcap", folder / name), InputError);
+  }
 }
 
 TEST_CASE("inspect: a module's name cannot lead out of the CSV folder") {

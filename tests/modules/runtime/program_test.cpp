@@ -1,6 +1,7 @@
 #include "modules/runtime/program.h"
 
 #include <catch2/catch.hpp>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,33 @@ TEST_CASE("program: a wrong command line and what is thrown decide the exit code
   CHECK(run_main({}, []() -> int { throw InputError("s.yaml:3: no"); }) == kExitBadInput);
   CHECK(run_main({}, []() -> int { throw std::runtime_error("disk full"); }) == kExitFailed);
   CHECK(run_main({}, []() -> int { throw Interrupted("gmsh: interrupted"); }) == kExitStopped);
+}
+
+TEST_CASE("program: a count that is negative or too large is refused, not wrapped") {
+  // Oracle: the exit codes of core/error.h; 2^64 - 1 is the largest there is.
+  const auto code_of = [](std::string seed) {
+    runtime::Program program("Tests.", "palpate-test");
+    std::size_t value = 0;
+    program.add("--seed", value, "Of it");
+    std::string name = "palpate-test", option = "--seed";
+    char* argv[] = {name.data(), option.data(), seed.data()};
+    return program.run(3, argv, [] { return 0; });
+  };
+  for (const char* seed : {"-1", "18446744073709551616", "99999999999999999999999"}) {
+    CHECK(code_of(seed) == kExitBadInput);
+  }
+  for (const char* seed : {"0", "7", "18446744073709551615"}) CHECK(code_of(seed) == kExitDone);
+}
+
+TEST_CASE("program: memory that is not there is said in words") {
+  // Oracle: the exit codes of core/error.h; what is reported.
+  runtime::Program program("Tests.", "palpate-test");
+  std::string said;
+  program.report_to([&](const std::string& what) { said = what; });
+  std::string name = "palpate-test";
+  char* argv[] = {name.data()};
+  CHECK(program.run(1, argv, []() -> int { throw std::bad_alloc(); }) == kExitFailed);
+  CHECK(said == "not enough memory");
 }
 
 TEST_CASE("program: the version names the project and the protocol") {

@@ -35,3 +35,21 @@ TEST_CASE("table columns: places go to time, x, y, z, qx, qy, qz, qw") {
   CHECK(numbered.wanted == 4);
   CHECK_FALSE(numbered.headed);
 }
+
+TEST_CASE("table columns: one column cannot be two things") {
+  // Oracle: the stated rule and form.
+  const std::vector<std::string> header{"t", "x", "y", "z"};
+  const auto said = [&](const std::vector<std::string>& names) -> std::string {
+    try {
+      find_columns(header, names, false);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  CHECK(said({"t", "x", "x", "z"}) ==
+        "key columns is [t, x, x, z]: 'x' and 'x' are the same column, 2; each must be another");
+  CHECK(said({"t", "2", "x", "z"}) ==
+        "key columns is [t, 2, x, z]: '2' and 'x' are the same column, 2; each must be another");
+  CHECK(said({"t", "x", "y", "4"}) == "accepted");
+}

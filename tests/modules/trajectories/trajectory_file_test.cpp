@@ -1,5 +1,9 @@
 #include "modules/trajectories/trajectory_file.h"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -303,3 +307,30 @@ TEST_CASE("trajectory file: reading tells how far it is, and keeps the bound on 
   CHECK(sizeof(TimedPose) == 80);
   CHECK(double(poses.capacity()) < 1.1 * 200'000);
 }
+
+#ifndef __SANITIZE_ADDRESS__  // which needs more than any limit
+TEST_CASE("trajectory file: one that memory does not hold is named") {
+  // Oracle: a limit on memory, in a process of its own; the file promises fifty million poses.
+  const ScratchFolder folder;
+  std::string rows = kHeader;
+  for (int i = 0; i < 5000; ++i) rows += std::to_string(i) + ",0,0,0,0,0,0,1\n";
+  const auto file = folder.write("huge.csv", rows);
+  std::filesystem::resize_file(file, 4'000'000'000);
+  const pid_t process = ::fork();
+  if (process == 0) {
+    const rlimit most{2'000'000'000, 2'000'000'000};
+    ::setrlimit(RLIMIT_AS, &most);
+    std::string said;
+    try {
+      std::vector<std::string> warnings;
+      read_trajectory({.file = file}, warnings);
+    } catch (const std::exception& error) {
+      said = error.what();
+    }
+    ::_exit(said == "not enough memory to read " + file.string() ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(process, &status, 0);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+}
+#endif

@@ -142,6 +142,15 @@ TEST_CASE("gmsh tool: what it cannot do is said") {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", "/nowhere", 1);
   CHECK_THROWS_WITH(mesh_ball(0.05, BallPart::kWhole, "0.02"), Catch::Contains("gmsh: not found"));
+  // A loader that fails ends with 127, too.
+  const ScratchFolder folder;
+  const auto script =
+      folder.write("gmsh", "#!/bin/sh\necho gmsh: cannot map a segment\nexit 127\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  ::setenv("PATH", (folder.path().string() + ":" + path).c_str(), 1);
+  CHECK_THROWS_WITH(mesh_ball(0.05, BallPart::kWhole, "0.02"),
+                    "gmsh: is installed, but cannot be started; is there memory for it? gmsh: "
+                    "cannot map a segment");
   ::setenv("PATH", path.c_str(), 1);
   if (testing::without_gmsh()) return;
   CHECK_THROWS_AS(run_gmsh("Box(1) = {"), InputError);
