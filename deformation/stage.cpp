@@ -18,6 +18,11 @@
 namespace palpate::deformation {
 namespace {
 
+/// What holds tissue off a round probe goes on so long without searches: the steps look around its
+/// core themselves, and a collision that died is back by then. Tissue let go meanwhile would come
+/// back at a speed, and the hand get a blow [s].
+constexpr double kHeldUnsearched = 1.0;
+
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
 class ProbeInputs {
  public:
@@ -28,6 +33,7 @@ class ProbeInputs {
         contacts_(bus.reader(bus::kContacts)),
         states_heard_(probes, stale_after),
         contacts_heard_(probes, stale_after),
+        searched_(probes, std::max(stale_after, kHeldUnsearched)),
         sampled_ns_(probes, 0),
         found_ns_(probes, 0),
         usual_ages_(probes, UsualAge(stale_after)) {}
@@ -41,14 +47,16 @@ class ProbeInputs {
     }
     while (contacts_.take(newest_)) {
       contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
+      searched_.heard(newest_.probe, newest_.header.source_time_ns);
       note_found(newest_.probe, newest_.header.source_time_ns);
       organs_.keep_own(newest_, newest_.generations);
       world.set_contacts(newest_, newest_.generations);
     }
     brought_ns_ = now_ns;
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
-      if (!states_heard_.silent(probe, now_ns) && !contacts_heard_.silent(probe, now_ns)) continue;
-      world.forget_contacts(probe);
+      const runtime::SilenceWatch& contacts = world.is_round(probe) ? searched_ : contacts_heard_;
+      if (states_heard_.silent(probe, now_ns) || contacts.silent(probe, now_ns))
+        world.forget_contacts(probe);
     }
   }
 
@@ -70,7 +78,7 @@ class ProbeInputs {
   }
 
   void exchange(StateArchive& archive) {
-    archive(states_heard_, contacts_heard_, sampled_ns_, found_ns_, brought_ns_);
+    archive(states_heard_, contacts_heard_, searched_, sampled_ns_, found_ns_, brought_ns_);
     for (UsualAge& age : usual_ages_) archive(age);
     const std::size_t probes = usual_ages_.size();
     if (sampled_ns_.size() != probes || found_ns_.size() != probes) {
@@ -91,6 +99,7 @@ class ProbeInputs {
   bus::Reader<ProbeState> states_;
   bus::Reader<Contacts> contacts_;
   runtime::SilenceWatch states_heard_, contacts_heard_;
+  runtime::SilenceWatch searched_;  ///< as contacts_heard_, within kHeldUnsearched
   // Of each probe:
   std::vector<std::int64_t> sampled_ns_;  ///< its newest pose
   std::vector<std::int64_t> found_ns_;    ///< its newest contacts

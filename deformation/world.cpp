@@ -246,6 +246,8 @@ DeformationWorld::DeformationWorld(DeformationWorld&&) noexcept = default;
 std::size_t DeformationWorld::organ_count() const { return impl_->organs.size(); }
 std::size_t DeformationWorld::probe_count() const { return impl_->probes.size(); }
 
+bool DeformationWorld::is_round(std::size_t p) const { return impl_->probes.at(p).radius() > 0; }
+
 const std::string& DeformationWorld::name(std::size_t organ) const {
   return impl_->organs.at(organ).name;
 }

@@ -65,6 +65,8 @@ class DeformationWorld {
   /// faster than that.
   void ask_for_volume(std::size_t organ, double ratio);
 
+  /// Of a round probe contacts are held wherever it goes: each step looks around its core.
+  bool is_round(std::size_t probe) const;
   /// Nobody knows where this probe touches any more: it touches nothing until set_contacts().
   void forget_contacts(std::size_t probe);
 
