@@ -210,7 +210,12 @@ bool window_stays(const RunOptions& options) {
 }
 
 std::string command_text(const ModuleCommand& command) {
-  std::string text = shell_word(command.program.string());
+  std::string text;
+  for (const char* const name : {"PALPATE_KEYS", "PALPATE_INTERFACES", "PALPATE_PEERS"}) {
+    const char* const value = std::getenv(name);
+    if (value != nullptr) text += std::string(name) + "=" + shell_word(value) + " ";
+  }
+  text += shell_word(command.program.string());
   for (const auto& argument : command.arguments) text += " " + shell_word(argument);
   return text;
 }

@@ -3,6 +3,11 @@
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <iterator>
+#include <thread>
 
 #include "modules/core/error.h"
 #include "tests/palpate/ball_scene.h"
@@ -12,6 +17,7 @@
 using namespace palpate;
 using palpate::testing::BallScene;
 using palpate::testing::type;
+using palpate::testing::wait_until;
 
 namespace {
 
@@ -106,4 +112,33 @@ TEST_CASE("files given: pictures without a visualizer are refused, not left out"
       type("palpate", {"run", given.scene, "--no-visualizer", "--frames", given.folder});
   CHECK(outcome.code == kExitBadInput);
   CHECK(outcome.said.find("--frames excludes --no-visualizer") != std::string::npos);
+}
+
+TEST_CASE("files given: whatever ends the making of keys, the next try works") {
+  // Oracle: the folder, with all keys or not there; the program's end at any time, by two signals.
+  namespace fs = std::filesystem;
+  const ScratchFolder folder;
+  const auto keys = folder / "keys";
+  const Words typed{"keys", keys.string()};
+  const auto count = [](const fs::path& of) {
+    return std::distance(fs::directory_iterator(of), {});
+  };
+  REQUIRE(type("palpate", typed).code == kExitDone);
+  const auto all = count(keys);
+  fs::remove_all(keys);
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    for (int ms = 4; ms < 200; ms += 7) {
+      launcher::ChildProcess making(fs::path(PALPATE_BIN_DIR) / "palpate", typed);
+      std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+      making.signal(signal);
+      REQUIRE(wait_until([&] { return making.ended().has_value(); }));
+      CAPTURE(signal, ms);
+      if (!fs::exists(keys)) continue;
+      REQUIRE(count(keys) == all);
+      fs::remove_all(keys);
+    }
+    CHECK((signal == SIGKILL || count(folder.path()) == 0));
+    CHECK(type("palpate", typed).code == kExitDone);
+    fs::remove_all(keys);
+  }
 }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <csignal>
+#include <cstdlib>
 #include <sstream>
 
 #include "modules/runtime/clock.h"
@@ -59,6 +60,22 @@ TEST_CASE("module group: a recorder is not started again over what it recorded")
   const auto ends = wait_for_ends(group, 1);
   REQUIRE(ends.size() == 1);
   CHECK(ends[0].start_again == script.string() + " run.part2.mcap --session s");
+}
+
+TEST_CASE("module group: how to start again names the keys, and the network, of the session") {
+  // Oracle: by hand; without them the module would hear nobody.
+  const Scripts scripts;
+  const auto script = scripts.add("palpate-collision", "exit 1");
+  std::ostringstream log;
+  ::setenv("PALPATE_KEYS", "/a b/keys", 1);
+  ::setenv("PALPATE_PEERS", "10.0.0.6", 1);
+  ModuleGroup group({{"collision", script, {"--session", "s"}}}, log);
+  const auto ends = wait_for_ends(group, 1);
+  ::unsetenv("PALPATE_KEYS");
+  ::unsetenv("PALPATE_PEERS");
+  REQUIRE(ends.size() == 1);
+  CHECK(ends[0].start_again ==
+        "PALPATE_KEYS='/a b/keys' PALPATE_PEERS=10.0.0.6 " + script.string() + " --session s");
 }
 
 TEST_CASE("module group: exit code 2 is bad input, 0 is no failure") {

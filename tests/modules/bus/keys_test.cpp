@@ -1,12 +1,8 @@
 #include "modules/bus/keys.h"
 
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <csignal>
-#include <iterator>
 #include <thread>
 
 #include "modules/bus/key_check.h"
@@ -116,36 +112,6 @@ TEST_CASE("keys: files are their owner's alone, the authority's key is not among
   CHECK(files == 2 + 3 * roles().size());
   CHECK_FALSE(fs::exists(keys / "authority.key"));
   CHECK(told([&] { make_keys(keys, kHour); }).find("is not empty") != std::string::npos);
-}
-
-TEST_CASE("keys: whatever ends the making of them, the next try works", "[bus]") {
-  // Oracle: the stated rule; the program's end at any time, by the two signals.
-  const ScratchFolder folder;
-  const fs::path keys = folder / "keys";
-  for (const int signal : {SIGTERM, SIGKILL}) {
-    for (int ms = 1; ms < 200; ms += 7) {
-      const pid_t process = ::fork();
-      if (process == 0) {
-        std::signal(SIGTERM, SIG_DFL);  // Catch2 has its own
-        try {
-          make_keys(keys, kHour);
-        } catch (const std::exception&) {
-        }
-        ::_exit(0);
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(ms));
-      ::kill(process, signal);
-      ::waitpid(process, nullptr, 0);
-      CAPTURE(signal, ms);
-      if (!fs::exists(keys)) continue;
-      REQUIRE(std::distance(fs::directory_iterator(keys), {}) == 2 + 3 * std::ssize(roles()));
-      fs::remove_all(keys);
-    }
-    const auto left = std::distance(fs::directory_iterator(folder.path()), {});
-    CHECK((signal == SIGKILL || left == 0));
-    CHECK_NOTHROW(make_keys(keys, kHour));
-    fs::remove_all(keys);
-  }
 }
 
 TEST_CASE("keys: a folder that is there and empty is taken, however it is named", "[bus]") {
