@@ -41,7 +41,7 @@ class Certifying {
              KeepGoing keep_going, std::ostream& out, std::ostream& log)
       : options_(options),
         subject_(std::move(subject)),
-        store_(shared_folder(options), told(options, subject_)),
+        store_(shared_folder(options), told(options, subject_), log),
         claims_(claims),
         keep_going_(std::move(keep_going)),
         out_(out),

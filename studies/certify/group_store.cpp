@@ -38,8 +38,8 @@ Line line_of(const Json::Value& json) {
 
 }  // namespace
 
-GroupStore::GroupStore(std::filesystem::path folder, std::string of)
-    : folder_(std::move(folder)), of_(std::move(of)) {}
+GroupStore::GroupStore(const std::filesystem::path& folder, std::string of, std::ostream& log)
+    : files_(folder, log), of_(std::move(of)) {}
 
 std::string GroupStore::key(const std::string& group) const {
   std::string word;
@@ -47,12 +47,8 @@ std::string GroupStore::key(const std::string& group) const {
   return fmt::format("{}-{:016x}", word, std::hash<std::string>{}(of_));
 }
 
-std::filesystem::path GroupStore::file_of(const std::string& group) const {
-  return folder_ / (key(group) + ".json");
-}
-
 bool GroupStore::read(const std::string& group, GroupResult& out) const {
-  const auto json = report::stored_json(file_of(group), of_);
+  const auto json = report::stored_json(files_, key(group) + ".json", of_);
   if (!json) return false;
   out = {};
   for (const Json::Value& line : (*json)["lines"]) out.lines.push_back(line_of(line));
@@ -70,7 +66,7 @@ void GroupStore::write(const std::string& group, const GroupResult& result) cons
   json["truncated"] = Json::UInt64(result.troubles.truncated);
   json["lost"] = Json::UInt64(result.troubles.lost);
   json["unsolved"] = Json::UInt64(result.troubles.unsolved);
-  report::store_json(file_of(group), of_, std::move(json));
+  report::store_json(files_, key(group) + ".json", of_, std::move(json));
 }
 
 }  // namespace palpate::certify

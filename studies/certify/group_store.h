@@ -4,11 +4,13 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "modules/messages/messages.h"
 #include "studies/certify/line.h"
+#include "studies/report/point_files.h"
 
 namespace palpate::certify {
 
@@ -20,19 +22,18 @@ struct GroupResult {
 
 class GroupStore {
  public:
-  /// @param of  scene, options and program that all results are of: others are not read
-  GroupStore(std::filesystem::path folder, std::string of);
+  /// @param of   scene, options and program that all results are of: others are not read
+  /// @param log  told of results that are not whole
+  GroupStore(const std::filesystem::path& folder, std::string of, std::ostream& log);
 
   std::string key(const std::string& group) const;
-  /// @returns false if it is not there
+  /// @returns false if it is not there, or not whole
   bool read(const std::string& group, GroupResult& out) const;
   /// @throws std::runtime_error if it cannot be written
   void write(const std::string& group, const GroupResult& result) const;
 
  private:
-  std::filesystem::path file_of(const std::string& group) const;
-
-  std::filesystem::path folder_;
+  report::PointFiles files_;
   std::string of_;
 };
 

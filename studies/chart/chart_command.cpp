@@ -65,7 +65,7 @@ void print_noise(const std::vector<Case>& of, std::ostream& out) {
 }
 
 /// Bullet squeezes the ball in a program of its own, ours beside it.
-void measure_peers(const ChartOptions& options, std::ostream& log) {
+void measure_peers(const ChartOptions& options, const KeepGoing& keep_going, std::ostream& log) {
   if (!std::filesystem::exists(options.bullet_program)) {
     log << "Bullet: SKIPPED: palpate-bench-bullet was not built (libbullet-dev)\n";
     return;
@@ -75,7 +75,7 @@ void measure_peers(const ChartOptions& options, std::ostream& log) {
   std::vector<std::string> words{options.bullet_program.string(), "--out", options.out.string()};
   if (options.extent != Extent::kFull) words.insert(words.end(), {"--nodes", "642"});
   if (options.extent == Extent::kQuick) words.emplace_back("--quick");
-  if (report::run_program(words) != 0) {
+  if (report::run_program(words, keep_going) != 0) {
     throw std::runtime_error(options.bullet_program.string() + " failed");
   }
 }
@@ -93,7 +93,7 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
   const auto of = wanted_cases(options, log);
   const auto models = wanted_models(options);
   if (options.again) std::filesystem::remove_all(options.out / "points");
-  const PointStore store(options.out / "points");
+  const PointStore store(options.out / "points", log);
   const StopSignal stop;
   report::Claims claims(options.out / "points" / "claims", options.shard);
   const KeepGoing keep_going = [&] {
@@ -111,9 +111,9 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
     write_tables(result, options.out);
     print(result, out);
     print_noise(of, out);
-    if (options.peers) measure_peers(options, log);
+    if (options.peers) measure_peers(options, keep_going, log);
     out << "on " << report::machine_name() << '\n';
-    report::draw_figures(data_file("plots/plot_accuracy.py"), options.out);
+    report::draw_figures(data_file("plots/plot_accuracy.py"), options.out, {}, keep_going);
     out << "in " << options.out.string()
         << ": the charts, models.csv, points.csv, samples.csv, profiles.csv, "
            "reference_solutions.csv"

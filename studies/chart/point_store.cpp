@@ -2,6 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <sstream>
+
 #include "studies/report/measures.h"
 #include "studies/report/reference_table.h"
 #include "studies/report/table_file.h"
@@ -69,23 +71,26 @@ void visit_numbers(const Visit& visit) {
 
 std::string reference_key(int level) { return fmt::format("reference-{}", level); }
 
-PointStore::PointStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  report::make_out_folder(folder_);
+PointStore::PointStore(const std::filesystem::path& folder, std::ostream& log)
+    : files_(folder, log) {
+  report::make_out_folder(folder);
 }
 
-std::filesystem::path PointStore::file_of(const Case& of, const std::string& key) const {
-  return folder_ / fmt::format("{}-{}-v{}.csv", of.name, key, kVersion);
+std::string PointStore::name_of(const Case& of, const std::string& key) {
+  return fmt::format("{}-{}-v{}", of.name, key, kVersion);
 }
 
 bool PointStore::read(const Case& of, const std::string& key, Measurement& out) const {
-  const auto file = file_of(of, key);
-  if (!std::filesystem::exists(file)) return false;
-  const report::ReferenceTable table(file);
+  const std::string name = name_of(of, key) + ".csv";
+  const auto text = files_.read(name);
+  if (!text) return false;
+  std::istringstream lines(*text);
+  const report::ReferenceTable table(name, lines);
   out = {};
   for (std::size_t row = 0; row < table.size(); ++row) {
     Sample& sample = out.samples.emplace_back();
-    visit_numbers([&](const std::string& name, const auto& access) {
-      double value = table.at(name, row);
+    visit_numbers([&](const std::string& column, const auto& access) {
+      double value = table.at(column, row);
       access(out, sample, &value);
     });
   }
@@ -94,18 +99,18 @@ bool PointStore::read(const Case& of, const std::string& key, Measurement& out) 
 
 void PointStore::write(const Case& of, const std::string& key,
                        const Measurement& measurement) const {
-  std::vector<std::string> names;
-  visit_numbers([&](const std::string& name, const auto&) { names.push_back(name); });
-  report::TableFile table(file_of(of, key), names);
+  std::vector<std::string> columns;
+  visit_numbers([&](const std::string& name, const auto&) { columns.push_back(name); });
+  std::string text = report::table_line(columns);
   Measurement whole = measurement;
   for (Sample& sample : whole.samples) {
     std::vector<double> row;
     visit_numbers([&](const std::string&, const auto& access) {
       row.push_back(access(whole, sample, nullptr));
     });
-    table.write_row(std::span<const double>(row));
+    text += report::table_line(row);
   }
-  table.finish();
+  files_.write(name_of(of, key) + ".csv", text);
 }
 
 }  // namespace palpate::chart

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <fstream>
 #include <sstream>
 
 #include "studies/report/measures.h"
@@ -41,17 +40,17 @@ bool parse(const std::string& line, Outcome& out) {
 
 }  // namespace
 
-BlockStore::BlockStore(std::filesystem::path folder, std::uint64_t seed)
-    : folder_(std::move(folder)), seed_(seed) {
-  report::make_out_folder(folder_);
+BlockStore::BlockStore(const std::filesystem::path& folder, std::uint64_t seed, std::ostream& log)
+    : files_(folder, log), seed_(seed) {
+  report::make_out_folder(folder);
 }
 
-std::filesystem::path BlockStore::file_of(std::uint64_t first, std::size_t count) const {
-  return folder_ / fmt::format("seed{}-{:06}-{}-v{}.csv", seed_, first, count, kVersion);
+std::string BlockStore::name_of(std::uint64_t first, std::size_t count) const {
+  return fmt::format("seed{}-{:06}-{}-v{}", seed_, first, count, kVersion);
 }
 
 bool BlockStore::read(std::uint64_t first, std::size_t count, std::vector<Outcome>& out) const {
-  std::ifstream stream(file_of(first, count));
+  std::istringstream stream(files_.read(name_of(first, count) + ".csv").value_or(""));
   std::string line;
   if (!std::getline(stream, line)) return false;
   out.clear();
@@ -65,16 +64,16 @@ void BlockStore::write(std::uint64_t first, const std::vector<Outcome>& outcomes
   std::vector<std::string> columns{"ending", "unguarded", "time_s"};
   columns.insert(columns.end(), kGuardNames.begin(), kGuardNames.end());
   columns.push_back("what");
-  report::TableFile table(file_of(first, outcomes.size()), columns);
+  std::string text = report::table_line(columns);
   for (const Outcome& outcome : outcomes) {
     std::vector<std::string> cells{std::to_string(int(outcome.ending)),
                                    std::to_string(int(outcome.unguarded)),
                                    fmt::format("{:.6g}", outcome.time)};
     for (const auto guard : outcome.guards) cells.push_back(std::to_string(guard));
     cells.push_back(cell_text(outcome.what));
-    table.write_row(cells);
+    text += report::table_line(cells);
   }
-  table.finish();
+  files_.write(name_of(first, outcomes.size()) + ".csv", text);
 }
 
 }  // namespace palpate::fuzz

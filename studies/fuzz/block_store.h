@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <vector>
 
 #include "studies/fuzz/outcome.h"
+#include "studies/report/point_files.h"
 
 namespace palpate::fuzz {
 
@@ -13,20 +15,19 @@ inline constexpr std::uint64_t kBlock = 100;  ///< scenes
 class BlockStore {
  public:
   /// @param folder  made if need be
-  BlockStore(std::filesystem::path folder, std::uint64_t seed);
+  /// @param log     told of blocks that are not whole
+  BlockStore(const std::filesystem::path& folder, std::uint64_t seed, std::ostream& log);
 
-  /// @returns false if the block is not there, or is of another version of this program
+  /// @returns false if the block is not there, of another version of this program, or not whole
   bool read(std::uint64_t first, std::size_t count, std::vector<Outcome>& out) const;
   void write(std::uint64_t first, const std::vector<Outcome>& outcomes) const;
   /// A word for the block, in all runs that would run the same.
-  std::string key(std::uint64_t first, std::size_t count) const {
-    return file_of(first, count).stem().string();
-  }
+  std::string key(std::uint64_t first, std::size_t count) const { return name_of(first, count); }
 
  private:
-  std::filesystem::path file_of(std::uint64_t first, std::size_t count) const;
+  std::string name_of(std::uint64_t first, std::size_t count) const;
 
-  std::filesystem::path folder_;
+  report::PointFiles files_;
   std::uint64_t seed_;
 };
 

@@ -24,9 +24,9 @@ constexpr std::size_t kKeptOfAKind = 3;
 
 /// Leaves a failing scene as simple as can be in out/scene_k.
 void keep(const FuzzOptions& options, const ShapeStore& shapes, std::uint64_t number,
-          const std::string& kind, std::ostream& log) {
+          const std::string& kind, const report::KeepGoing& keep_going, std::ostream& log) {
   const auto fails = [&](const RandomScene& scene) {
-    const Outcome outcome = run_apart(scene, shapes);
+    const Outcome outcome = run_apart(scene, shapes, keep_going);
     return outcome.ending == Ending::kFailed && outcome.kind() == kind;
   };
   const RandomScene small = minimised(random_scene(options.seed, number), fails);
@@ -47,7 +47,7 @@ int run_one(const FuzzOptions& options, const ShapeStore& shapes, std::ostream& 
   out << fmt::format("simulated {:.4g} s; {}\n", outcome.time,
                      outcome.what.empty() ? "ran" : outcome.what);
   if (outcome.ending != Ending::kFailed) return kExitDone;
-  keep(options, shapes, number, outcome.kind(), log);
+  keep(options, shapes, number, outcome.kind(), {}, log);
   return kExitFailed;
 }
 
@@ -56,7 +56,7 @@ report::Share run_all(const FuzzOptions& options, const ShapeStore& shapes,
                       report::Progress& progress, Tally& tally, std::ostream& log) {
   const auto folder = options.out / "blocks";
   if (options.again) std::filesystem::remove_all(folder);
-  const BlockStore store(folder, options.seed);
+  const BlockStore store(folder, options.seed, log);
   report::Claims claims(folder / "claims", options.shard);
   std::map<std::string, std::size_t> kept;
   std::vector<report::Point> points;
@@ -71,13 +71,14 @@ report::Share run_all(const FuzzOptions& options, const ShapeStore& shapes,
     const auto run = [&, first, count] {
       std::vector<Outcome> outcomes;
       for (std::uint64_t k = first; k < first + count; ++k) {
-        progress.at(double(k), double(options.scenes), "scenes");
-        claims.keep();
-        outcomes.push_back(run_and_compare(random_scene(options.seed, k), shapes));
+        const report::KeepGoing keep_going = [&, k] {
+          progress.at(double(k), double(options.scenes), "scenes");
+          claims.keep();
+        };
+        outcomes.push_back(run_and_compare(random_scene(options.seed, k), shapes, keep_going));
         const std::string kind = outcomes.back().kind();
         if (outcomes.back().ending != Ending::kFailed || ++kept[kind] > kKeptOfAKind) continue;
-        keep(options, shapes, k, kind, log);
-        claims.keep();
+        keep(options, shapes, k, kind, keep_going, log);
       }
       store.write(first, outcomes);
     };

@@ -10,6 +10,8 @@
 
 namespace palpate::fuzz {
 
+inline constexpr double kMostScenes = 1e7, kLargestSeed = 1e18;
+
 struct FuzzOptions {
   std::filesystem::path out = "out/fuzz";
   std::uint64_t scenes = 1000, seed = 1;

@@ -6,6 +6,7 @@
 #include "studies/fuzz/outcome.h"
 #include "studies/fuzz/random_scene.h"
 #include "studies/fuzz/shape_store.h"
+#include "studies/report/progress.h"
 
 namespace palpate::fuzz {
 
@@ -17,10 +18,13 @@ Outcome run_lockstep(const RandomScene& scene, const ShapeStore& shapes,
                      deformation::Guarding guarding = deformation::Guarding::kOn);
 
 /// The same in a process of its own: a crash or a hang is a failure of the scene, not ours.
+/// @param keep_going  asked meanwhile, several times a second; what it throws ends that process
 Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes,
+                  const report::KeepGoing& keep_going = {},
                   deformation::Guarding guarding = deformation::Guarding::kOn);
 
 /// And, where a guard of the state acted, once more without them.
-Outcome run_and_compare(const RandomScene& scene, const ShapeStore& shapes);
+Outcome run_and_compare(const RandomScene& scene, const ShapeStore& shapes,
+                        const report::KeepGoing& keep_going = {});
 
 }  // namespace palpate::fuzz

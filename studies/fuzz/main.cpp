@@ -9,9 +9,10 @@ int main(int argc, char** argv) {
                            "palpate fuzz");
   fuzz::FuzzOptions options;
   program.add("-o,--out", options.out, "Folder for outcomes and failing scenes").shows_default();
-  program.add("--scenes", options.scenes, "How many").range(1, 10'000'000).shows_default();
-  program.add("--seed", options.seed, "Of the scenes").shows_default();
-  const auto only = program.add("--scene", options.only, "Only this one, in detail");
+  program.add("--scenes", options.scenes, "How many").range(1, fuzz::kMostScenes).shows_default();
+  program.add("--seed", options.seed, "Of the scenes").range(0, fuzz::kLargestSeed).shows_default();
+  const auto only = program.add("--scene", options.only, "Only this one, in detail")
+                        .range(0, fuzz::kMostScenes - 1);
   const auto again =
       program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
   std::string shard;

@@ -1,3 +1,5 @@
+#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +14,7 @@ namespace palpate::fuzz {
 namespace {
 
 constexpr unsigned kHungAfter = 120;  // [s], wall time
+constexpr int kAskEvery = 100;        // [ms]
 
 /// As it goes through the pipe; `what` follows.
 struct Sent {
@@ -21,7 +24,9 @@ struct Sent {
 };
 
 [[noreturn]] void run_as_child(const RandomScene& scene, const ShapeStore& shapes,
-                               deformation::Guarding guarding, int pipe) {
+                               deformation::Guarding guarding, int pipe, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
   for (const int signal : {SIGALRM, SIGABRT, SIGSEGV, SIGFPE, SIGILL}) std::signal(signal, SIG_DFL);
   ::alarm(kHungAfter);
   ::dup2(pipe, STDERR_FILENO);  // the last words of a crash
@@ -32,37 +37,59 @@ struct Sent {
   ::_exit(::write(pipe, bytes.data(), bytes.size()) == ssize_t(bytes.size()) ? 0 : 1);
 }
 
-std::string read_all(int pipe) {
-  std::string bytes;
-  char buffer[2048];
-  for (;;) {
-    const ssize_t count = ::read(pipe, buffer, sizeof buffer);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return bytes;
-    bytes.append(buffer, static_cast<std::size_t>(count));
+/// Ended with this, if it has not been waited for.
+class Child {
+ public:
+  Child(pid_t process, int pipe) : process_(process), pipe_(pipe) {}
+  ~Child() {
+    ::close(pipe_);
+    if (process_ < 0) return;
+    ::kill(process_, SIGKILL);
+    wait();
   }
-}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
 
-int wait_for(pid_t child) {
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  std::string read_all(const report::KeepGoing& keep_going) const {
+    std::string bytes;
+    char buffer[2048];
+    for (;;) {
+      if (keep_going) keep_going();
+      pollfd waiting{pipe_, POLLIN, 0};
+      if (::poll(&waiting, 1, kAskEvery) <= 0) continue;  // time is up, or a signal came
+      const ssize_t count = ::read(pipe_, buffer, sizeof buffer);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) return bytes;
+      bytes.append(buffer, static_cast<std::size_t>(count));
+    }
   }
-  return status;
-}
+
+  int wait() {
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = -1;
+    return status;
+  }
+
+ private:
+  pid_t process_;
+  int pipe_;
+};
 
 }  // namespace
 
 Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes,
-                  deformation::Guarding guarding) {
+                  const report::KeepGoing& keep_going, deformation::Guarding guarding) {
   int ends[2];
   if (::pipe(ends) != 0) throw std::runtime_error("no pipe to a child process");
-  const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("no child process can be started");
-  if (child == 0) run_as_child(scene, shapes, guarding, ends[1]);
+  const pid_t parent = ::getpid(), process = ::fork();
+  if (process < 0) throw std::runtime_error("no child process can be started");
+  if (process == 0) run_as_child(scene, shapes, guarding, ends[1], parent);
   ::close(ends[1]);
-  const std::string bytes = read_all(ends[0]);
-  ::close(ends[0]);
-  const int status = wait_for(child);
+  Child child(process, ends[0]);
+  const std::string bytes = child.read_all(keep_going);
+  const int status = child.wait();
   Outcome outcome;
   if (WIFSIGNALED(status) || bytes.size() < sizeof(Sent)) {
     const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -80,10 +107,11 @@ Outcome run_apart(const RandomScene& scene, const ShapeStore& shapes,
   return outcome;
 }
 
-Outcome run_and_compare(const RandomScene& scene, const ShapeStore& shapes) {
-  Outcome outcome = run_apart(scene, shapes);
+Outcome run_and_compare(const RandomScene& scene, const ShapeStore& shapes,
+                        const report::KeepGoing& keep_going) {
+  Outcome outcome = run_apart(scene, shapes, keep_going);
   if (outcome.ending != Ending::kRan || !outcome.any_guard_of_state()) return outcome;
-  const Outcome bare = run_apart(scene, shapes, deformation::Guarding::kOff);
+  const Outcome bare = run_apart(scene, shapes, keep_going, deformation::Guarding::kOff);
   outcome.unguarded = bare.ending == Ending::kRan ? Unguarded::kFine : Unguarded::kFailed;
   return outcome;
 }

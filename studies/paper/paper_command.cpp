@@ -68,7 +68,9 @@ int run_paper(const PaperOptions& options, std::ostream& out, std::ostream& log)
     print(findings, out);
     progress.begin("drawing");
     try {
-      report::draw_figures(data_file("plots/plot_paper.py"), options.out);
+      report::draw_figures(data_file("plots/plot_paper.py"), options.out, {}, [&] {
+        if (stop.requested()) throw report::Stopped{};
+      });
     } catch (const std::runtime_error& error) {
       if (!stop.requested()) log << error.what() << std::endl;
       complete = false;

@@ -201,7 +201,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
   const std::filesystem::path output = options.shard ? "" : output_of(scene, options);
   if (!options.points.empty()) report::make_out_folder(options.points);
   Sharing sharing{{options.points / "claims", options.shard},
-                  {options.points, told(scene, options)}};
+                  {options.points, told(scene, options), log}};
   const StopSignal stop;
   const auto keep_going = [&] {
     if (stop.requested()) throw report::Stopped{};

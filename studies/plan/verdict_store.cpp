@@ -27,8 +27,8 @@ void visit_numbers(Verdict& v, const Visit& visit) {
 
 }  // namespace
 
-VerdictStore::VerdictStore(std::filesystem::path folder, std::string of)
-    : folder_(std::move(folder)), of_(std::move(of)) {}
+VerdictStore::VerdictStore(const std::filesystem::path& folder, std::string of, std::ostream& log)
+    : stores_(!folder.empty()), files_(folder, log), of_(std::move(of)) {}
 
 std::string VerdictStore::key(const std::string& organ, const Candidate& candidate) const {
   return fmt::format("plan-{:016x}",
@@ -37,8 +37,8 @@ std::string VerdictStore::key(const std::string& organ, const Candidate& candida
 
 bool VerdictStore::read(const std::string& organ, const Candidate& candidate,
                         StoredVerdict& out) const {
-  if (folder_.empty()) return false;
-  const auto stored = report::stored_json(folder_ / (key(organ, candidate) + ".json"), of_);
+  if (!stores_) return false;
+  const auto stored = report::stored_json(files_, key(organ, candidate) + ".json", of_);
   if (!stored) return false;
   const Json::Value& json = *stored;
   out = {};
@@ -65,7 +65,7 @@ void VerdictStore::write(const std::string& organ, const StoredVerdict& stored) 
   for (const std::string& failure : verdict.failures) json["misses"].append(failure);
   json["is_cut"] = verdict.is_cut;
   json["machine"] = stored.machine;
-  report::store_json(folder_ / (key(organ, verdict.candidate) + ".json"), of_, std::move(json));
+  report::store_json(files_, key(organ, verdict.candidate) + ".json", of_, std::move(json));
 }
 
 }  // namespace palpate::plan

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <iosfwd>
 #include <string>
 
 #include "studies/plan/verdict.h"
+#include "studies/report/point_files.h"
 
 namespace palpate::plan {
 
@@ -18,16 +20,18 @@ class VerdictStore {
  public:
   /// @param folder  empty: nothing is stored
   /// @param of      scene, options and program that all verdicts are of: others are not read
-  VerdictStore(std::filesystem::path folder, std::string of);
+  /// @param log     told of verdicts that are not whole
+  VerdictStore(const std::filesystem::path& folder, std::string of, std::ostream& log);
 
   std::string key(const std::string& organ, const Candidate& candidate) const;
-  /// @returns false if it is not there
+  /// @returns false if it is not there, or not whole
   bool read(const std::string& organ, const Candidate& candidate, StoredVerdict& out) const;
   /// @throws std::runtime_error if it cannot be written
   void write(const std::string& organ, const StoredVerdict& stored) const;
 
  private:
-  std::filesystem::path folder_;
+  bool stores_;
+  report::PointFiles files_;
   std::string of_;
 };
 

@@ -23,10 +23,19 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 ReferenceTable::ReferenceTable(std::filesystem::path file) : file_(std::move(file)) {
   std::ifstream stream = open_input(file_);
+  take(stream);
+}
+
+ReferenceTable::ReferenceTable(std::filesystem::path file, std::istream& lines)
+    : file_(std::move(file)) {
+  take(lines);
+}
+
+void ReferenceTable::take(std::istream& lines) {
   std::string line;
-  if (!std::getline(stream, line)) throw InputError(file_.string() + ": is empty");
+  if (!std::getline(lines, line)) throw InputError(file_.string() + ": is empty");
   names_ = cells_of(line);
-  while (std::getline(stream, line)) rows_.push_back(cells_of(line));
+  while (std::getline(lines, line)) rows_.push_back(cells_of(line));
 }
 
 double ReferenceTable::at(const std::string& column, std::size_t row) const {

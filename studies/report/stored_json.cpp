@@ -2,15 +2,15 @@
 
 #include <json/json.h>
 
-#include <fstream>
-
-#include "modules/core/whole_file.h"
+#include <sstream>
 
 namespace palpate::report {
 
-std::optional<Json::Value> stored_json(const std::filesystem::path& file, const std::string& of) {
-  std::ifstream stream(file);
-  if (!stream) return std::nullopt;
+std::optional<Json::Value> stored_json(const PointFiles& files, const std::string& name,
+                                       const std::string& of) {
+  const auto text = files.read(name);
+  if (!text) return std::nullopt;
+  std::istringstream stream(*text);
   Json::CharReaderBuilder builder;
   builder["allowSpecialFloats"] = true;
   Json::Value json;
@@ -19,11 +19,12 @@ std::optional<Json::Value> stored_json(const std::filesystem::path& file, const 
   return json["of"] == of ? std::optional(std::move(json)) : std::nullopt;
 }
 
-void store_json(const std::filesystem::path& file, const std::string& of, Json::Value result) {
+void store_json(const PointFiles& files, const std::string& name, const std::string& of,
+                Json::Value result) {
   result["of"] = of;
   Json::StreamWriterBuilder builder;  // 17 digits: the same bits
   builder["useSpecialFloats"] = true;
-  write_whole_file(file, Json::writeString(builder, result));
+  files.write(name, Json::writeString(builder, result) + '\n');
 }
 
 }  // namespace palpate::report

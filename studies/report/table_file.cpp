@@ -16,29 +16,29 @@ std::string quoted(const std::string& cell) {
 
 }  // namespace
 
+std::string table_line(std::span<const double> values) {
+  std::array<char, 32> text{};
+  std::string line;
+  for (const double value : values) {
+    std::snprintf(text.data(), text.size(), "%s%.10g", line.empty() ? "" : ",", value);
+    line += text.data();
+  }
+  return line + '\n';
+}
+
+std::string table_line(const std::vector<std::string>& cells) {
+  std::string line;
+  const char* separator = "";
+  for (const auto& cell : cells) {
+    line += separator + quoted(cell);
+    separator = ",";
+  }
+  return line + '\n';
+}
+
 TableFile::TableFile(std::filesystem::path file, const std::vector<std::string>& columns)
     : file_(std::move(file)) {
   write_row(columns);
-}
-
-void TableFile::write_row(std::span<const double> values) {
-  std::array<char, 32> text{};
-  const char* separator = "";
-  for (const double value : values) {
-    std::snprintf(text.data(), text.size(), "%s%.10g", separator, value);
-    file_.stream() << text.data();
-    separator = ",";
-  }
-  file_.stream() << '\n';
-}
-
-void TableFile::write_row(const std::vector<std::string>& cells) {
-  const char* separator = "";
-  for (const auto& cell : cells) {
-    file_.stream() << separator << quoted(cell);
-    separator = ",";
-  }
-  file_.stream() << '\n';
 }
 
 }  // namespace palpate::report

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "modules/core/error.h"
@@ -76,18 +75,18 @@ Column measure_column(const Map& map, const std::string& series, double x,
   return column;
 }
 
-ColumnStore::ColumnStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  report::make_out_folder(folder_);
+ColumnStore::ColumnStore(const std::filesystem::path& folder, std::ostream& log)
+    : files_(folder, log) {
+  report::make_out_folder(folder);
 }
 
-std::filesystem::path ColumnStore::file_of(const Map& map, const std::string& series,
-                                           double x) const {
-  return folder_ / fmt::format("{}-{}-{:g}-{:016x}-v{}.csv", map.name, series, x, grid_key(map),
-                               kAtlasVersion);
+std::string ColumnStore::name_of(const Map& map, const std::string& series, double x) {
+  return fmt::format("{}-{}-{:g}-{:016x}-v{}", map.name, series, x, grid_key(map), kAtlasVersion);
 }
 
 bool ColumnStore::read(const Map& map, const std::string& series, double x, Column& out) const {
-  std::ifstream stream(file_of(map, series, x));
+  const auto text = files_.read(name_of(map, series, x) + ".csv");
+  std::istringstream stream(text.value_or(""));
   std::string line;
   if (!std::getline(stream, line)) return false;
   out = {map.name, series, x, {}, {}};
@@ -104,11 +103,11 @@ bool ColumnStore::read(const Map& map, const std::string& series, double x, Colu
 }
 
 void ColumnStore::write(const Map& map, const Column& column) const {
-  report::TableFile table(file_of(map, column.series, column.x), store_columns());
+  std::string text = report::table_line(store_columns());
   for (const Cell& cell : column.cells) {
-    table.write_row(std::span<const double>(numbers_of(cell, column.prediction)));
+    text += report::table_line(numbers_of(cell, column.prediction));
   }
-  table.finish();
+  files_.write(name_of(map, column.series, column.x) + ".csv", text);
 }
 
 std::vector<double> geometric(double low, double high, int count) {

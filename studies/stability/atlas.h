@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
+#include "studies/report/point_files.h"
 #include "studies/stability/runs.h"
 
 namespace palpate::stability {
@@ -61,21 +63,22 @@ Column measure_column(const Map& map, const std::string& series, double x,
 class ColumnStore {
  public:
   /// @param folder  made if need be
-  explicit ColumnStore(std::filesystem::path folder);
+  /// @param log     told of columns that are not whole
+  ColumnStore(const std::filesystem::path& folder, std::ostream& log);
 
   /// @returns false if it has not been measured with these ys and this precision, or by another
-  ///          version of this program
+  ///          version of this program, or is not whole
   bool read(const Map& map, const std::string& series, double x, Column& out) const;
   void write(const Map& map, const Column& column) const;
   /// A word for the column, in all runs that would measure the same.
   std::string key(const Map& map, const std::string& series, double x) const {
-    return file_of(map, series, x).stem().string();
+    return name_of(map, series, x);
   }
 
  private:
-  std::filesystem::path file_of(const Map& map, const std::string& series, double x) const;
+  static std::string name_of(const Map& map, const std::string& series, double x);
 
-  std::filesystem::path folder_;
+  report::PointFiles files_;
 };
 
 /// `count` values from `low` to `high` in equal ratios.

@@ -3,7 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "deformation/models.h"
@@ -76,9 +76,10 @@ std::vector<std::uint32_t> outer_faces(const deformation::TaylorHoodElements& so
   return faces;
 }
 
-/// Force and divergence, in a file of their own. @returns false if it is not there
-bool read_point(const std::filesystem::path& file, double& force, bool& has_diverged) {
-  std::ifstream stream(file);
+/// Force and divergence, in a file of their own. @returns false if it is not there, or not whole
+bool read_point(const report::PointFiles& files, const std::string& name, double& force,
+                bool& has_diverged) {
+  std::istringstream stream(files.read(name).value_or(""));
   char comma = 0;
   int diverged = 0;
   std::string title;
@@ -87,10 +88,11 @@ bool read_point(const std::filesystem::path& file, double& force, bool& has_dive
   return true;
 }
 
-void write_point(const std::filesystem::path& file, double force, bool diverged) {
-  report::TableFile table(file, {"force_n", "diverged"});
-  table.write_row({force, double(diverged)});
-  table.finish();
+void write_point(const report::PointFiles& files, const std::string& name, double force,
+                 bool diverged) {
+  const std::vector<std::string> columns{"force_n", "diverged"};
+  const std::vector<double> values{force, double(diverged)};
+  files.write(name, report::table_line(columns) + report::table_line(values));
 }
 
 }  // namespace
@@ -139,7 +141,7 @@ std::vector<double> locking_ratios(bool quick) {
 }
 
 std::vector<report::Point> locking_points(const std::vector<double>& ratios,
-                                          const std::filesystem::path& folder,
+                                          const report::PointFiles& files,
                                           const KeepGoing& keep_going,
                                           std::vector<LockingPoint>& results) {
   const auto key = [](const std::string& what, double ratio) {
@@ -158,30 +160,32 @@ std::vector<report::Point> locking_points(const std::vector<double>& ratios,
   }
   std::vector<report::Point> points;
   for (const double ratio : ratios) {
-    const auto file = folder / (key("reference", ratio) + ".csv");
-    points.push_back({key("reference", ratio),
-                      [=, &results] {
-                        double force = 0;
-                        bool ignored = false;
-                        if (!read_point(file, force, ignored)) return false;
-                        for (LockingPoint& point : results) {
-                          if (point.poisson_ratio == ratio) point.reference_force = force;
-                        }
-                        return true;
-                      },
-                      [=] { write_point(file, locking_reference(ratio, keep_going), false); }});
+    const std::string name = key("reference", ratio) + ".csv";
+    points.push_back(
+        {key("reference", ratio),
+         [=, &files, &results] {
+           double force = 0;
+           bool ignored = false;
+           if (!read_point(files, name, force, ignored)) return false;
+           for (LockingPoint& point : results) {
+             if (point.poisson_ratio == ratio) point.reference_force = force;
+           }
+           return true;
+         },
+         [=, &files] { write_point(files, name, locking_reference(ratio, keep_going), false); }});
   }
   for (std::size_t i = 0; i < results.size(); ++i) {
     const std::string model = results[i].model;
     const double ratio = results[i].poisson_ratio;
-    const auto file = folder / (key(model, ratio) + ".csv");
-    points.push_back(
-        {key(model, ratio),
-         [=, &results] { return read_point(file, results[i].force, results[i].diverged); },
-         [=] {
-           const auto measured = locking_point(model, ratio, keep_going);
-           write_point(file, measured.force, measured.diverged);
-         }});
+    const std::string name = key(model, ratio) + ".csv";
+    points.push_back({key(model, ratio),
+                      [=, &files, &results] {
+                        return read_point(files, name, results[i].force, results[i].diverged);
+                      },
+                      [=, &files] {
+                        const auto measured = locking_point(model, ratio, keep_going);
+                        write_point(files, name, measured.force, measured.diverged);
+                      }});
   }
   return points;
 }

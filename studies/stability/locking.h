@@ -7,6 +7,7 @@
 
 #include "modules/scene/scene.h"
 #include "studies/report/claims.h"
+#include "studies/report/point_files.h"
 #include "studies/stability/runs.h"
 
 namespace palpate::stability {
@@ -39,10 +40,10 @@ LockingPoint locking_point(const std::string& model, double poisson_ratio,
 std::vector<double> locking_ratios(bool quick);
 
 /// All linear tetrahedra at each of `ratios`, and what they are compared with.
-/// @param folder   keeps a file per point
+/// @param files    one per point; must outlive them
 /// @param results  filled as the points are read; must outlive them
 std::vector<report::Point> locking_points(const std::vector<double>& ratios,
-                                          const std::filesystem::path& folder,
+                                          const report::PointFiles& files,
                                           const KeepGoing& keep_going,
                                           std::vector<LockingPoint>& results);
 

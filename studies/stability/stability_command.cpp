@@ -225,7 +225,8 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
   report::make_out_folder(options.out);
   const auto folder = options.out / "points";
   if (options.again) std::filesystem::remove_all(folder);
-  const ColumnStore store(folder);
+  const ColumnStore store(folder, log);
+  const report::PointFiles locking_files(folder, log);
   report::Claims claims(folder / "claims", options.shard);
   const StopSignal stop;
   const KeepGoing keep_going = [&] {
@@ -237,7 +238,8 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
     auto points = points_of(wanted, store, log, keep_going, columns);
     std::vector<LockingPoint> locking;
     if (wants(options, kLocking)) {
-      const auto more = locking_points(locking_ratios(options.quick), folder, keep_going, locking);
+      const auto more =
+          locking_points(locking_ratios(options.quick), locking_files, keep_going, locking);
       points.insert(points.end(), more.begin(), more.end());
     }
     const report::Share share = report::measure_points(points, claims);
@@ -253,7 +255,7 @@ int run_stability(const StabilityOptions& options, std::ostream& out, std::ostre
       write_locking(locking, options.out / "locking.csv");
       print_locking(locking, out);
     }
-    report::draw_figures(data_file("plots/plot_stability.py"), options.out);
+    report::draw_figures(data_file("plots/plot_stability.py"), options.out, {}, keep_going);
     out << "in " << options.out.string() << ": the charts, atlas.csv, frontiers.csv"
         << (wants(options, kLocking) ? ", locking.csv" : "")
         << "; points/ is what a next run starts from\n";

@@ -63,6 +63,17 @@ TEST_CASE("command line: what is not a command or option is bad input") {
              Contains("--near-unit requires --near"));
   CHECK_THAT(type("palpate", {"rum"}).said, Contains("no command 'rum'; there are run replay"));
   CHECK_THAT(type("palpate", {"mesh", "a.ply", "--nodes", "-5"}).said, Contains("-5 not in range"));
+  for (const char* seed :
+       {"-1", "1000000000000000001", "18446744073709551616", "99999999999999999999999"}) {
+    const auto refused = type("palpate", {"fuzz", "--seed", seed, "--scenes", "1"});
+    CHECK(refused.code == kExitBadInput);
+    CHECK_THAT(refused.said, Contains(std::string("--seed: Value ") + seed + " not in range"));
+  }
+  for (const char* scene : {"-1", "10000000", "18446744073709551616"}) {
+    const auto refused = type("palpate", {"fuzz", "--scene", scene});
+    CHECK(refused.code == kExitBadInput);
+    CHECK_THAT(refused.said, Contains(std::string("--scene: Value ") + scene + " not in range"));
+  }
   CHECK_THAT(type("palpate", {"run", "a.yaml", "--duration", "nan"}).said,
              Contains("--duration: nan is not a number"));
 }

@@ -3,8 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "tests/scratch_folder.h"
+#include "tests/studies/damages.h"
 
 using namespace palpate;
 using namespace palpate::certify;
@@ -12,7 +14,8 @@ using namespace palpate::certify;
 TEST_CASE("group store: lines come back bit by bit, and only for what they are of") {
   // Oracle: what was written.
   const ScratchFolder folder;
-  const GroupStore store(folder.path(), "this scene");
+  std::ostringstream log;
+  const GroupStore store(folder.path(), "this scene", log);
   const double infinite = std::numeric_limits<double>::infinity();
   GroupResult written;
   written.lines = {at_most("a", {"b", 0.1 + 0.2, 1.0 / 3, "N", "source, \"quoted\"", "note\n"}),
@@ -35,5 +38,14 @@ TEST_CASE("group store: lines come back bit by bit, and only for what they are o
   CHECK(read.push == written.push);
   CHECK(read.troubles.unsolved == 3);
   CHECK_FALSE(store.read("another", read));
-  CHECK_FALSE(GroupStore(folder.path(), "another scene").read("link: 10 ms", read));
+  CHECK_FALSE(GroupStore(folder.path(), "another scene", log).read("link: 10 ms", read));
+  CHECK(log.str().empty());
+  const std::string file = store.key("link: 10 ms") + ".json";
+  for (const std::string& text : damaged(text_in(folder / file))) {
+    INFO(text);
+    folder.write(file, text);
+    std::ostringstream said;
+    CHECK_FALSE(GroupStore(folder.path(), "this scene", said).read("link: 10 ms", read));
+    CHECK_THAT(said.str(), Catch::Contains(file + ": was "));
+  }
 }

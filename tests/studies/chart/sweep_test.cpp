@@ -4,9 +4,12 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "modules/scene/models.h"
+#include "tests/scratch_folder.h"
 #include "tests/studies/chart/folders.h"
+#include "tests/studies/damages.h"
 #include "tests/studies/keep_on.h"
 
 namespace palpate::chart {
@@ -17,7 +20,8 @@ using report::kKeepOn;
 TEST_CASE("sweep: what was measured is not measured again and comes back the same") {
   // Oracle: a second sweep that is stopped at the first measurement finishes all the same.
   const testing::WorkFolder folder;
-  const PointStore store(folder.path / "points");
+  std::ostringstream log;
+  const PointStore store(folder.path / "points", log);
   report::Claims claims(folder.path / "claims", {});
   const std::vector<Case> of{find_case("ball")};
   const std::vector<std::string> models{"mass_spring"};
@@ -34,6 +38,27 @@ TEST_CASE("sweep: what was measured is not measured again and comes back the sam
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     CHECK(b.samples[i].force == a.samples[i].force);
     CHECK(std::isnan(b.samples[i].field_error));
+  }
+}
+
+TEST_CASE("sweep: a stored point that is not whole is named, and is as if it was not there") {
+  // Oracle: definition.
+  const ScratchFolder folder;
+  std::ostringstream ignored;
+  const Case of = find_case("ball");
+  Measurement measured, back;
+  measured.samples.resize(2);
+  measured.samples[1].force = 0.125;
+  PointStore(folder.path(), ignored).write(of, "key", measured);
+  const auto file = std::filesystem::directory_iterator(folder.path())->path().filename().string();
+  REQUIRE(PointStore(folder.path(), ignored).read(of, "key", back));
+  CHECK(back.samples.at(1).force == 0.125);
+  for (const std::string& text : damaged(text_in(folder / file))) {
+    INFO(text);
+    folder.write(file, text);
+    std::ostringstream log;
+    CHECK_FALSE(PointStore(folder.path(), log).read(of, "key", back));
+    CHECK_THAT(log.str(), Catch::Contains(file + ": was "));
   }
 }
 
@@ -59,7 +84,8 @@ TEST_CASE("sweep: quick is less than usual, usual less than full") {
 TEST_CASE("sweep: what it says is left shrinks to nothing as points are done") {
   // Oracle: a second run has nothing left to say; numbers of jobs count up.
   const testing::WorkFolder folder;
-  const PointStore store(folder.path / "points");
+  std::ostringstream log;
+  const PointStore store(folder.path / "points", log);
   report::Claims claims(folder.path / "claims", {});
   const std::vector<std::string> models{"mass_spring", "implicit_volume"};
   std::vector<Outlook> said;

@@ -31,11 +31,11 @@ TEST_CASE("fuzz command: shards in one folder add up to the tally of one machine
   const chart::testing::WorkFolder alone, shared;
   FuzzOptions options;
   options.scenes = kBlock + 2;
+  std::ostringstream expected, merged, told, log;
   for (const auto& folder : {alone.path, shared.path}) {
-    BlockStore(folder / "blocks", options.seed).write(0, std::vector<Outcome>(kBlock));
+    BlockStore(folder / "blocks", options.seed, log).write(0, std::vector<Outcome>(kBlock));
   }
   options.out = alone.path;
-  std::ostringstream expected, merged, told, log;
   run_fuzz(options, expected, log);
   options.out = shared.path;
   for (const std::size_t index : {2u, 1u}) {

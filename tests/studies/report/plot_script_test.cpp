@@ -1,6 +1,7 @@
 #include "studies/report/plot_script.h"
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstdlib>
 
 #include "modules/core/data_folder.h"
@@ -24,6 +25,16 @@ TEST_CASE("plot script: without figures to draw it draws none and is content") {
   const ScratchFolder folder;
   CHECK_NOTHROW(draw_figures(kScript, folder.path()));
   CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("plot script: whoever wants the drawing to end ends it") {
+  // Oracle: a clock; the program would take a minute.
+  struct Stop {};
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK_THROWS_AS(run_program({"sleep", "60"}, [] { throw Stop{}; }), Stop);
+  CHECK_THROWS_AS(draw_figures(kScript, "/nowhere", {}, [] { throw Stop{}; }), Stop);
+  CHECK(std::chrono::steady_clock::now() < begin + std::chrono::seconds(10));
+  CHECK(run_program({"sh", "-c", "exit 7"}, [] {}) == 7);
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <sstream>
 
+#include "tests/scratch_folder.h"
 #include "tests/studies/chart/folders.h"
+#include "tests/studies/damages.h"
 #include "tests/studies/keep_on.h"
 
 namespace palpate::stability {
@@ -70,7 +73,8 @@ TEST_CASE("atlas: frontiers outside the map are said to be so, what stands again
 TEST_CASE("atlas: a stored column comes back the same, and only for its own grid") {
   // Oracle: round trip to the ten digits of the file; no try is made for what is stored.
   const chart::testing::WorkFolder folder;
-  const ColumnStore store(folder.path / "points");
+  std::ostringstream log;
+  const ColumnStore store(folder.path / "points", log);
   Map map = made_up();
   Column back;
   CHECK_FALSE(store.read(map, "one", 1, back));
@@ -94,6 +98,24 @@ TEST_CASE("atlas: a stored column comes back the same, and only for its own grid
   map.precision = 0.01;
   map.ys.pop_back();
   CHECK_FALSE(store.read(map, "one", 1, back));
+  CHECK(log.str().empty());
+}
+
+TEST_CASE("atlas: a column that is not whole is named, and is as if it was not there") {
+  // Oracle: definition.
+  const ScratchFolder folder;
+  std::ostringstream ignored;
+  const Map map = made_up();
+  Column back;
+  ColumnStore(folder.path(), ignored).write(map, measure_column(map, "one", 1, kKeepOn));
+  const auto file = std::filesystem::directory_iterator(folder.path())->path().filename().string();
+  for (const std::string& text : damaged(text_in(folder / file))) {
+    INFO(text);
+    folder.write(file, text);
+    std::ostringstream log;
+    CHECK_FALSE(ColumnStore(folder.path(), log).read(map, "one", 1, back));
+    CHECK_THAT(log.str(), Catch::Contains(file + ": was "));
+  }
 }
 
 TEST_CASE("atlas: values in equal ratios begin and end where asked") {

@@ -1,6 +1,7 @@
 #include "studies/stability/locking.h"
 
 #include <catch2/catch.hpp>
+#include <sstream>
 
 #include "tests/studies/chart/folders.h"
 #include "tests/studies/keep_on.h"
@@ -34,9 +35,11 @@ TEST_CASE("locking: what was measured is not measured again, and stands in the t
   struct Stop {};
   CHECK(locking_ratios(true).size() < locking_ratios(false).size());
   report::Claims claims(folder.path / "claims", {});
+  std::ostringstream log;
+  const report::PointFiles files(folder.path, log);
   const auto measure = [&](const KeepGoing& keep_going) {
     std::vector<LockingPoint> results;
-    report::measure_points(locking_points({0.45}, folder.path, keep_going, results), claims);
+    report::measure_points(locking_points({0.45}, files, keep_going, results), claims);
     return results;
   };
   CHECK_THROWS_AS(measure([] { throw Stop{}; }), Stop);
@@ -47,6 +50,9 @@ TEST_CASE("locking: what was measured is not measured again, and stands in the t
     CHECK(again[i].error() == first[i].error());
   }
   for (const LockingPoint& point : again) CHECK(point.computed_poisson_ratio == 0.45);
+  std::filesystem::resize_file(folder.path / "locking-corotational-0.45-v1.csv", 20);
+  CHECK_THROWS_AS(measure([] { throw Stop{}; }), Stop);
+  CHECK_THAT(log.str(), Catch::Contains("locking-corotational-0.45-v1.csv: was cut"));
   write_locking(again, folder.path / "locking.csv");
   CHECK(std::filesystem::file_size(folder.path / "locking.csv") > 0);
 }
