@@ -11,6 +11,12 @@ from palpate import _core
 from palpate.errors import InputError
 
 
+def _is_scene_or_empty(file: Path) -> bool:
+    with open(file, "rb") as stream:
+        beginning = stream.read(1 << 16)
+    return not beginning or b"palpate_scene:" in beginning
+
+
 def scene_path(name: str) -> Path:
     """The file of a scene that comes with Palpate, such as "stomach_probe".
 
@@ -102,12 +108,21 @@ class Scene:
         return self._core.text()
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Writes text() to a file. Meshes keep their full names; comments are gone.
+        """Writes text() to a file, whole or not at all. Meshes keep their full names; comments are gone.
 
         Raises:
+            FileExistsError: the file is there, not empty and no scene: such a one is not replaced.
             OSError: the file cannot be written.
         """
-        Path(file).write_text(self.text(), encoding="utf-8")
+        place = Path(file).resolve()
+        if place.exists() and not _is_scene_or_empty(place):
+            raise FileExistsError(f"{file}: is there and no scene; it is not replaced")
+        part = place.with_name(f"{place.name}.{os.getpid()}.part")
+        try:
+            part.write_text(self.text(), encoding="utf-8")
+            part.replace(place)
+        finally:
+            part.unlink(missing_ok=True)
 
     @property
     def digest(self) -> str:

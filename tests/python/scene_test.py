@@ -89,6 +89,13 @@ class SceneTest(unittest.TestCase):
             self.scene.save(file)
             self.assertEqual(palpate.Scene.load(file), self.scene)
             self.assertEqual(palpate.Scene.load(file).digest, self.scene.digest)
+            self.scene.save(file)  # a scene replaces a scene
+            precious = Path(folder) / "precious.txt"
+            precious.write_text("mine")
+            with self.assertRaises(FileExistsError):
+                self.scene.save(precious)
+            self.assertEqual(precious.read_text(), "mine")
+            self.assertEqual(sorted(Path(folder).iterdir()), [precious, file])
         self.assertEqual(pickle.loads(pickle.dumps(self.scene)), self.scene)
         copy = self.scene.copy()
         copy[E] = 9e3
