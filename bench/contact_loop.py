@@ -112,7 +112,7 @@ def run(scene, tool, speed, rate, folder):
     nodes, triangles = at_rest["rest_positions_m"][0].reshape(-1, 3), at_rest["triangle_nodes"][0].reshape(-1, 3)
     rows, presses = motion(x, z, skin(nodes, triangles, x, z), tool, speed)
     table, mcap = Path(folder) / "motion.csv", Path(folder) / "run.mcap"
-    header = "time_s,x_m,y_m,z_m,qx,qy,qz,qw"
+    header = "t,x,y,z,qx,qy,qz,qw"
     np.savetxt(table, rows, delimiter=",", header=header, comments="", fmt="%.9g")
     loaded["probes"] = [{"name": "tool", "shape": TOOLS[tool][0], "device": {"trajectory": {"file": str(table)}}}]
     loaded["rates.deformation_hz"] = rate
@@ -129,7 +129,7 @@ def run(scene, tool, speed, rate, folder):
 
 def judge(recording, points):
     surfaces, told, found = recording["surface"], recording["node_positions"], recording["contacts"]
-    meshes = {int(surfaces["generation"][i]): surfaces["triangle_nodes"][i].reshape(-1, 3) for i in range(len(surfaces))}
+    meshes = {int(surfaces["generation"][i]): surfaces["triangle_nodes"][i].reshape(-1, 3) for i in range(len(surfaces["generation"]))}
     of_first = np.flatnonzero(np.asarray(told["organ"]) == 0)
     came = 1e-9 * np.asarray(told["source_time_ns"])[of_first]
     inside = lost = 0
@@ -151,7 +151,7 @@ def judge(recording, points):
         inside += 1
         gaps = np.concatenate([np.ravel(found[f"{kind}.gap_m"][i]) for kind in ("contacts", "faces")])
         lost += not (gaps < 0).any()
-    return len(found), inside, lost, int(np.sum(found["truncated"]))
+    return len(found["truncated"]), inside, lost, int(np.sum(found["truncated"]))
 
 
 def main():
