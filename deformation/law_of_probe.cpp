@@ -157,4 +157,12 @@ LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContact
   return law;
 }
 
+LocalLaw without_rows(const LocalLaw& law) {
+  LocalLaw bare;
+  bare.anchor = law.anchor;
+  bare.period = law.period;
+  bare.friction_coefficient = law.friction_coefficient;
+  return bare;
+}
+
 }  // namespace palpate::deformation

@@ -15,4 +15,7 @@ namespace palpate::deformation {
 LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContacts> probes,
                       std::size_t index, double period, bool* bounded);
 
+/// The same of a probe that touches nothing, or of which nobody knows what it touches.
+LocalLaw without_rows(const LocalLaw& law);
+
 }  // namespace palpate::deformation

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "deformation/following_organ.h"
 #include "deformation/guard_text.h"
+#include "deformation/law_of_probe.h"
 #include "deformation/organ_messages.h"
 #include "deformation/own_organs.h"
 #include "deformation/usual_age.h"
@@ -20,7 +22,7 @@ namespace {
 
 /// What holds tissue off a round probe goes on so long without searches: the steps look around its
 /// core themselves, and a collision that died is back by then. Tissue let go meanwhile would come
-/// back at a speed, and the hand get a blow [s].
+/// back at a speed, and the hand get a blow. Laws have no rows meanwhile: the hand lets go [s].
 constexpr double kHeldUnsearched = 1.0;
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true.
@@ -73,6 +75,10 @@ class ProbeInputs {
     return old > usual_ages_[probe].limit() ? found_ns_[probe] : now_ns;
   }
 
+  /// Whether a probe's contacts are too old to be true.
+  bool unsearched(std::size_t probe, std::int64_t now_ns) const {
+    return contacts_heard_.silent(probe, now_ns);
+  }
   bool any_silent(std::int64_t now_ns) const {
     return states_heard_.any_silent(now_ns) || contacts_heard_.any_silent(now_ns);
   }
@@ -229,7 +235,9 @@ class Outputs {
     force_errors_.look(world);
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
-      static_cast<LocalLaw&>(model_) = world.local_law(probe, &bounded);
+      LocalLaw law = world.local_law(probe, &bounded);
+      if (inputs.unsearched(probe, now_ns)) law = without_rows(law);
+      static_cast<LocalLaw&>(model_) = std::move(law);
       model_.probe = static_cast<std::uint32_t>(probe);
       any_bounded |= bounded;
       model_.header = header;

@@ -45,6 +45,11 @@ TEST_CASE("law of a probe: the local law goes on with a slow press") {
   press();
   const double grown = (world.force(0) - law.force()).z();
   CHECK(law.growth * testing::kPeriod * law.force().z() == Approx(grown).epsilon(0.2));
+  const LocalLaw bare = without_rows(law);
+  CHECK_FALSE(bare.touching());
+  CHECK(bare.rows.empty());
+  CHECK(bare.stiffness.isZero(0));
+  CHECK(bare.anchor.position == law.anchor.position);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST_CASE("dead deformation: started again it joins, and is pressed where the fi
 }
 
 TEST_CASE("dead collision: contacts are dropped, the force ends, and started again it joins") {
-  // Oracle: kInputStaleAfter, then the tissue lets go and the model says so.
+  // Oracle: kInputStaleAfter, then the model has no rows, and says so.
   const BallScene scene;
   RunningSession session(scene);
   REQUIRE(session.start());
