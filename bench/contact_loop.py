@@ -103,6 +103,8 @@ def run(scene, tool, speed, rate, folder):
     """Searches, of these inside, of these without a contact that pushes, truncated; presses."""
     loaded = palpate.Scene.load(palpate.scene_path(scene))
     organ = loaded["organs[0].name"]
+    if organ not in PLACES:
+        sys.exit(f"{scene}: its first organ is {organ!r}; places are known on {', '.join(PLACES)}")
     x, z = PLACES[organ]
     rest = Path(folder) / "rest.mcap"
     program = ROOT / "build/release/bin/palpate"
@@ -117,7 +119,6 @@ def run(scene, tool, speed, rate, folder):
     loaded["probes"] = [{"name": "tool", "shape": TOOLS[tool][0], "device": {"trajectory": {"file": str(table)}}}]
     loaded["rates.deformation_hz"] = rate
     file = Path(folder) / "scene.yaml"
-    file.unlink(missing_ok=True)
     loaded.save(file)
     words = [program, "run", file, "--headless", "--no-visualizer", "--duration", f"{rows[-1, 0]:g}", "--session", f"loop{os.getpid()}"]
     words += ["--record", mcap, "--overwrite", "--record-topics", "contacts", "surface", "node_positions"]

@@ -24,12 +24,17 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
+StabilityOptions one_series_in(const std::filesystem::path& folder) {
+  StabilityOptions options = quick_in(folder);
+  options.only_maps = {"step_stiffness"};
+  options.only_series = {"implicit_volume"};
+  return options;
+}
+
 TEST_CASE("stability command: tables and maps appear, and a second run finds the same") {
   // Oracle: the promised files, theory met, and bit-equal tables of a run that measures nothing.
   const chart::testing::WorkFolder folder;
-  StabilityOptions options = quick_in(folder.path);
-  options.only_maps = {"step_stiffness"};
-  options.only_series = {"implicit_volume"};
+  const StabilityOptions options = one_series_in(folder.path);
   std::ostringstream out, again, log;
   REQUIRE(run_stability(options, out, log) == kExitDone);
   CHECK_THAT(out.str(), Catch::Contains("implicit_volume") && Catch::Contains("3 of 3 frontiers"));
@@ -50,9 +55,7 @@ TEST_CASE("stability command: damaged points are named and measured again, table
   // Oracle: the run before the damage, whose three points are cut at a line, have another digit
   // and lack their seal.
   const chart::testing::WorkFolder folder;
-  StabilityOptions options = quick_in(folder.path);
-  options.only_maps = {"step_stiffness"};
-  options.only_series = {"implicit_volume"};
+  const StabilityOptions options = one_series_in(folder.path);
   std::ostringstream out, log, again;
   REQUIRE(run_stability(options, out, log) == kExitDone);
   const std::string tries = text_of(folder.path / "atlas.csv");
