@@ -236,7 +236,10 @@ class Outputs {
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
       LocalLaw law = world.local_law(probe, &bounded);
-      if (inputs.unsearched(probe, now_ns)) law = without_rows(law);
+      if (inputs.unsearched(probe, now_ns)) {
+        law = without_rows(law);
+        bounded = false;
+      }
       static_cast<LocalLaw&>(model_) = std::move(law);
       model_.probe = static_cast<std::uint32_t>(probe);
       any_bounded |= bounded;
