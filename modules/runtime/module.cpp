@@ -17,6 +17,8 @@ constexpr int kPreferredFifo = 20;
 /// A loop that works more than this part of its periods would keep everybody else, and by the
 /// kernel's throttling even the haptic loop, from running.
 constexpr double kBusyAllTheTime = 0.9;
+/// What is judged at once: a single cycle that others kept from running says nothing.
+constexpr std::int64_t kBusyJudgedNs = kNanosecondsPerSecond / 4;
 constexpr int kBackgroundSteps = 10;
 /// A guard that acted for a moment stays visible for this long.
 constexpr std::int64_t kGuardShownNs = kNanosecondsPerSecond;
@@ -76,7 +78,8 @@ bool Module::next_cycle() {
   session_.poll();
   if (session_.running()) run_with_priority();
   report_state();
-  if (status_.poll(now_ns(), time(), loop_.statistics())) give_way_if_busy();
+  give_way_if_busy();
+  status_.poll(now_ns(), time(), loop_.statistics());
   return !stop_.requested() && session_.phase() != SessionPhase::kStopped;
 }
 
@@ -85,6 +88,8 @@ bool Module::next_cycle() {
 void Module::run_with_priority() {
   if (std::exchange(ran_, true) || !realtime_.priority) return;
   resume_realtime(priority_ == Priority::kRealtime ? kRealtimeFifo : kPreferredFifo);
+  judged_since_ns_ = now_ns();
+  busy_then_ns_ = loop_.statistics().busy_ns;
 }
 
 void Module::report_state() {
@@ -107,9 +112,16 @@ void Module::report_state() {
   }
 }
 
+/// Judged by what it does with the priority: without one, time that others took counts as its own.
 void Module::give_way_if_busy() {
-  const double busy = status_.status().busy_fraction;
-  if (priority_ != Priority::kPreferred || !realtime_.priority || busy < kBusyAllTheTime) return;
+  if (priority_ != Priority::kPreferred || !realtime_.priority || !ran_) return;
+  const std::int64_t judged_ns = now_ns() - judged_since_ns_;
+  if (judged_ns < kBusyJudgedNs) return;
+  const double busy =
+      seconds_from_ns(loop_.statistics().busy_ns - busy_then_ns_) / seconds_from_ns(judged_ns);
+  judged_since_ns_ = now_ns();
+  busy_then_ns_ = loop_.statistics().busy_ns;
+  if (busy < kBusyAllTheTime) return;
   give_up_realtime();
   realtime_.priority = false;
   status_.set_realtime_priority(false);

@@ -74,7 +74,9 @@ class Module {
   const char* guard_ = "";
   std::int64_t guard_since_ns_ = 0;
   bool ready_ = false;
-  bool ran_ = false;  ///< the session has
+  bool ran_ = false;                  ///< the session has
+  std::int64_t judged_since_ns_ = 0;  ///< how busy the loop is; then its time in cycles so far
+  std::int64_t busy_then_ns_ = 0;
 };
 
 }  // namespace palpate::runtime

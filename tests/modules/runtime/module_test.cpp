@@ -3,7 +3,10 @@
 #include <sched.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <csignal>
+#include <iostream>
+#include <thread>
 
 #include "modules/runtime/clock.h"
 #include "modules/runtime/realtime.h"
@@ -35,6 +38,14 @@ struct Played {
   bus::Reader<ModuleStatus> statuses = bus.reader(bus::kModuleStatus);
   ModuleStatus newest;
 
+  /// Busy, as far as the loop knows, until just before its next period.
+  void spend_the_period() const {
+    std::this_thread::sleep_until(
+        std::chrono::steady_clock::time_point(std::chrono::nanoseconds(module.now_ns())) +
+        std::chrono::microseconds(4900));
+  }
+  bool hogging = false;
+
   void command(SessionCommand wanted) {
     session.poll();
     conductor.command(session.state(), wanted);
@@ -43,6 +54,7 @@ struct Played {
   bool cycle_until(ModuleState state, std::string_view error = "") {
     const auto deadline = monotonic_now_ns() + 20'000'000'000;
     while (monotonic_now_ns() < deadline && module.next_cycle()) {
+      if (hogging) spend_the_period();
       while (statuses.take(newest)) {
       }
       session.poll();
@@ -100,6 +112,33 @@ TEST_CASE("module: real-time priority is that of who runs, not of who loads or w
   played.command(SessionCommand::kStart);
   REQUIRE(played.cycle_until(ModuleState::kRunning));
   CHECK(sched_getscheduler(0) == (granted ? SCHED_FIFO : SCHED_OTHER));
+  give_up_realtime();
+}
+
+TEST_CASE(
+    "module: a loop that is busy all the time gives its priority back, by what it does with it") {
+  // Oracle: the kernel's word.
+  if (!request_realtime(20, false).priority) {
+    std::cout << "SKIPPED: no real-time priority here\n";
+    return;
+  }
+  give_up_realtime();
+  Played played(true);
+  played.module.ready();
+  played.hogging = true;  // before it has the priority, when this may be others' doing
+  REQUIRE(played.cycle_until(ModuleState::kReady));
+  for (int k = 0; k < 60; ++k) {
+    REQUIRE(played.module.next_cycle());
+    played.spend_the_period();
+  }
+  played.command(SessionCommand::kStart);
+  REQUIRE(played.cycle_until(ModuleState::kRunning));
+  CHECK(sched_getscheduler(0) == SCHED_FIFO);
+  CHECK(palpate::testing::wait_until([&] {
+    const bool going = played.module.next_cycle();
+    played.spend_the_period();
+    return going && sched_getscheduler(0) == SCHED_OTHER;
+  }));
   give_up_realtime();
 }
 
