@@ -121,14 +121,14 @@ void apply_profile(const Profile& profile, dds::DataWriterQos& qos) {
   apply_common(profile, qos);
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   // Repeated until acknowledged: in lockstep others wait for what was lost on the way.
-  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(profile.every_sample ? 5 : 100);
+  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(profile.every_sample ? 20 : 100);
   qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(profile.every_sample ? 0 : 1);
 }
 
 void apply_profile(const Profile& profile, dds::DataReaderQos& qos) {
   apply_common(profile, qos);
   qos.reliable_reader_qos().times.heartbeatResponseDelay =
-      milliseconds(profile.every_sample ? 0 : 1);
+      milliseconds(!profile.every_sample ? 1 : profile.delivery == Delivery::kState ? 0 : 5);
 }
 
 }  // namespace palpate::bus
