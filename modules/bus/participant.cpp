@@ -147,13 +147,13 @@ std::string Participant::what(const char* endpoint, const TopicInfo& topic) cons
 
 dds::DataWriter* Participant::add_writer(const TopicInfo& info) {
   dds::DataWriterQos qos;
-  apply_profile({info.delivery, Keep::kNewest, every_sample_}, qos);
+  apply_profile({info.delivery, Keep::kNewest, every_sample_, over_hosts()}, qos);
   return demand_created(publisher_->create_datawriter(topic(info), qos), what("writer", info));
 }
 
 dds::DataReader* Participant::add_reader(const TopicInfo& info, Keep keep) {
   dds::DataReaderQos qos;
-  apply_profile({info.delivery, keep, every_sample_}, qos);
+  apply_profile({info.delivery, keep, every_sample_, over_hosts()}, qos);
   return demand_created(subscriber_->create_datareader(topic(info), qos), what("reader", info));
 }
 

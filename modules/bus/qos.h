@@ -39,7 +39,8 @@ std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int dom
 struct Profile {
   Delivery delivery;
   Keep keep;  ///< of a reader
-  bool every_sample;
+  bool every_sample = false;
+  bool over_hosts = false;  ///< on ways that lose some
 };
 inline constexpr int kStateDepth = 1024;
 void apply_profile(const Profile& profile, eprosima::fastdds::dds::DataWriterQos& qos);
