@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "deformation/following_organ.h"
 #include "modules/core/sort_unique.h"
@@ -92,6 +93,15 @@ void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out
     out.block_boxes.insert(out.block_boxes.end(), box.lower.begin(), box.lower.end());
     out.block_boxes.insert(out.block_boxes.end(), box.upper.begin(), box.upper.end());
   }
+}
+
+void note_extremes(const NodePositions& said, bool runs, OrganExtremes& of) {
+  of.volume_ratio = said.target_volume > 0 ? said.volume / said.target_volume : 0;
+  if (!runs) return;
+  of.worst_volume_error = std::max(of.worst_volume_error, std::abs(of.volume_ratio - 1));
+  of.lowest_pressure = std::min(of.lowest_pressure, said.pressure);
+  of.highest_pressure = std::max(of.highest_pressure, said.pressure);
+  of.most_contacts = std::max(of.most_contacts, said.organ_contacts);
 }
 
 ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe,

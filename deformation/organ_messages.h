@@ -23,6 +23,10 @@ void write_node_positions(const DeformationWorld& world, std::size_t organ, Node
 /// @param blocks  those of surface_message()
 void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out);
 
+/// Takes what was said of an organ into what it has been so far.
+/// @param runs  the session does, or did before
+void note_extremes(const NodePositions& said, bool runs, OrganExtremes& of);
+
 /// The tissue's local law for a probe.
 ContactModel contact_model_message(const DeformationWorld& world, std::size_t probe,
                                    bool* bounded = nullptr);

@@ -185,6 +185,7 @@ class Outputs {
   Outputs(bus::Bus& bus, const OwnOrgans& organs, std::size_t probes, std::size_t process)
       : bus_(bus), organs_(organs), models_(bus.writer(bus::kContactModel)), force_errors_(probes) {
     for (std::size_t organ = 0; organ < organs.count(); ++organ) {
+      extremes_.push_back({organs.in_scene(organ)});
       surfaces_.push_back(bus.writer(bus::kSurface));
       positions_.push_back(bus.writer(bus::kNodePositions));
     }
@@ -215,7 +216,8 @@ class Outputs {
     }
   }
 
-  void publish_positions(double sim_time, const DeformationWorld& world) {
+  void publish_positions(double sim_time, const DeformationWorld& world, bool running) {
+    ran_ = ran_ || running;
     const Header header{0, ns_from_seconds(sim_time), 0};
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
       write_node_positions(world, organ, node_positions_);
@@ -223,6 +225,7 @@ class Outputs {
       node_positions_.organ = organs_.in_scene(organ);
       node_positions_.header = header;
       positions_[organ].write(node_positions_);
+      note_extremes(node_positions_, ran_, extremes_[organ]);
     }
   }
 
@@ -254,6 +257,8 @@ class Outputs {
     bus_.flush();
     return any_bounded;
   }
+
+  std::span<const OrganExtremes> extremes() const { return extremes_; }
 
   /// When it reads, surfaces that are not those told at first are said, too.
   void exchange(StateArchive& archive, const DeformationWorld& world) {
@@ -293,6 +298,8 @@ class Outputs {
   std::vector<NextBlocks> next_blocks_;          ///< told last
   NodePositions node_positions_;
   ContactModel model_;
+  std::vector<OrganExtremes> extremes_;  ///< by organ
+  bool ran_ = false;
 };
 
 /// @param of_world  the world's own; comes first
@@ -379,9 +386,10 @@ runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
         impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
   }
   impl_->outputs.publish_next_surfaces(impl_->world);
-  impl_->outputs.publish_positions(sim_time, impl_->world);
+  impl_->outputs.publish_positions(sim_time, impl_->world, now.running);
   health.least_advance = least_advance(impl_->world, impl_->period);
   health.contacts = impl_->troubles;
+  health.organs = impl_->outputs.extremes();
   return health;
 }
 

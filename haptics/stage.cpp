@@ -1,5 +1,9 @@
 #include "haptics/stage.h"
 
+#include <algorithm>
+#include <optional>
+#include <span>
+
 #include "haptics/devices/driver_watch.h"
 #include "haptics/haptic_renderer.h"
 #include "modules/core/units.h"
@@ -18,6 +22,23 @@ struct ProbeTexts {
         slewed("probe '" + name + "': its driver moves too fast: the pose is slewed") {}
   std::string several, silent, refused, slewed;
 };
+
+/// After its start, and after a pause, so long is what fades because of them no news [ns].
+constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
+
+/// What a probe's force has been since the session first ran. While that stands, whoever waits for
+/// news calls it old, and forces fade: no limit that tells of the touch. All others count.
+void note_extremes(const HapticForce& said, double force_error, bool runs, bool stands,
+                   ProbeExtremes& of) {
+  of.force = said.force.norm();
+  if (!runs) return;
+  if (of.force > of.greatest_force) {
+    of.greatest_force = of.force;
+    of.error_of_greatest = force_error;
+  }
+  constexpr std::uint32_t kFadesWhileStanding = kForceStaleFade | kForceSlewLimited;
+  of.limits |= said.limits & ~(stands ? kFadesWhileStanding : 0u);
+}
 
 /// A device with the renderer of its force, and the messages that tell of them.
 struct RenderedProbe {
@@ -89,7 +110,13 @@ struct HapticsStage::Impl {
         inputs(bus.reader(bus::kProbeInput, bus::Keep::kBacklog)),
         laws(bus.reader(bus::kContactModel)),
         states(bus.writer(bus::kProbeState)),
-        forces(bus.writer(bus::kHapticForce)) {}
+        forces(bus.writer(bus::kHapticForce)),
+        force_errors(probes.size() * processes, 0),
+        extremes(probes.size()) {
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+      extremes[k].probe = static_cast<std::uint32_t>(k);
+    }
+  }
 
   /// Newest of what others say; probes the scene does not have are nobody's.
   void listen(std::int64_t now_ns) {
@@ -105,6 +132,17 @@ struct HapticsStage::Impl {
       if (law.probe >= probes.size() || law.process == 0 || law.process > processes) continue;
       probes[law.probe].renderer.update_law(law, seconds_from_ns(law.header.source_time_ns),
                                             law.process - 1);
+      force_errors[law.probe * processes + law.process - 1] = law.force_error;
+    }
+  }
+
+  void note_extremes(const runtime::Cycle& now) {
+    if (!now.running) stood_ns = now.now_ns;
+    ran = ran || now.running;
+    const bool stands = stood_ns && now.now_ns - *stood_ns < kGoesOnWithinNs;
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+      const auto errors = std::span(force_errors).subspan(k * processes, processes);
+      haptics::note_extremes(probes[k].force, std::ranges::max(errors), ran, stands, extremes[k]);
     }
   }
 
@@ -125,7 +163,11 @@ struct HapticsStage::Impl {
   bus::Writer<HapticForce> forces;
   ProbeState input;
   ContactModel law;
-  std::uint64_t rejected = 0;  ///< of `inputs`, as far as it was noted
+  std::vector<double> force_errors;  ///< of the newest law, by probe and then process
+  std::vector<ProbeExtremes> extremes;
+  bool ran = false;                      ///< the session has
+  std::optional<std::int64_t> stood_ns;  ///< when it last did not run
+  std::uint64_t rejected = 0;            ///< of `inputs`, as far as it was noted
 };
 
 HapticsStage::HapticsStage(const scene::Scene& scene, bus::Bus& bus,
@@ -147,6 +189,8 @@ runtime::Health HapticsStage::cycle(const runtime::Cycle& now) {
     impl_->forces.write(probe.force);
     if (*health.guard == '\0') health.guard = acting_guard(probe);
   }
+  impl_->note_extremes(now);
+  health.probes = impl_->extremes;
   return health;
 }
 

@@ -29,7 +29,7 @@
 namespace palpate::launcher {
 namespace {
 
-constexpr double kConductorRate = 1000;  // [Hz]
+constexpr double kLongestWait = 0.01;  ///< before signals and processes are looked at again [s]
 constexpr std::int64_t kProgressEveryNs = kNanosecondsPerSecond;
 constexpr std::int64_t kGoodbyeNs = 10 * kNanosecondsPerSecond;
 
@@ -114,8 +114,7 @@ class LockstepRun {
         session_(bus_, digest_),
         conductor_(bus_),
         scenes_(bus_.writer(bus::kScene)),
-        monitor_(bus_, scene_, SessionMonitor::Hears::kStatuses),
-        loop_(kConductorRate) {}
+        monitor_(bus_, scene_) {}
 
   int perform() {
     SceneDescription description = runtime::scene_description(scene_);
@@ -125,7 +124,6 @@ class LockstepRun {
     log_ << fmt::format("palpate: session {} of scene {}, in lockstep\n", options_.bus.session,
                         scene_.name);
     if (!wait_until_ready()) return end(false);
-    monitor_.hear_all(bus_);
     monitor_.tally().start();
     Progress progress(start_ns_, duration_, out_);
     while (next_cycle() && slowest_ns() < end_ns()) {
@@ -145,7 +143,7 @@ class LockstepRun {
 
   /// False when a signal says stop, or a process has ended: without it nothing goes on.
   bool next_cycle() {
-    loop_.wait_for_period();
+    monitor_.wait(kLongestWait);
     session_.poll();
     monitor_.poll();
     for (const auto& ended : modules_.poll()) {
@@ -202,7 +200,7 @@ class LockstepRun {
     const std::int64_t deadline_ns = runtime::monotonic_now_ns() + kGoodbyeNs;
     while (complete && modules_.any_running() && runtime::monotonic_now_ns() < deadline_ns &&
            !stop_.requested()) {
-      loop_.wait_for_period();
+      monitor_.wait(kLongestWait);
       monitor_.poll();
       for (const auto& ended : modules_.poll()) {
         if (ended.failed) failures_[ended.module] = ended.how;
@@ -256,7 +254,6 @@ class LockstepRun {
   runtime::SessionConductor conductor_;
   bus::Writer<SceneDescription> scenes_;
   SessionMonitor monitor_;
-  runtime::PeriodicLoop loop_;
   int exit_code_ = kExitDone;
   std::map<std::string, std::string> failures_;
 };
@@ -265,7 +262,7 @@ class LockstepRun {
 int follow_lockstep(const RunOptions& options, std::ostream& log) {
   const StopSignal stop;
   ModuleGroup modules(module_commands(options, program_folder()), log);
-  runtime::PeriodicLoop loop(kConductorRate);
+  runtime::PeriodicLoop loop(1 / kLongestWait);
   int exit_code = kExitDone;
   while (modules.any_running() && !stop.requested()) {
     loop.wait_for_period();
@@ -314,8 +311,7 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
           bus, options.record, recording::TopicSelection(options.record_topics));
     });
   }
-  SessionMonitor monitor(session.bus(), scene);
-  monitor.tally().start();
+  SessionTally tally(scene);
   log << fmt::format("palpate: scene {} in one process\n", scene.name);
   Progress progress(start.time_ns, duration, out);
   bool save = options.snapshot_at.has_value();
@@ -330,16 +326,19 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   while (session.time() < duration && !stop.requested()) {
     save_if_due();
     session.tick();
-    monitor.poll();
-    monitor.tally().receive(session.contact_troubles());
     progress.tell(session.time(), "");
   }
   save_if_due();
   const double reached = std::min(duration, session.time());
   session.finish(reached);
+  tally.receive(session.contact_troubles());
+  for (const runtime::Health& health : session.healths()) {
+    tally.receive(health.organs);
+    tally.receive(health.probes);
+  }
   const SessionEnd said{
       scene.name, reached - seconds_from_ns(start.time_ns), progress.wall_time(), {}, {}, true};
-  write_run_summary(options, summary(monitor.tally(), said), out);
+  write_run_summary(options, summary(tally, said), out);
   return save ? tell_no_snapshot(options, reached, log) : kExitDone;
 }
 

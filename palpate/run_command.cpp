@@ -33,6 +33,8 @@
 namespace palpate::launcher {
 namespace {
 
+/// How often processes, statuses and signals are looked at [Hz].
+constexpr double kRate = 100;
 constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 /// A session that already runs has been heard by then: twice the longest discovery measured.
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
@@ -58,7 +60,7 @@ class Run {
         conductor_(bus_),
         scenes_(bus_.writer(bus::kScene)),
         monitor_(bus_, scene_),
-        loop_(scene_.rates.deformation) {}
+        loop_(kRate) {}
 
   int perform() {
     if (options_.only.empty()) tell_scene();

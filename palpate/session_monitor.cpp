@@ -2,22 +2,11 @@
 
 namespace palpate::launcher {
 
-SessionMonitor::Physics::Physics(bus::Bus& bus)
-    : positions(bus.reader(bus::kNodePositions)),
-      forces(bus.reader(bus::kHapticForce)),
-      laws(bus.reader(bus::kContactModel)) {}
-
-SessionMonitor::SessionMonitor(bus::Bus& bus, const scene::Scene& scene, Hears hears)
-    : statuses_(bus.reader(bus::kModuleStatus)), tally_(scene) {
-  if (hears == Hears::kAll) hear_all(bus);
-}
+SessionMonitor::SessionMonitor(bus::Bus& bus, const scene::Scene& scene)
+    : statuses_(bus.reader(bus::kModuleStatus)), tally_(scene) {}
 
 void SessionMonitor::poll() {
   while (statuses_.take(status_)) tally_.receive(status_);
-  if (!physics_) return;
-  while (physics_->positions.take(node_positions_)) tally_.receive(node_positions_);
-  while (physics_->laws.take(law_)) tally_.receive(law_);
-  while (physics_->forces.take(force_)) tally_.receive(force_);
 }
 
 std::vector<std::string> SessionMonitor::not_ready(const std::vector<std::string>& modules) const {

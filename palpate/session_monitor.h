@@ -1,8 +1,6 @@
 // Hears a session for its tally.
 #pragma once
 
-#include <optional>
-
 #include "modules/bus/bus.h"
 #include "palpate/session_tally.h"
 
@@ -10,17 +8,11 @@ namespace palpate::launcher {
 
 class SessionMonitor {
  public:
-  enum class Hears { kAll, kStatuses };
+  SessionMonitor(bus::Bus& bus, const scene::Scene& scene);
 
-  SessionMonitor(bus::Bus& bus, const scene::Scene& scene, Hears hears = Hears::kAll);
-
-  /// Hears all from now on. In lockstep a module is ready when so many readers have met its writers
-  /// as take part: one that looks on may not be counted in the place of another, which would miss
-  /// what is said first.
-  void hear_all(bus::Bus& bus) { physics_.emplace(bus); }
-
-  /// Takes what has arrived. Called at the rate of the node positions it misses none of them.
-  void poll();
+  void poll();  ///< takes what has arrived
+  /// Until a status arrives, at most `longest` [s].
+  void wait(double longest) { statuses_.wait(longest); }
 
   /// Names of modules whose state is not yet kReady or beyond (nothing heard, starting).
   std::vector<std::string> not_ready(const std::vector<std::string>& modules) const;
@@ -32,20 +24,8 @@ class SessionMonitor {
   const SessionTally& tally() const { return tally_; }
 
  private:
-  struct Physics {
-    explicit Physics(bus::Bus& bus);
-
-    bus::Reader<NodePositions> positions;
-    bus::Reader<HapticForce> forces;
-    bus::Reader<ContactModel> laws;
-  };
-
   bus::Reader<ModuleStatus> statuses_;
-  std::optional<Physics> physics_;
   ModuleStatus status_;
-  NodePositions node_positions_;
-  HapticForce force_;
-  ContactModel law_;
   SessionTally tally_;
 };
 

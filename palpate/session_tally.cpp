@@ -1,7 +1,6 @@
 #include "palpate/session_tally.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -24,8 +23,8 @@ double ModuleTally::on_time_fraction() const {
 }
 
 SessionTally::SessionTally(const scene::Scene& scene) {
-  for (const auto& organ : scene.organs) organs_.push_back({organ.name});
-  for (const auto& probe : scene.probes) probes_.push_back({probe.name});
+  for (const auto& organ : scene.organs) organs_.push_back({{}, organ.name});
+  for (const auto& probe : scene.probes) probes_.push_back({{}, probe.name});
 }
 
 void SessionTally::start() {
@@ -43,6 +42,9 @@ void SessionTally::receive(const ModuleStatus& status) {
     module = {};
   }
   module.newest = status;
+  receive(status.organs);
+  receive(status.probes);
+  if (!status.organs.empty()) sim_time_ = seconds_from_ns(status.header.sim_time_ns);
   if (!started_ || standing_) return;
   if (status.state != ModuleState::kDegraded || status.last_error.empty()) return;
   const std::string text = status.module + ": " + status.last_error;
@@ -56,37 +58,28 @@ void SessionTally::receive(const ModuleStatus& status) {
   }
 }
 
-void SessionTally::receive(const NodePositions& positions) {
-  if (positions.organ >= organs_.size() || positions.target_volume <= 0) return;
-  OrganTally& organ = organs_[positions.organ];
-  organ.volume_ratio = positions.volume / positions.target_volume;
-  sim_time_ = seconds_from_ns(positions.header.sim_time_ns);
-  if (!started_) return;
-  organ.worst_volume_error = std::max(organ.worst_volume_error, std::abs(organ.volume_ratio - 1));
-  organ.lowest_pressure = std::min(organ.lowest_pressure, positions.pressure);
-  organ.highest_pressure = std::max(organ.highest_pressure, positions.pressure);
-  organ.most_contacts = std::max(organ.most_contacts, positions.organ_contacts);
-}
-
-void SessionTally::receive(const HapticForce& force) {
-  if (force.probe >= probes_.size()) return;
-  ProbeTally& probe = probes_[force.probe];
-  probe.force = force.force.norm();
-  if (!started_) return;
-  if (probe.force > probe.greatest_force) {
-    probe.greatest_force = probe.force;
-    probe.error_of_greatest = probe.force_error;
+void SessionTally::receive(std::span<const OrganExtremes> organs) {
+  for (const OrganExtremes& said : organs) {
+    if (said.organ >= organs_.size()) continue;
+    OrganTally& organ = organs_[said.organ];
+    organ.volume_ratio = said.volume_ratio;
+    organ.worst_volume_error = std::max(organ.worst_volume_error, said.worst_volume_error);
+    organ.lowest_pressure = std::min(organ.lowest_pressure, said.lowest_pressure);
+    organ.highest_pressure = std::max(organ.highest_pressure, said.highest_pressure);
+    organ.most_contacts = std::max(organ.most_contacts, said.most_contacts);
   }
-  constexpr std::uint32_t kFadesWhileStanding = kForceStaleFade | kForceSlewLimited;
-  probe.limits |= force.limits & ~(standing_ ? kFadesWhileStanding : 0u);
 }
 
-void SessionTally::receive(const ContactModel& law) {
-  if (law.probe >= probes_.size()) return;
-  ProbeTally& probe = probes_[law.probe];
-  if (law.process != probe.error_of_process && law.force_error <= probe.force_error) return;
-  probe.force_error = law.force_error;
-  probe.error_of_process = law.process;
+void SessionTally::receive(std::span<const ProbeExtremes> probes) {
+  for (const ProbeExtremes& said : probes) {
+    if (said.probe >= probes_.size()) continue;
+    ProbeTally& probe = probes_[said.probe];
+    probe.force = said.force;
+    probe.limits |= said.limits;
+    if (said.greatest_force <= probe.greatest_force) continue;
+    probe.greatest_force = said.greatest_force;
+    probe.error_of_greatest = said.error_of_greatest;
+  }
 }
 
 ContactTroubles SessionTally::contact_troubles() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,22 +11,13 @@
 
 namespace palpate::launcher {
 
-struct OrganTally {
+// What processes have said of each, put together over those that came after one another.
+struct OrganTally : OrganExtremes {
   std::string name;
-  double volume_ratio = 0;                           ///< newest V/V*; 0 before the first
-  double worst_volume_error = 0;                     ///< largest |V−V*|/V* since the start
-  double lowest_pressure = 0, highest_pressure = 0;  ///< since the start [Pa]
-  std::uint32_t most_contacts = 0;  ///< with other organs and itself at a time, since the start
 };
 
-struct ProbeTally {
+struct ProbeTally : ProbeExtremes {
   std::string name;
-  double force = 0;           ///< newest magnitude [N]
-  double greatest_force = 0;  ///< since the start [N]
-  std::uint32_t limits = 0;   ///< ForceLimit bits that ever acted since the start
-  double force_error = 0;     ///< newest estimate of the mesh's part, see ContactModel: the largest
-  std::uint32_t error_of_process = 1;  ///< whose law has it
-  double error_of_greatest = 0;        ///< the same when the force was greatest
 };
 
 struct ModuleTally {
@@ -42,17 +34,15 @@ class SessionTally {
  public:
   explicit SessionTally(const scene::Scene& scene);
 
-  /// What comes from now on counts for the extremes and sums.
+  /// What comes from now on counts for the sums.
   void start();
 
-  /// While a session stands, whoever waits for news calls it old and forces fade: that is no
-  /// trouble, nor a limit that tells of the touch. All other limits count.
+  /// While a session stands, whoever waits for news calls it old: that is no trouble.
   void stands(bool standing) { standing_ = standing; }
 
   void receive(const ModuleStatus& status);
-  void receive(const NodePositions& positions);
-  void receive(const HapticForce& force);
-  void receive(const ContactModel& law);
+  void receive(std::span<const OrganExtremes> organs);
+  void receive(std::span<const ProbeExtremes> probes);
 
   const std::vector<OrganTally>& organs() const { return organs_; }
   const std::vector<ProbeTally>& probes() const { return probes_; }
@@ -65,7 +55,7 @@ class SessionTally {
   const std::vector<std::string>& troubles() const { return troubles_; }
   /// nullptr if nothing was heard of it.
   const ModuleTally* module(const std::string& name) const;
-  double sim_time() const { return sim_time_; }  ///< of the newest node positions [s]
+  double sim_time() const { return sim_time_; }  ///< of the newest status of a deformation [s]
   /// Of the slowest deformation process; 0 before the first.
   double real_time_factor() const;
 

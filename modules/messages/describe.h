@@ -287,6 +287,25 @@ void describe(V& v, I& input) {
   v.field("inputs.rejected", input.rejected, Rule::kPlain);
 }
 
+template <class V, Is<OrganExtremes> O>
+void describe(V& v, O& organ) {
+  v.field("organs.organ", organ.organ, Rule::kPlain);
+  v.field("organs.volume_ratio", organ.volume_ratio, Rule::kAtLeastZero);
+  v.field("organs.worst_volume_error", organ.worst_volume_error, Rule::kAtLeastZero);
+  v.field("organs.lowest_pressure_pa", organ.lowest_pressure, Rule::kPlain);
+  v.field("organs.highest_pressure_pa", organ.highest_pressure, Rule::kPlain);
+  v.field("organs.most_contacts", organ.most_contacts, Rule::kPlain);
+}
+
+template <class V, Is<ProbeExtremes> P>
+void describe(V& v, P& probe) {
+  v.field("probes.probe", probe.probe, Rule::kPlain);
+  v.field("probes.force_n", probe.force, Rule::kAtLeastZero);
+  v.field("probes.greatest_force_n", probe.greatest_force, Rule::kAtLeastZero);
+  v.field("probes.limits", probe.limits, Rule::kForceLimits);
+  v.field("probes.error_of_greatest", probe.error_of_greatest, Rule::kAtLeastZero);
+}
+
 template <class V, Is<ModuleStatus> M>
 void describe(V& v, M& m) {
   v.header(m.header);
@@ -307,6 +326,8 @@ void describe(V& v, M& m) {
   v.field("contacts_unsolved", m.contacts.unsolved, Rule::kPlain);
   v.field("last_error", m.last_error, Rule::kPlain);
   v.list("inputs", m.inputs, kMaxInputs, nullptr);
+  v.list("organs", m.organs, kMaxOrgans, nullptr);
+  v.list("probes", m.probes, kMaxProbes, nullptr);
 }
 
 template <class V, Is<SceneDescription> M>

@@ -19,6 +19,7 @@ inline constexpr std::uint32_t kProtocolVersion = 11;
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;
 inline constexpr std::size_t kMaxOrgans = 256;  ///< of a scene
+inline constexpr std::size_t kMaxProbes = 256;  ///< of a scene
 inline constexpr std::size_t kMaxFacesPerProbe = 1024;
 inline constexpr std::size_t kMaxFaceNodes = kMaxNodes;  ///< of all faces of a probe
 inline constexpr std::size_t kMaxLawCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;
@@ -125,6 +126,24 @@ struct ContactTroubles {
   }
 };
 
+/// What a deformation process has seen of one of its organs since it first ran the session.
+struct OrganExtremes {
+  std::uint32_t organ = 0;                           ///< in scene order
+  double volume_ratio = 0;                           ///< newest V/V*; 0 before the first
+  double worst_volume_error = 0;                     ///< largest |V−V*|/V*
+  double lowest_pressure = 0, highest_pressure = 0;  ///< [Pa]
+  std::uint32_t most_contacts = 0;                   ///< with other organs and itself at a time
+};
+
+/// What the haptic loop has made of a probe's force since it first ran the session.
+struct ProbeExtremes {
+  std::uint32_t probe = 0;       ///< in scene order
+  double force = 0;              ///< newest magnitude [N]
+  double greatest_force = 0;     ///< [N]
+  std::uint32_t limits = 0;      ///< ForceLimit bits that ever acted, but those of a pause
+  double error_of_greatest = 0;  ///< ContactModel::force_error when the force was greatest
+};
+
 /// Published by every process, a few times a second.
 struct ModuleStatus {
   struct Input {
@@ -151,6 +170,8 @@ struct ModuleStatus {
   ContactTroubles contacts;           ///< of collision and deformation
   std::string last_error;             ///< empty if none
   std::vector<Input> inputs;          ///< at most kMaxInputs
+  std::vector<OrganExtremes> organs;  ///< of deformation, at most kMaxOrgans
+  std::vector<ProbeExtremes> probes;  ///< of haptics, at most kMaxProbes
 };
 
 /// The resolved scene, for late joiners and recordings.

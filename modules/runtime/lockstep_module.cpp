@@ -89,6 +89,7 @@ class LockstepModule {
       wait_until_states_are_heard();
       if (*health.guard != '\0') guard_ = health.guard;
       status_.set_contact_troubles(health.contacts);
+      status_.set_extremes(health.organs, health.probes);
       finished_ = health.finished;
       if (finished_ || stop_.requested()) break;
     }

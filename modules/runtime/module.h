@@ -54,6 +54,9 @@ class Module {
   void set_contact_troubles(const ContactTroubles& troubles) {
     status_.set_contact_troubles(troubles);
   }
+  void set_extremes(std::span<const OrganExtremes> organs, std::span<const ProbeExtremes> probes) {
+    status_.set_extremes(organs, probes);
+  }
 
   /// A header for a message of this cycle.
   Header header() const;

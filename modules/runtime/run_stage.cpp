@@ -66,6 +66,7 @@ void run_in_real_time(Module& module, Stage& stage, Readiness readiness) {
     module.set_guard(health.guard);
     module.set_real_time_factor(health.real_time_factor);
     module.set_contact_troubles(health.contacts);
+    module.set_extremes(health.organs, health.probes);
     if (health.finished) return;
   }
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "modules/core/state_archive.h"
 #include "modules/core/units.h"
@@ -38,6 +39,9 @@ struct Health {
   double least_advance = 0;     ///< smallest useful Cycle::advance [s]; 0: takes none on
   bool finished = false;        ///< wants no further cycle
   ContactTroubles contacts;     ///< since the stage was made
+  // What it has seen, as long-lived as the stage: of deformation, and of haptics.
+  std::span<const OrganExtremes> organs;
+  std::span<const ProbeExtremes> probes;
 };
 
 class Stage {

@@ -22,6 +22,8 @@ StatusReporter::StatusReporter(bus::Bus& bus, std::string module, double nominal
   status_.realtime_priority = realtime_priority;
   status_.last_error.reserve(kMaxErrorBytes);
   status_.inputs.reserve(kMaxInputs);
+  status_.organs.reserve(kMaxOrgans);
+  status_.probes.reserve(kMaxProbes);
 }
 
 void StatusReporter::set_state(ModuleState state, std::string_view error) {
@@ -30,6 +32,12 @@ void StatusReporter::set_state(ModuleState state, std::string_view error) {
   status_.state = state;
   status_.last_error.assign(error);
   changed_ = true;
+}
+
+void StatusReporter::set_extremes(std::span<const OrganExtremes> organs,
+                                  std::span<const ProbeExtremes> probes) {
+  status_.organs.assign(organs.begin(), organs.end());
+  status_.probes.assign(probes.begin(), probes.end());
 }
 
 bool StatusReporter::poll(std::int64_t now_ns, double session_time, const LoopStatistics& loop) {

@@ -1,6 +1,7 @@
 // Tells the others how a module is: module_status, four times a second and on every change.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,8 @@ class StatusReporter {
   void set_state(ModuleState state, std::string_view error = {});
   void set_realtime_priority(bool granted) { status_.realtime_priority = granted; }
   void set_contact_troubles(const ContactTroubles& troubles) { status_.contacts = troubles; }
+  /// At most one of each organ and probe of the scene.
+  void set_extremes(std::span<const OrganExtremes> organs, std::span<const ProbeExtremes> probes);
   void set_real_time_factor(double factor) { status_.real_time_factor = factor; }
 
   /// Publishes if it is time to, or if the state changed since: then true.

@@ -275,6 +275,12 @@ void InProcess::ask_for_volume(std::size_t organ, double ratio) {
   stage->ask_for_volume(own, ratio);
 }
 
+std::vector<runtime::Health> InProcess::healths() const {
+  std::vector<runtime::Health> all;
+  for (const Member& member : impl_->members) all.push_back(member.health);
+  return all;
+}
+
 ContactTroubles InProcess::contact_troubles() const { return impl_->contact_troubles(); }
 
 const ProbeState& InProcess::probe(std::size_t probe) const { return impl_->probes[probe]; }

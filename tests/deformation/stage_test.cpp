@@ -182,6 +182,30 @@ TEST_CASE("deformation stage: a law is given by a cycle that advances, not by on
   CHECK(session.models.take(session.model));
 }
 
+TEST_CASE("deformation stage: what organs have been is what it said of them since it first ran") {
+  // Oracle: the messages.
+  Session session;
+  session.stage.ask_for_volume(0, 0.8);
+  CHECK(session.cycle(false).organs[0].worst_volume_error == 0);
+  double worst = 0, lowest = 0, highest = 0;
+  for (int i = 0; i < 20; ++i) {
+    const runtime::Health health = session.cycle(i < 15);
+    REQUIRE(session.nodes.take(session.positions));
+    const double ratio = session.positions.volume / session.positions.target_volume;
+    worst = std::max(worst, std::abs(ratio - 1));
+    lowest = std::min(lowest, session.positions.pressure);
+    highest = std::max(highest, session.positions.pressure);
+    REQUIRE(health.organs.size() == 1);
+    CHECK(health.organs[0].organ == 0);
+    CHECK(health.organs[0].volume_ratio == ratio);
+    CHECK(health.organs[0].worst_volume_error == worst);
+    CHECK(health.organs[0].lowest_pressure == lowest);
+    CHECK(health.organs[0].highest_pressure == highest);
+  }
+  CHECK(worst > 0);
+  CHECK(highest - lowest > 0);
+}
+
 TEST_CASE("deformation stage: probes that nobody speaks for touch nothing, and it says so") {
   // Oracle: the documented limit; the clock stands a second after the last word.
   Session session;

@@ -80,6 +80,62 @@ TEST_CASE("haptics stage: a law that nobody renews fades, and the status says so
   CHECK(std::string(health.guard).find("stale_after_s") != std::string::npos);
 }
 
+TEST_CASE("haptics stage: what a force has been is what it sent since it first ran, but pauses") {
+  // Oracle: the messages; a pause makes laws old, and forces fade within the slew limit.
+  Session session;
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  double greatest = 0;
+  runtime::Health health;
+  const auto run = [&](std::int64_t from, std::int64_t to, bool heard, bool running) {
+    for (std::int64_t t = from; t < to; ++t) {
+      if (heard) session.push(t * kMs);
+      runtime::Cycle now;
+      now.sim_time_ns = now.now_ns = t * kMs;
+      now.running = running;
+      health = stage.cycle(now);
+      REQUIRE(session.forces.take(session.force));
+      if (running) greatest = std::max(greatest, session.force.force.norm());
+    }
+  };
+  run(1, 200, false, false);  // before its start
+  CHECK(health.probes[0].greatest_force == 0);
+  run(200, 400, true, true);
+  run(400, 600, false, false);  // a pause
+  REQUIRE(session.force.force.norm() == 0);
+  run(600, 800, true, true);
+  REQUIRE(health.probes.size() == 1);
+  CHECK(health.probes[0].force == session.force.force.norm());
+  CHECK(health.probes[0].greatest_force == greatest);
+  CHECK(greatest == Approx(1));
+  CHECK((health.probes[0].limits & (kForceStaleFade | kForceSlewLimited)) == 0);
+  run(800, 2500, true, true);
+  run(2500, 2600, false, true);  // deformation is silent
+  CHECK((health.probes[0].limits & kForceStaleFade) != 0);
+}
+
+TEST_CASE("haptics stage: of the tissue's error the one that counted when the force was greatest") {
+  // Oracle: what the laws say, the larger of two processes'.
+  Session session;
+  session.scene.organs.resize(2);
+  session.scene.organs[1].process = 2;
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  ContactModel model;
+  static_cast<LocalLaw&>(model) = testing::wall_law(Vec3(0, 0, -0.005), 200);
+  model.anchor.position.setZero();
+  runtime::Health health;
+  for (std::int64_t t = 1; t <= 20; ++t) {
+    model.header.source_time_ns = t * kMs;
+    model.process = 1;
+    model.force_error = 0.2;
+    REQUIRE(session.models.write(model));
+    model.process = 2;
+    model.force_error = 0.3;
+    REQUIRE(session.models.write(model));
+    health = session.tick(stage, t * kMs);
+  }
+  CHECK(health.probes[0].error_of_greatest == 0.3);
+}
+
 TEST_CASE("haptics stage: a mouse's probe and a script's go where they are told, others stay") {
   // Oracle: the command; a script is given back only after longer silence than these 999 ms.
   Session session;

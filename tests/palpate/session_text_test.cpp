@@ -18,15 +18,6 @@ SessionTally stomach_tally() {
   scene.probes[0].name = "finger";
   SessionTally tally(scene);
   tally.start();
-  NodePositions positions;
-  positions.header.sim_time_ns = 12'000'000'000;
-  positions.target_volume = 1e-3;
-  positions.volume = 1.00005e-3;
-  tally.receive(positions);
-  HapticForce force;
-  force.force = Vec3(0.3, 0.4, 0);
-  force.limits = kForceSlewLimited | kForceStaleFade;
-  tally.receive(force);
   ModuleStatus haptics;
   haptics.module = "haptics";
   haptics.rate_hz = 999.6;
@@ -37,10 +28,13 @@ SessionTally stomach_tally() {
   haptics.realtime_priority = true;
   haptics.packets_refused = 23;
   haptics.inputs.push_back({"contact_model", 0.002, 0, 3000, 17, 1});
+  haptics.probes.push_back({0, 0.5, 0.5, kForceSlewLimited | kForceStaleFade, 0});
   tally.receive(haptics);
   ModuleStatus deformation;
   deformation.module = "deformation";
+  deformation.header.sim_time_ns = 12'000'000'000;
   deformation.real_time_factor = 0.97;
+  deformation.organs.push_back({0, 1.00005, 5e-5, 0, 0, 0});
   deformation.contacts = {3, 2, 1};
   deformation.state = ModuleState::kDegraded;
   deformation.last_error = "slower than real time";
@@ -107,12 +101,8 @@ TEST_CASE("summary: a force says what of it is the mesh's, as it was when it was
   // Oracle: the numbers given.
   SessionTally tally = stomach_tally();
   const auto felt = [&](double newtons, double error) {
-    ContactModel law;
-    law.force_error = error;
-    tally.receive(law);
-    HapticForce force;
-    force.force = Vec3(0, 0, newtons);
-    tally.receive(force);
+    const ProbeExtremes probe{0, newtons, newtons, 0, error};
+    tally.receive(std::span(&probe, 1));
     return summary(tally, {"stomach_probe", 12, 12.1, {}, {}, false});
   };
   CHECK_THAT(felt(0.8, 0.12),

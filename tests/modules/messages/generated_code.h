@@ -194,6 +194,23 @@ inline void check_same(const idl::InputStatus& w, const ModuleStatus::Input& m) 
   REQUIRE(w.rejected() == m.rejected);
 }
 
+inline void check_same(const idl::OrganExtremes& w, const OrganExtremes& m) {
+  REQUIRE(w.organ() == m.organ);
+  REQUIRE(w.volume_ratio() == m.volume_ratio);
+  REQUIRE(w.worst_volume_error() == m.worst_volume_error);
+  REQUIRE(w.lowest_pressure_pa() == m.lowest_pressure);
+  REQUIRE(w.highest_pressure_pa() == m.highest_pressure);
+  REQUIRE(w.most_contacts() == m.most_contacts);
+}
+
+inline void check_same(const idl::ProbeExtremes& w, const ProbeExtremes& m) {
+  REQUIRE(w.probe() == m.probe);
+  REQUIRE(w.force_n() == m.force);
+  REQUIRE(w.greatest_force_n() == m.greatest_force);
+  REQUIRE(w.limits() == m.limits);
+  REQUIRE(w.error_of_greatest() == m.error_of_greatest);
+}
+
 inline void check_same(const idl::ModuleStatus& w, const ModuleStatus& m) {
   check_header(w, m);
   REQUIRE(w.module_name().c_str() == m.module);
@@ -214,6 +231,10 @@ inline void check_same(const idl::ModuleStatus& w, const ModuleStatus& m) {
   REQUIRE(w.last_error() == m.last_error);
   REQUIRE(w.inputs().size() == m.inputs.size());
   for (std::size_t i = 0; i < m.inputs.size(); ++i) check_same(w.inputs()[i], m.inputs[i]);
+  REQUIRE(w.organs().size() == m.organs.size());
+  for (std::size_t i = 0; i < m.organs.size(); ++i) check_same(w.organs()[i], m.organs[i]);
+  REQUIRE(w.probes().size() == m.probes.size());
+  for (std::size_t i = 0; i < m.probes.size(); ++i) check_same(w.probes()[i], m.probes[i]);
 }
 
 inline void check_same(const idl::SceneDescription& w, const SceneDescription& m) {

@@ -294,6 +294,23 @@ TEST_CASE("message checks: ModuleStatus", "[messages]") {
   check_name<M>(
       "inputs.topic", [&](M & m) -> auto& { return input(m).topic; });
   check_age<M>("inputs.age_s", [&](M& m) -> double& { return input(m).age; });
+  CHECK(named<M>([](M& m) { m.organs.resize(kMaxOrgans + 1); }) == "organs");
+  CHECK(named<M>([](M& m) { m.probes.resize(kMaxProbes + 1); }) == "probes");
+  const auto organ = [](M & m) -> auto& { return m.organs.emplace_back(); };
+  const auto probe = [](M & m) -> auto& { return m.probes.emplace_back(); };
+  check_finite_at_least_zero<M>("organs.volume_ratio",
+                                [&](M& m) -> double& { return organ(m).volume_ratio; });
+  check_finite_at_least_zero<M>("organs.worst_volume_error",
+                                [&](M& m) -> double& { return organ(m).worst_volume_error; });
+  CHECK(named<M>([&](M& m) { organ(m).lowest_pressure = kNan; }) == "organs.lowest_pressure_pa");
+  CHECK(named<M>([&](M& m) { organ(m).highest_pressure = kInfinity; }) ==
+        "organs.highest_pressure_pa");
+  check_finite_at_least_zero<M>("probes.force_n", [&](M& m) -> double& { return probe(m).force; });
+  check_finite_at_least_zero<M>("probes.greatest_force_n",
+                                [&](M& m) -> double& { return probe(m).greatest_force; });
+  check_finite_at_least_zero<M>("probes.error_of_greatest",
+                                [&](M& m) -> double& { return probe(m).error_of_greatest; });
+  CHECK(named<M>([&](M& m) { probe(m).limits = kAllForceLimits + 1; }) == "probes.limits");
 }
 
 TEST_CASE("message checks: SceneDescription and SessionControl", "[messages]") {
