@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "modules/bus/topics.h"
+#include "modules/core/error.h"
 #include "python/bindings.h"
 #include "python/topic_columns.h"
 #include "python/unlocked.h"
@@ -45,6 +47,14 @@ ReadTopics topics_in(const std::string& file, const std::set<std::string>& wante
 
 /// (topic, columns, messages) of each, the scene's name and digest, what is wrong with it.
 py::tuple read_recording(const std::string& file, const std::set<std::string>& wanted) {
+  for (const std::string& name : wanted) {
+    if (bus::find_topic(name) != nullptr) continue;
+    std::string known;
+    for (const bus::TopicInfo& topic : bus::all_topics()) {
+      known.append(known.empty() ? "" : ", ").append(topic.name);
+    }
+    throw InputError("topics: there is no topic '" + name + "'; there are " + known);
+  }
   ReadTopics topics;
   {
     const Unlocked unlocked;

@@ -38,7 +38,7 @@ def read(file: str | os.PathLike[str], topics: Iterable[str] = ()) -> Recording:
     """Reads a recording (.mcap), all of it or these topics alone.
 
     Raises:
-        InputError: it cannot be read, or is no recording of ours.
+        InputError: it cannot be read, or is no recording of ours; there is no such topic.
     """
     wanted = {topics} if isinstance(topics, str) else set(topics)
     read_topics, scene, invalid, torn = _core.read_recording(os.fspath(file), wanted)

@@ -121,6 +121,8 @@ class RecordingTest(unittest.TestCase):
         for bad in ("/nowhere.mcap", "/", "/etc/hostname"):
             with self.assertRaises(palpate.InputError):
                 palpate.read(bad)
+        with self.assertRaisesRegex(palpate.InputError, "'nope'; there are .*haptic_force"):
+            palpate.read(self.file, ["haptic_force", "nope"])
 
     def test_repr(self):
         self.assertIn("haptic_force: 6000 messages", repr(self.recording))
