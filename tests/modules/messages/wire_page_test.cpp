@@ -73,6 +73,8 @@ std::string idl_type() {
   if constexpr (std::is_same_v<T, Contact>) return "Contact";
   if constexpr (std::is_same_v<T, LawRow>) return "LawRow";
   if constexpr (std::is_same_v<T, ModuleStatus::Input>) return "InputStatus";
+  if constexpr (std::is_same_v<T, OrganExtremes>) return "OrganExtremes";
+  if constexpr (std::is_same_v<T, ProbeExtremes>) return "ProbeExtremes";
   if constexpr (std::is_same_v<T, ClockExchange::Echo>) return "ClockEcho";
 }
 
