@@ -47,8 +47,9 @@ constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
 /// One run from start to summary.
 class Run {
  public:
-  Run(const RunOptions& options, std::ostream& out, std::ostream& log)
+  Run(const RunOptions& options, SessionClaim claim, std::ostream& out, std::ostream& log)
       : options_(options),
+        claim_(std::move(claim)),
         out_(out),
         log_(log),
         scene_(scene::load_scene(options.scene)),
@@ -82,6 +83,11 @@ class Run {
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
     monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
     monitor_.poll();
+    if (suspension_.take()) {
+      log_ << "palpate: Ctrl-Z stops no session, for its processes would go on pushing: Ctrl-C "
+              "ends it, p in its window pauses it"
+           << std::endl;
+    }
     if (options_.restart && !ended_) end_hung();
     for (const auto& end : modules_.poll()) note(end);
     return !stop_.requested() && modules_.any_running();
@@ -187,6 +193,7 @@ class Run {
   }
 
   void note(const ModuleEnd& end) {
+    if (!end.returns) claim_.release(end.module);
     if (end.failed && !end.returns) {
       exit_code_ = end.bad_input ? kExitBadInput : kExitFailed;
       failures_[end.module] = end.how;
@@ -257,9 +264,11 @@ class Run {
   }
 
   const RunOptions& options_;
+  SessionClaim claim_;
   std::ostream& out_;
   std::ostream& log_;
   StopSignal stop_;
+  NoSuspension suspension_;
   scene::Scene scene_;
   std::string digest_;
   ModuleGroup modules_;  // before the bus: processes are born from a program of one thread
@@ -343,9 +352,11 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   for (const auto& command : commands) modules.push_back(command.module);
   const bool joins = !options.only.empty() && options.hosts.empty();
   const bus::BusOptions& bus = options.bus;
-  const SessionClaim claim = joins ? SessionClaim::joining(bus.session, bus.domain, modules)
-                                   : SessionClaim(bus.session, bus.domain, modules);
-  return Run(options, out, log).perform();
+  return Run(options,
+             joins ? SessionClaim::joining(bus.session, bus.domain, modules)
+                   : SessionClaim(bus.session, bus.domain, modules),
+             out, log)
+      .perform();
 }
 
 }  // namespace palpate::launcher

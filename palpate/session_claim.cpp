@@ -44,8 +44,8 @@ std::string claim_name(const std::string& session, int domain, const std::string
 
 [[noreturn]] void refuse_module(const std::string& session, const std::string& module) {
   throw InputError(
-      fmt::format("session '{}' has {} here already, by --only: end that, give this one another "
-                  "--session, or join with --only and what it lacks",
+      fmt::format("session '{}' has {} here already: end that, give this one another --session, "
+                  "or join with --only and what it lacks",
                   session, module));
 }
 
@@ -61,8 +61,8 @@ SessionClaim::SessionClaim(const std::string& session, int domain,
         "--only MODULE",
         session));
   }
-  sockets_.push_back(socket);
-  joining(session, domain, modules);  // only looked at: what fails for good may be joined
+  sockets_[""] = socket;
+  sockets_.merge(joining(session, domain, modules).sockets_);
 }
 
 SessionClaim SessionClaim::joining(const std::string& session, int domain,
@@ -72,13 +72,20 @@ SessionClaim SessionClaim::joining(const std::string& session, int domain,
     if (may_be_several(module)) continue;
     const int socket = claimed(claim_name(session, domain, module));
     if (socket < 0) refuse_module(session, module);
-    claim.sockets_.push_back(socket);
+    claim.sockets_[module] = socket;
   }
   return claim;
 }
 
+void SessionClaim::release(const std::string& module) {
+  const auto known = sockets_.find(module);
+  if (known == sockets_.end()) return;
+  ::close(known->second);
+  sockets_.erase(known);
+}
+
 SessionClaim::~SessionClaim() {
-  for (const int socket : sockets_) ::close(socket);
+  for (const auto& [module, socket] : sockets_) ::close(socket);
 }
 
 }  // namespace palpate::launcher

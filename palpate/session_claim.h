@@ -2,6 +2,7 @@
 // join it with modules of their own.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace palpate::launcher {
 class SessionClaim {
  public:
   /// The whole of a session, for a launcher that starts these modules.
-  /// @throws InputError naming the session if another launcher of this host holds it, or one of the
+  /// @throws InputError naming the session if another program of this host holds it, or one of the
   /// modules
   SessionClaim(const std::string& session, int domain, const std::vector<std::string>& modules);
   /// Modules that join it, but for those of which there may be several: a viewer, a recorder.
@@ -23,9 +24,12 @@ class SessionClaim {
   SessionClaim(const SessionClaim&) = delete;
   SessionClaim& operator=(const SessionClaim&) = delete;
 
+  /// It has ended for good: whoever joins may bring it.
+  void release(const std::string& module);
+
  private:
   SessionClaim() = default;
-  std::vector<int> sockets_;
+  std::map<std::string, int> sockets_;  ///< by module; of the session itself: ""
 };
 
 }  // namespace palpate::launcher

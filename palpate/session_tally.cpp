@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "modules/core/text.h"
 #include "modules/core/units.h"
 #include "modules/runtime/wiring.h"
 
@@ -47,7 +48,7 @@ void SessionTally::receive(const ModuleStatus& status) {
   if (!status.organs.empty()) sim_time_ = seconds_from_ns(status.header.sim_time_ns);
   if (!started_ || standing_) return;
   if (status.state != ModuleState::kDegraded || status.last_error.empty()) return;
-  const std::string text = status.module + ": " + status.last_error;
+  const std::string text = status.module + ": " + printable(status.last_error);
   const auto same = std::find_if(troubles_.begin(), troubles_.end(), [&](const auto& known) {
     return without_count(known) == without_count(text);
   });

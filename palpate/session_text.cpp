@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "modules/core/text.h"
 #include "palpate/session/contact_line.h"
 
 namespace palpate::launcher {
@@ -111,7 +112,8 @@ std::string status_line(const SessionTally& tally) {
   for (const auto& [name, module] : tally.modules()) {
     line += fmt::format("  {} {:.0f} Hz", name, module.newest.rate_hz);
     if (module.overruns() > 0) line += fmt::format(" ({} missed)", module.overruns());
-    if (!module.newest.last_error.empty()) line += fmt::format(" [{}]", module.newest.last_error);
+    if (!module.newest.last_error.empty())
+      line += fmt::format(" [{}]", printable(module.newest.last_error));
   }
   return line;
 }

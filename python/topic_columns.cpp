@@ -157,9 +157,21 @@ class ColumnFiller {
   std::size_t at_ = 0;
 };
 
+/// What is no UTF-8 was said by a stranger: U+FFFD stands for it.
+py::list list_of(const std::vector<std::string>& texts) {
+  py::list list;
+  for (const std::string& text : texts) {
+    PyObject* const decoded =
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "replace");
+    if (decoded == nullptr) throw py::error_already_set();
+    list.append(py::reinterpret_steal<py::str>(decoded));
+  }
+  return list;
+}
+
 /// An array over the column's own memory.
 py::object array_of(Column& column) {
-  if (column.kind == Column::Kind::kText) return py::cast(column.texts);
+  if (column.kind == Column::Kind::kText) return list_of(column.texts);
   const py::dtype dtype = dtype_of(column.kind);
   std::size_t numbers = 1;
   for (const std::size_t n : column.shape) numbers *= n;

@@ -1,4 +1,5 @@
-// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that loops look at.
+// Ctrl-C, SIGTERM and SIGHUP (the terminal is gone) as a flag that loops look at. SIGHUP stays
+// ignored where it was when the program began (nohup).
 #pragma once
 
 namespace palpate {
@@ -13,6 +14,18 @@ class StopSignal {
   StopSignal& operator=(const StopSignal&) = delete;
 
   bool requested() const;
+};
+
+/// While one exists, Ctrl-Z (SIGTSTP) does not stop the program: for one whose children would go on
+/// without it. One at a time.
+class NoSuspension {
+ public:
+  NoSuspension();
+  ~NoSuspension();
+  NoSuspension(const NoSuspension&) = delete;
+  NoSuspension& operator=(const NoSuspension&) = delete;
+
+  bool take();  ///< whether it was asked for since the last call
 };
 
 }  // namespace palpate

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/core/text.h"
 #include "modules/core/tolerances.h"
 #include "modules/messages/describe.h"
 
@@ -47,9 +48,10 @@ bool holds(Rule rule, std::uint32_t x) {
   if (rule == Rule::kFromOne) return x >= 1;
   return rule != Rule::kForceLimits || (x & ~kAllForceLimits) == 0;
 }
-// A zero byte would end the text on the wire.
+// A zero byte would end the text on the wire. Names are shown everywhere.
 bool holds(Rule rule, const std::string& s) {
-  if (rule == Rule::kName && (s.empty() || s.size() > kMaxNameBytes)) return false;
+  const bool name = !s.empty() && s.size() <= kMaxNameBytes && is_utf8(s) && !has_control_bytes(s);
+  if (rule == Rule::kName && !name) return false;
   return s.size() <= kMaxTextBytes && s.find('\0') == std::string::npos;
 }
 template <Enumeration E>

@@ -1,3 +1,4 @@
+#include "modules/core/text.h"
 #include "modules/recording/foxglove_export.h"
 
 #include <spdlog/fmt/fmt.h>

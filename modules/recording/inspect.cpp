@@ -1,3 +1,4 @@
+#include "modules/core/text.h"
 #include "modules/recording/inspect.h"
 
 #include <json/json.h>

@@ -62,15 +62,4 @@ std::span<const std::uint8_t> ByteReader::take(std::size_t size) {
   return field;
 }
 
-std::string printable(std::string text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto before = static_cast<unsigned char>(i == 0 ? 0 : text[i - 1]);
-    const bool high = before == 0xC2 && byte >= 0x80 && byte < 0xA0;  // U+0080 … U+009F in UTF-8
-    if (byte < 0x20 || byte == 0x7F || high) text[i] = '?';
-    if (high) text[i - 1] = '?';
-  }
-  return text;
-}
-
 }  // namespace palpate::recording

@@ -59,7 +59,4 @@ class ByteReader {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// Text of a file as a terminal may get it: '?' in place of control characters.
-std::string printable(std::string text);
-
 }  // namespace palpate::recording

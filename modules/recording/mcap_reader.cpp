@@ -1,3 +1,4 @@
+#include "modules/core/text.h"
 #include "modules/recording/mcap_reader.h"
 
 #include <algorithm>

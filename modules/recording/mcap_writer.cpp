@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -249,7 +251,25 @@ void McapWriter::close() {
   flush();
   append_end();
   flush();
+  const char* const gone = why_gone();
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("close", errno);
+  if (*gone != '\0') throw std::runtime_error(named_.string() + ": " + gone);
+}
+
+/// What was removed, moved or cut meanwhile took the recording along; empty: nothing was.
+const char* McapWriter::why_gone() const {
+  struct stat open {
+  }, named{};
+  if (::fstat(descriptor_, &open) != 0) fail("look at", errno);
+  if (!S_ISREG(open.st_mode)) return "";
+  const bool there = ::stat(file_.c_str(), &named) == 0;
+  if (!there || named.st_ino != open.st_ino || named.st_dev != open.st_dev) {
+    return "was removed or replaced while it was recorded";
+  }
+  std::array<char, kMcapMagic.size()> begin{};
+  std::ifstream(file_, std::ios::binary).read(begin.data(), begin.size());
+  const bool as_begun = std::memcmp(begin.data(), kMcapMagic.data(), begin.size()) == 0;
+  return as_begun ? "" : "was cut while it was recorded";
 }
 
 /// With the CRC of all before it.

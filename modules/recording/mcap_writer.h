@@ -54,6 +54,7 @@ class McapWriter {
   /// has no room for any message, and then there is no file
   void flush();
   /// Ends the data section, writes the summary and the footer, closes. A second call does nothing.
+  /// @throws as flush(); std::runtime_error if others removed, replaced or cut the file
   void close();
 
   const McapStatistics& statistics() const { return statistics_; }
@@ -76,6 +77,7 @@ class McapWriter {
   void remove_empty();
   int write_pending();
   void append_end();
+  const char* why_gone() const;
   void append(McapOpcode opcode, std::span<const std::uint8_t> content);
   void appended(std::size_t bytes);
   void append_summary();

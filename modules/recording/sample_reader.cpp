@@ -1,3 +1,4 @@
+#include "modules/core/text.h"
 #include "modules/recording/sample_reader.h"
 
 #include <algorithm>

@@ -28,6 +28,24 @@ void refuse_nan(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands()) refuse_nan(*command);
 }
 
+/// The parser takes 0x10 for 16 and 010 for 8; a scene file and an environment variable do not.
+void refuse_other_bases(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.find("INT") == std::string::npos && type.find("FLOAT") == std::string::npos) continue;
+    for (const std::string& text : option->results()) {
+      const std::size_t first = text.find_first_not_of("+-");
+      if (first == std::string::npos || text[first] != '0' || first + 1 == text.size()) continue;
+      const char next = text[first + 1];
+      const bool hexadecimal = next == 'x' || next == 'X';
+      const bool octal = next >= '0' && next <= '9' && type.find("INT") != std::string::npos;
+      if (!hexadecimal && !octal) continue;
+      throw CLI::ValidationError(option->get_name(), text + " is not a decimal number");
+    }
+  }
+  for (const CLI::App* command : app.get_subcommands()) refuse_other_bases(*command);
+}
+
 /// The parser takes -1, and what is too large, for the largest number there is.
 void refuse_wrapped(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
@@ -135,6 +153,7 @@ template Option Options::add(const char*, double&, const std::string&);
 template Option Options::add(const char*, std::string&, const std::string&);
 template Option Options::add(const char*, std::filesystem::path&, const std::string&);
 template Option Options::add(const char*, std::optional<double>&, const std::string&);
+template Option Options::add(const char*, std::optional<std::string>&, const std::string&);
 template Option Options::add(const char*, std::optional<std::size_t>&, const std::string&);
 template Option Options::add(const char*, std::vector<int>&, const std::string&);
 template Option Options::add(const char*, std::vector<std::size_t>&, const std::string&);
@@ -281,6 +300,7 @@ int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
     refuse_empty_entries(*app_, words);
     app_->parse(std::vector<std::string>(words.rbegin(), words.rend()));  // it takes the last first
     refuse_nan(*app_);
+    refuse_other_bases(*app_);
     refuse_wrapped(*app_);
     refuse_overwriting(*files_);
     return job_ ? job_() : body();

@@ -58,6 +58,11 @@ SceneDocument::Change change_from(const std::string& setting) {
                      "': must be KEY=VALUE, such as rates.deformation_hz=200");
   }
   const std::string key = setting.substr(0, equals);
+  // Of a shell's variable that is not set: the schema's default would not be what was meant.
+  if (setting.find_first_not_of(" \t\r\n", equals + 1) == std::string::npos) {
+    throw InputError("setting '" + setting +
+                     "': has no value; null gives the default, '' an empty text");
+  }
   try {
     const auto values = YAML::LoadAll(setting.substr(equals + 1));
     if (values.size() > 1) throw InputError("setting '" + key + "': must be one value");

@@ -8,6 +8,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
+#include "modules/core/text.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
 #include "modules/scene/scene_error.h"
@@ -124,36 +125,10 @@ bool flag_from(const YamlValue& value) {
   value.refuse("must be true or false");
 }
 
-/// As Unicode defines it (table 3-7): no overlong forms, no surrogates, nothing beyond U+10FFFF.
-bool is_utf8(std::string_view text) {
-  const auto byte = [&](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const auto continues = [&](std::size_t from, std::size_t count) {
-    for (std::size_t i = from; i < from + count; ++i) {
-      if ((byte(i) & 0xc0u) != 0x80u) return false;
-    }
-    return true;
-  };
-  for (std::size_t i = 0; i < text.size();) {
-    const unsigned lead = byte(i), next = byte(i + 1);
-    std::size_t more = 0;
-    if (lead >= 0xc2 && lead <= 0xdf) more = 1;
-    if ((lead & 0xf0u) == 0xe0) more = 2;
-    if (lead >= 0xf0 && lead <= 0xf4) more = 3;
-    if (lead >= 0x80 && more == 0) return false;
-    const bool overlong = (lead == 0xe0 && next < 0xa0) || (lead == 0xf0 && next < 0x90);
-    const bool beyond = (lead == 0xed && next > 0x9f) || (lead == 0xf4 && next > 0x8f);
-    if (overlong || beyond || !continues(i + 1, more)) return false;
-    i += 1 + more;
-  }
-  return true;
-}
-
 void check_name(const YamlValue& value, const std::string& text) {
   bool good = !text.empty() && text.size() <= kLongestText;
-  for (const char c : text) good = good && static_cast<unsigned char>(c) >= 0x20 && c != 0x7f;
-  if (!good) value.refuse("must be a text of 1 to 255 bytes without control characters");
+  if (!good || has_control_bytes(text))
+    value.refuse("must be a text of 1 to 255 bytes without control characters");
   if (!is_utf8(text)) value.refuse("must be UTF-8");
 }
 

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from palpate import _core
+from palpate.paths import path_text
 
 
 class Surface(NamedTuple):
@@ -52,7 +53,7 @@ def read(file: str | os.PathLike[str], unit: str = "m") -> Surface:
     Raises:
         InputError: it is no mesh, or cannot be read.
     """
-    return Surface(*_core.read_mesh(os.fspath(file), unit))
+    return Surface(*_core.read_mesh(path_text(file), unit))
 
 
 def write(file: str | os.PathLike[str], nodes: npt.ArrayLike, triangles: npt.ArrayLike) -> None:
@@ -61,7 +62,7 @@ def write(file: str | os.PathLike[str], nodes: npt.ArrayLike, triangles: npt.Arr
     Raises:
         InputError: another extension. RuntimeError: it cannot be written. TypeError, ValueError, IndexError as check().
     """
-    _core.write_mesh(os.fspath(file), nodes, triangles)
+    _core.write_mesh(path_text(file), nodes, triangles)
 
 
 def check(nodes: npt.ArrayLike, triangles: npt.ArrayLike) -> Report:

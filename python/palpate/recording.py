@@ -8,6 +8,7 @@ from pathlib import Path
 
 from palpate import _core
 from palpate.messages import Topic, Topics, topic_from
+from palpate.paths import path_text
 
 
 class Recording(Topics):
@@ -41,5 +42,5 @@ def read(file: str | os.PathLike[str], topics: Iterable[str] = ()) -> Recording:
         InputError: it cannot be read, or is no recording of ours; there is no such topic.
     """
     wanted = {topics} if isinstance(topics, str) else set(topics)
-    read_topics, scene, invalid, torn = _core.read_recording(os.fspath(file), wanted)
+    read_topics, scene, invalid, torn = _core.read_recording(path_text(file), wanted)
     return Recording(Path(file), {t[0]: topic_from(*t) for t in read_topics}, scene, invalid, torn)

@@ -9,6 +9,7 @@ from typing import Any
 
 from palpate import _core
 from palpate.errors import InputError
+from palpate.paths import path_text
 
 
 def _is_scene_or_empty(file: Path) -> bool:
@@ -59,7 +60,7 @@ class Scene:
         Raises:
             SceneError: with file, line and key of what cannot be accepted.
         """
-        return cls(_core.Scene.load(os.fspath(file)))
+        return cls(_core.Scene.load(path_text(file)))
 
     @classmethod
     def parse(cls, text: str, file: str | os.PathLike[str] = "scene.yaml") -> Scene:
@@ -68,7 +69,7 @@ class Scene:
         Raises:
             SceneError: as load().
         """
-        return cls(_core.Scene.parse(text, os.fspath(file)))
+        return cls(_core.Scene.parse(text, path_text(file)))
 
     def __getitem__(self, path: str) -> Any:
         """The value of a key, default or not: None, bool, int, float, str, list or dict (a copy).

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from palpate import _core
 from palpate.closing import Closing
 from palpate.messages import Message, Topics, topic_from
+from palpate.paths import path_text
 from palpate.scene import Scene
 
 FloatArray = npt.NDArray[np.float64]
@@ -49,7 +50,7 @@ class Session(Closing[_core.Session]):
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene)
         self._organs = {name: i for i, name in enumerate(self._scene.organs)}
         self._probes = {name: i for i, name in enumerate(self._scene.probes)}
-        files = [None if file is None else os.fspath(file) for file in (record, from_snapshot)]
+        files = [None if file is None else path_text(file) for file in (record, from_snapshot)]
         self._core = _core.Session(self._scene._core, *files)
 
     def save_snapshot(self, file: str | os.PathLike[str], overwrite: bool = False) -> float:
@@ -65,7 +66,7 @@ class Session(Closing[_core.Session]):
             InputError: there is something of that name, or it cannot be written.
             ClosedError, BusyError.
         """
-        return self._core.save_snapshot(os.fspath(file), overwrite)
+        return self._core.save_snapshot(path_text(file), overwrite)
 
     # Time goes on.
 

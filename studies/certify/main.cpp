@@ -1,4 +1,6 @@
 #include <iostream>
+#include <optional>
+#include <string>
 
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/module_options.h"
@@ -32,7 +34,7 @@ int main(int argc, char** argv) {
       "--quick", options.quick,
       "Fewer disturbances, one row of slides, shorter timing: two minutes or so, in lockstep "
       "under one");
-  std::string shard;
+  std::optional<std::string> shard;
   program.add("--shard", shard, std::string(report::kShardHelp) + "; with --lockstep");
   options.bus.session = launcher::random_session_name();
   runtime::add_bus_options(program, options.bus);
@@ -40,7 +42,7 @@ int main(int argc, char** argv) {
       "Exit code: 0 if no line failed, 1 if one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
     const StopSignal signal;
-    options.shard = report::shard_from(shard);
+    if (shard) options.shard = report::shard_from(*shard);
     return certify::run_certify(
         options, [&] { return signal.requested(); }, std::cout, std::cerr);
   });

@@ -1,4 +1,6 @@
 #include <iostream>
+#include <optional>
+#include <string>
 
 #include "modules/core/data_folder.h"
 #include "modules/runtime/program.h"
@@ -32,12 +34,12 @@ int main(int argc, char** argv) {
   program.add("--places", options.places, "Of organs, the first so many of 22").range(1, 22);
   const auto again =
       program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
-  std::string shard;
+  std::optional<std::string> shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again);
   program.flag_off("--no-peers", options.peers, "Without Bullet");
   program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
-    options.shard = report::shard_from(shard);
+    if (shard) options.shard = report::shard_from(*shard);
     if (quick) options.extent = chart::Extent::kQuick;
     if (full) options.extent = chart::Extent::kFull;
     return chart::run_chart(options, std::cout, std::cerr);

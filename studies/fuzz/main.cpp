@@ -1,4 +1,6 @@
 #include <iostream>
+#include <optional>
+#include <string>
 
 #include "modules/runtime/program.h"
 #include "studies/fuzz/fuzz_command.h"
@@ -15,12 +17,12 @@ int main(int argc, char** argv) {
                         .range(0, fuzz::kMostScenes - 1);
   const auto again =
       program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
-  std::string shard;
+  std::optional<std::string> shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again).excludes(only);
   program.footer(
       "Exit code: 0 if no scene failed, 1 if one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
-    options.shard = report::shard_from(shard);
+    if (shard) options.shard = report::shard_from(*shard);
     return fuzz::run_fuzz(options, std::cout, std::cerr);
   });
 }

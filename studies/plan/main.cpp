@@ -1,4 +1,6 @@
 #include <iostream>
+#include <optional>
+#include <string>
 
 #include "modules/runtime/program.h"
 #include "studies/plan/plan_command.h"
@@ -31,7 +33,7 @@ int main(int argc, char** argv) {
   program.add(
       "--points", options.points,
       "Folder of what was found: shards share it, and a run that was stopped goes on from it");
-  std::string shard;
+  std::optional<std::string> shard;
   program.add("--shard", shard,
               "I/N, one of N runs on the same --points: judges candidates that no other run does, "
               "writes no scene; afterwards a run without it does");
@@ -39,7 +41,7 @@ int main(int argc, char** argv) {
       "Exit code: 0 if a candidate meets the needs, 1 if none does, 2 for bad input, 130 if it was "
       "stopped.");
   return program.run(argc, argv, [&] {
-    options.shard = report::shard_from(shard);
+    if (shard) options.shard = report::shard_from(*shard);
     return plan::run_plan(options, std::cout, std::cerr);
   });
 }

@@ -48,8 +48,7 @@ std::optional<double> time_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::optional<Shard> shard_from(const std::string& text) {
-  if (text.empty()) return {};
+Shard shard_from(const std::string& text) {
   Shard shard{0, 0};
   const char* const end = text.data() + text.size();
   const auto index = std::from_chars(text.data(), end, shard.index);

@@ -28,9 +28,9 @@ inline constexpr const char* kShardHelp =
     "I/N, one of N runs on the same --out folder: measures points that no other run does, writes "
     "no tables; afterwards a run without it does";
 
-/// @param text  "2/8"; empty: none
+/// @param text  "2/8"
 /// @throws InputError
-std::optional<Shard> shard_from(const std::string& text);
+Shard shard_from(const std::string& text);
 
 class Claims {
  public:

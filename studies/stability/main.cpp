@@ -1,4 +1,6 @@
 #include <iostream>
+#include <optional>
+#include <string>
 
 #include "modules/runtime/program.h"
 #include "studies/report/progress.h"
@@ -15,11 +17,11 @@ int main(int argc, char** argv) {
   program.flag("--quick", options.quick, "Fewer models and values: under 90 s");
   const auto again =
       program.flag("--again", options.again, "Measure anew what earlier runs have left in --out");
-  std::string shard;
+  std::optional<std::string> shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again);
   program.footer(report::kExitCodesHelp);
   return program.run(argc, argv, [&] {
-    options.shard = report::shard_from(shard);
+    if (shard) options.shard = report::shard_from(*shard);
     return stability::run_stability(options, std::cout, std::cerr);
   });
 }

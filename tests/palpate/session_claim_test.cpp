@@ -44,6 +44,9 @@ TEST_CASE(
     CHECK_NOTHROW(join({"haptics", "visualizer"}));
     CHECK_NOTHROW(SessionClaim(own.session, own.domain, {"deformation", "haptics"}));
   }
-  const SessionClaim whole(own.session, own.domain, kWholeSession);
+  SessionClaim whole(own.session, own.domain, kWholeSession);
+  CHECK_THROWS_WITH(join({"collision"}), Catch::Contains("has collision here already"));
+  CHECK_NOTHROW(join({"visualizer"}));
+  whole.release("collision");  // it has failed for good
   CHECK_NOTHROW(join({"collision"}));
 }

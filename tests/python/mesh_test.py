@@ -52,6 +52,11 @@ class MeshTest(unittest.TestCase):
                 mesh.write(Path(folder) / "t.xyz", NODES, TRIANGLES)
             with self.assertRaises(palpate.InputError):
                 mesh.read(file, "parsec")
+            for bad in (lambda: mesh.read(f"{file}\0.ply"), lambda: mesh.write(f"{file}\0.ply", NODES, TRIANGLES),
+                        lambda: palpate.read(f"{file}\0.mcap"), lambda: palpate.Session(f"{file}\0")):
+                with self.assertRaisesRegex(ValueError, "embedded null byte"):
+                    bad()
+            self.assertTrue(file.exists())
         with self.assertRaises(palpate.InputError):
             mesh.read("/nowhere.ply")
 

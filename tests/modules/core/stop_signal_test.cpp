@@ -45,3 +45,38 @@ TEST_CASE("stop signal: a new one begins without a request") {
   const StopSignal stop;
   CHECK_FALSE(stop.requested());
 }
+
+TEST_CASE("stop signal: SIGHUP that was ignored when it began stays ignored") {
+  // Oracle: the signal's action as the system reports it; nohup begins programs so.
+  struct sigaction before {
+  }, during{};
+  struct sigaction ignored {};
+  ignored.sa_handler = SIG_IGN;
+  sigaction(SIGHUP, &ignored, &before);
+  {
+    const StopSignal stop;
+    sigaction(SIGHUP, nullptr, &during);
+    CHECK(during.sa_handler == SIG_IGN);
+    raise(SIGHUP);
+    CHECK_FALSE(stop.requested());
+    raise(SIGTERM);
+    CHECK(stop.requested());
+  }
+  sigaction(SIGHUP, &before, nullptr);
+}
+
+TEST_CASE("stop signal: Ctrl-Z is told of and does not stop the program") {
+  // Oracle: that this goes on, and the signal's action as the system reports it.
+  struct sigaction before {
+  }, after{};
+  sigaction(SIGTSTP, nullptr, &before);
+  {
+    palpate::NoSuspension none;
+    CHECK_FALSE(none.take());
+    raise(SIGTSTP);
+    CHECK(none.take());
+    CHECK_FALSE(none.take());
+  }
+  sigaction(SIGTSTP, nullptr, &after);
+  CHECK(before.sa_handler == after.sa_handler);
+}

@@ -5,6 +5,8 @@
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <random>
 
 #include "modules/recording/mcap_bytes.h"
@@ -200,6 +202,34 @@ TEST_CASE("mcap writer: statistics count messages per channel and span the log t
   CHECK(writer.statistics().channel_message_counts.at(b) == 1);
   CHECK(writer.statistics().message_start_time_ns == 20);
   CHECK(writer.statistics().message_end_time_ns == 90);
+}
+
+TEST_CASE("mcap writer: a file that others removed, replaced or cut is told of at the end") {
+  // Oracle: what was done to it.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  const auto end_after = [&](const auto& meddle) {
+    McapWriter writer(file);
+    writer.flush();
+    meddle();
+    try {
+      writer.close();
+    } catch (const std::runtime_error& error) {
+      CHECK_NOTHROW(writer.close());
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(end_after([] {}).empty());
+  CHECK(end_after([&] { std::filesystem::remove(file); }) ==
+        file.string() + ": was removed or replaced while it was recorded");
+  CHECK(end_after([&] {
+          std::filesystem::remove(file);
+          std::ofstream(file) << "hello";
+        }) == file.string() + ": was removed or replaced while it was recorded");
+  std::filesystem::remove(file);
+  CHECK(end_after([&] { std::filesystem::resize_file(file, 0); }) ==
+        file.string() + ": was cut while it was recorded");
 }
 
 TEST_CASE("mcap writer: a full disk is reported with the file and the system's reason") {

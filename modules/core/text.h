@@ -1,0 +1,16 @@
+// Texts from elsewhere: whether they can be shown, and what is shown of those that cannot.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace palpate {
+
+/// As Unicode defines it (table 3-7): no overlong forms, no surrogates, nothing beyond U+10FFFF.
+bool is_utf8(std::string_view text);
+/// What a terminal obeys: bytes below 0x20, and 0x7F.
+bool has_control_bytes(std::string_view text);
+/// Control characters, U+0080 to U+009F among them, as '?'.
+std::string printable(std::string text);
+
+}  // namespace palpate

@@ -1,0 +1,24 @@
+#include "modules/core/text.h"
+
+#include <catch2/catch.hpp>
+
+using namespace palpate;
+
+TEST_CASE("text: UTF-8 is what Unicode calls well-formed") {
+  // Oracle: the Unicode Standard, table 3-7.
+  for (const char* good :
+       {"", "plain", "\xc3\xa9", "\xe2\x82\xac", "\xf0\x9f\x98\x80", "\xed\x9f\xbf"}) {
+    CHECK(is_utf8(good));
+  }
+  for (const char* bad :
+       {"\xff", "\x80", "\xc0\xaf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "a\xc3"}) {
+    CHECK_FALSE(is_utf8(bad));
+  }
+}
+
+TEST_CASE("text: what a terminal would obey is found, and shown as question marks") {
+  // Oracle: by hand.
+  CHECK_FALSE(has_control_bytes("two words \xc3\xa9"));
+  for (const char* bad : {"\x1b[2J", "a\n", "\x7f", "\t"}) CHECK(has_control_bytes(bad));
+  CHECK(printable("a\x1b[2J\n\x07\x7f \xc3\xa9 \xc2\x9b") == "a?[2J??? \xc3\xa9 ??");
+}
