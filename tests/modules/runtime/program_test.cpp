@@ -65,22 +65,25 @@ TEST_CASE("program: a count that is negative or too large is refused, not wrappe
 
 TEST_CASE("program: numbers are decimal, as in a scene file") {
   // Oracle: by hand; 0x10 was taken for 16, and 0150 for 104.
-  const auto given = [](const char* number) {
-    Program program("Counts.", "count");
+  const auto code_of = [](std::string option, std::string number) {
+    runtime::Program program("Tests.", "palpate-test");
     std::size_t count = 0;
     double length = 0;
-    program.add("--count", count, "how many");
-    program.add("--length", length, "how long");
-    const auto code = [&](const char* option) {
-      std::array<const char*, 3> words{"count", option, number};
-      return program.run(3, const_cast<char**>(words.data()), [] { return 0; });
-    };
-    return std::pair(code("--count"), code("--length"));
+    program.add("--count", count, "How many");
+    program.add("--length", length, "How long");
+    std::string name = "palpate-test";
+    char* argv[] = {name.data(), option.data(), number.data()};
+    return program.run(3, argv, [] { return 0; });
   };
-  for (const char* bad : {"0x10", "0X1", "-0x1"}) CHECK(given(bad) == std::pair(2, 2));
-  for (const char* octal : {"0150", "00"}) CHECK(given(octal).first == 2);
-  for (const char* good : {"0", "10", "100"}) CHECK(given(good) == std::pair(0, 0));
-  for (const char* good : {"0.5", "0e0", "-0.1", "0150"}) CHECK(given(good).second == 0);
+  for (const char* other : {"0x10", "0X1"}) {
+    CHECK(code_of("--count", other) == kExitBadInput);
+    CHECK(code_of("--length", other) == kExitBadInput);
+  }
+  for (const char* octal : {"0150", "00"}) CHECK(code_of("--count", octal) == kExitBadInput);
+  for (const char* good : {"0", "10", "100"}) CHECK(code_of("--count", good) == kExitDone);
+  for (const char* good : {"0", "0.5", "0e0", "-0.1", "00.5"}) {
+    CHECK(code_of("--length", good) == kExitDone);
+  }
 }
 
 TEST_CASE("program: memory that is not there is said in words") {
