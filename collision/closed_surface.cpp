@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "modules/core/tolerances.h"
 #include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
@@ -74,6 +75,42 @@ bool ClosedSurface::encloses(const OrganSurface& organ, const Vec3& p) {
     winding += crossing_of(ray, organ.positions(), organ.triangles()[t]);
   }
   return winding > 0;
+}
+
+/// Fractions of the segment at which a triangle meets it, and its ends, ascending: cuts_. One that
+/// is met beside an edge, by rounding, cuts it as well: a cut too many harms nothing.
+void ClosedSurface::find_cuts(const OrganSurface& organ, const Vec3& a, const Vec3& b) {
+  cuts_.assign({0, 1});
+  triangles_.clear();
+  organ.append_overlapping({a.cwiseMin(b), a.cwiseMax(b)}, triangles_);
+  for (const std::uint32_t t : triangles_) {
+    const geometry::TriangleCorners corners = organ.corners(t);
+    const Vec3 normal = geometry::unit_normal(corners);
+    const double height_a = normal.dot(a - corners[0]), height_b = normal.dot(b - corners[0]);
+    if ((height_a > 0) == (height_b > 0)) continue;
+    const double at = height_a / (height_a - height_b);
+    const Vec3 met = a + at * (b - a);
+    const Vec3 nearest = geometry::closest_on_triangle(met, corners).point;
+    if ((nearest - met).norm() <= kDirectionless) cuts_.push_back(at);
+  }
+  std::ranges::sort(cuts_);
+}
+
+std::optional<double> ClosedSurface::encloses_at(const OrganSurface& organ, const Vec3& a,
+                                                 const Vec3& b) {
+  if (encloses(organ, a)) return 0;
+  if (a == b) return {};
+  if (encloses(organ, b)) return 1;
+  find_cuts(organ, a, b);
+  std::optional<double> longest;
+  double length = 0;
+  for (std::size_t i = 1; i < cuts_.size() && cuts_.size() > 2; ++i) {
+    const double at = (cuts_[i - 1] + cuts_[i]) / 2;
+    if (cuts_[i] - cuts_[i - 1] <= length || !encloses(organ, a + at * (b - a))) continue;
+    length = cuts_[i] - cuts_[i - 1];
+    longest = at;
+  }
+  return longest;
 }
 
 std::uint32_t ClosedSurface::nearest_triangle(const OrganSurface& organ, const Vec3& p,

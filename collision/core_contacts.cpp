@@ -73,19 +73,22 @@ void CoreContacts::append_held(std::uint32_t organ, std::vector<std::uint32_t>& 
   }
 }
 
-/// Whether an end of the core is; a segment with both ends outside is behind no wall, whatever it
-/// pierces: its ends are cores of their own.
-bool CoreContacts::is_inside(const OrganStep& step, const Core& core) {
-  return surface_.encloses(step.organ, step.motion.to_world_at_end(core.a)) ||
-         (!core.is_point() && surface_.encloses(step.organ, step.motion.to_world_at_end(core.b)));
+/// What is between a segment's ends may be inside though they are not: a rod that comes out of a
+/// dent it made, or that a ridge has swung over.
+std::optional<Vec3> CoreContacts::place_inside(const OrganStep& step, const Core& core) {
+  const auto at = surface_.encloses_at(step.organ, step.motion.to_world_at_end(core.a),
+                                       step.motion.to_world_at_end(core.b));
+  if (!at) return {};
+  return (1 - *at) * core.a + *at * core.b;
 }
 
 bool CoreContacts::hold_if_inside(const OrganStep& step, const Core& core) {
-  if (!remembered(step.organ_index, core.index).empty() || !is_inside(step, core)) return false;
+  if (!remembered(step.organ_index, core.index).empty()) return false;
+  const auto inside = place_inside(step, core);
+  if (!inside) return false;
   double distance = 0;
-  const Vec3 a = step.motion.to_world_at_end(core.a), b = step.motion.to_world_at_end(core.b);
-  const Vec3& inside = surface_.encloses(step.organ, a) ? a : b;
-  const std::uint32_t triangle = surface_.nearest_triangle(step.organ, inside, distance);
+  const std::uint32_t triangle =
+      surface_.nearest_triangle(step.organ, step.motion.to_world_at_end(*inside), distance);
   const auto later = [&](const Behind& held) {
     return std::pair(held.organ, held.core) > std::pair(step.organ_index, core.index);
   };
@@ -161,17 +164,15 @@ bool CoreContacts::has_left(const OrganStep& step, const Core& core,
   });
 }
 
-/// Contact with the wall nearest to a core that is inside.
-void CoreContacts::append_nearest_wall(const OrganStep& step, const Core& core,
+/// Contact with the wall nearest to what of a core is inside.
+void CoreContacts::append_nearest_wall(const OrganStep& step, const Core& core, const Vec3& inside,
                                        std::vector<FoundContact>& found) {
-  const Vec3& end =
-      surface_.encloses(step.organ, step.motion.to_world_at_end(core.a)) ? core.a : core.b;
   double distance = 0;
   const std::uint32_t nearest =
-      surface_.nearest_triangle(step.organ, step.motion.to_world_at_end(end), distance);
+      surface_.nearest_triangle(step.organ, step.motion.to_world_at_end(inside), distance);
   SweptTriangle triangle;
   PALPATE_DEMAND(step.sweep(nearest, triangle));
-  const Core point{core.index, end, end, core.radius};
+  const Core point{core.index, inside, inside, core.radius};
   append_nearest(step, point, CoreCandidate(point, triangle), found);
 }
 
@@ -195,7 +196,7 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
     near_.push_back(c);
   }
   const bool was_behind = !before.empty();
-  const bool inside = (crosses || was_behind) && is_inside(step, core);
+  const auto inside = crosses || was_behind ? place_inside(step, core) : std::nullopt;
   if (crosses || inside || (was_behind && !has_left(step, core, before))) {
     find_behind(step, core, inside, depth_limit, found);
     return;
@@ -234,13 +235,14 @@ bool CoreContacts::is_new_place(const OrganStep& step, const Core& core, const C
 }
 
 /// Contacts of a core that is behind a wall, which is remembered.
-void CoreContacts::find_behind(const OrganStep& step, const Core& core, bool inside,
-                               double depth_limit, std::vector<FoundContact>& found) {
+void CoreContacts::find_behind(const OrganStep& step, const Core& core,
+                               const std::optional<Vec3>& inside, double depth_limit,
+                               std::vector<FoundContact>& found) {
   const std::size_t others = found.size();
   constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   wall_.clear();
   append_wall(step, core, inside ? kUnlimited : depth_limit, near_, wall_buffers_, wall_, found);
-  if (inside && wall_.empty()) append_nearest_wall(step, core, found);
+  if (inside && wall_.empty()) append_nearest_wall(step, core, *inside, found);
   if (inside) {  // from here it may be dragged back through a far side
     for (std::size_t i = others; i < found.size(); ++i) {
       depth_limit = std::max({depth_limit, step.depth_limit, step.motion.travel() - found[i].gap});

@@ -5,16 +5,17 @@
 // wall, seen from inside) are not. Once continuous collision detection finds that a core went
 // through a triangle from its front, the core is *behind* that wall: the wall keeps its side, so
 // its triangles push the core back out the way it came, for as long as the closed surface encloses
-// the core, however deep. A core that went right through, out of the far side, is dragged back the
-// same way until it is deeper than `depth_limit`. While it is behind, only the part of the surface
-// connected with the remembered triangles, near the core and facing the same way takes part; it is
-// followed as the core slides. A core inside that no sweep saw entering is put behind the wall
-// nearest to it.
+// any of the core, between a segment's ends as well, however deep. A core that went right through,
+// out of the far side, is dragged back the same way until it is deeper than `depth_limit`. While it
+// is behind, only the part of the surface connected with the remembered triangles, near the core
+// and facing the same way takes part; it is followed as the core slides. A core inside that no
+// sweep saw entering is put behind the wall nearest to it.
 //
 // Of a finely meshed wall only the part nearest to the core is looked at, some kWallTriangles: all
 // of it within the core's reach may be most of an organ.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,13 +74,14 @@ class CoreContacts {
 
   static const Behind& nearest_of(std::span<const Behind> before);
   std::span<const Behind> remembered(std::uint32_t organ, std::uint32_t core) const;
-  bool is_inside(const OrganStep& step, const Core& core);
+  /// In P; nothing: all along the core is outside.
+  std::optional<Vec3> place_inside(const OrganStep& step, const Core& core);
   bool has_left(const OrganStep& step, const Core& core, std::span<const Behind> before);
-  void append_nearest_wall(const OrganStep& step, const Core& core,
+  void append_nearest_wall(const OrganStep& step, const Core& core, const Vec3& inside,
                            std::vector<FoundContact>& found);
   bool is_new_place(const OrganStep& step, const Core& core, const CoreCandidate& c);
-  void find_behind(const OrganStep& step, const Core& core, bool inside, double depth_limit,
-                   std::vector<FoundContact>& found);
+  void find_behind(const OrganStep& step, const Core& core, const std::optional<Vec3>& inside,
+                   double depth_limit, std::vector<FoundContact>& found);
 
   std::vector<Behind> before_, now_;
   bool wall_was_cut_ = false;

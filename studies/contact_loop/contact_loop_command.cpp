@@ -59,12 +59,14 @@ struct Sum {
 
 std::vector<LoopCase> loops_of(const std::vector<Tool>& tools, const std::vector<double>& speeds,
                                const std::vector<double>& rates,
-                               const std::vector<double>& collision_rates) {
+                               const std::vector<double>& collision_rates, double loss) {
   std::vector<LoopCase> loops;
   for (const double rate : rates) {
     for (const double collision_rate : collision_rates) {
       for (const Tool& tool : tools) {
-        for (const double speed : speeds) loops.push_back({tool, speed, rate, collision_rate});
+        for (const double speed : speeds) {
+          loops.push_back({tool, speed, rate, collision_rate, loss});
+        }
       }
     }
   }
@@ -127,7 +129,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
     const auto places =
         places_on(assets.organs.at(0).surface, is_liver ? kOnLiver : kOnStomach, options.places);
     for (const Vec3& place : places) {
-      for (const LoopCase& loop : loops_of(tools, speeds, rates, searches)) {
+      for (const LoopCase& loop : loops_of(tools, speeds, rates, searches, options.loss)) {
         const LoopResult result = run_loop(scene, assets, place, loop, keep_going);
         print_line(file.stem().string(), place, loop, result, out);
         sum.add(loop.tool, result);

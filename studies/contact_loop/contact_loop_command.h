@@ -16,6 +16,7 @@ struct ContactLoopOptions {
   std::vector<double> speeds;                 ///< [m/s]; empty: 0.05 to 2.5
   std::vector<double> rates;                  ///< of deformation [Hz]; empty: 50, 100, 250
   std::vector<double> collision_rates;        ///< [Hz]; empty: 250
+  double loss = 0;                            ///< LoopCase::loss
   int places = 1;  ///< on an organ's front: the usual one, others at random
   bool quick = false;
 };

@@ -19,6 +19,10 @@ int main(int argc, char** argv) {
   program.add("--speed", options.speeds, "Largest [m/s]").range(1e-3, 2.9);
   program.add("--rate", options.rates, "Of deformation [Hz]").range(1.0, 2000.0);
   program.add("--collision-rate", options.collision_rates, "Of searches [Hz]").range(1.0, 2000.0);
+  program
+      .add("--loss", options.loss,
+           "Share of contacts and node positions that never arrive, as where processes are late")
+      .range(0.0, 0.9);
   program.add("--places", options.places, "On the organ's front; from the second on at random")
       .range(1, 1000);
   program.flag("--quick", options.quick, "A few balls: about a minute");

@@ -45,6 +45,42 @@ TEST_CASE("closed surface: encloses what it winds around, folded through itself 
   CHECK(inside > 1000);
 }
 
+TEST_CASE("closed surface: encloses a part of a segment, wherever that is") {
+  // Oracle: winding number by solid angles, at places all along.
+  RandomShapes random(7);
+  ClosedSurface closed;
+  int between = 0, outside = 0;
+  for (const double by : {0.0, 0.2, 0.6}) {
+    for (int shape = 0; shape < 4; ++shape) {
+      const auto surface = crumpled_ball(random, by);
+      const OrganSurface organ = organ_of(surface);
+      const auto is_inside = [&](const Vec3& p) {
+        return geometry::winding_number(p, surface.nodes, surface.triangles) > 0.5;
+      };
+      for (int trial = 0; trial < 120; ++trial) {
+        const Vec3 a = random.number(0.8, 1.5) * random.direction();
+        const Vec3 b = a + random.number(0, 1.5) * random.direction();
+        const auto at = closed.encloses_at(organ, a, b);
+        if (at) {
+          CHECK(is_inside((1 - *at) * a + *at * b));
+          between += *at > 0 && *at < 1;
+          continue;
+        }
+        for (int i = 0; i <= 100; ++i) REQUIRE_FALSE(is_inside(a + i / 100.0 * (b - a)));
+        ++outside;
+      }
+    }
+  }
+  CHECK(between > 50);
+  CHECK(outside > 50);
+  const OrganSurface box = organ_of(geometry::make_box({2, 2, 2}, 4));
+  const auto middle = closed.encloses_at(box, {0.5, 0.5, -3}, {0.5, 0.5, 2});  // through nodes
+  REQUIRE(middle);
+  CHECK(*middle == Approx(0.6));
+  CHECK(closed.encloses_at(box, {0, 0, 0}, {0, 0, 0}) == 0);
+  CHECK(closed.encloses_at(box, {0, 0, 2}, {0, 0, 0}) == 1);
+}
+
 TEST_CASE("closed surface: a ray through nodes, edges or within faces is counted once") {
   // Oracle: analytic; a box whose nodes lie on a grid, points on the same grid.
   const auto box = geometry::make_box({2, 2, 2}, 4);

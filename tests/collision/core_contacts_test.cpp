@@ -69,6 +69,27 @@ TEST_CASE(
   CHECK_FALSE(others.hold_if_inside(away.step, kSphere));
 }
 
+TEST_CASE("core contacts: a segment is behind a wall between its ends as well") {
+  // Oracle: analytic; a rod along x whose middle is 0.3 below a bar's top. Pressed in all along,
+  // then it juts out of the bar at both ends; or found so. Before, it was taken to have come out.
+  const Core rod{0, {-2, 0, 0}, {2, 0, 0}, 0.1};
+  const StepScene wide(box_at({0, 0, -0.2}, {6, 4, 1}, 2), {0, 0, 1}),
+      bar(box_at({0, 0, -0.2}, {1, 4, 1}, 2), Vec3::Zero());
+  for (const bool pressed_in : {true, false}) {
+    CoreContacts cores;
+    if (pressed_in) find(cores, wide, rod);
+    cores.begin_step();
+    CHECK(cores.hold_if_inside(bar.step, rod) == !pressed_in);
+    std::vector<FoundContact> found;
+    cores.find(bar.step, rod, bar.triangles(), found);
+    REQUIRE_FALSE(found.empty());
+    double gap = 0;
+    for (const FoundContact& c : found) gap = std::min(gap, c.gap);
+    CHECK(gap == Approx(-0.4).margin(1e-12));
+    CHECK(is_behind(cores));
+  }
+}
+
 TEST_CASE("core contacts: a wall crossed in the step pushes out the way the core came") {
   // Oracle: analytic; the top face ends 0.7 above the centre, the bottom face 0.3 below it.
   const StepScene scene(box_at({0, 0, 0.2}, {4, 4, 1}, 2), {0, 0, 3});

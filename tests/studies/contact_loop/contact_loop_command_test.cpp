@@ -27,6 +27,13 @@ TEST_CASE(
   CHECK(std::count(said.begin(), said.end(), '\n') == 8);
   CHECK(said.find("4 runs:") != std::string::npos);
   CHECK(said.find(" 0 of them without contact") != std::string::npos);
+  options.loss = 0.5;
+  options.places = 1;
+  std::ostringstream with_loss;
+  run_contact_loop(
+      options, [] {}, with_loss);
+  const std::string row = with_loss.str().substr(with_loss.str().find('\n') + 1, 100);
+  CHECK(said.find(row) == std::string::npos);
   int asked = 0;
   const auto stop_soon = [&] {
     if (++asked == 100) throw Interrupted("stopped");
