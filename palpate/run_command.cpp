@@ -85,7 +85,7 @@ class Run {
     monitor_.poll();
     if (suspension_.take()) {
       log_ << "palpate: Ctrl-Z stops no session, for its processes would go on pushing: Ctrl-C "
-              "ends it, p in its window pauses it"
+              "ends it, space in its window pauses it"
            << std::endl;
     }
     if (options_.restart && !ended_) end_hung();
