@@ -166,7 +166,11 @@ class Run {
     if (loop_.woke_ns() - line_ns_ < kLineEveryNs) return;
     line_ns_ += kLineEveryNs;
     if (!joined_) conductor_.repeat(session_.state());
-    out_ << status_line(monitor_.tally()) << std::endl;
+    std::vector<std::string> away;
+    for (const auto& name : modules_.modules()) {
+      if (!modules_.running(name)) away.push_back(name);
+    }
+    out_ << status_line(monitor_.tally(), away) << std::endl;
   }
 
   void end_hung() {

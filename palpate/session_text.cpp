@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -100,16 +101,24 @@ std::string limit_names(std::uint32_t limits) {
   return text.empty() ? "none" : text;
 }
 
-std::string status_line(const SessionTally& tally) {
+std::string status_line(const SessionTally& tally, const std::vector<std::string>& away) {
+  const auto is_away = [&](std::string_view module) {
+    return std::ranges::find(away, module) != away.end();
+  };
   std::string line =
       fmt::format("{:7.1f} s  real time {:.2f}", tally.sim_time(), tally.real_time_factor());
   for (const auto& organ : tally.organs()) {
     line += fmt::format("  V/V0 {} {:.6f}", organ.name, organ.volume_ratio);
   }
   for (const auto& probe : tally.probes()) {
-    line += fmt::format("  force {} {:.3f} N", probe.name, probe.force);
+    line += is_away("haptics") ? fmt::format("  force {} ?", probe.name)
+                               : fmt::format("  force {} {:.3f} N", probe.name, probe.force);
   }
   for (const auto& [name, module] : tally.modules()) {
+    if (is_away(name)) {
+      line += fmt::format("  {} away", name);
+      continue;
+    }
     line += fmt::format("  {} {:.0f} Hz", name, module.newest.rate_hz);
     if (module.overruns() > 0) line += fmt::format(" ({} missed)", module.overruns());
     if (!module.newest.last_error.empty())

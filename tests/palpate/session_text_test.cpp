@@ -54,6 +54,13 @@ TEST_CASE("status line: one line with time, speed, volume, force, rates and trou
                        Contains("[slower than real time]"));
 }
 
+TEST_CASE("status line: of a module whose process does not run it tells nothing old") {
+  // Oracle: the words given.
+  const auto line = status_line(stomach_tally(), {"haptics", "recorder"});
+  CHECK_THAT(line, Contains("force finger ?") && Contains("haptics away") && !Contains("0.500 N") &&
+                       !Contains("missed") && Contains("[slower than real time]"));
+}
+
 TEST_CASE("waiting line: names who has not been heard, and what may be why") {
   // Oracle: the words given.
   CHECK(waiting_line({"haptics", "deformation"}, false, {}) == "waiting for haptics, deformation");
