@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 """How long a session that presses an organ is without force when one of its processes is killed or stopped.
 
-Usage: bench/rejoin.py [--repeats N] [--how kill stop] [--depth deep shallow] [--modules NAME ...]     (after a build)
+Usage: bench/rejoin.py [--repeats N] [--how kill stop pause] [--depth deep shallow] [--tool ball rod wire] [--modules NAME ...]     (after a build)
 Per kind and module: seconds from the signal and from the successor's start until it says that it runs (of the recorder: until
-its part grows), and until the force is back (half of what it was). A stopped process is found out after three seconds. Each
+its part grows), and until the force is back (half of what it was). A stopped process is found out after three seconds; one that
+is paused is stopped for a second, and goes on itself. Each
 session is recorded: its parts are read again, and what is missing within them and between them is told. At the end: what is
 left of all processes. Of collision and deformation: how often the first search of the successor, or on its tissue, had a contact
-that pushes, and the greatest force until a second after it is back, over that before. Deep is with the sphere's middle 8 mm behind
-the skin at rest, shallow with its tip 2 mm.
+that pushes, and the greatest force until a second after it is back, over that before. Deep is with the tip 16 mm behind the skin at
+rest (the ball's middle 8 mm), shallow 2 mm. Rod (4 mm thick) and wire (1 mm) lie on the wall.
 """
 import argparse
 import itertools
@@ -34,11 +35,17 @@ organs:
   - {name: stomach, mesh: {file: %s}, tissue: {youngs_modulus_pa: 30e3}, springs: {inner_ratio: 0.5},
      fixed: [{box: {min_m: [-0.2, 0.02, -0.2], max_m: [0.2, 0.2, 0.2]}}]}
 probes:
-  - {name: tip, shape: {sphere: {radius_m: 0.008}}, device: {scripted: {start_m: [0.008, -0.08, -0.049], moves: [
+  - {name: tip, shape: {%s}, device: {scripted: {start_m: [0.008, -0.08, -0.049], moves: [
      {to_m: [0.008, %g, -0.049], duration_s: 1.5}]}}}
 """
 HELD_GAP = 1e-8  # [m]: a contact that holds is at 0, but for nodes that travel as float32: half an ulp of 0.13 m is 7e-9
-DEPTHS = {"deep": -0.020, "shallow": -0.0344}  # of the sphere's middle, along y; the skin is at -0.0284 [m]
+DEPTHS = {"deep": -0.012, "shallow": -0.0264}  # of the tip, along y; the skin is at -0.0284 [m]
+TOOLS = {  # its radius [m] and shape
+    "ball": (0.008, "sphere: {radius_m: 0.008}"),
+    "rod": (0.002, "capsule: {radius_m: 0.002, length_m: 0.04}"),
+    "wire": (0.0005, "capsule: {radius_m: 0.0005, length_m: 0.04}"),
+}
+PAUSE = 1.0  # [s]
 
 
 def force(live):
@@ -142,7 +149,7 @@ class Heard:
         return np.linalg.norm(np.hstack(self.heard["haptic_force"]), axis=0).max()
 
 
-def lose(module, number):
+def lose(module, how):
     """Seconds until it runs again and until the force is back, from the signal and from the start of its successor; searches
     without a contact; the greatest force over that before."""
     live = module.live
@@ -150,15 +157,21 @@ def lose(module, number):
     victim = module.process()
     said = Heard(live)
     begin = time.monotonic()
-    os.kill(victim, number)
+    os.kill(victim, signal.SIGKILL if how == "kill" else signal.SIGSTOP)
 
     def heard(condition):
         said.listen()
         return condition()
 
-    runs = wait(lambda: heard(lambda: module.process() not in (0, victim) and module.runs()))
+    if how == "pause":
+        wait(lambda: heard(lambda: False), PAUSE)
+        restart = time.monotonic() - begin
+        os.kill(victim, signal.SIGCONT)
+        runs = restart + wait(lambda: heard(module.runs))
+    else:
+        runs = wait(lambda: heard(lambda: module.process() not in (0, victim) and module.runs()))
+        restart = started(module.process()) - begin
     since = time.monotonic() - begin
-    restart = started(module.process()) - begin
     faded = force(live) < 0.5 * before
     back = since + wait(lambda: heard(lambda: force(live) > 0.5 * before)) if faded else since
     wait(lambda: heard(lambda: False), 1)
@@ -183,14 +196,14 @@ def leftovers(session):
     return [pid for pid in found if pid != str(os.getpid())]
 
 
-def measure(module, how, depth, repeats, folder):
+def measure(module, how, depth, tool, repeats, folder):
     scene = Path(folder) / "held.yaml"
     stomach = palpate.scene_path("stomach_probe").parent.joinpath("meshes/stomach.ply")
-    scene.write_text(HELD % (stomach, DEPTHS[depth]))
+    radius, shape = TOOLS[tool]
+    scene.write_text(HELD % (stomach, shape, DEPTHS[depth] - radius))
     times, parts = [], []
-    number = {"kill": signal.SIGKILL, "stop": signal.SIGSTOP}[how]
     while len(times) < repeats:
-        name = f"rejoin{os.getpid()}x{len(times)}{module}{how}{depth}"
+        name = f"rejoin{os.getpid()}x{len(times)}{module}{how}{depth}{tool}"
         recording = Path(folder) / name / "held.mcap"
         recording.parent.mkdir()
         log = Path(folder) / "log"
@@ -200,7 +213,7 @@ def measure(module, how, depth, repeats, folder):
                 time.sleep(1)
                 with palpate.connect(name, 77) as live:
                     for _ in range(min(KILLS, repeats - len(times))):
-                        times.append(lose(Module(module, live, run.pid, recording), number))
+                        times.append(lose(Module(module, live, run.pid, recording), how))
             except Exception:
                 print(log.read_text(errors="replace"))
                 raise
@@ -217,19 +230,20 @@ def measure(module, how, depth, repeats, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeats", type=int, default=8)
-    parser.add_argument("--how", nargs="+", default=["kill"], choices=["kill", "stop"])
+    parser.add_argument("--how", nargs="+", default=["kill"], choices=["kill", "stop", "pause"])
     parser.add_argument("--depth", nargs="+", default=["deep"], choices=list(DEPTHS))
+    parser.add_argument("--tool", nargs="+", default=["ball"], choices=list(TOOLS))
     parser.add_argument("--modules", nargs="+", default=["haptics", "collision", "deformation", "recorder"])
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for how, depth, module in itertools.product(options.how, options.depth, options.modules):
-            times, (files, read, missing) = measure(module, how, depth, options.repeats, folder)
+        for how, tool, depth, module in itertools.product(options.how, options.tool, options.depth, options.modules):
+            times, (files, read, missing) = measure(module, how, depth, tool, options.repeats, folder)
             middle, worst = np.median(times, axis=0), np.max(times, axis=0)
             lost = times[:, 4]
             searches = "" if np.isnan(lost).all() else f"; contact at the first search {np.sum(lost == 0)} times (at most {worst[4]:.0f} without)"
             searches += f"; force at most {worst[5]:.2f} of that before"
             print(
-                f"{how:5} {depth:8} {module:12} {len(times):4} times: runs again after {middle[0]:.2f} s (at most {worst[0]:.2f}),"
+                f"{how:5} {tool:4} {depth:8} {module:12} {len(times):4} times: runs again after {middle[0]:.2f} s (at most {worst[0]:.2f}),"
                 f" force back after {middle[1]:.2f} s (at most {worst[1]:.2f}); from its restart {middle[2]:.2f} s"
                 f" ({worst[2]:.2f}) and {middle[3]:.2f} s ({worst[3]:.2f}); {files} files recorded, {read} read, {missing} samples missing{searches}",
                 flush=True,

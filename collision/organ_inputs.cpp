@@ -1,6 +1,7 @@
 #include "collision/organ_inputs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
@@ -35,6 +36,12 @@ void OrganInputs::take() {
   while (positions_.take(newest_)) take_positions();
 }
 
+void OrganInputs::hear_anew(std::int64_t since_ns) {
+  since_ns_ = since_ns;
+  if (finder_) finder_->reset();
+  for (OrganInput& organ : organs_) organ.placed = false;
+}
+
 bool OrganInputs::placed() const { return std::ranges::all_of(organs_, &OrganInput::placed); }
 
 void OrganInputs::tell_generations(std::vector<std::uint32_t>& generations) const {
@@ -57,7 +64,7 @@ void OrganInputs::exchange(StateArchive& archive) {
 
 void OrganInputs::OrganInput::exchange(StateArchive& archive) {
   archive(generation, triangles, triangle_blocks, surface_node_count, rest_positions, block_count,
-          boxes_misfit, placed, came_ns);
+          boxes_misfit, placed, anew, came_ns);
   std::size_t told = next.size();
   archive(told);
   if (told > kMostTold) throw InputError("its state holds surfaces that cannot be");
@@ -67,8 +74,9 @@ void OrganInputs::OrganInput::exchange(StateArchive& archive) {
 
 /// The first surface puts its organ at rest. One of the same triangles starts it anew: what was
 /// remembered of the search before no longer holds. It has not if positions told after it are
-/// there already: of a deformation that begins anew they may be heard first. One of other
-/// triangles waits for its positions: until then the organ is where it was.
+/// there already: of a deformation that begins anew they may be heard first. One of the same
+/// generation is told by a process that may go on where the one before it was: until positions come
+/// the organ is there, too. One of other triangles waits for its positions likewise.
 void OrganInputs::take_surface() {
   if (surface_.organ >= organs_.size()) return;
   OrganInput& organ = organs_[surface_.organ];
@@ -83,10 +91,14 @@ void OrganInputs::take_surface() {
     organ.next.push_back(surface_);
     return;
   }
-  const bool heard_late =
-      surface_.generation == organ.generation && surface_.header.source_time_ns < organ.came_ns;
+  const bool same = surface_.generation == organ.generation;
+  const bool heard_late = same && surface_.header.source_time_ns < organ.came_ns;
   know(surface_, organ);
   if (heard_late) return;
+  if (same) {
+    organ.anew = true;
+    return;
+  }
   finder_->reset();
   put_at_rest(surface_.organ);
 }
@@ -155,8 +167,9 @@ void OrganInputs::take_positions() {
   }
   read_boxes(newest_.block_boxes, boxes_);
   organ.boxes_misfit = !boxes_.empty() && boxes_.size() != organ.block_count;
+  if (std::exchange(organ.anew, false)) finder_->reset();
   finder_->take_organ(newest_.organ, newest_.positions, boxes_);
-  organ.placed = true;
+  organ.placed |= newest_.header.source_time_ns >= since_ns_;
   const std::int64_t before_ns = organ.came_ns;
   organ.came_ns = newest_.header.source_time_ns;
   if (newest_.organ == 0 && before_ns != 0) interval_ = seconds_from_ns(organ.came_ns - before_ns);

@@ -1,6 +1,7 @@
 // The organs' surfaces as deformation tells them, kept in a finder.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -15,6 +16,9 @@ class OrganInputs {
   OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes, std::size_t organs);
 
   void take();
+  /// What was remembered of searches no longer holds, and nothing is known of where the organs are
+  /// until positions are heard that were said since.
+  void hear_anew(std::int64_t since_ns);
 
   /// nullptr until the surfaces of all organs are known.
   ContactFinder* finder() { return finder_ ? &*finder_ : nullptr; }
@@ -44,6 +48,7 @@ class OrganInputs {
     std::vector<SurfaceTopology> next;
     bool boxes_misfit = false;  ///< of the newest node positions
     bool placed = false;        ///< see OrganInputs::placed()
+    bool anew = false;          ///< its next positions are of another process
     std::int64_t came_ns = 0;   ///< source time of the newest positions; 0: none
 
     void exchange(StateArchive& archive);
@@ -63,6 +68,7 @@ class OrganInputs {
   std::vector<OrganInput> organs_;
   std::optional<ContactFinder> finder_;
   double interval_ = 0;
+  std::int64_t since_ns_ = std::numeric_limits<std::int64_t>::min();  ///< see hear_anew()
   // Kept between calls for their memory only.
   SurfaceTopology surface_;
   NodePositions newest_;

@@ -1,6 +1,7 @@
 #include "collision/stage.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "collision/activation_distance.h"
@@ -10,6 +11,7 @@
 #include "modules/core/tolerances.h"
 #include "modules/core/units.h"
 #include "modules/messages/message_state.h"
+#include "modules/runtime/pause_watch.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
 
@@ -26,7 +28,8 @@ class ProbeInputs {
 
   void take() {
     while (states_.take(newest_)) {
-      if (newest_.probe >= probes_.size()) continue;
+      const bool said_before = newest_.header.source_time_ns < since_ns_;
+      if (newest_.probe >= probes_.size() || said_before) continue;
       Way& way = probes_[newest_.probe];
       if (!way.known) {
         way.searched = newest_.pose;
@@ -47,6 +50,11 @@ class ProbeInputs {
     return motion;
   }
 
+  /// Nothing is known of any until something is heard of it that was said since.
+  void hear_anew(std::int64_t since_ns) {
+    for (Way& way : probes_) way = {};
+    since_ns_ = since_ns;
+  }
   /// A probe that fell silent or jumped begins where it is found again.
   void lose(std::size_t probe) { probes_[probe].known = false; }
 
@@ -84,6 +92,7 @@ class ProbeInputs {
   bus::Reader<ProbeState> states_;
   std::vector<Way> probes_;
   runtime::SilenceWatch heard_;
+  std::int64_t since_ns_ = std::numeric_limits<std::int64_t>::min();
   ProbeState newest_;
 };
 
@@ -130,7 +139,19 @@ struct CollisionStage::Impl {
       : rates(scene.rates),
         organs(bus, std::move(forms), scene.organs.size()),
         probes(bus, scene),
-        writer(bus.writer(bus::kContacts)) {}
+        writer(bus.writer(bus::kContacts)),
+        pauses(1 / scene.rates.collision) {}
+
+  /// A process that was stopped goes on as one that begins anew: it says nothing before it has
+  /// heard where probes and organs are. What waits to be heard is of its stop's beginning.
+  void take(const runtime::Cycle& now) {
+    if (pauses.was_stopped(now.now_ns)) {
+      organs.hear_anew(now.now_ns);
+      probes.hear_anew(now.now_ns);
+    }
+    organs.take();
+    probes.take();
+  }
 
   /// Contacts of a probe on its way since the last search; none if it is silent. A probe that was
   /// silent or jumped has no way: it is heard of for the first time.
@@ -166,6 +187,7 @@ struct CollisionStage::Impl {
   bus::Writer<Contacts> writer;
   Contacts contacts;
   ContactTroubles troubles;
+  runtime::PauseWatch pauses;
 };
 
 std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
@@ -195,8 +217,7 @@ void CollisionStage::exchange(StateArchive& archive) {
 }
 
 runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
-  impl_->organs.take();
-  impl_->probes.take();
+  impl_->take(now);
   ContactFinder* finder = impl_->organs.finder();
   runtime::Health health;
   health.ready = finder != nullptr;

@@ -1,6 +1,7 @@
 #include "deformation/stage.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -9,9 +10,11 @@
 #include "deformation/law_of_probe.h"
 #include "deformation/organ_messages.h"
 #include "deformation/own_organs.h"
+#include "deformation/simulated_time.h"
 #include "deformation/usual_age.h"
 #include "modules/core/units.h"
 #include "modules/messages/message_state.h"
+#include "modules/runtime/pause_watch.h"
 #include "modules/runtime/silence_watch.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
@@ -20,12 +23,17 @@
 namespace palpate::deformation {
 namespace {
 
-/// What holds tissue off a round probe goes on so long without searches: the steps look around its
-/// core themselves, and a collision that died is back by then. Tissue let go meanwhile would come
-/// back at a speed, and the hand get a blow. Laws have no rows meanwhile: the hand lets go [s].
-constexpr double kHeldUnsearched = 1.0;
+/// A round probe that rests: without its poses [s], and how far off it then is [m].
+constexpr double kHeldUnheard = 1.0, kWhereItWas = 1e-3;
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+/// What joins late is heard by then: discovery takes half a second [s].
+constexpr double kHeardWithin = 1.0;
 
-/// Brings probes and contacts to the world, and takes away what is too old to be true.
+/// Brings probes and contacts to the world, and takes away what is too old to be true. What holds
+/// tissue off a round probe goes on without searches: the steps look around its core themselves.
+/// Tissue let go meanwhile would be around the probe when searches return, and the hand get a blow.
+/// Nor is it let go where poses are missed for kHeldUnheard and the probe then is where it was.
+/// Laws have no rows meanwhile: the hand lets go.
 class ProbeInputs {
  public:
   /// @param stale_after  of a pose, and of contacts [s]
@@ -34,31 +42,35 @@ class ProbeInputs {
         states_(bus.reader(bus::kProbeState)),
         contacts_(bus.reader(bus::kContacts)),
         states_heard_(probes, stale_after),
+        held_(probes, std::max(stale_after, kHeldUnheard)),
         contacts_heard_(probes, stale_after),
-        searched_(probes, std::max(stale_after, kHeldUnsearched)),
         sampled_ns_(probes, 0),
         found_ns_(probes, 0),
         usual_ages_(probes, UsualAge(stale_after)) {}
 
-  void bring(std::int64_t now_ns, DeformationWorld& world) {
+  void bring(DeformationWorld& world) {
     while (states_.take(state_)) {
-      states_heard_.heard(state_.probe, state_.header.source_time_ns);
-      if (state_.probe < sampled_ns_.size())
-        sampled_ns_[state_.probe] = state_.header.source_time_ns;
-      world.set_probe(state_.probe, state_.pose);
+      const std::int64_t sampled_ns = state_.header.source_time_ns;
+      if (state_.probe >= sampled_ns_.size()) continue;
+      const bool missed = states_heard_.silent(state_.probe, sampled_ns);
+      states_heard_.heard(state_.probe, sampled_ns);
+      held_.heard(state_.probe, sampled_ns);
+      sampled_ns_[state_.probe] = sampled_ns;
+      world.set_probe(state_.probe, state_.pose, missed ? kWhereItWas : kAnywhere);
     }
     while (contacts_.take(newest_)) {
       contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
-      searched_.heard(newest_.probe, newest_.header.source_time_ns);
       note_found(newest_.probe, newest_.header.source_time_ns);
       organs_.keep_own(newest_, newest_.generations);
       world.set_contacts(newest_, newest_.generations);
     }
+  }
+  void drop_stale(std::int64_t now_ns, DeformationWorld& world) {
     brought_ns_ = now_ns;
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
-      const runtime::SilenceWatch& contacts = world.is_round(probe) ? searched_ : contacts_heard_;
-      if (states_heard_.silent(probe, now_ns) || contacts.silent(probe, now_ns))
-        world.forget_contacts(probe);
+      const bool held =
+          world.is_round(probe) ? !held_.silent(probe, now_ns) : !silent(probe, now_ns);
+      if (!held) world.forget_contacts(probe);
     }
   }
 
@@ -75,16 +87,16 @@ class ProbeInputs {
     return old > usual_ages_[probe].limit() ? found_ns_[probe] : now_ns;
   }
 
-  /// Whether a probe's contacts are too old to be true.
-  bool unsearched(std::size_t probe, std::int64_t now_ns) const {
-    return contacts_heard_.silent(probe, now_ns);
+  /// Whether a probe's pose or contacts are too old to be true.
+  bool silent(std::size_t probe, std::int64_t now_ns) const {
+    return states_heard_.silent(probe, now_ns) || contacts_heard_.silent(probe, now_ns);
   }
   bool any_silent(std::int64_t now_ns) const {
     return states_heard_.any_silent(now_ns) || contacts_heard_.any_silent(now_ns);
   }
 
   void exchange(StateArchive& archive) {
-    archive(states_heard_, contacts_heard_, searched_, sampled_ns_, found_ns_, brought_ns_);
+    archive(states_heard_, held_, contacts_heard_, sampled_ns_, found_ns_, brought_ns_);
     for (UsualAge& age : usual_ages_) archive(age);
     const std::size_t probes = usual_ages_.size();
     if (sampled_ns_.size() != probes || found_ns_.size() != probes) {
@@ -104,8 +116,7 @@ class ProbeInputs {
   const OwnOrgans& organs_;
   bus::Reader<ProbeState> states_;
   bus::Reader<Contacts> contacts_;
-  runtime::SilenceWatch states_heard_, contacts_heard_;
-  runtime::SilenceWatch searched_;  ///< as contacts_heard_, within kHeldUnsearched
+  runtime::SilenceWatch states_heard_, held_, contacts_heard_;
   // Of each probe:
   std::vector<std::int64_t> sampled_ns_;  ///< its newest pose
   std::vector<std::int64_t> found_ns_;    ///< its newest contacts
@@ -113,34 +124,6 @@ class ProbeInputs {
   std::int64_t brought_ns_ = 0;           ///< by the last bring()
   ProbeState state_;
   Contacts newest_;
-};
-
-/// Simulated time on the session's clock: a world that joins late begins at the time it joins, and
-/// one whose session is begun anew, by a launcher that has come back, with that.
-class SimulatedTime {
- public:
-  /// Before each advance. @param session_time, world_time  [s]
-  void pass(double session_time, double world_time) {
-    const bool anew = session_time < latest_ - kAnew;
-    latest_ = session_time;
-    if (begin_ && !anew) return;
-    begin_ = session_time;
-    world_begin_ = world_time;
-  }
-  double on_session_clock(double world_time) const {
-    return begin_.value_or(0) + (world_time - world_begin_);
-  }
-  /// Simulated per wall second, after an advance in the cycle that woke at `session_time`.
-  double factor(double session_time, double world_time, double period) const {
-    return (world_time - world_begin_) / (session_time - begin_.value_or(0) + period);
-  }
-
-  void exchange(StateArchive& archive) { archive(begin_, world_begin_, latest_); }
-
- private:
-  static constexpr double kAnew = 0.5;  ///< [s]: clocks of hosts are known better
-  std::optional<double> begin_;
-  double world_begin_ = 0, latest_ = 0;
 };
 
 /// The smallest advance that is a whole sub-step of some organ, at most the period [s].
@@ -239,7 +222,7 @@ class Outputs {
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
       LocalLaw law = world.local_law(probe, &bounded);
-      if (inputs.unsearched(probe, now_ns)) {
+      if (inputs.silent(probe, now_ns)) {
         law = without_rows(law);
         bounded = false;
       }
@@ -305,7 +288,7 @@ class Outputs {
 /// @param of_world  the world's own; comes first
 const char* acting_guard(const char* of_world, double real_time_factor, bool silent_input) {
   if (*of_world != '\0') return of_world;
-  if (silent_input) return "a probe or its contacts are stale: it touches nothing";
+  if (silent_input) return "a probe or its contacts are stale: the hand feels nothing of it";
   if (real_time_factor < 0.95) return "slower than real time: see the real-time factor";
   return "";
 }
@@ -319,7 +302,8 @@ struct DeformationStage::Impl {
         world(scene::part_of(scene, process), std::move(shapes), runner, guarding),
         inputs(bus, world.probe_count(), organs, runtime::input_stale_after(scene)),
         outputs(bus, organs, world.probe_count(), process),
-        period(1 / scene.rates.deformation) {
+        period(1 / scene.rates.deformation),
+        pauses(period) {
     outputs.publish_surfaces(world);
   }
 
@@ -328,6 +312,17 @@ struct DeformationStage::Impl {
     time = {};
     guards.reset();
     outputs.publish_surfaces(world);
+  }
+
+  /// Whether it goes on where another process' organs were, or after it was stopped itself, and has
+  /// not heard yet, for at most kHeardWithin, what holds them there.
+  bool waits(const runtime::Cycle& now) {
+    if (now.goes_on) time = {};
+    if (pauses.was_stopped(now.now_ns) || now.goes_on) {
+      waits_until_ns = now.now_ns + ns_from_seconds(kHeardWithin);
+    }
+    if (now.reset || !inputs.any_silent(now.now_ns)) waits_until_ns = 0;
+    return now.now_ns < waits_until_ns;
   }
 
   runtime::Health advance(const runtime::Cycle& now) {
@@ -354,6 +349,8 @@ struct DeformationStage::Impl {
   AdvanceReport report;
   bool law_bounded = false;  ///< of the laws last sent
   ContactTroubles troubles;
+  runtime::PauseWatch pauses;
+  std::int64_t waits_until_ns = 0;  ///< at the latest; 0: it does not
 };
 
 std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene, std::size_t process) {
@@ -373,15 +370,18 @@ DeformationStage::~DeformationStage() = default;
 
 runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   if (now.reset) impl_->reset();
-  impl_->inputs.bring(now.now_ns, impl_->world);
+  impl_->inputs.bring(impl_->world);
+  const bool waits = impl_->waits(now), running = now.running && !waits;
+  if (!waits) impl_->inputs.drop_stale(now.now_ns, impl_->world);
   runtime::Health health;
-  if (now.running) {
+  if (running) {
     health = impl_->advance(now);
   } else {
     impl_->world.take_next_meshes();
   }
+  if (waits) health.guard = "what touches its organs is not heard of yet: they stand still";
   const double sim_time = impl_->time.on_session_clock(impl_->world.time());
-  if (now.running) {
+  if (running) {
     impl_->law_bounded =
         impl_->outputs.publish_laws(sim_time, impl_->world, impl_->inputs, now.now_ns);
   }

@@ -260,8 +260,8 @@ std::uint32_t DeformationWorld::generation(std::size_t organ) const {
   return impl_->organs.at(organ).generation;
 }
 
-void DeformationWorld::set_probe(std::size_t probe, const Pose& pose) {
-  if (probe < impl_->probes.size()) impl_->probes[probe].set_pose(pose);
+void DeformationWorld::set_probe(std::size_t probe, const Pose& pose, double kept_within) {
+  if (probe < impl_->probes.size()) impl_->probes[probe].set_pose(pose, kept_within);
 }
 
 void DeformationWorld::ask_for_volume(std::size_t organ, double ratio) {

@@ -2,6 +2,7 @@
 // and the benchmarks drive; knows no DDS, file, clock or thread.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -54,7 +55,9 @@ class DeformationWorld {
 
   /// Newest pose X_WP of a probe. Contacts are carried along rigidly with it until the next ones.
   /// A probe the scene does not have is ignored.
-  void set_probe(std::size_t probe, const Pose& pose);
+  /// @param kept_within  its contacts are dropped if it went further than that [m]
+  void set_probe(std::size_t probe, const Pose& pose,
+                 double kept_within = std::numeric_limits<double>::infinity());
   /// Newest contacts of the probe they name; replaces those it had. Entries naming no organ or
   /// triangle of this world are ignored; those metres away from their tissue or probe are refused,
   /// too, and the next advance says so.

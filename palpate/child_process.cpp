@@ -14,12 +14,14 @@ namespace palpate::launcher {
 namespace {
 
 /// In the child, after fork: only what is safe there. Returns only if the program cannot start.
-int become(const char* program, char* const* arguments, int output, pid_t parent) {
+int become(const char* program, char* const* arguments, int output, std::optional<int> inherited,
+           pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) return ESRCH;  // the launcher died before the line above
   setpgid(0, 0);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
+  if (inherited) fcntl(*inherited, F_SETFD, 0);
   execv(program, arguments);
   return errno;
 }
@@ -44,7 +46,8 @@ std::string describe_exit(int wait_status) {
 }
 
 ChildProcess::ChildProcess(const std::filesystem::path& program,
-                           const std::vector<std::string>& arguments) {
+                           const std::vector<std::string>& arguments,
+                           std::optional<int> inherited) {
   const std::string path = program.string();
   std::vector<char*> argv{const_cast<char*>(path.c_str())};
   for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -60,7 +63,7 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
   const pid_t launcher = getpid();
   process_id_ = fork();
   if (process_id_ == 0) {
-    const int error = become(path.c_str(), argv.data(), output[1], launcher);
+    const int error = become(path.c_str(), argv.data(), output[1], inherited, launcher);
     const auto written = write(failure[1], &error, sizeof error);
     _exit(written == sizeof error ? 127 : 126);
   }

@@ -19,7 +19,9 @@ std::string describe_exit(int wait_status);
 class ChildProcess {
  public:
   /// @throws std::runtime_error naming the program if it cannot be started
-  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+  /// @param inherited  a descriptor that it gets, too
+  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+               std::optional<int> inherited = {});
   ~ChildProcess();  ///< kills it if it still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

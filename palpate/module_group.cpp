@@ -26,14 +26,22 @@ ModuleGroup::ModuleGroup(std::vector<ModuleCommand> commands, std::ostream& log,
     : restarting_(restarting), log_(log) {
   for (auto& command : commands) {
     Member member{std::move(command), nullptr};
+    if (member.command.keeps_state && restarting_ != Restarting::kNever) {
+      member.kept = std::make_unique<runtime::KeptMemory>();
+    }
     start(member);
     members_.push_back(std::move(member));
   }
 }
 
 void ModuleGroup::start(Member& member) {
-  const ModuleCommand command = again(member.command, member.restarts);
-  member.process = std::make_unique<ChildProcess>(command.program, command.arguments);
+  ModuleCommand command = again(member.command, member.restarts);
+  std::optional<int> inherited;
+  if (member.kept) {
+    inherited = member.kept->descriptor();
+    command.arguments.insert(command.arguments.end(), {"--kept-state", std::to_string(*inherited)});
+  }
+  member.process = std::make_unique<ChildProcess>(command.program, command.arguments, inherited);
   reaper_.watch(member.process->process_id());
   member.began_ns = runtime::monotonic_now_ns();
   member.end_reported = false;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "modules/runtime/kept_state.h"
 #include "palpate/child_process.h"
 #include "palpate/reaper.h"
 #include "palpate/restart_policy.h"
@@ -72,6 +73,7 @@ class ModuleGroup {
   struct Member {
     ModuleCommand command;
     std::unique_ptr<ChildProcess> process;
+    std::unique_ptr<runtime::KeptMemory> kept = {};  ///< nullptr: it keeps nothing
     bool end_reported = false;
     std::string last_line = {}, last_error = {};
     std::string hung = {};  ///< why it was killed

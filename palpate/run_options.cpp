@@ -82,6 +82,7 @@ ModuleCommand module_command(const RunOptions& options, const std::vector<std::s
   ModuleCommand command;
   command.module = module;
   const runtime::ModuleName name = *runtime::module_named(module);
+  command.keeps_state = name.job == "deformation" && !options.lockstep;
   command.program = folder / ("palpate-" + std::string(name.job));
   command.arguments = {std::filesystem::absolute(options.scene).string()};
   for (auto& argument : session_arguments(options.bus)) command.arguments.push_back(argument);

@@ -45,7 +45,12 @@ void ProbeContacts::forget_contacts() {
   begun_.clear();
 }
 
-void ProbeContacts::set_pose(const Pose& pose) {
+void ProbeContacts::set_pose(const Pose& pose, double kept_within) {
+  const auto way_of = [&](const Vec3& p) {
+    return (pose.to_world(p) - target_.to_world(p)).norm();
+  };
+  const double way = core_ ? std::max(way_of(core_->a), way_of(core_->b)) : way_of(Vec3::Zero());
+  if (placed_ && way > kept_within) forget_contacts();
   target_ = pose;
   if (!placed_) start_ = pose;
   placed_ = true;

@@ -1,6 +1,7 @@
 // The contacts of one probe, carried along with it through the sub-steps of an advance.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -52,7 +53,8 @@ class ProbeContacts {
   void reset();
   /// Nobody knows where it touches: contacts are dropped, and nothing is watched.
   void forget_contacts();
-  void set_pose(const Pose& pose);
+  /// @param kept_within  contacts are dropped if it, or an end of its core, went further [m]
+  void set_pose(const Pose& pose, double kept_within = std::numeric_limits<double>::infinity());
   /// Replaces the contacts; one near to where its triangle had one starts from the forces
   /// of that. Sorted by (organ, triangle). Where
   /// the probe had no contact with an organ and now has one deeper than GentlePush::kSeenDepth and

@@ -26,12 +26,17 @@ namespace palpate {
 class StateArchive {
  public:
   StateArchive() = default;  ///< writes
+  /// Writes into memory there is, over what it holds.
+  explicit StateArchive(std::vector<std::uint8_t>&& memory) : written_(std::move(memory)) {
+    written_.clear();
+  }
   /// Reads. @param bytes  outlive it
   explicit StateArchive(std::span<const std::uint8_t> bytes) : reads_(true), left_(bytes) {}
 
   bool reads() const { return reads_; }
   /// Written so far.
   const std::vector<std::uint8_t>& bytes() const { return written_; }
+  std::vector<std::uint8_t> take_bytes() && { return std::move(written_); }
   std::span<const std::uint8_t> left() const { return left_; }  ///< to be read
 
   /// @throws InputError where what is read is of other types, ends early or cannot be of such a

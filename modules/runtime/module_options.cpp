@@ -50,6 +50,11 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   command.add_input("SCENE", options.scene, "Scene file (YAML)").required();
   add_bus_options(command, options.bus);
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
+  command
+      .add("--kept-state", options.kept_state,
+           "Open descriptor of where it keeps what it remembers for a successor, and goes on from "
+           "what is kept there (palpate run gives it)")
+      .range(0, 1e6);
   add_lockstep_options(command, options);
   command.footer(kModuleExitCodes);
   if (program.add_options) program.add_options(command);

@@ -13,9 +13,10 @@
 namespace palpate::runtime {
 
 struct ModuleOptions {
-  std::filesystem::path scene;  ///< SCENE
-  bus::BusOptions bus;          ///< --session, --domain (or PALPATE_DOMAIN)
-  bool realtime = true;         ///< --no-realtime
+  std::filesystem::path scene;    ///< SCENE
+  bus::BusOptions bus;            ///< --session, --domain (or PALPATE_DOMAIN)
+  bool realtime = true;           ///< --no-realtime
+  std::optional<int> kept_state;  ///< --kept-state: of a KeptMemory, inherited; none: keeps nothing
   /// --lockstep: the modules of a lockstep session, this one included; empty: real time.
   std::vector<std::string> lockstep;
   std::filesystem::path from_snapshot;  ///< --from-snapshot: lockstep goes on there; empty: from 0

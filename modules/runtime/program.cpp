@@ -152,6 +152,7 @@ template Option Options::add(const char*, std::size_t&, const std::string&);
 template Option Options::add(const char*, double&, const std::string&);
 template Option Options::add(const char*, std::string&, const std::string&);
 template Option Options::add(const char*, std::filesystem::path&, const std::string&);
+template Option Options::add(const char*, std::optional<int>&, const std::string&);
 template Option Options::add(const char*, std::optional<double>&, const std::string&);
 template Option Options::add(const char*, std::optional<std::string>&, const std::string&);
 template Option Options::add(const char*, std::optional<std::size_t>&, const std::string&);

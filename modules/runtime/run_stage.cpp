@@ -8,7 +8,9 @@
 #include "modules/runtime/clock.h"
 #include "modules/runtime/cycle_budget.h"
 #include "modules/runtime/joined_streams.h"
+#include "modules/runtime/kept_state.h"
 #include "modules/runtime/wiring.h"
+#include "modules/scene/scene_reader.h"
 
 namespace palpate::runtime {
 namespace {
@@ -50,10 +52,11 @@ class Readiness {
   bool joined_ = false;
 };
 
-void run_in_real_time(Module& module, Stage& stage, Readiness readiness) {
+void run_in_real_time(Module& module, Stage& stage, Readiness readiness, KeptState& kept) {
   std::optional<CycleBudget> budget;
   while (module.next_cycle()) {
     Cycle now = cycle_of(module);
+    kept.tell(module.session().state().last_command(), now);
     if (budget) now.advance = budget->next();
     const Health health = stage.cycle(now);
     if (budget && now.running) {
@@ -68,6 +71,7 @@ void run_in_real_time(Module& module, Stage& stage, Readiness readiness) {
     module.set_contact_troubles(health.contacts);
     module.set_extremes(health.organs, health.probes);
     if (health.finished) return;
+    kept.keep(stage, module.session().state().last_command(), monotonic_now_ns());
   }
 }
 
@@ -79,7 +83,11 @@ void run_stage(const ModuleOptions& options, const scene::Scene& scene, const st
   if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
   Module module(options, scene, name, rate_of(name, scene), priority);
   const auto stage = make(module.bus());
-  run_in_real_time(module, *stage, {scene, name});
+  KeptState kept(options.kept_state, scene::scene_digest(scene));
+  if (const auto age = kept.give_back(*stage, monotonic_now_ns())) {
+    spdlog::info("goes on from what its predecessor remembered {:.2f} s ago", *age);
+  }
+  run_in_real_time(module, *stage, {scene, name}, kept);
 }
 
 }  // namespace palpate::runtime

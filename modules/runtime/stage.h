@@ -25,6 +25,8 @@ struct Cycle {
   bool running = false;  ///< the session runs: not waiting, paused or at fault
   bool reset = false;    ///< the first cycle after a reset
   double advance = 0;    ///< simulated time this cycle may take on [s]
+  /// The first one of a stage that goes on where another process' was, which ended a while ago.
+  bool goes_on = false;
 
   double time() const { return seconds_from_ns(sim_time_ns); }
   /// Of a message of this cycle.

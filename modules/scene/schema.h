@@ -249,7 +249,7 @@ void describe(V& v, Haptics& haptics) {
   v.field("stale_after_s", haptics.stale_after,
           ranged("s", 0.005, 1,
                  "a contact model older than this fades; from 0.05 s up, probes and contacts "
-                 "older than it touch nothing"));
+                 "older than it give no force; tissue is held off a round probe without contacts"));
   v.field("fade_time_s", haptics.fade_time, ranged("s", 0.005, 1, "from full force to none"));
 }
 

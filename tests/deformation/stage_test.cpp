@@ -35,6 +35,39 @@ struct Session {
   }
 };
 
+/// A plate that comes down on the ball and stays, with whoever speaks for it.
+struct Pressing : Session {
+  bus::Writer<ProbeState> states = bus.writer(bus::kProbeState);
+  bus::Writer<Contacts> contacts = bus.writer(bus::kContacts);
+  std::int64_t now_ns = 1'000'000'000;
+  double height = testing::kBallRadius;
+  bool goes_on = false;
+  runtime::Health health;
+
+  void cycle(bool told) {
+    now_ns += ns_from_seconds(kPeriod);
+    height = std::max(height - 2e-4, testing::kBallRadius - 4e-3);
+    if (told) tell();
+    runtime::Cycle now;
+    now.running = true;
+    now.goes_on = std::exchange(goes_on, false);
+    now.advance = kPeriod;
+    now.now_ns = now.sim_time_ns = now_ns;
+    health = stage.cycle(now);
+  }
+  void tell() {
+    ProbeState state;
+    state.header.source_time_ns = now_ns;
+    state.pose = Pose{Vec3(0, 0, height), Quat::Identity()};
+    states.write(state);
+    Contacts found;
+    static_cast<ContactSet&>(found) = testing::plate_contacts(stage.world(), 0, height, 1, 2e-3);
+    found.generations = {1};
+    found.header.source_time_ns = now_ns;
+    contacts.write(found);
+  }
+};
+
 /// Of each block of triangles, by brute force over their corners.
 std::vector<float> boxes_of(const SurfaceTopology& surface, const NodePositions& positions) {
   std::vector<geometry::BlockBox> boxes;
@@ -214,7 +247,7 @@ TEST_CASE("deformation stage: probes that nobody speaks for touch nothing, and i
   now.advance = kPeriod;
   now.now_ns = 1'000'000'000;
   CHECK(std::string(session.stage.cycle(now).guard) ==
-        "a probe or its contacts are stale: it touches nothing");
+        "a probe or its contacts are stale: the hand feels nothing of it");
 }
 
 TEST_CASE("deformation stage: a law is as old as its contacts once they have stopped coming") {
@@ -262,4 +295,43 @@ TEST_CASE("deformation stage: a law is as old as its contacts once they have sto
   CHECK(had_rows);
   CHECK(session.model.rows.empty());
   CHECK(last_with_rows_ns == kLastHeardNs);
+}
+
+TEST_CASE(
+    "deformation stage: one that goes on stands still until it hears what touches its organs") {
+  // Oracle: the nodes' bits, and who goes on with the very same; on a clock by hand.
+  for (const bool heard : {true, false}) {
+    Pressing first;
+    for (int k = 0; k < 50; ++k) first.cycle(true);
+    StateArchive kept;
+    first.stage.exchange(kept);
+    Pressing second;
+    second.now_ns = first.now_ns + 500'000'000;
+    second.height = first.height;
+    StateArchive given(kept.bytes());
+    second.stage.exchange(given);
+    const auto nodes = [](const Pressing& session) {
+      const auto span = session.stage.world().positions(0);
+      return std::vector<Vec3>(span.begin(), span.end());
+    };
+    const std::vector<Vec3> before = nodes(first);
+    second.goes_on = true;
+    for (int k = 0; k < 100; ++k) second.cycle(false);
+    CHECK(nodes(second) == before);
+    CHECK(std::string(second.health.guard) ==
+          "what touches its organs is not heard of yet: they stand still");
+    CHECK_FALSE(second.models.take(second.model));  // nor a law
+    if (heard) {
+      second.cycle(true);
+      CHECK(std::string(second.health.guard).empty());
+      CHECK(nodes(second) != before);
+      CHECK((nodes(second)[0] - before[0]).norm() < 1e-4);
+      CHECK(second.stage.world().force(0).z() > 0.5 * first.stage.world().force(0).z());
+      CHECK(second.health.real_time_factor == Approx(1));  // of its own time
+    } else {
+      for (int k = 0; k < 200; ++k) second.cycle(false);
+      CHECK(nodes(second) != before);  // nobody comes: the ball comes back
+      CHECK(second.stage.world().force(0).norm() == 0);
+    }
+  }
 }

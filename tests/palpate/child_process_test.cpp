@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+#include "modules/runtime/kept_state.h"
 #include "tests/modules/runtime/own_bus.h"
 #include "tests/palpate/shell_script.h"
 
@@ -47,6 +48,18 @@ TEST_CASE("child process: gets its arguments as they are") {
   ChildProcess child(scripts.add("echoer", "for a in \"$@\"; do echo \"<$a>\"; done"),
                      {"a b", "$HOME", ""});
   CHECK(lines_to_the_end(child) == std::vector<std::string>{"<a b>", "<$HOME>", "<>"});
+}
+
+TEST_CASE("child process: gets the one descriptor that it is to inherit") {
+  // Oracle: the kernel's list; of two files that close on exec the child has one.
+  const palpate::runtime::KeptMemory given, other;
+  const Scripts scripts;
+  const auto script =
+      scripts.add("looker", "for n in \"$@\"; do test -e /proc/$$/fd/$n; echo $?; done");
+  const std::vector<std::string> names{std::to_string(given.descriptor()),
+                                       std::to_string(other.descriptor())};
+  ChildProcess child(script, names, given.descriptor());
+  CHECK(lines_to_the_end(child) == std::vector<std::string>{"0", "1"});
 }
 
 TEST_CASE("child process: how it ended is said in words") {

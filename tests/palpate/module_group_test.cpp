@@ -78,6 +78,22 @@ TEST_CASE("module group: how to start again names the keys, and the network, of 
         "PALPATE_KEYS='/a b/keys' PALPATE_PEERS=10.0.0.6 " + script.string() + " --session s");
 }
 
+TEST_CASE("module group: what a module keeps outlives it, and no command names it") {
+  // Oracle: the second process prints what the first wrote, and dies, too.
+  const Scripts scripts;
+  const auto script =
+      scripts.add("palpate-deformation", "cat /proc/$$/fd/$4; echo kept > /proc/$$/fd/$4; exit 1");
+  std::ostringstream log;
+  ModuleCommand command{"deformation", script, {"--session", "s"}};
+  command.keeps_state = true;
+  ModuleGroup group({command}, log, Restarting::kWithPauses);
+  const auto ends = wait_for_ends(group, 2);
+  REQUIRE(ends.size() == 2);
+  CHECK(ends[0].returns);
+  CHECK(ends[0].start_again == script.string() + " --session s");
+  CHECK(log.str() == "palpate: deformation is started again\nkept\n");
+}
+
 TEST_CASE("module group: exit code 2 is bad input, 0 is no failure") {
   // Oracle: the exit codes of core/error.h.
   const Scripts scripts;

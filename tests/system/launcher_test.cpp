@@ -116,6 +116,7 @@ TEST_CASE("launcher: modules that die or hang are started again, and counted") {
   kill(stopped, SIGSTOP);
   REQUIRE(run.wait_for_text("palpate: deformation ended: said nothing for 3 s, was killed"));
   REQUIRE(run.wait_for_text("palpate: deformation is started again"));
+  CHECK(run.wait_for_text("[deformation] info: goes on from what its predecessor remembered"));
   CHECK(run.wait_for_end() == 0);
   INFO(run.said());
   for (const char* module : {"haptics", "collision", "recorder", "deformation"}) {

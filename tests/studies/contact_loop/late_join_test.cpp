@@ -11,6 +11,7 @@
 #include "modules/bus/memory_bus.h"
 #include "modules/core/data_folder.h"
 #include "modules/geometry/winding_number.h"
+#include "modules/runtime/kept_state.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/contact_loop/contact_loop.h"
 #include "studies/rigs/poked_organ.h"
@@ -86,6 +87,7 @@ struct Restart {
   std::string module;
   std::int64_t after_ms = 0, silence_ms = 0;
   Joins joins;
+  bool keeps = false;  ///< its successor goes on from what it kept
 };
 
 struct Outcome {
@@ -128,7 +130,7 @@ class Session {
       if (ms % 4 == 1 && collision_) collision_->cycle(cycle(ms));
       if (ms % 4 == 1) judge(ms >= back_ms ? ms - back_ms : -1, restart, outcome);
       if (ms % 4 != 3 || !deformation_) continue;
-      deformation_->cycle(cycle(ms));
+      cycle_deformation(ms, restart.keeps);
       outcome.last = deformation_->world().force(0).norm();
       if (ms >= back_ms) outcome.greatest = std::max(outcome.greatest, outcome.last);
     }
@@ -137,6 +139,12 @@ class Session {
 
  private:
   runtime::Cycle cycle(std::int64_t ms) const { return {ms * kMs, now_ns_, true, false, 0.004}; }
+  void cycle_deformation(std::int64_t ms, bool keeps) {
+    runtime::Cycle now = cycle(ms);
+    kept_->tell({}, now);
+    deformation_->cycle(now);
+    if (keeps) kept_->keep(*deformation_, {}, now_ns_);
+  }
   void lose(const std::string& module) {
     if (module == "collision") collision_.reset();
     if (module == "deformation") deformation_.reset();
@@ -148,6 +156,8 @@ class Session {
     } else {
       deformation_ =
           std::make_unique<deformation::DeformationStage>(scene_, assets_.organs, deformation_bus_);
+      kept_.emplace(memory_.descriptor(), "scene");
+      kept_->give_back(*deformation_, now_ns_);
     }
   }
   void come_back(const Restart& restart) {
@@ -198,6 +208,8 @@ class Session {
   Contacts newest_;
   std::unique_ptr<collision::CollisionStage> collision_;
   std::unique_ptr<deformation::DeformationStage> deformation_;
+  runtime::KeptMemory memory_;
+  std::optional<runtime::KeptState> kept_;
 };
 
 }  // namespace
@@ -258,6 +270,36 @@ TEST_CASE("late join: the hand gets no blow from tissue, however long collision 
       CAPTURE(depth, silence, outcome.before, outcome.greatest, outcome.last);
       CHECK(outcome.greatest < 1.1 * outcome.before);
       CHECK(outcome.last > 0.9 * outcome.before);
+    }
+  }
+}
+
+TEST_CASE("late join: a deformation that goes on from what was kept swings no tool's tissue") {
+  // Oracle: solid angles and the force from before, as above.
+  const auto scene = scene::load_scene(data_file("scenes/stomach_probe.yaml"));
+  const session::Assets assets = session::load_assets(scene);
+  std::mt19937_64 random(2);
+  const auto ms_below = [&](std::uint64_t end) {
+    return static_cast<std::int64_t>(random() % end);
+  };
+  for (const char* tool_name : {"ball", "needle", "rod", "wire"}) {
+    const Tool tool = make_tool(tool_name, 0.008);
+    for (const double depth : {0.004, 0.014}) {
+      for (int k = 0; k < 2; ++k) {
+        Restart restart{"deformation", 1500 + ms_below(4), ms_below(600), {}, true};
+        for (const char* topic : {"probe_state", "surface", "node_positions", "contacts"}) {
+          restart.joins[topic] = ms_below(120);
+        }
+        CAPTURE(tool_name, depth, restart.silence_ms, restart.joins["probe_state"],
+                restart.joins["surface"], restart.joins["node_positions"],
+                restart.joins["contacts"]);
+        const Outcome outcome = Session(scene, assets, tool).run(kPlace, depth, restart);
+        CAPTURE(outcome.before, outcome.greatest, outcome.last);
+        CHECK(outcome.searches > 100);
+        CHECK(outcome.lost == 0);
+        CHECK(outcome.greatest < 1.1 * outcome.before);
+        CHECK(outcome.last > 0.9 * outcome.before);
+      }
     }
   }
 }
