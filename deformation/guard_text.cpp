@@ -62,4 +62,11 @@ const char* GuardText::of(const GuardEvent& event) {
   return text_.data();
 }
 
+const char* acting_guard(const char* of_world, double real_time_factor, bool silent_input) {
+  if (*of_world != '\0') return of_world;
+  if (silent_input) return "a probe or its contacts are stale: the hand feels nothing of it";
+  if (real_time_factor < 0.95) return "slower than real time: see the real-time factor";
+  return "";
+}
+
 }  // namespace palpate::deformation

@@ -16,4 +16,8 @@ class GuardText {
   std::array<char, 200> text_{};
 };
 
+/// Of what guards act the one that a status says; empty if none.
+/// @param of_world  of the world; comes first
+const char* acting_guard(const char* of_world, double real_time_factor, bool silent_input);
+
 }  // namespace palpate::deformation

@@ -285,14 +285,6 @@ class Outputs {
   bool ran_ = false;
 };
 
-/// @param of_world  the world's own; comes first
-const char* acting_guard(const char* of_world, double real_time_factor, bool silent_input) {
-  if (*of_world != '\0') return of_world;
-  if (silent_input) return "a probe or its contacts are stale: the hand feels nothing of it";
-  if (real_time_factor < 0.95) return "slower than real time: see the real-time factor";
-  return "";
-}
-
 }  // namespace
 
 struct DeformationStage::Impl {
@@ -317,7 +309,7 @@ struct DeformationStage::Impl {
   /// Whether it goes on where another process' organs were, or after it was stopped itself, and has
   /// not heard yet, for at most kHeardWithin, what holds them there.
   bool waits(const runtime::Cycle& now) {
-    if (now.goes_on) time = {};
+    if (now.goes_on) time = {}, troubles = {};  // its predecessor has told them
     if (pauses.was_stopped(now.now_ns) || now.goes_on) {
       waits_until_ns = now.now_ns + ns_from_seconds(kHeardWithin);
     }

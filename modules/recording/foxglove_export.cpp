@@ -1,5 +1,5 @@
-#include "modules/core/text.h"
 #include "modules/recording/foxglove_export.h"
+#include "modules/core/text.h"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -1,5 +1,5 @@
-#include "modules/core/text.h"
 #include "modules/recording/inspect.h"
+#include "modules/core/text.h"
 
 #include <json/json.h>
 

@@ -1,5 +1,5 @@
-#include "modules/core/text.h"
 #include "modules/recording/mcap_reader.h"
+#include "modules/core/text.h"
 
 #include <algorithm>
 #include <array>
