@@ -1,5 +1,4 @@
 #include "modules/recording/foxglove_export.h"
-#include "modules/core/text.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -8,6 +7,7 @@
 #include <map>
 
 #include "modules/core/error.h"
+#include "modules/core/text.h"
 #include "modules/core/whole_file.h"
 #include "modules/recording/foxglove_messages.h"
 #include "modules/recording/idl_text.h"

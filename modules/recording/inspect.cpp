@@ -1,5 +1,4 @@
 #include "modules/recording/inspect.h"
-#include "modules/core/text.h"
 
 #include <json/json.h>
 
@@ -12,6 +11,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "modules/core/text.h"
 #include "modules/core/units.h"
 #include "modules/recording/csv_export.h"
 #include "modules/recording/mcap_bytes.h"

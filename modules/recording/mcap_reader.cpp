@@ -1,11 +1,11 @@
 #include "modules/recording/mcap_reader.h"
-#include "modules/core/text.h"
 
 #include <algorithm>
 #include <array>
 
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
+#include "modules/core/text.h"
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_chunk.h"
 #include "modules/recording/mcap_codec.h"

@@ -1,11 +1,11 @@
 #include "modules/recording/repair.h"
-#include "modules/core/text.h"
 
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "modules/core/error.h"
+#include "modules/core/text.h"
 #include "modules/core/whole_file.h"
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_codec.h"

@@ -1,11 +1,11 @@
 #include "modules/recording/sample_reader.h"
-#include "modules/core/text.h"
 
 #include <algorithm>
 #include <charconv>
 #include <utility>
 
 #include "modules/core/error.h"
+#include "modules/core/text.h"
 #include "modules/recording/mcap_bytes.h"
 #include "modules/recording/own_types.h"
 #include "modules/recording/recorder.h"
