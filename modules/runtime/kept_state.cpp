@@ -13,7 +13,7 @@
 namespace palpate::runtime {
 namespace {
 
-constexpr std::uint64_t kWords = 0x3174'7065'6b20'7061;  // "ap kept1"
+constexpr std::uint64_t kKeptWords = 0x3174'7065'6b20'7061;  // "ap kept1"
 /// Two places are written in turn, far enough from each other; what lies between takes no memory.
 constexpr std::uint64_t kFirstPlace = 4096, kApart = std::uint64_t{1} << 36;
 
@@ -56,7 +56,8 @@ KeptState::KeptState(std::optional<int> descriptor, std::string scene_digest)
 
 std::optional<double> KeptState::give_back(Stage& stage, std::int64_t now_ns) {
   began_ns_ = now_ns;
-  if (descriptor_ < 0 || !read_all(descriptor_, &mark_, sizeof mark_, 0) || mark_.words != kWords) {
+  if (descriptor_ < 0 || !read_all(descriptor_, &mark_, sizeof mark_, 0) ||
+      mark_.words != kKeptWords) {
     mark_ = {};
     return std::nullopt;
   }
@@ -97,7 +98,7 @@ void KeptState::keep(Stage& stage, const SessionControl& last_command, std::int6
   archive(contents);
   stage.exchange(archive);
   memory_ = std::move(archive).take_bytes();
-  mark_.words = kWords;
+  mark_.words = kKeptWords;
   mark_.place ^= 1;
   mark_.size = memory_.size();
   const bool kept = write(memory_.data(), memory_.size(), offset_of(mark_.place)) &&
