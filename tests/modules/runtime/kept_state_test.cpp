@@ -4,13 +4,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "tests/times.h"
+
 using namespace palpate;
 using runtime::KeptMemory;
 using runtime::KeptState;
 
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000'000;
 
 /// Remembers numbers.
 struct Remembering final : runtime::Stage {

@@ -13,8 +13,8 @@
 namespace palpate::contact_loop {
 namespace {
 
-constexpr double kLeave = 2.0;  // [s]
-constexpr double kBack = 1.0;   // within which the force is to be back [s]
+constexpr double kLeave = 2.0;      // [s]
+constexpr double kForceBack = 1.0;  // within which the force is to be back [s]
 
 /// A process that says nothing for a while from kLeave on: stopped, it goes on; killed, it begins
 /// anew, a deformation with what it kept.
@@ -76,7 +76,7 @@ class Pressed {
     session.haptics().set_device(0, std::move(device));
     Felt felt;
     const double back = kLeave + c.silence;
-    while (session.time() < back + kBack) {
+    while (session.time() < back + kForceBack) {
       const double now = session.time();
       const double way = std::clamp(now / 0.5, 0.0, 1.0);
       const Vec3 velocity = way < 1 ? Vec3(2 * (to - from)) : Vec3::Zero();
