@@ -170,7 +170,7 @@ class Run {
     for (const auto& name : modules_.modules()) {
       if (!modules_.running(name)) away.push_back(name);
     }
-    out_ << status_line(monitor_.tally(), away) << std::endl;
+    out_ << status_line(monitor_.tally(), session_.time(loop_.woke_ns()), away) << std::endl;
   }
 
   void end_hung() {

@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "modules/core/text.h"
-#include "modules/core/units.h"
 #include "modules/runtime/wiring.h"
 
 namespace palpate::launcher {
@@ -45,7 +44,6 @@ void SessionTally::receive(const ModuleStatus& status) {
   module.newest = status;
   receive(status.organs);
   receive(status.probes);
-  if (!status.organs.empty()) sim_time_ = seconds_from_ns(status.header.sim_time_ns);
   if (!started_ || standing_) return;
   if (status.state != ModuleState::kDegraded || status.last_error.empty()) return;
   const std::string text = status.module + ": " + printable(status.last_error);

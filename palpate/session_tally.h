@@ -55,13 +55,11 @@ class SessionTally {
   const std::vector<std::string>& troubles() const { return troubles_; }
   /// nullptr if nothing was heard of it.
   const ModuleTally* module(const std::string& name) const;
-  double sim_time() const { return sim_time_; }  ///< of the newest status of a deformation [s]
   /// Of the slowest deformation process; 0 before the first.
   double real_time_factor() const;
 
  private:
   bool started_ = false, standing_ = false;
-  double sim_time_ = 0;
   std::vector<OrganTally> organs_;
   std::vector<ProbeTally> probes_;
   std::map<std::string, ModuleTally> modules_;

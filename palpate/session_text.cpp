@@ -101,12 +101,12 @@ std::string limit_names(std::uint32_t limits) {
   return text.empty() ? "none" : text;
 }
 
-std::string status_line(const SessionTally& tally, const std::vector<std::string>& away) {
+std::string status_line(const SessionTally& tally, double time,
+                        const std::vector<std::string>& away) {
   const auto is_away = [&](std::string_view module) {
     return std::ranges::find(away, module) != away.end();
   };
-  std::string line =
-      fmt::format("{:7.1f} s  real time {:.2f}", tally.sim_time(), tally.real_time_factor());
+  std::string line = fmt::format("{:7.1f} s  real time {:.2f}", time, tally.real_time_factor());
   for (const auto& organ : tally.organs()) {
     line += fmt::format("  V/V0 {} {:.6f}", organ.name, organ.volume_ratio);
   }
@@ -139,7 +139,8 @@ std::string waiting_line(const std::vector<std::string>& names, bool secured,
 
 std::string summary(const SessionTally& tally, const SessionEnd& end) {
   // A session that was paused takes longer on the wall: what counts is the session's own clock.
-  const double simulated = end.lockstep ? end.session_time : tally.sim_time();
+  const double simulated =
+      end.lockstep ? end.session_time : tally.real_time_factor() * end.session_time;
   const double taken = end.lockstep ? end.wall_time : end.session_time;
   std::string text =
       fmt::format("scene {}: {:.1f} s simulated in {:.1f} s, real-time factor {:.3f}\n", end.scene,

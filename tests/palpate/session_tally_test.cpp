@@ -35,11 +35,9 @@ TEST_CASE("session tally: extremes are those of all processes that came one afte
   auto tally = some_tally();
   tally.start();
   ModuleStatus deformation = status("deformation", 1, 0);
-  deformation.header.sim_time_ns = 1'500'000'000;
   deformation.organs = {{0, 1.0, 0.005, -10, 40, 7}};
   tally.receive(deformation);
   ModuleStatus successor = status("deformation", 1, 0, 2);
-  successor.header.sim_time_ns = 1'600'000'000;
   successor.organs = {{0, 0.999, 0.001, -12, 5, 3}};
   tally.receive(successor);
   const OrganTally& organ = tally.organs()[0];
@@ -49,7 +47,6 @@ TEST_CASE("session tally: extremes are those of all processes that came one afte
   CHECK(organ.lowest_pressure == -12);
   CHECK(organ.highest_pressure == 40);
   CHECK(organ.most_contacts == 7);
-  CHECK(tally.sim_time() == Approx(1.6));
 
   ModuleStatus haptics = status("haptics", 1, 0);
   haptics.probes = {{0, 0.5, 0.5, kForceSaturated, 0.1}, {1, 0.1, 0.1, 0, 0}};
@@ -62,7 +59,6 @@ TEST_CASE("session tally: extremes are those of all processes that came one afte
   CHECK(tally.probes()[0].error_of_greatest == 0.1);
   CHECK(tally.probes()[0].limits == (kForceSaturated | kForceStaleFade));
   CHECK(tally.probes()[1].greatest_force == 0.1);
-  CHECK(tally.sim_time() == Approx(1.6));
 }
 
 TEST_CASE("session tally: a module's cycles count from the start, or from its own new start") {

@@ -106,8 +106,14 @@ class RandomFiller {
     k = a * a.transpose() + b * b.transpose();
   }
   void fill(std::string& text, Rule rule) {
-    text.resize(whole(random_, rule == Rule::kName, rule == Rule::kName ? kMaxNameBytes : 200));
-    for (char& c : text) c = static_cast<char>(whole(random_, 1, 255));
+    if (rule != Rule::kName) {
+      text.resize(whole(random_, 0, 200));
+      for (char& c : text) c = static_cast<char>(whole(random_, 1, 255));
+      return;
+    }
+    text.resize(whole(random_, 1, kMaxNameBytes));
+    for (char& c : text) c = static_cast<char>(whole(random_, 0x20, 0x7e));
+    if (text.size() >= 2) text.replace(text.size() - 2, 2, "é");
   }
 
   Random& random_;
