@@ -99,6 +99,12 @@ def winding_numbers(points, nodes, triangles):
     return np.arctan2(above, below).sum(1) / (2 * np.pi)
 
 
+def has_both_sides(p, lower, upper):
+    """Is there, along y, something of the triangles in these boxes on either side? If not, p is outside."""
+    along = ((lower <= p) & (p <= upper))[:, [0, 2]].all(1)
+    return bool((upper[along, 1] >= p[1]).any() and (lower[along, 1] <= p[1]).any())
+
+
 def turned(rotation, points):
     """By a unit quaternion x, y, z, w."""
     q, w = np.asarray(rotation[:3]), rotation[3]
@@ -206,10 +212,13 @@ class Judge:
         return [k for k in range(first, last) if self.generation[k] == generation] if whole else []
 
     def is_inside(self, i, k):
-        nodes = self.nodes[k]
+        nodes, triangles = self.nodes[k], self.triangles[k]
         at = self.found["probe_position_m"][i] + turned(self.found["probe_rotation_xyzw"][i], self.points)
-        near = ((at > nodes.min(0)) & (at < nodes.max(0))).all(1)
-        return bool(near.any()) and bool((winding_numbers(at[near], nodes, self.triangles[k]) > 0.5).any())
+        near = at[((at > nodes.min(0)) & (at < nodes.max(0))).all(1)]
+        if len(near) == 0:
+            return False
+        lower, upper = nodes[triangles].min(1), nodes[triangles].max(1)
+        return any(winding_numbers(p[None], nodes, triangles)[0] > 0.5 for p in near if has_both_sides(p, lower, upper))
 
     def is_silent(self, i):
         """Was the pose it has so old that a search says so and finds nothing?"""
