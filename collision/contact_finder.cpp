@@ -66,7 +66,8 @@ class ProbeSearch {
       organ.mark_found();
     }
     report.wall_was_cut = cores_.wall_was_cut();
-    reduce_contacts(found_, !model_.cores.empty(), limits, result);
+    reduce_contacts(found_, !model_.cores.empty(), limits, result,
+                    {relative.direction_at_end(motion.ahead_W), margin});
     return report;
   }
 

@@ -15,6 +15,7 @@ namespace palpate::collision {
 /// Motion of a probe over the step: linear in position, constant rotation rate.
 struct ProbeMotion {
   Pose pose_t0, pose_t1;
+  Vec3 ahead_W = Vec3::Zero();  ///< its way on to the next search's contacts, as it moves now [m]
 };
 
 /// At most so many are handed out.
@@ -68,7 +69,8 @@ class ContactFinder {
   /// Contacts of one probe that moved from pose_t0 to pose_t1 since the last call, all with
   /// gap ≤ margin at t1 or swept through in between. Weights and gap hold at pose_t1.
   /// Reduced (contact_reduction.h) to the limits.
-  /// @param margin  how far tissue and probe may approach until the next search [m], > 0
+  /// @param margin  how far tissue and probe may approach until the next search [m], > 0: twice the
+  ///                way ahead, which may turn, and what tissue moves
   SearchReport find(std::size_t probe, const ProbeMotion& motion, double margin,
                     const ContactLimits& limits, ContactSet& result);
 

@@ -208,10 +208,10 @@ void take_faces(std::vector<FoundContact>& found, const ContactLimits& limits, C
   found.erase(kept, found.end());
 }
 
-/// Of what a message must hold, what touches and of each place on the tissue the nearest come
-/// first, then the nearest of the others.
+/// Of what a message must hold, what touches and of each place on the tissue the nearest that the
+/// probe may come to are first, then the nearest of the others.
 /// @returns whether it must hold more than `most`
-bool keep_nearest(std::vector<FoundContact>& found, std::size_t most) {
+bool keep_nearest(std::vector<FoundContact>& found, std::size_t most, const ProbeReach& reach) {
   if (found.size() <= most) return false;
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.feature), deepest_first(a)) <
@@ -222,18 +222,25 @@ bool keep_nearest(std::vector<FoundContact>& found, std::size_t most) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     const bool is_nearest = needed == 0 || found[needed - 1].organ != found[i].organ ||
                             found[needed - 1].feature != found[i].feature;
-    if (is_nearest || found[i].gap <= 0) {
+    if (found[i].gap <= 0 || (is_nearest && reach.may_touch(found[i]))) {
       found[needed++] = found[i];
     } else {
       others.push_back(found[i]);
     }
   }
   found.resize(needed);
-  if (needed <= most) found.insert(found.end(), others.begin(), others.end());
-  const std::size_t settled = needed <= most ? needed : 0;
-  const auto at = [&](std::size_t i) { return found.begin() + static_cast<std::ptrdiff_t>(i); };
-  std::nth_element(at(settled), at(most), found.end(), deeper);
-  found.resize(most);
+  const auto cut = [&](std::vector<FoundContact>& from, std::size_t size, const auto& before) {
+    if (from.size() <= size) return;
+    std::nth_element(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(size), from.end(),
+                     before);
+    from.resize(size);
+  };
+  cut(found, most, [&](const FoundContact& a, const FoundContact& b) {
+    const double gap_a = reach.least_gap(a), gap_b = reach.least_gap(b);
+    return gap_a != gap_b ? gap_a < gap_b : deeper(a, b);
+  });
+  cut(others, most - found.size(), deeper);
+  found.insert(found.end(), others.begin(), others.end());
   return needed > most;
 }
 
@@ -258,7 +265,7 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
 }
 
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
-                     ContactSet& result) {
+                     ContactSet& result, const ProbeReach& reach) {
   result.clear();
   if (is_round) {
     reduce_of_round(found);
@@ -266,7 +273,7 @@ void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const Cont
     merge_duplicates(found);
     take_faces(found, limits, result);
   }
-  result.truncated = keep_nearest(found, limits.contacts);
+  result.truncated = keep_nearest(found, limits.contacts, reach);
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.triangle), order_within(a)) <
            std::tuple_cat(std::tie(b.organ, b.triangle), order_within(b));

@@ -1,8 +1,10 @@
 // From everything the searches found to the list that is handed out.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "collision/relative_motion.h"
@@ -11,6 +13,20 @@
 namespace palpate::collision {
 
 inline constexpr std::uint32_t kNoNode = 0xffffffff;
+
+/// Where a probe may go before its next search: its way ahead, and as far again to any side.
+struct ProbeReach {
+  Vec3 ahead_P = Vec3::Zero();
+  double margin = std::numeric_limits<double>::infinity();  ///< holds twice the way ahead [m]
+
+  /// On the way ahead [m].
+  double least_gap(const Contact& c) const {
+    return c.gap + std::min(0.0, c.normal_P.dot(ahead_P));
+  }
+  bool may_touch(const Contact& c) const {
+    return c.gap <= 0 || c.gap + c.normal_P.dot(ahead_P) + ahead_P.norm() <= margin;
+  }
+};
 
 /// A contact at the end of the step.
 struct FoundContact : Contact {
@@ -40,10 +56,10 @@ inline constexpr std::size_t kThinnedDeepest = 128, kThinnedCells = 4;
 /// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others
 /// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more
 /// than `limits.contacts`, as of a sharp probe in a hurry, which may come to far more than it will,
-/// what does not touch is left out where another contact of the same place is nearer, the farthest
-/// first. Where that is not enough the deepest are kept and result.truncated says so. Writes them
-/// into result.
+/// what touches and of each place the nearest contact that it may come to are kept, then the
+/// nearest of the others. Where that is not enough those are that it meets first on its way ahead,
+/// and result.truncated says so. Writes them into result.
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
-                     ContactSet& result);
+                     ContactSet& result, const ProbeReach& reach = {});
 
 }  // namespace palpate::collision

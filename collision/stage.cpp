@@ -169,10 +169,11 @@ struct CollisionStage::Impl {
       probes.begin_anew(probe);
       organs.finder()->forget(probe);
     }
-    const double margin =
-        activation_distance(present_rates(rates, organs.interval()), state.twist.linear.norm());
-    const SearchReport found =
-        organs.finder()->find(probe, probes.motion(probe), margin, kLimits, contacts);
+    const scene::Rates present = present_rates(rates, organs.interval());
+    ProbeMotion motion = probes.motion(probe);
+    motion.ahead_W = blind_time(present) * state.twist.linear;
+    const double margin = activation_distance(present, state.twist.linear.norm());
+    const SearchReport found = organs.finder()->find(probe, motion, margin, kLimits, contacts);
     acted.found.begun_inside |= found.begun_inside;
     acted.found.was_lost |= found.was_lost;
     acted.found.wall_was_cut |= found.wall_was_cut;

@@ -124,6 +124,44 @@ TEST_CASE("contact reduction: where a place has many, what touches and its neare
   }
 }
 
+TEST_CASE(
+    "contact reduction: what a probe cannot come to is left out first, and what it meets last") {
+  // Oracle: each place's gap after the way ahead and half the margin to any side, and on that way.
+  RandomShapes random(86);
+  const ProbeReach reach{Vec3(0.1, -0.2, 0.15), 0.7};
+  std::vector<FoundContact> found;
+  std::vector<double> reached, sooner;
+  for (std::uint32_t t = 0; t < 1000; ++t) {
+    FoundContact c = contact(0, t, {0.2, 0.3, 0.5}, random.number(-0.05, 0.7));
+    c.point_P = random.point(1);
+    c.normal_P = random.direction();
+    append_contact(c, {3 * t, 3 * t + 1, 3 * t + 2}, found);
+    const double after = c.gap + c.normal_P.dot(reach.ahead_P);
+    if (c.gap > 0 && after > reach.margin - reach.ahead_P.norm()) continue;
+    reached.push_back(c.gap);
+    sooner.push_back(std::min(c.gap, after));
+  }
+  REQUIRE(reached.size() > 300);
+  REQUIRE(reached.size() < 900);
+  const std::vector<FoundContact> all = found;
+  ContactSet result;
+  reduce_contacts(found, false, {reached.size(), 0, 0}, result, reach);
+  CHECK_FALSE(result.truncated);
+  std::vector<double> gaps;
+  for (const Contact& c : result.contacts) gaps.push_back(c.gap);
+  std::ranges::sort(gaps);
+  std::ranges::sort(reached);
+  CHECK(gaps == reached);
+
+  found = all;
+  const std::size_t most = reached.size() / 2;
+  reduce_contacts(found, false, {most, 0, 0}, result, reach);
+  CHECK(result.truncated);
+  REQUIRE(result.contacts.size() == most);
+  std::ranges::sort(sooner);
+  for (const Contact& c : result.contacts) CHECK(reach.least_gap(c) < sooner[most]);
+}
+
 TEST_CASE("contact reduction: nodes on one plane are a face, all of them, and truncate nothing") {
   // Oracle: the planes they were laid on.
   RandomShapes random(83);
