@@ -12,6 +12,7 @@
 #include "modules/core/error.h"
 #include "modules/core/standard_streams.h"
 #include "modules/messages/messages.h"
+#include "modules/runtime/scarcity.h"
 
 namespace palpate::runtime {
 namespace {
@@ -206,6 +207,7 @@ Program::Program(std::unique_ptr<CLI::App> app)
       }) {
   app_->set_version_flag("--version", version_text());
   footer(kExitCodes);  // of every command, too
+  end_in_words(app_->get_name());
 }
 
 Program::~Program() = default;
@@ -314,7 +316,10 @@ int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
     report_(error.what());
     return kExitStopped;
   } catch (const std::bad_alloc&) {
-    report_("not enough memory");
+    report_(kNoMemory);
+    return kExitFailed;
+  } catch (const std::system_error& error) {
+    report_(why(error));
     return kExitFailed;
   } catch (const std::exception& error) {
     report_(error.what());
