@@ -35,7 +35,7 @@ class LockstepModule {
         name_(name),
         participants_(options.lockstep),
         bus_(lockstep_options(options.bus, name)),
-        session_(bus_, scene::scene_digest(scene)),
+        session_(bus_, scene::scene_digest(scene), Session::Kind::kLockstep),
         status_(bus_, name, rate_of(name, scene), false) {
     bus_.set_clock([this] { return clock_ns_; });
     const std::size_t drivers_own = bus_.inputs().size();
