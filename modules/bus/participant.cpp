@@ -33,24 +33,6 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
-constexpr int kMaxDomain = 200;  // higher ones have ports beyond 65535 for many participants
-constexpr std::size_t kMaxSessionBytes = 64;
-
-void check(const BusOptions& options) {
-  if (options.domain < 0 || options.domain > kMaxDomain) {
-    throw InputError("domain: " + std::to_string(options.domain) + ": allowed are 0 to " +
-                     std::to_string(kMaxDomain));
-  }
-  // A partition with * ? [ ] would match other sessions.
-  const bool plain = options.session.find_first_not_of(
-                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                         "0123456789_-.") == std::string::npos;
-  if (options.session.empty() || options.session.size() > kMaxSessionBytes || !plain) {
-    throw InputError("session: \"" + options.session + "\": allowed are 1 to " +
-                     std::to_string(kMaxSessionBytes) + " letters, digits, '_', '-', '.'");
-  }
-}
-
 /// While a participant is made, Fast DDS 2.9.1 answers a thread or memory that it is not given with
 /// an assertion (sockets that are open in `UDPTransportInterface::clean`): no fault of ours, that
 /// leaves a core behind.
@@ -90,7 +72,7 @@ Entity* demand_created(Entity* entity, const std::string& what) {
 }  // namespace
 
 Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
-  check(options);
+  check_session(options.domain, options.session);
   tell_plainly();
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
   addresses_ = addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS"));
