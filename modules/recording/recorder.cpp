@@ -146,7 +146,7 @@ void SampleFile::attach_files(const SceneDescription& scene, std::uint64_t log_t
     std::string bytes;
     try {
       bytes = read_input(file, kMostRecordBytes / 2);  // of more, readers refuse the record
-    } catch (const InputError&) {
+    } catch (const std::exception&) {  // whatever is wrong with it, the recording goes on
       continue;
     }
     if (bytes.empty()) continue;

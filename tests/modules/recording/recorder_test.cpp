@@ -1,5 +1,7 @@
 #include "modules/recording/recorder.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -160,6 +162,30 @@ TEST_CASE("recorder: the scene, and the meshes and motions it names, lie in the 
   CHECK(attached["scene.yaml"] == scene.resolved_text);
   CHECK(attached["liver.ply"] == std::string(mesh.begin(), mesh.end()));
   CHECK(attached["press_slide.csv"] == std::string(motion.begin(), motion.end()));
+}
+
+TEST_CASE("recorder: a file that cannot be opened is left out, and nothing else") {
+  // Oracle: the file; a limit on open files stands for whatever fails.
+  const ScratchFolder folder;
+  SceneDescription scene;
+  scene.header = {1, 0, 1};
+  scene.digest = "0123456789abcdef";
+  scene.resolved_text = "file: \"" + folder.write("a.ply", "ply\n").string() + "\"\n";
+  SampleFile recording(folder / "a.mcap", {});
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{3, before.rlim_max};
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  CHECK_NOTHROW(recording.add(raw_sample(bus::kScene, scene, 1)));
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  recording.close();
+  McapReader reader(folder / "a.mcap");
+  std::vector<std::string> attached;
+  while (const auto record = reader.next()) {
+    const auto* attachment = std::get_if<McapAttachment>(&*record);
+    if (attachment != nullptr) attached.push_back(attachment->name);
+  }
+  CHECK(attached == std::vector<std::string>{"scene.yaml"});
 }
 
 TEST_CASE("recorder: what was not asked for is left out, what was lost is counted all the same") {
