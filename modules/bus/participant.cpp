@@ -9,11 +9,15 @@
 #include <fastdds/dds/topic/Topic.hpp>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 #include <string_view>
 
@@ -63,6 +67,22 @@ dds::DomainParticipant* made_participant(int domain, const dds::DomainParticipan
       static_cast<std::uint32_t>(domain), qos);
 }
 
+/// What Fast DDS cannot open it does without, and says nothing: who made it would hear nobody, and
+/// wait for ever. So some files more can be opened behind it, or it lacks some.
+void check_files_left() {
+  constexpr std::size_t kSpare = 4;
+  std::array<int, kSpare> spare{};
+  for (int& file : spare) file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int failure = errno;
+  const bool all = std::ranges::all_of(spare, [](int file) { return file >= 0; });
+  for (const int file : spare) {
+    if (file >= 0) ::close(file);
+  }
+  if (all) return;
+  throw std::runtime_error(std::string("DDS cannot start: ") + std::strerror(failure) +
+                           "; ulimit -n says how many a process may have");
+}
+
 template <class Entity>
 Entity* demand_created(Entity* entity, const std::string& what) {
   if (entity == nullptr) throw std::runtime_error("DDS refused a " + what);
@@ -95,6 +115,7 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
                              ": is the loopback interface up?");
   }
   try {
+    check_files_left();
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back(options.session.c_str());
     publisher_ = demand_created(participant_->create_publisher(publisher_qos), "publisher");

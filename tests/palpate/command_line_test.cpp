@@ -10,6 +10,7 @@
 using namespace palpate;
 using Catch::Contains;
 using testing::BallScene;
+using testing::own_bus_options;
 using testing::type;
 using testing::wait_until;
 
@@ -123,6 +124,22 @@ TEST_CASE("command line: a summary whose folder vanishes meanwhile is a failure,
   CHECK_THAT(said, Catch::Contains("\nprobe finger") &&
                        Catch::Contains("there is no folder " + folder.string() +
                                        "; the summary is not in a file"));
+}
+
+TEST_CASE("command line: too few open files are an error, and nothing is waited for") {
+  // Oracle: exit code 1, or the session's own 0; of these limits one let Fast DDS start without a
+  // socket, and the launcher waited for ever for modules that it could not hear.
+  const BallScene scene;
+  for (int files = 14; files <= 22; ++files) {
+    const auto options = own_bus_options();
+    const auto outcome = type(
+        "/bin/sh",
+        {"-c", "ulimit -n " + std::to_string(files) + "; exec " PALPATE_BIN_DIR "/palpate run " +
+                   scene.file().string() + " --headless --duration 0.1 --no-realtime --session " +
+                   options.session + " --domain " + std::to_string(options.domain)});
+    CAPTURE(files, outcome.said);
+    CHECK((outcome.code == kExitFailed || outcome.code == kExitDone));
+  }
 }
 
 TEST_CASE("command line: options that leave nothing to do, or leave another out, are refused") {
