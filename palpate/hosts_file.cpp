@@ -59,8 +59,13 @@ HostEntry host_of(const YamlValue& value) {
   HostEntry host;
   host.name = word_of(value_of(value, "name"));
   host.address = address_of(value_of(value, "address"));
-  for (const YamlValue& module : scene::entries_of(value_of(value, "modules")))
-    host.modules.push_back(module_of(module));
+  for (const YamlValue& module : scene::entries_of(value_of(value, "modules"))) {
+    const std::string name = module_of(module);
+    if (std::ranges::find(host.modules, name) != host.modules.end()) {
+      module.refuse("must be named once");
+    }
+    host.modules.push_back(name);
+  }
   if (host.modules.empty()) value_of(value, "modules").refuse("must have at least one entry");
   return host;
 }

@@ -111,7 +111,7 @@ class LockstepRun {
         modules_(checked_commands(), log),
         names_(options.everywhere.empty() ? modules_.reporting_modules() : options.everywhere),
         bus_(every_sample(options.bus)),
-        session_(bus_, digest_),
+        session_(bus_, digest_, runtime::Session::Kind::kLockstep),
         conductor_(bus_),
         scenes_(bus_.writer(bus::kScene)),
         monitor_(bus_, scene_) {}

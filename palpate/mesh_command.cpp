@@ -2,6 +2,7 @@
 
 #include <json/json.h>
 
+#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <ostream>
@@ -112,9 +113,18 @@ void refuse_if_leaky(const MeshReport& report, const TriangleSurface& surface,
   throw InputError(message);
 }
 
-TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOptions& options) {
+TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOptions& options,
+                         std::ostream& log) {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kLineEvery{2};
+  auto next = Clock::now() + kLineEvery;
+  const auto tell = [&](double part) {
+    if (Clock::now() < next) return;
+    next = Clock::now() + kLineEvery;
+    log << "resampling: " << std::lround(100 * part) << " %" << std::endl;
+  };
   try {
-    return resample_surface(surface, options.node_count);
+    return resample_surface(surface, options.node_count, tell);
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }
@@ -213,7 +223,8 @@ void doubt_size(const MeshCommandOptions& options, double size, Json::Value& jso
 }
 
 /// The surface that was asked for, step by step told to `out`.
-TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
+TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, std::ostream& out,
+                        std::ostream& progress) {
   TriangleSurface surface = read_surface(options.input, options.unit);
   const MeshReport found = check_surface(surface);
   out << options.input.string() << " (" << options.unit << ")\n";
@@ -235,7 +246,7 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
   json["result"] = json_of(report);
   refuse_if_leaky(report, surface, options.input);
   if (options.node_count > 0) {
-    surface = resample(surface, options);
+    surface = resample(surface, options, progress);
     out << "resampled\n";
     report = check_surface(surface);
     print_measures(report, out);
@@ -245,9 +256,10 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
   return surface;
 }
 
-TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
+TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostream& out,
+               std::ostream& progress) {
   if (!holds_tetrahedra(options.input)) {
-    const TriangleSurface surface = prepare(options, json, out);
+    const TriangleSurface surface = prepare(options, json, out, progress);
     try {
       return fill_surface(surface, mean_edge_length(surface));
     } catch (const InputError& error) {
@@ -270,9 +282,10 @@ TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostrea
 }
 
 /// The tetrahedra that were asked for, step by step told to `out`.
-TetMesh refine(const MeshCommandOptions& options, Json::Value& json, std::ostream& out) {
+TetMesh refine(const MeshCommandOptions& options, Json::Value& json, std::ostream& out,
+               std::ostream& progress) {
   const SphereWay way = read_way(options.near);  // first: what is wrong with it is soon told
-  const TetMesh coarse = filled(options, json, out);
+  const TetMesh coarse = filled(options, json, out, progress);
   const auto counts = [](const TetMesh& mesh) {
     return std::to_string(mesh.nodes.size()) + ", " + std::to_string(mesh.tetrahedra.size());
   };
@@ -300,7 +313,8 @@ TetMesh refine(const MeshCommandOptions& options, Json::Value& json, std::ostrea
   return mesh;
 }
 
-void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
+void prepare_and_write(const MeshCommandOptions& options, std::ostream& out,
+                       std::ostream& progress) {
   check_options(options);
   check_output(options);
   Json::Value json;
@@ -315,9 +329,9 @@ void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
     TriangleSurface surface;
     TetMesh tetrahedra;
     if (is_near) {
-      tetrahedra = refine(options, json, text);
+      tetrahedra = refine(options, json, text, progress);
     } else {
-      surface = prepare(options, json, text);
+      surface = prepare(options, json, text, progress);
     }
     if (!options.output.empty()) {
       is_near ? write_tetrahedra(tetrahedra, options.output)
@@ -337,7 +351,7 @@ void prepare_and_write(const MeshCommandOptions& options, std::ostream& out) {
 
 int run_mesh_command(const MeshCommandOptions& options, std::ostream& out, std::ostream& err) {
   try {
-    prepare_and_write(options, out);
+    prepare_and_write(options, out, err);
     return kExitDone;
   } catch (const InputError& error) {
     err << error.what() << '\n';

@@ -16,10 +16,10 @@
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/module_group.h"
-#include "palpate/recorded_scene.h"
 #include "palpate/rerun.h"
 #include "palpate/run_command.h"
 #include "palpate/session_claim.h"
+#include "palpate/unpacked_scene.h"
 
 namespace palpate::launcher {
 namespace {
@@ -38,7 +38,7 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   const StopSignal stop;
   const TemporaryFolder folder;
   RunOptions viewing = run;
-  viewing.scene = folder.write("scene.yaml", recorded_scene(recording).resolved_text);
+  viewing.scene = UnpackedScene(recording, folder.path(), log).file();
   viewing.only = {"visualizer"};
   viewing.record.clear();
   const auto commands = module_commands(viewing, program_folder());
@@ -110,12 +110,12 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
   std::string known = run.scene.empty() ? "the scene of " + recording.string() : run.scene.string();
   for (const std::string& setting : run.settings) known += " with --set " + setting;
   if (!playing.rerun.empty()) {
-    if (run.scene.empty())
-      again.scene = folder.write("recorded.yaml", recorded_scene(recording).resolved_text);
+    const UnpackedScene recorded(recording, folder.path(), log);
+    if (run.scene.empty()) again.scene = recorded.file();
     const scene::Scene scene = scene::load_scene_with(again.scene, run.settings);
     again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
     try {
-      return rerun(recording, playing.rerun, again, !run.scene.empty(), out, log);
+      return rerun(recording, playing.rerun, again, recorded, !run.scene.empty(), out, log);
     } catch (const InputError& error) {
       throw told_of(error, again.scene, known);
     }

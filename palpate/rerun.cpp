@@ -9,6 +9,7 @@
 #include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
+#include "modules/messages/message_checks.h"
 #include "modules/recording/recorder_stage.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/recording/session_samples.h"
@@ -19,6 +20,7 @@
 #include "modules/scene/scene_reader.h"
 #include "palpate/recorded_scene.h"
 #include "palpate/session/in_process.h"
+#include "palpate/unpacked_scene.h"
 
 namespace palpate::launcher {
 namespace {
@@ -33,7 +35,7 @@ struct Recorded {
   /// times are simulated [ns].
   std::int64_t start_ns = 0;
   std::optional<std::int64_t> first_ns;  ///< earliest of its streams, simulated
-  std::set<std::string_view> topics;     ///< that have samples
+  std::set<std::string_view> topics;     ///< that have samples, or were to be recorded
   std::vector<std::string> warnings;
 };
 
@@ -53,6 +55,7 @@ Recorded read_through(const std::filesystem::path& recording) {
   recording::SampleReader reader(recording);
   Recorded recorded;
   messages::AnyMessage message;
+  runtime::SessionState state;  // of its modules, who did not believe all that was said
   while (const auto sample = reader.next()) {
     recorded.topics.insert(sample->topic->name);
     const runtime::Wire* wire = runtime::find_wire(sample->topic->name);
@@ -62,7 +65,13 @@ Recorded read_through(const std::filesystem::path& recording) {
     }
     if (sample->topic->name != bus::kSessionControl.name) continue;
     if (sample->topic->type->decode(sample->payload, message) != nullptr) continue;
-    note_command(std::get<SessionControl>(message), recording, recorded);
+    const auto& control = std::get<SessionControl>(message);
+    if (!state.believes(control, sample->received_time_ns)) continue;
+    state.apply(control);
+    note_command(control, recording, recorded);
+  }
+  for (const bus::TopicInfo& topic : bus::all_topics()) {
+    if (reader.selected(std::string(topic.name))) recorded.topics.insert(topic.name);
   }
   recorded.warnings = reader.warnings();
   return recorded;
@@ -120,17 +129,28 @@ class RecordedInputs {
   const std::set<std::string>& thinned() const { return thinned_; }
 
  private:
+  /// Drivers stamp by any clock, or not at all, and what others say of the future was not said
+  /// then: it was when it came.
   std::int64_t said_ns(const recording::RecordedSample& sample) const {
-    return messages::header_of(sample.payload).source_time_ns - start_ns_;
+    const std::int64_t source_ns = messages::header_of(sample.payload).source_time_ns;
+    const std::int64_t came_ns = sample.received_time_ns;
+    const bool future = source_ns > came_ns + kAheadNs;
+    const bool unlike =
+        sample.topic->name == bus::kProbeInput.name && source_ns < came_ns - kAheadNs;
+    const bool has_clock = start_ns_ != 0;  // in lockstep times are simulated, the same for all
+    return (has_clock && (future || unlike) ? came_ns : source_ns) - start_ns_;
   }
 
   void say(recording::RecordedSample& sample) {
     if (runtime::find_wire(sample.topic->name) == nullptr) return;
+    // Beyond what any codec takes.
+    if (messages::header_of(sample.payload).source_time_ns > messages::kMaxTimeNs) return;
     const std::int64_t time_ns = said_ns(sample);
     newest_ns_ = std::max(newest_ns_, time_ns);
     if (!topics_.contains(sample.topic->name)) return;
     if (sample.thinned) thinned_.insert(std::string(sample.topic->name));
-    if (start_ns_ != 0) messages::shift_times(*sample.topic->type, -start_ns_, sample.payload);
+    const std::int64_t shift_ns = time_ns - messages::header_of(sample.payload).source_time_ns;
+    if (start_ns_ != 0) messages::shift_times(*sample.topic->type, shift_ns, sample.payload);
     session_.write(*sample.topic, sample.payload);
   }
 
@@ -172,12 +192,13 @@ void check_stages(const std::vector<std::string>& stages, const RunOptions& run)
 }  // namespace
 
 int rerun(const std::filesystem::path& recording, const std::vector<std::string>& names,
-          const RunOptions& run, bool another_scene, std::ostream& out, std::ostream& log) {
+          const RunOptions& run, const UnpackedScene& recorded_with, bool another_scene,
+          std::ostream& out, std::ostream& log) {
   check_stages(names, run);
   const StopSignal stop;
   const std::set<std::string> stages(names.begin(), names.end());
   const scene::Scene scene = scene::load_scene(run.scene);
-  const SceneDescription told = recorded_scene(recording);
+  const SceneDescription& told = recorded_with.here();
   check_scene_of_rerun(recording, told, scene, stages, another_scene);
   const Recorded recorded = read_through(recording);
   for (const std::string& line : recorded.warnings) log << "palpate: warning: " << line << '\n';
@@ -187,6 +208,7 @@ int rerun(const std::filesystem::path& recording, const std::vector<std::string>
   session::InProcess session(scene, session::load_assets(scene), options_for(stages, team));
   auto scenes = session.bus().writer(bus::kScene);
   SceneDescription description = runtime::scene_description(scene);
+  description.resolved_text = recorded_with.as_told(description.resolved_text);
   description.header.source_time_ns = runtime::CycleGrid::kSetUp;
   scenes.write(description);
   session.add("recorder", [&](bus::Bus& bus) {
@@ -197,6 +219,7 @@ int rerun(const std::filesystem::path& recording, const std::vector<std::string>
                              {"recording", recording.filename().string()},
                              {"scene", told.name},
                              {"digest", told.digest}}});
+    for (const auto& file : recorded_with.taken()) recorder->add_attachment(file);
     return recorder;
   });
   RecordedInputs inputs(recording, recorded.start_ns, stages, session.bus());

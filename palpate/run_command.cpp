@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <stdexcept>
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/data_folder.h"
@@ -316,7 +317,11 @@ void check_recording(const RunOptions& options) {
 void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out) {
   out << text << std::flush;
   if (options.summary.empty()) return;
-  write_whole_file(options.summary, text);
+  try {
+    write_whole_file(options.summary, text);
+  } catch (const std::exception& error) {  // its place was good before the run
+    throw std::runtime_error(std::string(error.what()) + "; the summary is not in a file");
+  }
 }
 
 int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
@@ -350,6 +355,11 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   if (options.in_process) return run_in_process(options, out, log);
   const auto commands = module_commands(options, program_folder(),
                                         scene::process_count(scene::load_scene(options.scene)));
+  if (commands.empty()) {
+    throw InputError(
+        "--only: leaves nothing to start; a visualizer needs a window, or --frames, and no "
+        "--no-visualizer");
+  }
   check_keys_of(commands);
   if (options.lockstep) return run_lockstep(options, out, log);
   std::vector<std::string> modules;

@@ -43,6 +43,17 @@ void check_names(const std::vector<std::string>& only, const std::vector<std::st
   }
 }
 
+/// Of a hosts file, all hosts together; who looks on may be missing.
+void check_everywhere(const RunOptions& options, const std::vector<std::string>& modules) {
+  for (const auto& name : modules) {
+    const auto& everywhere = options.everywhere;
+    if (name == "visualizer" || everywhere.empty()) continue;
+    if (std::ranges::find(everywhere, name) != everywhere.end()) continue;
+    throw InputError(fmt::format("{}: no host has the module '{}', which the scene needs",
+                                 options.hosts.string(), name));
+  }
+}
+
 std::vector<std::string> session_arguments(const bus::BusOptions& bus) {
   return {"--session", bus.session, "--domain", std::to_string(bus.domain)};
 }
@@ -156,6 +167,7 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            std::size_t processes) {
   const std::vector<std::string> modules = modules_of(processes);
   check_names(options.only, modules);
+  check_everywhere(options, modules);
   static_cast<void>(recording::TopicSelection(options.record_topics));  // throws what is wrong
   std::vector<ModuleCommand> commands;
   if (!options.record.empty()) {

@@ -37,7 +37,9 @@ void SessionTally::start() {
 
 void SessionTally::receive(const ModuleStatus& status) {
   ModuleTally& module = modules_[status.module];
-  if (module.newest.process_id != status.process_id) {  // started again
+  const bool another = module.newest.process_id != status.process_id;  // started again
+  // Counts of one process never go back: sums since the start would wrap.
+  if (another || status.cycles < module.newest.cycles || status.overruns < module.newest.overruns) {
     of_ended_ += module.newest.contacts;
     module = {};
   }

@@ -139,8 +139,11 @@ py::tuple read_mesh(const std::string& file, const std::string& unit) {
   return arrays_from(geometry::read_surface(file, unit));
 }
 
-void write_mesh(const std::string& file, py::handle nodes, py::handle triangles) {
+void write_mesh(const std::string& file, py::handle nodes, py::handle triangles, bool overwrite) {
   geometry::check_can_write(file);
+  if (!overwrite && std::filesystem::exists(file)) {
+    throw InputError(file + ": is there already; give another name, or overwrite=True");
+  }
   geometry::write_surface(surface_from(nodes, triangles), file);
 }
 

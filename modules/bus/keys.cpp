@@ -59,8 +59,10 @@ class FolderInTheMaking {
     std::error_code failure;
     if (fs::exists(place_, failure) && !fs::is_empty(place_, failure)) refuse_full();
     if (failure) fail(named_, failure.value());
-    fs::create_directories(place_.parent_path(), failure);
-    if (failure) fail(named_, failure.value());
+    const fs::path above = fs::absolute(place_).parent_path();
+    if (!fs::is_directory(above, failure)) {
+      throw InputError(named_.string() + ": there is no folder " + above.string());
+    }
     constexpr std::size_t kPartOfName = 160;  // of 255 bytes
     part_.replace_filename(place_.filename().string().substr(0, kPartOfName) + "." +
                            process_word() + ".part");

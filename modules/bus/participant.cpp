@@ -9,10 +9,17 @@
 #include <fastdds/dds/topic/Topic.hpp>
 
 #include <arpa/inet.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 #include "modules/bus/addresses.h"
 #include "modules/bus/dds_words.h"
@@ -30,22 +37,50 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 
-constexpr int kMaxDomain = 200;  // higher ones have ports beyond 65535 for many participants
-constexpr std::size_t kMaxSessionBytes = 64;
+/// While a participant is made, Fast DDS 2.9.1 answers a thread or memory that it is not given with
+/// an assertion (sockets that are open in `UDPTransportInterface::clean`): no fault of ours, that
+/// leaves a core behind.
+class AssertionsTold {
+ public:
+  AssertionsTold() {
+    struct sigaction told {};
+    told.sa_handler = [](int) {
+      constexpr std::string_view kSaid =
+          "DDS cannot start: there are not enough threads, or memory; ulimit -u says how many a "
+          "user may have, ulimit -v how much memory a process\n";
+      [[maybe_unused]] const auto told_all = ::write(STDERR_FILENO, kSaid.data(), kSaid.size());
+      ::_exit(kExitFailed);
+    };
+    ::sigaction(SIGABRT, &told, &earlier_);
+  }
+  ~AssertionsTold() { ::sigaction(SIGABRT, &earlier_, nullptr); }
+  AssertionsTold(const AssertionsTold&) = delete;
+  AssertionsTold& operator=(const AssertionsTold&) = delete;
 
-void check(const BusOptions& options) {
-  if (options.domain < 0 || options.domain > kMaxDomain) {
-    throw InputError("domain: " + std::to_string(options.domain) + ": allowed are 0 to " +
-                     std::to_string(kMaxDomain));
+ private:
+  struct sigaction earlier_ {};
+};
+
+dds::DomainParticipant* made_participant(int domain, const dds::DomainParticipantQos& qos) {
+  const AssertionsTold told;
+  return dds::DomainParticipantFactory::get_instance()->create_participant(
+      static_cast<std::uint32_t>(domain), qos);
+}
+
+/// What Fast DDS cannot open it does without, and says nothing: who made it would hear nobody, and
+/// wait for ever. So some files more can be opened behind it, or it lacks some.
+void check_files_left() {
+  constexpr std::size_t kSpare = 4;
+  std::array<int, kSpare> spare{};
+  for (int& file : spare) file = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int failure = errno;
+  const bool all = std::ranges::all_of(spare, [](int file) { return file >= 0; });
+  for (const int file : spare) {
+    if (file >= 0) ::close(file);
   }
-  // A partition with * ? [ ] would match other sessions.
-  const bool plain = options.session.find_first_not_of(
-                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                         "0123456789_-.") == std::string::npos;
-  if (options.session.empty() || options.session.size() > kMaxSessionBytes || !plain) {
-    throw InputError("session: \"" + options.session + "\": allowed are 1 to " +
-                     std::to_string(kMaxSessionBytes) + " letters, digits, '_', '-', '.'");
-  }
+  if (all) return;
+  throw std::runtime_error(std::string("DDS cannot start: ") + std::strerror(failure) +
+                           "; ulimit -n says how many a process may have");
 }
 
 template <class Entity>
@@ -57,7 +92,7 @@ Entity* demand_created(Entity* entity, const std::string& what) {
 }  // namespace
 
 Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
-  check(options);
+  check_session(options.domain, options.session);
   tell_plainly();
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
   addresses_ = addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS"));
@@ -70,8 +105,7 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
   }
   packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos);
   qos.name(options.participant_name);
-  participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
-      static_cast<std::uint32_t>(options.domain), qos);
+  participant_ = made_participant(options.domain, qos);
   if (participant_ == nullptr && !role_.empty()) {
     throw std::runtime_error("DDS cannot start with the keys of role " + role_ +
                              ": its own words are above");
@@ -81,6 +115,7 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
                              ": is the loopback interface up?");
   }
   try {
+    check_files_left();
     dds::PublisherQos publisher_qos;
     publisher_qos.partition().push_back(options.session.c_str());
     publisher_ = demand_created(participant_->create_publisher(publisher_qos), "publisher");

@@ -4,12 +4,26 @@
 
 namespace palpate::bus {
 
-std::uint64_t SequenceGaps::Entry::missing() const {
-  const std::uint64_t expected = last - first + 1;
-  return expected > received ? expected - received : 0;
+void SequenceNumbers::count(std::uint64_t sequence) {
+  const bool leaps = received_ > 0 && sequence > last_ && sequence - last_ > kFarthestLeap;
+  if (leaps) missing_before_ += missing_since();
+  if (leaps || received_ == 0) {
+    first_ = last_ = sequence;
+    received_ = 1;
+    return;
+  }
+  if (sequence < first_) return;  // from before we joined
+  last_ = std::max(last_, sequence);
+  ++received_;
 }
 
-SequenceGaps::Entry& SequenceGaps::entry_of(const WriterId& writer, std::uint64_t sequence) {
+std::uint64_t SequenceNumbers::missing_since() const {
+  if (received_ == 0) return 0;
+  const std::uint64_t expected = last_ - first_ + 1;
+  return expected > received_ ? expected - received_ : 0;
+}
+
+SequenceGaps::Entry& SequenceGaps::entry_of(const WriterId& writer) {
   const auto end = entries_.begin() + static_cast<std::ptrdiff_t>(used_);
   const auto known =
       std::find_if(entries_.begin(), end, [&](const Entry& e) { return e.writer == writer; });
@@ -21,22 +35,19 @@ SequenceGaps::Entry& SequenceGaps::entry_of(const WriterId& writer, std::uint64_
   } else {
     entry = &entries_[oldest_];
     oldest_ = (oldest_ + 1) % entries_.size();
-    missing_of_forgotten_ += entry->missing();
+    missing_of_forgotten_ += entry->numbers.missing();
   }
-  *entry = {writer, sequence, sequence, 0};
+  *entry = {writer, {}};
   return *entry;
 }
 
 void SequenceGaps::count(const WriterId& writer, std::uint64_t sequence) {
-  Entry& entry = entry_of(writer, sequence);
-  if (sequence < entry.first) return;  // from before we joined
-  entry.last = std::max(entry.last, sequence);
-  ++entry.received;
+  entry_of(writer).numbers.count(sequence);
 }
 
 std::uint64_t SequenceGaps::dropped() const {
   std::uint64_t sum = missing_of_forgotten_;
-  for (std::size_t i = 0; i < used_; ++i) sum += entries_[i].missing();
+  for (std::size_t i = 0; i < used_; ++i) sum += entries_[i].numbers.missing();
   return sum;
 }
 

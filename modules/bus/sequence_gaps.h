@@ -8,8 +8,25 @@ namespace palpate::bus {
 
 using WriterId = std::array<unsigned char, 16>;
 
-/// Gaps in the sequence numbers of several writers, counted from the first sample of each. Samples
-/// of different keys may come out of order; a late one closes its gap again. No allocation.
+/// Numbers of one writer's samples, counted from the first that was heard. Samples of different
+/// keys may come out of order; a late one closes its gap again.
+class SequenceNumbers {
+ public:
+  /// Nobody has missed so many in a row: 28 hours of a thousand a second. Where a number leaps
+  /// further, the writer counts anew from there, or lies.
+  static constexpr std::uint64_t kFarthestLeap = 100'000'000;
+
+  void count(std::uint64_t sequence);
+  std::uint64_t missing() const { return missing_before_ + missing_since(); }
+
+ private:
+  std::uint64_t missing_since() const;
+
+  std::uint64_t first_ = 0, last_ = 0, received_ = 0;  ///< since the last leap
+  std::uint64_t missing_before_ = 0;
+};
+
+/// Gaps in the sequence numbers of several writers. No allocation.
 class SequenceGaps {
  public:
   void count(const WriterId& writer, std::uint64_t sequence);
@@ -18,10 +35,9 @@ class SequenceGaps {
  private:
   struct Entry {
     WriterId writer{};
-    std::uint64_t first = 0, last = 0, received = 0;
-    std::uint64_t missing() const;
+    SequenceNumbers numbers;
   };
-  Entry& entry_of(const WriterId& writer, std::uint64_t sequence);
+  Entry& entry_of(const WriterId& writer);
 
   std::array<Entry, 32> entries_;  // writers known at a time; the oldest makes room
   std::size_t used_ = 0;

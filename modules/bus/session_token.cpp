@@ -23,6 +23,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kSecretBytes = 32;
 constexpr int kHex = 16;
 
+constexpr int kMaxDomain = 200;  // higher ones have ports beyond 65535 for many participants
+constexpr std::size_t kMaxSessionBytes = 64;
+
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -74,6 +77,21 @@ std::uint64_t token_from(const std::string& text) {
 
 }  // namespace
 
+void check_session(int domain, const std::string& session) {
+  if (domain < 0 || domain > kMaxDomain) {
+    throw InputError("domain: " + std::to_string(domain) + ": allowed are 0 to " +
+                     std::to_string(kMaxDomain));
+  }
+  // A partition with * ? [ ] would match other sessions.
+  const bool plain = session.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789_-.") == std::string::npos;
+  if (session.empty() || session.size() > kMaxSessionBytes || !plain) {
+    throw InputError("session: \"" + session + "\": allowed are 1 to " +
+                     std::to_string(kMaxSessionBytes) + " letters, digits, '_', '-', '.'");
+  }
+}
+
 fs::path user_secret_file() {
   const char* const named = std::getenv("XDG_RUNTIME_DIR");
   const std::string user = std::to_string(::geteuid());
@@ -109,6 +127,7 @@ std::string user_secret(const fs::path& file) {
 }
 
 std::uint64_t session_token(int domain, const std::string& session) {
+  check_session(domain, session);
   if (const char* const given = std::getenv("PALPATE_TOKEN"); given != nullptr) {
     return token_from(given);
   }

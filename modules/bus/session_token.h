@@ -9,9 +9,12 @@
 
 namespace palpate::bus {
 
+/// @throws InputError for a domain or a name that no session can have
+void check_session(int domain, const std::string& session);
+
 /// PALPATE_TOKEN of the environment, 1 to 16 hex digits, if it is set. Else made of domain, session
 /// and the user's secret on this host: the same for all his programs, whatever starts first.
-/// @throws InputError for another PALPATE_TOKEN, or if there can be no secret
+/// @throws InputError as check_session(), for another PALPATE_TOKEN, or if there can be no secret
 std::uint64_t session_token(int domain, const std::string& session);
 
 /// As PALPATE_TOKEN is written: 16 hex digits.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,10 @@ RepairLog repair_surface(TriangleSurface& surface);
 /// corners a little rounder. A surface that has this count already is returned as it is.
 /// Deterministic.
 /// @param node_count  4 … kMaxNodes
+/// @param progress    called after each round with the part that is done, 0 … 1
 /// @throws InputError if the surface cannot be resampled.
-TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count);
+TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count,
+                                 const std::function<void(double)>& progress = {});
 
 /// Reads, repairs, resamples if node_count > 0, and checks.
 /// @throws InputError naming file, problems and what to do if the result cannot hold a volume.

@@ -1,5 +1,7 @@
 // The writing half of mesh_io.h. Our own writers: assimp's exporters split and reorder nodes.
+#include <algorithm>
 #include <bit>
+#include <cctype>
 #include <iomanip>
 #include <limits>
 #include <string>
@@ -77,8 +79,16 @@ void write_off(const TriangleSurface& surface, std::ostream& out) {
 
 using Writer = void (*)(const TriangleSurface&, std::ostream&);
 
+/// In lower case, as when a file is read.
+std::string extension_of(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
 Writer writer_for(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
+  const std::string extension = extension_of(file);
   if (extension == ".ply") return write_ply;
   if (extension == ".stl") return write_stl;
   if (extension == ".obj") return write_obj;
@@ -98,7 +108,7 @@ void write_whole(const std::filesystem::path& file, const Write& write) {
 void check_can_write(const std::filesystem::path& file) { writer_for(file); }
 
 void check_can_write_tetrahedra(const std::filesystem::path& file) {
-  if (file.extension() != ".msh") refuse_format(file, ".msh, for --near makes tetrahedra");
+  if (extension_of(file) != ".msh") refuse_format(file, ".msh, for --near makes tetrahedra");
 }
 
 void write_surface(const TriangleSurface& surface, const std::filesystem::path& file) {

@@ -74,15 +74,22 @@ void check_request(const TriangleSurface& surface, std::size_t node_count) {
 
 }  // namespace
 
-TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count) {
+TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count,
+                                 const std::function<void(double)>& progress) {
   check_request(surface, node_count);
   if (surface.nodes.size() == node_count) return surface;
   const double volume = enclosed_volume(surface.nodes, surface.triangles);
   const AabbTree target(surface);
   RemeshMesh mesh = to_remesh_mesh(surface);
   double length = edge_length_for(surface_area(surface.nodes, surface.triangles), node_count);
+  int done = 0;  // a round of remeshing takes about four times one of polishing
+  const auto tell = [&](int steps) {
+    done += steps;
+    if (progress) progress(double(done) / (4 * kRounds + kPolishingRounds));
+  };
   for (int round = 0; round < kRounds; ++round) {
     remesh_once(mesh, target, length);
+    tell(4);
     const double ratio = static_cast<double>(mesh.n_vertices()) / static_cast<double>(node_count);
     length *= std::clamp(std::sqrt(ratio), 0.8, 1.25);
   }
@@ -90,6 +97,7 @@ TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t nod
   for (int round = 0; round < kPolishingRounds; ++round) {
     equalize_valences(mesh);
     relax_on(mesh, target);
+    tell(1);
   }
   TriangleSurface result = to_surface(mesh);
   scale_to_volume(result, volume);

@@ -28,10 +28,11 @@ inline constexpr double kStiffnessTolerance = 1e-6;
 inline constexpr std::size_t kMaxNameBytes = 64;  ///< of a module and a topic
 
 /// What a field must satisfy beside its type. Whatever the rule, floating-point numbers are finite
-/// and at most kMaxMagnitude (but kAge), words are listed ones and texts hold at most kMaxTextBytes
-/// and no zero byte.
+/// and at most kMaxMagnitude (but kAge), counts at most kMaxCount (but kToken), times within
+/// kMaxTimeNs, words are listed ones and texts hold at most kMaxTextBytes and no zero byte.
 enum class Rule {
   kPlain,
+  kToken,        ///< any 64 bits
   kFromOne,      ///< ≥ 1
   kAtLeastZero,  ///< ≥ 0
   kSinceSetUp,   ///< ≥ −1: what is said before the first lockstep cycle has −1
@@ -125,7 +126,7 @@ void describe(V& v, H& h) {
   v.field("sequence_number", h.sequence, Rule::kFromOne);
   v.field("sim_time_ns", h.sim_time_ns, Rule::kPlain);
   v.field("source_time_ns", h.source_time_ns, Rule::kSinceSetUp);
-  v.field("session_token", h.session_token, Rule::kPlain);
+  v.field("session_token", h.session_token, Rule::kToken);
 }
 
 template <class V, Is<ProbeState> M>

@@ -39,8 +39,12 @@ bool holds(Rule rule, const Vec3& v) {
 bool holds(Rule, const Quat& q) { return is_unit(q); }
 bool holds(Rule, const Mat3& k) { return all_sensible(k) && is_symmetric(k); }
 bool holds(Rule, bool) { return true; }
-bool holds(Rule rule, std::uint64_t x) { return rule != Rule::kFromOne || x >= 1; }
+bool holds(Rule rule, std::uint64_t x) {
+  if (rule == Rule::kToken) return true;
+  return x <= kMaxCount && (rule != Rule::kFromOne || x >= 1);
+}
 bool holds(Rule rule, std::int64_t x) {
+  if (x < -kMaxTimeNs || x > kMaxTimeNs) return false;
   if (rule == Rule::kSinceSetUp) return x >= -1;
   return rule != Rule::kAtLeastZero || x >= 0;
 }

@@ -14,7 +14,7 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 12;
+inline constexpr std::uint32_t kProtocolVersion = 13;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 1024;

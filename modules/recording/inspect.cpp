@@ -25,24 +25,10 @@ std::string entry(const McapMap& map, const std::string& key) {
   return found == map.end() ? "?" : printable(found->second);
 }
 
-// Sequence numbers.
-struct Sequence {
-  std::uint64_t first = 0, last = 0, samples = 0;
-  void add(std::uint64_t number) {
-    if (samples++ == 0) first = last = number;
-    first = std::min(first, number);
-    last = std::max(last, number);
-  }
-  std::uint64_t missing() const {
-    const std::uint64_t expected = last - first + 1;
-    return expected > samples ? expected - samples : 0;
-  }
-};
-
 // Of one writer; and of what it said once the session ran: one that goes on from a snapshot begins
 // with the states of then, told again.
 struct WriterSequence {
-  Sequence all, running;
+  bus::SequenceNumbers all, running;
 };
 
 class Summarizer {
@@ -71,8 +57,7 @@ class Summarizer {
     for (const auto& [channel, writer] : writers_) {
       TopicSummary& topic = topics_[channel.first];
       ++topic.writers;
-      const Sequence& counted = goes_on ? writer.running : writer.all;
-      if (!topic.thinned && counted.samples > 0) topic.missing += counted.missing();
+      if (!topic.thinned) topic.missing += (goes_on ? writer.running : writer.all).missing();
     }
     summary.first_ns = topics_.empty() ? 0 : std::numeric_limits<std::int64_t>::max();
     for (const auto& [name, topic] : topics_) {
@@ -89,8 +74,8 @@ class Summarizer {
     const std::string name =
         named == about_channel.end() ? std::to_string(sample.channel) : named->second;
     WriterSequence& writer = writers_[{sample.topic->name, name}];
-    writer.all.add(header.sequence);
-    if (header.sim_time_ns > 0) writer.running.add(header.sequence);
+    writer.all.count(header.sequence);
+    if (header.sim_time_ns > 0) writer.running.count(header.sequence);
     const bool stream = sample.topic->delivery == bus::Delivery::kStream;
     if (stream && !first_sim_ns_) first_sim_ns_ = header.sim_time_ns;
   }

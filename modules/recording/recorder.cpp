@@ -5,16 +5,15 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <utility>
 
 #include "modules/core/error.h"
+#include "modules/core/input_file.h"
 #include "modules/recording/idl_text.h"
 #include "modules/recording/sample_reader.h"
 #include "modules/runtime/program.h"
-#include "modules/scene/scene_reader.h"
+#include "modules/scene/placed_files.h"
 
 namespace palpate::recording {
 namespace {
@@ -34,15 +33,14 @@ std::string hex(const bus::WriterId& id) {
   return text;
 }
 
-/// None where the text is no scene of this version, or names files that are not here.
-std::set<std::filesystem::path> meshes_of(const std::string& resolved_text) {
-  std::set<std::filesystem::path> files;
+/// None where the text is no scene.
+std::set<std::filesystem::path> files_of(const std::string& resolved_text) {
   try {
-    const scene::Scene scene = scene::parse_scene(resolved_text, "recorded scene");
-    for (const auto& organ : scene.organs) files.insert(organ.mesh.file);
+    const auto files = scene::files_named(resolved_text);
+    return {files.begin(), files.end()};
   } catch (const InputError&) {
+    return {};
   }
-  return files;
 }
 
 }  // namespace
@@ -52,24 +50,29 @@ Clocks Clocks::now() {
 }
 
 SampleFile::SampleFile(const std::filesystem::path& file, const bus::BusOptions& session,
-                       const Clocks& clocks)
-    : writer_(file), to_time_of_day_ns_(clocks.unix - clocks.monotonic) {
+                       const Clocks& clocks, TopicSelection topics)
+    : writer_(file),
+      topics_(std::move(topics)),
+      to_time_of_day_ns_(clocks.unix - clocks.monotonic) {
   writer_.add_metadata({kSessionMetadata,
                         {{"session", session.session},
                          {"domain", std::to_string(session.domain)},
                          {"protocol_version", std::to_string(kProtocolVersion)},
                          {"version", runtime::version_text()},
                          {"clock", kTimeOfDay},
+                         {kSelectedTopics, topics_.text()},
                          {"start_monotonic_ns", std::to_string(clocks.monotonic)},
                          {"start_unix_ns", std::to_string(clocks.unix)}}});
   writer_.flush();
 }
 
-SampleFile::SampleFile(const std::filesystem::path& file) : writer_(file) {
+SampleFile::SampleFile(TopicSelection topics, const std::filesystem::path& file)
+    : writer_(file), topics_(std::move(topics)) {
   writer_.add_metadata({kSessionMetadata,
                         {{"protocol_version", std::to_string(kProtocolVersion)},
                          {"version", runtime::version_text()},
-                         {"clock", kSimulated}}});
+                         {"clock", kSimulated},
+                         {kSelectedTopics, topics_.text()}}});
   writer_.flush();
 }
 
@@ -130,15 +133,25 @@ void SampleFile::note_scene(const TopicSample& sample) {
   attach_files(scene, static_cast<std::uint64_t>(sample.received_time_ns + to_time_of_day_ns_));
 }
 
-/// The scene, and the meshes it names where they lie on this host, too.
+void SampleFile::add_attachment(const McapAttachment& attachment) {
+  writer_.add_attachment(attachment);
+  attached_.insert(attachment.name);
+}
+
+/// The scene, and the files it names where they lie on this host, too.
 void SampleFile::attach_files(const SceneDescription& scene, std::uint64_t log_time_ns) {
   writer_.add_attachment({log_time_ns, "scene.yaml", "application/yaml", scene.resolved_text});
-  for (const auto& mesh : meshes_of(scene.resolved_text)) {
-    std::ifstream stream(mesh, std::ios::binary);
-    std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-    if (bytes.empty() || bytes.size() > kMostRecordBytes / 2) continue;  // readers refuse it
+  for (const auto& file : files_of(scene.resolved_text)) {
+    if (attached_.contains(file.filename().string())) continue;
+    std::string bytes;
+    try {
+      bytes = read_input(file, kMostRecordBytes / 2);  // of more, readers refuse the record
+    } catch (const std::exception&) {  // whatever is wrong with it, the recording goes on
+      continue;
+    }
+    if (bytes.empty()) continue;
     writer_.add_attachment(
-        {log_time_ns, mesh.filename().string(), "application/octet-stream", std::move(bytes)});
+        {log_time_ns, file.filename().string(), "application/octet-stream", std::move(bytes)});
   }
 }
 
@@ -146,12 +159,10 @@ Recorder::Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::fil
                    const TopicSelection& topics)
     : bus_(bus),
       reader_(bus, [&](std::string_view topic) { return topics.has(topic); }),
-      file_(file, session),
+      file_(file, session, Clocks::now(), topics),
       space_(file),
       thread_(
-          {[this](const TopicSample& sample) { file_.write(sample); }, [this] { end_round(); }}) {
-  file_.select(topics);
-}
+          {[this](const TopicSample& sample) { file_.write(sample); }, [this] { end_round(); }}) {}
 
 std::string Recorder::poll() {
   thread_.check();

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -26,6 +27,10 @@ inline constexpr const char* kSceneMetadata = "palpate scene";      ///< name, d
 /// Where only some stages were computed: `stages`; the rest is of `recording`, whose scene was
 /// `scene` with `digest`.
 inline constexpr const char* kRerunMetadata = "palpate rerun";
+
+/// Metadata of a session: TopicSelection::text(). Topics without a sample were silent if they are
+/// in it. Recordings made before have no such entry.
+inline constexpr const char* kSelectedTopics = "topics";
 
 /// Metadata `clock` of a session: the file's times are nanoseconds since 1970. Before, they were of
 /// the monotonic clock, and the entry was missing.
@@ -47,13 +52,13 @@ class SampleFile {
  public:
   /// @throws std::runtime_error as McapWriter does
   /// @param clocks  what time of day the samples' monotonic times are: the file's are of the day
+  /// @param topics  what is to be added
   SampleFile(const std::filesystem::path& file, const bus::BusOptions& session,
-             const Clocks& clocks = Clocks::now());
+             const Clocks& clocks = Clocks::now(), TopicSelection topics = {});
   /// Of a lockstep session: times are simulated, nothing tells of the machine.
-  explicit SampleFile(const std::filesystem::path& file);
-
-  /// What is to be added from now on; at first everything.
-  void select(TopicSelection topics) { topics_ = std::move(topics); }
+  static SampleFile of_lockstep(const std::filesystem::path& file, TopicSelection topics = {}) {
+    return SampleFile(std::move(topics), file);
+  }
 
   /// Leaves out what was not selected.
   void add(const TopicSample& sample) {
@@ -65,6 +70,8 @@ class SampleFile {
   /// Selected or not.
   void write(const TopicSample& sample);
   void add_metadata(const McapMetadata& metadata) { writer_.add_metadata(metadata); }
+  /// In the place of a file of that name which a scene names and which is there.
+  void add_attachment(const McapAttachment& attachment);
   void end_chunk() { writer_.end_chunk(); }
   void flush() { writer_.flush(); }
   void close() { writer_.close(); }
@@ -75,6 +82,7 @@ class SampleFile {
   void add_lost() { ++lost_; }
 
  private:
+  SampleFile(TopicSelection topics, const std::filesystem::path& file);
   std::uint16_t channel_of(const TopicSample& sample);
   void note_scene(const TopicSample& sample);
   void attach_files(const SceneDescription& scene, std::uint64_t log_time_ns);
@@ -87,6 +95,7 @@ class SampleFile {
   std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, bus::SequenceGaps> gaps_;
   std::uint64_t lost_ = 0;  ///< beside them
   std::string scene_digest_;
+  std::set<std::string> attached_;  ///< names that add_attachment() was given
 };
 
 /// Hears a session and writes it down, in a thread of its own.

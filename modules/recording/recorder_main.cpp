@@ -89,6 +89,8 @@ void check_module(const std::string& name) {
 void record(const palpate::runtime::ModuleOptions& options, const std::filesystem::path& file,
             const Words& topics, const Words& hears) {
   if (!options.lockstep.empty()) return record_in_lockstep(options, file, topics);
+  // Its launcher has judged the place; what comes later, when it starts again, is a failure.
+  if (hears.empty()) palpate::recording::check_recording_target(file);
   try {
     record_in_real_time(options, file, topics, hears);
   } catch (const palpate::recording::DiskFull& full) {
@@ -104,18 +106,21 @@ int main(int argc, char** argv) {
   palpate::runtime::ModuleOptions options;
   options.bus.participant_name = "recorder";
   std::filesystem::path file;
-  program.add_output("FILE", file, "the recording to write; one that is there is replaced")
+  program.add_output("FILE", file, "The recording to write; one that is there is replaced")
       .required();
   Words topics, hears;
   program.add("--topics", topics,
               "Topics to record: all, NAME, or NAME=HZ for at most so many samples a second");
-  program.add(
+  palpate::runtime::Option hears_option = program.add(
       "--hears", hears,
       "Modules of a session that waits until all of them are heard: a module_status says so");
   palpate::runtime::add_bus_options(program, options.bus);
-  palpate::runtime::add_lockstep_options(program, options);
-  program.add_input("--scene", options.scene,
-                    "Scene file; needed in lockstep, which follows its rates");
+  const auto lockstep = palpate::runtime::add_lockstep_options(program, options);
+  hears_option.excludes(lockstep);
+  program
+      .add_input("--scene", options.scene,
+                 "Scene file; needed in lockstep, which follows its rates")
+      .needs(lockstep);
   program.footer(palpate::runtime::kModuleExitCodes);
   return program.run(argc, argv, [&] {
     for (const auto& module : hears) check_module(module);

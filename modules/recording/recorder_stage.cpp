@@ -11,8 +11,7 @@ namespace palpate::recording {
 
 RecorderStage::RecorderStage(bus::Bus& bus, const std::filesystem::path& file,
                              TopicSelection topics)
-    : file_(file), space_(file), name_(file) {
-  file_.select(std::move(topics));
+    : file_(SampleFile::of_lockstep(file, std::move(topics))), space_(file), name_(file) {
   for (const bus::TopicInfo& topic : bus::all_topics()) {
     if (runtime::find_wire(topic.name) == nullptr) continue;
     inputs_.push_back(std::make_unique<bus::Input>(bus, topic));

@@ -24,6 +24,7 @@ class RecorderStage : public runtime::Stage {
   void finish(const runtime::Cycle& now) override;
 
   void add_metadata(const McapMetadata& metadata) { file_.add_metadata(metadata); }
+  void add_attachment(const McapAttachment& attachment) { file_.add_attachment(attachment); }
   const SampleFile& file() const { return file_; }
 
  private:

@@ -105,6 +105,8 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
     } else if (const auto* metadata = std::get_if<McapMetadata>(&*record)) {
       if (metadata->name == kSessionMetadata) {  // of repaired parts there are several
         read_clocks(metadata->entries);
+        const auto topics = metadata->entries.find(kSelectedTopics);
+        selections_.push_back(topics == metadata->entries.end() ? "" : topics->second);
         metadata_.emplace(metadata->name, metadata->entries);
       } else {
         metadata_[metadata->name] = metadata->entries;
@@ -154,6 +156,16 @@ const McapMap& SampleReader::about_channel(std::uint16_t channel) const {
 McapMap SampleReader::metadata(const std::string& name) const {
   const auto found = metadata_.find(name);
   return found == metadata_.end() ? McapMap{} : found->second;
+}
+
+bool SampleReader::selected(const std::string& topic) const {
+  const auto has_it = [&](const std::string& selection) {
+    const std::string entries = "," + selection + ",";
+    return selection == "all" || entries.find("," + topic + ",") != std::string::npos ||
+           entries.find("," + topic + "=") != std::string::npos;
+  };
+  return !selections_.empty() && std::ranges::all_of(selections_, has_it) &&
+         (!later_ || later_->selected(topic));
 }
 
 std::vector<std::string> SampleReader::warnings() const {

@@ -55,6 +55,10 @@ class SampleReader {
   /// Entries of the metadata record of that name read so far; empty if there was none.
   McapMap metadata(const std::string& name) const;
 
+  /// After next() gave none: whether all that was said of a topic was to be recorded, or a part of
+  /// it at regular times. False of recordings that do not say.
+  bool selected(const std::string& topic) const;
+
   /// Metadata of a sample's channel: `writer`, kThinned.
   const McapMap& about_channel(std::uint16_t channel) const;
 
@@ -92,6 +96,7 @@ class SampleReader {
   std::map<std::uint16_t, const bus::TopicInfo*> topics_;  ///< by channel
   std::map<std::uint16_t, McapMap> about_;                 ///< channels
   std::map<std::string, McapMap> metadata_;
+  std::vector<std::string> selections_;  ///< of repaired parts there are several
 };
 
 }  // namespace palpate::recording

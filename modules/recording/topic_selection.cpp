@@ -1,5 +1,7 @@
 #include "modules/recording/topic_selection.h"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <charconv>
 #include <cmath>
 
@@ -55,6 +57,16 @@ void TopicSelection::add(const std::string& word) {
     throw InputError("topics: '" + word + "': every sample of " + name + " counts; write " + name);
   }
   rate = rate_in(word, std::string_view(word).substr(name.size() + 1));
+}
+
+std::string TopicSelection::text() const {
+  if (all_) return "all";
+  std::string text;
+  for (const auto& [topic, rate] : rates_) {
+    text += (text.empty() ? "" : ",") + topic;
+    if (rate > 0) text += fmt::format("={}", rate);
+  }
+  return text;
 }
 
 bool TopicSelection::has(std::string_view topic) const { return all_ || rates_.contains(topic); }

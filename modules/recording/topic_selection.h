@@ -21,6 +21,8 @@ class TopicSelection {
   /// @throws InputError for a topic that does not exist, and a rate of a topic of state
   explicit TopicSelection(const std::vector<std::string>& words);
 
+  /// As given to the constructor: "all", or topics and rates in the order of their names.
+  std::string text() const;
   bool has(std::string_view topic) const;
   double rate(std::string_view topic) const;  ///< 0: every sample
 

@@ -2,9 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "modules/bus/dds_bus.h"
+#include "modules/core/error.h"
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/lockstep.h"
@@ -35,8 +37,11 @@ class LockstepModule {
         name_(name),
         participants_(options.lockstep),
         bus_(lockstep_options(options.bus, name)),
-        session_(bus_, scene::scene_digest(scene)),
+        session_(bus_, scene::scene_digest(scene), Session::Kind::kLockstep),
         status_(bus_, name, rate_of(name, scene), false) {
+    if (std::ranges::find(participants_, name) == participants_.end()) {
+      throw InputError("--lockstep: " + name + " itself is not among its modules");
+    }
     bus_.set_clock([this] { return clock_ns_; });
     const std::size_t drivers_own = bus_.inputs().size();
     outputs_before_ = bus_.outputs().size();

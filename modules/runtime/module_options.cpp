@@ -25,20 +25,28 @@ void add_bus_options(Options& options, bus::BusOptions& bus) {
       .shows_default();
 }
 
-void add_lockstep_options(Options& options, ModuleOptions& module) {
+Option add_lockstep_options(Options& options, ModuleOptions& module) {
   std::vector<std::string> names(kModules.begin(), kModules.end());
   for (std::size_t process = 2; process <= scene::kMaxProcesses; ++process) {
     names.push_back(name_of({"deformation", process}));
   }
-  options
-      .add("--lockstep", module.lockstep,
-           "Modules of a lockstep session, this one included: cycles wait for their inputs, "
-           "no clock is read (palpate run --lockstep)")
-      .one_of(names);
-  options.add_input("--from-snapshot", module.from_snapshot, "In lockstep: goes on from there");
-  options.add("--snapshot-at", module.snapshot_at, "In lockstep: when --snapshot is written [s]")
-      .range(1e-6, 1e6);
-  options.add_output("--snapshot", module.snapshot, "Its own part of a snapshot");
+  Option lockstep =
+      options
+          .add("--lockstep", module.lockstep,
+               "Modules of a lockstep session, this one included: cycles wait for their inputs, "
+               "no clock is read (palpate run --lockstep)")
+          .one_of(names);
+  options.add_input("--from-snapshot", module.from_snapshot, "In lockstep: goes on from there")
+      .needs(lockstep);
+  Option at =
+      options
+          .add("--snapshot-at", module.snapshot_at, "In lockstep: when --snapshot is written [s]")
+          .range(1e-6, 1e6)
+          .needs(lockstep);
+  const Option snapshot =
+      options.add_output("--snapshot", module.snapshot, "Its own part of a snapshot").needs(at);
+  at.needs(snapshot);
+  return lockstep;
 }
 
 int run_module(int argc, char** argv, const ModuleProgram& program,

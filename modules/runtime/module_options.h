@@ -36,8 +36,9 @@ struct ModuleProgram {
   std::function<void(Options&)> add_options;
 };
 
-/// Adds --lockstep with its check of names, and what is of lockstep alone.
-void add_lockstep_options(Options& options, ModuleOptions& module);
+/// Adds --lockstep with its check of names, and what is of lockstep alone and refused without.
+/// @return --lockstep
+Option add_lockstep_options(Options& options, ModuleOptions& module);
 
 /// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
 void add_bus_options(Options& options, bus::BusOptions& bus);

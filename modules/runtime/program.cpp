@@ -1,6 +1,7 @@
 #include "modules/runtime/program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -12,6 +13,7 @@
 #include "modules/core/error.h"
 #include "modules/core/standard_streams.h"
 #include "modules/messages/messages.h"
+#include "modules/runtime/scarcity.h"
 
 namespace palpate::runtime {
 namespace {
@@ -72,9 +74,30 @@ void refuse_empty_entries(const CLI::App& app, const std::vector<std::string>& w
     if (option != nullptr && sign == std::string::npos) continue;
     const std::string entries = "," + (option == nullptr ? word : word.substr(sign + 1)) + ",";
     if (entries.find(",,") == std::string::npos) continue;
+    if (entries == ",,") throw InputError(list->get_name() + ": an empty list names nothing");
     throw InputError(list->get_name() + " " + entries.substr(1, entries.size() - 2) +
                      ": an entry between its commas is empty");
   }
+}
+
+/// The parser blames an option that nobody gave.
+/// @return what is wrong with a variable of the environment; empty if nothing is
+std::string blames_environment(const CLI::App& app, const std::vector<std::string>& words,
+                               const std::string& error) {
+  for (const CLI::Option* option : app.get_options()) {
+    const char* const value =
+        option->get_envname().empty() ? nullptr : std::getenv(option->get_envname().c_str());
+    if (value == nullptr || !error.starts_with(option->get_name() + ": ")) continue;
+    const bool typed = std::ranges::any_of(words, [&](const auto& word) {
+      return word == value || word == option->get_name() + "=" + value;
+    });
+    if (typed || error.find(value) == std::string::npos) continue;
+    return option->get_envname() + " of the environment, for " + error;
+  }
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (auto blamed = blames_environment(*command, words, error); !blamed.empty()) return blamed;
+  }
+  return "";
 }
 
 std::string refuse_empty(const std::string& path) {
@@ -206,6 +229,7 @@ Program::Program(std::unique_ptr<CLI::App> app)
       }) {
   app_->set_version_flag("--version", version_text());
   footer(kExitCodes);  // of every command, too
+  end_in_words(app_->get_name());
 }
 
 Program::~Program() = default;
@@ -306,6 +330,8 @@ int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
     refuse_overwriting(*files_);
     return job_ ? job_() : body();
   } catch (const CLI::ParseError& error) {
+    const std::string blamed = blames_environment(*app_, words, error.what());
+    if (!blamed.empty()) return report_(blamed), kExitBadInput;
     return app_->exit(error) == 0 ? kExitDone : kExitBadInput;
   } catch (const InputError& error) {
     report_(error.what());
@@ -314,7 +340,10 @@ int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
     report_(error.what());
     return kExitStopped;
   } catch (const std::bad_alloc&) {
-    report_("not enough memory");
+    report_(kNoMemory);
+    return kExitFailed;
+  } catch (const std::system_error& error) {
+    report_(why(error));
     return kExitFailed;
   } catch (const std::exception& error) {
     report_(error.what());

@@ -75,7 +75,8 @@ class Options {
 
 class Program : public Options {
  public:
-  /// First thing in a program: standard descriptors that are closed are opened on /dev/null.
+  /// First thing in a program: standard descriptors that are closed are opened on /dev/null, and
+  /// what nobody can catch ends it in words (scarcity.h).
   /// @param purpose  a sentence for --help  @param name  as it is typed
   Program(const std::string& purpose, const std::string& name);
   ~Program();

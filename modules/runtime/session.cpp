@@ -5,13 +5,17 @@
 
 namespace palpate::runtime {
 
-Session::Session(bus::Bus& bus, std::string scene_digest)
+Session::Session(bus::Bus& bus, std::string scene_digest, Kind kind)
     : controls_(bus.reader(bus::kSessionControl)),
       scenes_(bus.reader(bus::kScene)),
-      scene_digest_(std::move(scene_digest)) {}
+      scene_digest_(std::move(scene_digest)),
+      kind_(kind) {}
 
 void Session::poll() {
-  while (controls_.take(control_)) state_.apply(control_);
+  while (controls_.take(control_)) {
+    if (kind_ == Kind::kRealTime && !state_.believes(control_, monotonic_now_ns())) continue;
+    state_.apply(control_);
+  }
   while (scenes_.take(scene_)) fault_ = scene_mismatch(scene_, scene_digest_);
 }
 

@@ -11,8 +11,10 @@ namespace palpate::runtime {
 
 class Session {
  public:
+  enum class Kind { kRealTime, kLockstep };
   /// @param scene_digest  of the scene this module loaded
-  Session(bus::Bus& bus, std::string scene_digest);
+  /// @param kind  in lockstep commands grant simulated time, and each host has a clock of its own
+  Session(bus::Bus& bus, std::string scene_digest, Kind kind = Kind::kRealTime);
 
   /// Takes what has arrived. No allocation once the scene has come.
   void poll();
@@ -32,6 +34,7 @@ class Session {
   bus::Reader<SessionControl> controls_;
   bus::Reader<SceneDescription> scenes_;
   std::string scene_digest_;
+  Kind kind_;
   SessionState state_;
   SessionControl control_;
   SceneDescription scene_;

@@ -1,10 +1,31 @@
 #include "modules/runtime/session_state.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "modules/core/units.h"
 
 namespace palpate::runtime {
+namespace {
+
+/// Clocks of several hosts are known far better.
+constexpr std::int64_t kClocksDiffer = kNanosecondsPerSecond;
+
+}  // namespace
+
+bool SessionState::believes(const SessionControl& command, std::int64_t now_ns) const {
+  const Header& header = command.header;
+  if (header.source_time_ns - now_ns > kClocksDiffer || header.sim_time_ns < 0) return false;
+  const bool runs =
+      command.command == SessionCommand::kStart || command.command == SessionCommand::kStep;
+  const std::int64_t passed_ns = header.source_time_ns - command.start_time_ns;
+  if (runs && std::abs(passed_ns - header.sim_time_ns) > kClocksDiffer) return false;
+  const Header& before = last_.header;
+  if (before.source_time_ns == 0) return true;
+  const std::int64_t most_ns =
+      before.sim_time_ns + std::max<std::int64_t>(0, header.source_time_ns - before.source_time_ns);
+  return header.sim_time_ns - most_ns <= kClocksDiffer;
+}
 
 void SessionState::apply(const SessionControl& command) {
   if (command.header.source_time_ns < last_.header.source_time_ns) return;

@@ -20,6 +20,11 @@ class SessionState {
  public:
   void apply(const SessionControl& command);
 
+  /// In real time: whether a command can have been given in this session by `now_ns`. One of the
+  /// future would hold for ever. The simulated time it tells is no further on than the clock is
+  /// since the last command; if the session runs from it, it began that long before.
+  bool believes(const SessionControl& command, std::int64_t now_ns) const;
+
   SessionPhase phase() const { return phase_; }
   /// True once after each reset that came after the first command heard: a module that joins late
   /// starts from rest anyway.

@@ -20,10 +20,17 @@ void relax() {
 
 WorkerTeam::WorkerTeam(std::size_t threads) {
   PALPATE_DEMAND(threads >= 1);
-  for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  try {
+    for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+  } catch (...) {  // no thread more: those that run are not left behind
+    end();
+    throw;
+  }
 }
 
-WorkerTeam::~WorkerTeam() {
+WorkerTeam::~WorkerTeam() { end(); }
+
+void WorkerTeam::end() {
   stop_ = true;
   ++run_;
   run_.notify_all();

@@ -15,6 +15,7 @@ namespace palpate::runtime {
 class WorkerTeam : public ChunkRunner {
  public:
   /// @param threads  ≥ 1; 1 has no workers
+  /// @throws std::system_error if the system gives no more threads
   explicit WorkerTeam(std::size_t threads);
   ~WorkerTeam() override;
   WorkerTeam(const WorkerTeam&) = delete;
@@ -26,6 +27,7 @@ class WorkerTeam : public ChunkRunner {
 
  private:
   void work();
+  void end();
   std::uint32_t await_run(std::uint32_t last_run) const;
   void take_chunks(std::uint32_t run);
 

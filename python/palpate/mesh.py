@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from palpate import _core
+from palpate.numbers import whole
 from palpate.paths import path_text
 
 
@@ -56,13 +57,19 @@ def read(file: str | os.PathLike[str], unit: str = "m") -> Surface:
     return Surface(*_core.read_mesh(path_text(file), unit))
 
 
-def write(file: str | os.PathLike[str], nodes: npt.ArrayLike, triangles: npt.ArrayLike) -> None:
+def write(
+    file: str | os.PathLike[str], nodes: npt.ArrayLike, triangles: npt.ArrayLike, overwrite: bool = False
+) -> None:
     """Writes a surface in metres; the extension says how: ply, stl, obj, off.
 
+    Args:
+        overwrite: replace a file of that name.
+
     Raises:
-        InputError: another extension. RuntimeError: it cannot be written. TypeError, ValueError, IndexError as check().
+        InputError: another extension, or there is a file of that name. RuntimeError: it cannot be written.
+        TypeError, ValueError, IndexError as check().
     """
-    _core.write_mesh(path_text(file), nodes, triangles)
+    _core.write_mesh(path_text(file), nodes, triangles, overwrite)
 
 
 def check(nodes: npt.ArrayLike, triangles: npt.ArrayLike) -> Report:
@@ -96,4 +103,4 @@ def resample(nodes: npt.ArrayLike, triangles: npt.ArrayLike, node_count: int) ->
         InputError: the surface cannot hold a volume: repair it first.
         TypeError, ValueError, IndexError: as check().
     """
-    return Surface(*_core.resample_mesh(nodes, triangles, node_count))
+    return Surface(*_core.resample_mesh(nodes, triangles, whole("node_count", node_count, least=4)))

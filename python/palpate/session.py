@@ -12,6 +12,7 @@ import numpy.typing as npt
 from palpate import _core
 from palpate.closing import Closing
 from palpate.messages import Message, Topics, topic_from
+from palpate.numbers import whole
 from palpate.paths import path_text
 from palpate.scene import Scene
 
@@ -78,7 +79,7 @@ class Session(Closing[_core.Session]):
             KeyboardInterrupt: Ctrl-C, of a long call within 50 ms, in the main thread; the session can go on.
             ClosedError, BusyError.
         """
-        self._core.step(periods)
+        self._core.step(whole("periods", periods, least=0))
 
     def run(self, seconds: float, keep: Iterable[str] = ()) -> Topics:
         """Goes on by simulated seconds, as run_until(time + seconds)."""
@@ -227,7 +228,10 @@ class Session(Closing[_core.Session]):
 
 def _index(names: dict[str, int], key: int | str) -> int:
     if not isinstance(key, str):
-        return int(key.__index__())
+        index = whole("an index", key)
+        if not 0 <= index < len(names):
+            raise IndexError(f"no {index}; there are 0 to {len(names) - 1}: {', '.join(names)}")
+        return index
     if key not in names:
         raise KeyError(f"no {key!r}; there are: {', '.join(names)}")
     return names[key]

@@ -11,12 +11,16 @@ int main(int argc, char** argv) {
                            "palpate fuzz");
   fuzz::FuzzOptions options;
   program.add("-o,--out", options.out, "Folder for outcomes and failing scenes").shows_default();
-  program.add("--scenes", options.scenes, "How many").range(1, fuzz::kMostScenes).shows_default();
+  const auto scenes = program.add("--scenes", options.scenes, "How many")
+                          .range(1, fuzz::kMostScenes)
+                          .shows_default();
   program.add("--seed", options.seed, "Of the scenes").range(0, fuzz::kLargestSeed).shows_default();
   const auto only = program.add("--scene", options.only, "Only this one, in detail")
-                        .range(0, fuzz::kMostScenes - 1);
+                        .range(0, fuzz::kMostScenes - 1)
+                        .excludes(scenes);
   const auto again =
-      program.flag("--again", options.again, "Run anew what earlier runs have left in --out");
+      program.flag("--again", options.again, "Run anew what earlier runs have left in --out")
+          .excludes(only);
   std::optional<std::string> shard;
   program.add("--shard", shard, report::kShardHelp).excludes(again).excludes(only);
   program.footer(

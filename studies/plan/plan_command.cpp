@@ -199,7 +199,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     throw InputError("--shard needs --points, the folder that all shards share");
   }
   const std::filesystem::path output = options.shard ? "" : output_of(scene, options);
-  if (!options.points.empty()) report::make_out_folder(options.points);
+  if (!options.points.empty()) report::make_out_folder(options.points, "--points");
   Sharing sharing{{options.points / "claims", options.shard},
                   {options.points, told(scene, options), log}};
   const StopSignal stop;

@@ -43,6 +43,8 @@ std::string machine_name() {
   return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores seen";
 }
 
-void make_out_folder(const std::filesystem::path& folder) { make_writable_folder(folder, "--out"); }
+void make_out_folder(const std::filesystem::path& folder, const std::string& option) {
+  make_writable_folder(folder, option);
+}
 
 }  // namespace palpate::report

@@ -20,6 +20,6 @@ double processor_time();
 std::string machine_name();
 
 /// Makes the folder of --out. @throws InputError if it cannot be made
-void make_out_folder(const std::filesystem::path& folder);
+void make_out_folder(const std::filesystem::path& folder, const std::string& option = "--out");
 
 }  // namespace palpate::report

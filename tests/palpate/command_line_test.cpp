@@ -1,5 +1,6 @@
 // The programs as they are typed, in processes of their own.
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "modules/bus/keys.h"
 #include "modules/core/error.h"
@@ -9,7 +10,9 @@
 using namespace palpate;
 using Catch::Contains;
 using testing::BallScene;
+using testing::own_bus_options;
 using testing::type;
+using testing::wait_until;
 
 TEST_CASE("command line: --help lists every command and is no error") {
   // Oracle: the commands of the design.
@@ -89,6 +92,75 @@ TEST_CASE("command line: an empty entry of a list is bad input") {
       CHECK(outcome.said == "palpate: --only " + list + ": an entry between its commas is empty\n");
     }
   }
+}
+
+TEST_CASE("command line: a list without an entry is called empty") {
+  // Oracle: the message.
+  for (const std::vector<std::string>& list :
+       {std::vector<std::string>{"--only", ""}, {"--only="}}) {
+    auto arguments = list;
+    arguments.insert(arguments.begin(), {"run", "a.yaml"});
+    const auto outcome = type("palpate", arguments);
+    CHECK(outcome.code == kExitBadInput);
+    CHECK(outcome.said == "palpate: --only: an empty list names nothing\n");
+  }
+}
+
+TEST_CASE("command line: a summary whose folder vanishes meanwhile is a failure, and is told") {
+  // Oracle: exit code 1; the summary is on the standard output all the same.
+  const BallScene scene;
+  const auto folder = scene.folder() / "results";
+  std::filesystem::create_directory(folder);
+  launcher::ChildProcess run(
+      std::filesystem::path(PALPATE_BIN_DIR) / "palpate",
+      {"run", scene.file().string(), "--in-process", "--duration", "0.5", "--record",
+       (scene.folder() / "a.mcap").string(), "--summary", (folder / "a.txt").string()});
+  REQUIRE(wait_until([&] { return std::filesystem::exists(scene.folder() / "a.mcap"); }));
+  std::filesystem::remove_all(folder);
+  REQUIRE(wait_until([&] { return run.ended().has_value(); }));
+  std::string said;
+  for (const auto& line : run.take_lines()) said += line + "\n";
+  CHECK(WEXITSTATUS(*run.ended()) == kExitFailed);
+  CHECK_THAT(said, Catch::Contains("\nprobe finger") &&
+                       Catch::Contains("there is no folder " + folder.string() +
+                                       "; the summary is not in a file"));
+}
+
+TEST_CASE("command line: too few open files are an error, and nothing is waited for") {
+  // Oracle: exit code 1, or the session's own 0; of these limits one let Fast DDS start without a
+  // socket, and the launcher waited for ever for modules that it could not hear.
+  const BallScene scene;
+  for (int files = 14; files <= 22; ++files) {
+    const auto options = own_bus_options();
+    const auto outcome = type(
+        "/bin/sh",
+        {"-c", "ulimit -n " + std::to_string(files) + "; exec " PALPATE_BIN_DIR "/palpate run " +
+                   scene.file().string() + " --headless --duration 0.1 --no-realtime --session " +
+                   options.session + " --domain " + std::to_string(options.domain)});
+    CAPTURE(files, outcome.said);
+    CHECK((outcome.code == kExitFailed || outcome.code == kExitDone));
+  }
+}
+
+TEST_CASE("command line: options that leave nothing to do, or leave another out, are refused") {
+  // Oracle: exit code 2, the words. They were taken, and the rest ignored.
+  const BallScene scene;
+  const std::string file = scene.file().string(), folder = scene.folder().string();
+  std::ofstream(folder + "/hosts.yaml")
+      << "palpate_hosts: 1\nhosts: [{name: a, address: 127.0.0.1, modules: [haptics, "
+         "deformation]}]\n";
+  for (const auto& [typed, named] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"run", file, "--only", "visualizer", "--no-visualizer"}, "leaves nothing to start"},
+           {{"run", file, "--headless", "--hosts", folder + "/hosts.yaml", "--host", "a"},
+            "no host has the module 'collision'"},
+           {{"token", "--session", "*"}, "session: \"*\": allowed are 1 to 64"},
+           {{"keys", folder + "/no/k"}, "there is no folder " + folder + "/no"}}) {
+    const auto outcome = type("palpate", typed);
+    CAPTURE(typed, outcome.said);
+    CHECK(outcome.code == kExitBadInput);
+    CHECK_THAT(outcome.said, Catch::Contains(named));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder + "/no"));
 }
 
 TEST_CASE("command line: a summary that cannot be written is refused before anything starts") {

@@ -90,6 +90,8 @@ TEST_CASE("hosts file: what is wrong is named with its line and what is allowed"
   CHECK(refusal(with("[deformation]", "[collision]")) ==
         "hosts.yaml:4: key 'hosts[1].modules[0]' = 'collision': must be on one host, but is on "
         "'bench' too");
+  CHECK(refusal(with("[deformation]", "[deformation, deformation]")) ==
+        "hosts.yaml:4: key 'hosts[1].modules[1]' = 'deformation': must be named once");
   CHECK(refusal(with("[deformation]", "[]")).find("must have at least one entry") !=
         std::string::npos);
   CHECK(refusal(with("modules: [deformation]", "runs: [deformation]")).find("'hosts[1].runs'") !=

@@ -13,6 +13,7 @@
 #include "modules/scene/settings.h"
 #include "palpate/replay_command.h"
 #include "palpate/run_command.h"
+#include "tests/modules/recording/payloads.h"
 #include "tests/palpate/ball_scene.h"
 #include "tests/scratch_folder.h"
 
@@ -191,4 +192,91 @@ TEST_CASE("rerun: a torn recording is warned of") {
   std::filesystem::resize_file(run, std::filesystem::file_size(run) - 200);
   CHECK_THAT(rerun(run, {"haptics"}, scene.folder() / "again.mcap"),
              Contains("warning: " + run.string() + ": not closed by its writer"));
+}
+
+TEST_CASE("rerun: a driver that said nothing is no missing topic, one that was not recorded is") {
+  // Oracle: the recording itself; the message. It was refused: "holds no probe_input".
+  const palpate::testing::BallScene scene("topic: {start_m: [0, 0, 0.058]}");
+  const auto run = recorded(scene), again = scene.folder() / "again.mcap";
+  REQUIRE(rerun(run, {"haptics"}, again) == "");
+  CHECK(recording::compare({run, again}).equal());
+  RunOptions selected;
+  selected.record_topics = {"haptic_force", "probe_state", "contact_model"};
+  CHECK_THAT(rerun(recorded(scene, selected), {"haptics"}, again),
+             Contains("holds no probe_input, which haptics reads"));
+}
+
+TEST_CASE("rerun: a mesh and a motion that are gone, or changed, are the recording's own") {
+  // Oracle: the recording itself; the bytes of its files.
+  palpate::testing::BallScene scene;
+  const auto mesh = scene.folder() / "ball.ply", moves = scene.folder() / "moves.csv";
+  std::ofstream(moves) << "t,x,y,z,qx,qy,qz,qw\n0,0,0,0.065,0,0,0,1\n0.4,0.01,0,0.045,0,0,0,1\n";
+  scene.set_device("trajectory: {file: moves.csv}");
+  const auto run = recorded(scene), again = scene.folder() / "again.mcap";
+  const auto third = scene.folder() / "third.mcap";
+  std::filesystem::remove(moves);
+  geometry::write_surface(geometry::make_ball(0.04, 3), mesh);
+  const std::string said = rerun(run, {"haptics", "collision"}, again);
+  CHECK_THAT(said, Contains(mesh.string() + ": has changed since; taken from the recording"));
+  CHECK_THAT(said, Contains(moves.string() + ": is not there; taken from the recording"));
+  CHECK(recording::compare({run, again}).equal());
+  // What was computed has them in turn, though its files are not those that lie there.
+  CHECK_THAT(rerun(again, {"deformation"}, third), Contains("taken from the recording"));
+  CHECK(recording::compare({run, third}).equal());
+  CHECK(recording::summarize(third).scene.at("digest") ==
+        recording::summarize(run).scene.at("digest"));
+}
+
+TEST_CASE("rerun: a driver that stamps by a clock of its own is heard when it came") {
+  // Oracle: the probe goes as the driver says, and the rerun ends where the recording does. Stamped
+  // by the time of day it was waited for for ever, and nothing behind it came. Nor is what a
+  // stranger said of the future waited for, or a command that no module believed obeyed.
+  const palpate::testing::BallScene scene("topic: {start_m: [0, 0, 0.09]}");
+  const auto silent = recorded(scene), again = scene.folder() / "again.mcap";
+  const auto run = scene.folder() / "real_time.mcap";
+  constexpr std::int64_t kStart = 5'000'000'000, kDay = 1'700'000'000'000'000'000;
+  {
+    using recording::raw_sample;
+    recording::SampleFile file(run, {}, {1, 1});
+    SessionControl control;
+    control.header = {1, 0, kStart, 0};
+    control.start_time_ns = kStart;
+    file.add(raw_sample(bus::kSessionControl, control, kStart));
+    control.start_time_ns = -(std::int64_t{1} << 61);
+    file.add(raw_sample(bus::kSessionControl, control, kStart + 1, 3));
+    recording::SampleReader reader(silent);
+    std::uint64_t said = 0;
+    while (auto sample = reader.next()) {
+      recording::TopicSample copy;
+      copy.topic = sample->topic;
+      copy.writer[0] = 1;
+      copy.received_time_ns = kStart + sample->received_time_ns;
+      messages::shift_times(*sample->topic->type, kStart, sample->payload);
+      copy.payload = sample->payload;
+      file.add(copy);
+      if (sample->topic->name != bus::kProbeState.name) continue;
+      ProbeState wanted;
+      const auto sim_ns = sample->received_time_ns;
+      wanted.header = {++said, 0, kDay + sim_ns, 0};
+      wanted.pose.position = {0, 0, 0.09 + 1e-10 * double(sim_ns)};
+      file.add(raw_sample(bus::kProbeInput, wanted, copy.received_time_ns, 2));
+    }
+    HapticForce force;
+    force.header = {1, 0, kDay, 0};
+    file.add(raw_sample(bus::kHapticForce, force, kStart + 300'000'000, 4));
+    file.close();
+  }
+  REQUIRE(rerun(run, {"haptics"}, again) == "");
+  double highest = 0;
+  std::int64_t last_ns = 0;
+  recording::SampleReader reader(again);
+  while (const auto sample = reader.next()) {
+    ProbeState state;
+    if (sample->topic->name != bus::kProbeState.name) continue;
+    REQUIRE(messages::decode(sample->payload, state) == nullptr);
+    highest = std::max(highest, state.pose.position.z());
+    last_ns = state.header.sim_time_ns;
+  }
+  CHECK(highest == Approx(0.13).margin(2e-3));
+  CHECK(last_ns < 1'000'000'000);
 }

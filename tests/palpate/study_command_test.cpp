@@ -44,3 +44,21 @@ TEST_CASE("study command: typed, it passes options on and the exit code back") {
   CHECK(type("palpate", {"plan"}).code == kExitBadInput);
   CHECK(type("palpate", {"stability", "--only", "weather"}).code == kExitBadInput);
 }
+
+TEST_CASE("study command: what is wrong is named by the option that says it") {
+  // Oracle: the words. A folder for points was called --out, and --scene left the others out.
+  const auto points = type("palpate", {"plan", "stomach_probe", "--points", "/dev/null"});
+  CHECK(points.code == kExitBadInput);
+  CHECK_THAT(points.said, Contains("--points '/dev/null': must be a folder"));
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"--scenes", "2"}, {"--again"}}) {
+    std::vector<std::string> words{"fuzz", "--scene", "1"};
+    words.insert(words.end(), other.begin(), other.end());
+    const auto outcome = type("palpate", words);
+    CHECK(outcome.code == kExitBadInput);
+    CHECK_THAT(outcome.said, Contains("excludes"));
+  }
+  const auto empty = type("palpate", {"stability", "--series", ""});
+  CHECK(empty.code == kExitBadInput);
+  CHECK_THAT(empty.said, Contains("--series: an empty list names nothing"));
+}

@@ -48,6 +48,12 @@ class MeshTest(unittest.TestCase):
                 again = mesh.read(file)
                 self.assertAlmostEqual(mesh.check(*again).volume_m3, 1 / 6, 6)
             self.assertAlmostEqual(mesh.check(*mesh.read(file, "mm")).volume_m3, 1e-9 / 6, 15)
+            before = file.read_bytes()
+            with self.assertRaisesRegex(palpate.InputError, "is there already; give another name, or overwrite=True"):
+                mesh.write(file, 2 * np.array(NODES), TRIANGLES)
+            self.assertEqual(file.read_bytes(), before)
+            mesh.write(file, 2 * np.array(NODES), TRIANGLES, overwrite=True)
+            self.assertNotEqual(file.read_bytes(), before)
             with self.assertRaises(palpate.InputError):
                 mesh.write(Path(folder) / "t.xyz", NODES, TRIANGLES)
             with self.assertRaises(palpate.InputError):

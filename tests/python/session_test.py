@@ -237,9 +237,19 @@ class SessionTest(unittest.TestCase):
         for name in session.scene.organs:
             self.assertGreater(session.volume(name), 0)
         np.testing.assert_array_equal(session.positions(1), session.positions(session.scene.organs[1]))
-        for bad, error in ((7, IndexError), (-1, (IndexError, TypeError)), ("none", KeyError), (None, (TypeError, AttributeError))):
-            with self.assertRaises(error):
+        for bad, error, said in (
+            (7, IndexError, "no 7; there are 0 to 1: stomach, liver"),
+            (-1, IndexError, "no -1; there are 0 to 1"),
+            (2**70, IndexError, "there are 0 to 1"),
+            ("none", KeyError, "no 'none'"),
+            (None, TypeError, "must be a whole number, not None"),
+            (1.0, TypeError, "must be a whole number, not 1.0"),
+        ):
+            with self.assertRaisesRegex(error, said):
                 session.positions(bad)
+        for bad, error in ((-1, ValueError), (2**70, ValueError), (1.5, TypeError)):
+            with self.assertRaisesRegex(error, "^(periods must be|that many periods)"):
+                session.step(bad)
         with self.assertRaises(KeyError):
             session.latest("nothing")
         with self.assertRaises(KeyError):

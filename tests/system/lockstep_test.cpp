@@ -161,7 +161,7 @@ TEST_CASE("lockstep: a recorder that was stopped gets what the others said befor
   bus::BusOptions every_sample = options;
   every_sample.every_sample = true;
   bus::DdsBus bus(every_sample);
-  runtime::Session session(bus, scene::scene_digest(loaded));
+  runtime::Session session(bus, scene::scene_digest(loaded), runtime::Session::Kind::kLockstep);
   runtime::SessionConductor conductor(bus);
   auto scenes = bus.writer(bus::kScene);
   auto statuses = bus.reader(bus::kModuleStatus);

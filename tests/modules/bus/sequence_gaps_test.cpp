@@ -46,6 +46,22 @@ TEST_CASE("sequence gaps: samples from before the first do not count", "[bus]") 
   CHECK(gaps.dropped() == 1);
 }
 
+TEST_CASE("sequence gaps: a number that leaps beyond what can be missed is no loss", "[bus]") {
+  // Oracle: counts by hand. One sample numbered 2^64 - 5 made 18446744073709551609 of them.
+  SequenceGaps gaps;
+  gaps.count(writer(1), 1);
+  gaps.count(writer(1), 4);  // 2, 3
+  gaps.count(writer(1), ~std::uint64_t{0} - 4);
+  CHECK(gaps.dropped() == 2);
+  gaps.count(writer(1), ~std::uint64_t{0} - 2);  // one, and it goes on from there
+  CHECK(gaps.dropped() == 3);
+  gaps.count(writer(1), 5);
+  CHECK(gaps.dropped() == 3);
+  gaps.count(writer(2), 1);
+  gaps.count(writer(2), 1 + SequenceNumbers::kFarthestLeap);  // all but the two
+  CHECK(gaps.dropped() == 3 + SequenceNumbers::kFarthestLeap - 1);
+}
+
 TEST_CASE("sequence gaps: what forgotten writers dropped stays counted", "[bus]") {
   // Oracle: each of 100 writers leaves a gap of one; more than can be known at a time.
   SequenceGaps gaps;

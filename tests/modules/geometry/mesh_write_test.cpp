@@ -62,6 +62,16 @@ TEST_CASE("write: the same surface gives the same bytes, and an old file is repl
   CHECK(text_in(folder / "a.obj") == text_in(folder / "b.obj"));
 }
 
+TEST_CASE("write: an extension in capitals is the same format") {
+  // Oracle: the bytes of the other.
+  const ScratchFolder folder;
+  for (const auto& [small, large] : {std::pair{"a.ply", "a.PLY"}, {"a.stl", "a.Stl"}}) {
+    write_surface(make_ball(1, 1), folder / small);
+    write_surface(make_ball(1, 1), folder / large);
+    CHECK(text_in(folder / small) == text_in(folder / large));
+  }
+}
+
 TEST_CASE("write: an unknown extension is refused with what is allowed") {
   // Oracle: the rules of write_surface.
   const ScratchFolder folder;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "modules/core/error.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/primitives.h"
@@ -49,6 +51,16 @@ TEST_CASE("resample: sharp solids and very few nodes stay closed") {
   const MeshReport few = check_surface(resample_surface(make_ball(0.05, 2), 12));
   CHECK(few.node_count == 12);
   CHECK(few.holds_volume());
+}
+
+TEST_CASE("resample: it tells how far it is") {
+  // Oracle: definition: from above 0 to 1, never back.
+  std::vector<double> parts{0};
+  resample_surface(make_ball(0.05, 2), 100, [&](double part) { parts.push_back(part); });
+  CHECK(parts.size() > 5);
+  CHECK(std::ranges::is_sorted(parts));
+  CHECK(parts[1] > 0);
+  CHECK(parts.back() == 1);
 }
 
 TEST_CASE("resample: the same input gives the same bits") {

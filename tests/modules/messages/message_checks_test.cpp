@@ -68,7 +68,19 @@ void check_corrupted() {
 
 template <class Message>
 void check_header() {
-  CHECK(named<Message>([](Message& m) { m.header.sequence = 0; }) == "sequence_number");
+  const auto sequence = [](std::uint64_t number) {
+    return named<Message>([&](Message& m) { m.header.sequence = number; });
+  };
+  CHECK(sequence(0) == "sequence_number");
+  CHECK(sequence(kMaxCount).empty());
+  CHECK(sequence(kMaxCount + 1) == "sequence_number");
+  CHECK(sequence(~0ull) == "sequence_number");
+  CHECK(named<Message>([](Message& m) { m.header.sim_time_ns = -kMaxTimeNs; }).empty());
+  CHECK(named<Message>([](Message& m) { m.header.sim_time_ns = -kMaxTimeNs - 1; }) ==
+        "sim_time_ns");
+  CHECK(named<Message>([](Message& m) { m.header.source_time_ns = kMaxTimeNs + 1; }) ==
+        "source_time_ns");
+  CHECK(named<Message>([](Message& m) { m.header.session_token = ~0ull; }).empty());
 }
 
 template <class Message, class Place>

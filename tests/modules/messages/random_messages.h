@@ -8,6 +8,7 @@
 
 #include "modules/messages/cdr.h"
 #include "modules/messages/describe.h"
+#include "modules/messages/message_checks.h"
 
 namespace palpate::messages::testing {
 
@@ -72,10 +73,14 @@ class RandomFiller {
   void fill_entry(std::array<std::uint32_t, 3>& entry) {
     for (std::uint32_t& x : entry) fill(x, Rule::kPlain);
   }
-  void fill(std::uint64_t& x, Rule rule) { x = whole(random_, rule == Rule::kFromOne, ~0ull); }
+  void fill(std::uint64_t& x, Rule rule) {
+    x = whole(random_, rule == Rule::kFromOne, rule == Rule::kToken ? ~0ull : kMaxCount);
+  }
   void fill(std::int64_t& x, Rule rule) {
-    x = static_cast<std::int64_t>(
-        random_() >> (rule == Rule::kAtLeastZero || rule == Rule::kSinceSetUp ? 1 : 0));
+    const bool positive = rule == Rule::kAtLeastZero || rule == Rule::kSinceSetUp;
+    const auto most = static_cast<std::uint64_t>(kMaxTimeNs);
+    x = static_cast<std::int64_t>(whole(random_, 0, positive ? most : 2 * most)) -
+        (positive ? 0 : kMaxTimeNs);
   }
   void fill(std::uint32_t& x, Rule rule) {
     x = static_cast<std::uint32_t>(rule == Rule::kForceLimits ? whole(random_, 0, kAllForceLimits)
@@ -276,8 +281,11 @@ class Corrupter {
   }
   void corrupt(const char* name, std::uint64_t& x, Rule rule) {
     if (rule == Rule::kFromOne && here(name)) x = 0;
+    if (rule != Rule::kToken && here(name)) x = kMaxCount + 1;
   }
   void corrupt(const char* name, std::int64_t& x, Rule rule) {
+    if (here(name)) x = kMaxTimeNs + 1;
+    if (here(name)) x = std::numeric_limits<std::int64_t>::min();
     if (rule == Rule::kAtLeastZero && here(name)) x = -1;
     if (rule == Rule::kSinceSetUp && here(name)) x = -2;
   }

@@ -142,7 +142,7 @@ TEST_CASE("diff: a scene of the same content is the same, whatever it and its fi
   const ScratchFolder folder;
   const auto record_scene = [&](const std::string& name, const std::string& digest) {
     const auto file = folder / (name + ".mcap");
-    SampleFile recording(file);
+    SampleFile recording = SampleFile::of_lockstep(file);
     SceneDescription scene;
     scene.header = {1, 0, 1};
     scene.name = name;
@@ -187,7 +187,7 @@ TEST_CASE("diff: a sample of real time is compared with the nearest in simulated
   const std::vector<double> real{0.2, 4.1, 8.3, 16.1, 20.2, 24, 28.1};
   const std::vector<double> grid{0, 4, 8, 12, 16, 20, 24};
   record_at(SampleFile(folder / "a.mcap", {}), real);
-  record_at(SampleFile(folder / "b.mcap"), grid);
+  record_at(SampleFile::of_lockstep(folder / "b.mcap"), grid);
   for (const bool swapped : {false, true}) {
     const auto a = folder / (swapped ? "b.mcap" : "a.mcap");
     const auto b = folder / (swapped ? "a.mcap" : "b.mcap");
@@ -218,8 +218,8 @@ TEST_CASE("diff: of real time, what no two runs agree in is left out, and said")
     recording.close();
   };
   record_at(SampleFile(folder / "a.mcap", {}), 70, 10);
-  record_at(SampleFile(folder / "b.mcap"), 0, 10);
-  record_at(SampleFile(folder / "c.mcap"), 0, 11);
+  record_at(SampleFile::of_lockstep(folder / "b.mcap"), 0, 10);
+  record_at(SampleFile::of_lockstep(folder / "c.mcap"), 0, 11);
   const auto copied = compare({folder / "a.mcap", folder / "b.mcap"});
   CHECK(copied.equal());
   CHECK_FALSE(copied.topics.contains("module_status"));

@@ -104,8 +104,7 @@ TEST_CASE("inspect: says what recording took, and that gaps of a thinned topic a
         "9.0 MB a minute, 2.5 % of a core, 7 samples lost");
   CHECK(cost_text({}, 3'000'000) == "what it took is not known");
   const ScratchFolder folder;
-  SampleFile writer(folder / "a.mcap", {});
-  writer.select(TopicSelection({"node_positions=10"}));
+  SampleFile writer(folder / "a.mcap", {}, Clocks::now(), TopicSelection({"node_positions=10"}));
   for (const std::uint64_t sequence : {1, 2, 3}) {
     const auto time_ns = static_cast<std::int64_t>(sequence * 60 * kMs);
     writer.add(raw_sample(bus::kNodePositions, node_positions(sequence, 1e-3, 0), time_ns));
@@ -145,7 +144,7 @@ TEST_CASE("inspect: what a writer said between two parts of a recording is missi
 TEST_CASE("inspect: of a lockstep recording says that its times are simulated") {
   // Oracle: the text by hand.
   const ScratchFolder folder;
-  SampleFile file(folder / "a.mcap");
+  SampleFile file = SampleFile::of_lockstep(folder / "a.mcap");
   file.add(raw_sample(bus::kNodePositions, node_positions(1, 1e-3, 1), kMs));
   file.close();
   std::ostringstream out;

@@ -1,5 +1,7 @@
 #include "modules/recording/recorder.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -91,6 +93,7 @@ TEST_CASE("recorder: the file says which session it is of and how its clock rela
   CHECK_FALSE(reader.next());
   const McapMap metadata = reader.metadata(kSessionMetadata);
   CHECK(metadata.at("session") == "ward_3");
+  CHECK(metadata.at("topics") == "all");
   CHECK(metadata.at("domain") == "12");
   CHECK(metadata.at("protocol_version") == std::to_string(kProtocolVersion));
   CHECK(std::stoll(metadata.at("start_unix_ns")) >= before);
@@ -135,8 +138,8 @@ TEST_CASE("recorder: the scene is noted once, and again when another is loaded")
   CHECK(file.statistics().message_count == 3);
 }
 
-TEST_CASE("recorder: the scene and the meshes it names lie in the file") {
-  // Oracle: the resolved text, and the mesh's own bytes.
+TEST_CASE("recorder: the scene, and the meshes and motions it names, lie in the file") {
+  // Oracle: the resolved text, and the files' own bytes.
   const ScratchFolder folder;
   const std::filesystem::path file = PALPATE_SOURCE_DIR "/scenes/liver_probe.yaml";
   SceneDescription scene;
@@ -154,17 +157,42 @@ TEST_CASE("recorder: the scene and the meshes it names lie in the file") {
     }
   }
   const auto mesh = bytes_of(PALPATE_SOURCE_DIR "/scenes/meshes/liver.ply");
-  REQUIRE(attached.size() == 2);
+  const auto motion = bytes_of(PALPATE_SOURCE_DIR "/scenes/trajectories/press_slide.csv");
+  REQUIRE(attached.size() == 3);
   CHECK(attached["scene.yaml"] == scene.resolved_text);
   CHECK(attached["liver.ply"] == std::string(mesh.begin(), mesh.end()));
+  CHECK(attached["press_slide.csv"] == std::string(motion.begin(), motion.end()));
+}
+
+TEST_CASE("recorder: a file that cannot be opened is left out, and nothing else") {
+  // Oracle: the file; a limit on open files stands for whatever fails.
+  const ScratchFolder folder;
+  SceneDescription scene;
+  scene.header = {1, 0, 1};
+  scene.digest = "0123456789abcdef";
+  scene.resolved_text = "file: \"" + folder.write("a.ply", "ply\n").string() + "\"\n";
+  SampleFile recording(folder / "a.mcap", {});
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{3, before.rlim_max};
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  CHECK_NOTHROW(recording.add(raw_sample(bus::kScene, scene, 1)));
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  recording.close();
+  McapReader reader(folder / "a.mcap");
+  std::vector<std::string> attached;
+  while (const auto record = reader.next()) {
+    const auto* attachment = std::get_if<McapAttachment>(&*record);
+    if (attachment != nullptr) attached.push_back(attachment->name);
+  }
+  CHECK(attached == std::vector<std::string>{"scene.yaml"});
 }
 
 TEST_CASE("recorder: what was not asked for is left out, what was lost is counted all the same") {
   // Oracle: 250 positions in a second, numbers 51 to 60 missing, at most 20 a second: at 5 times in
   // each of 20 periods; the summary does not take what was left out for missing.
   const ScratchFolder folder;
-  SampleFile file(folder / "a.mcap", {});
-  file.select(TopicSelection({"node_positions=20"}));
+  SampleFile file(folder / "a.mcap", {}, Clocks::now(), TopicSelection({"node_positions=20"}));
   for (std::uint64_t i = 1; i <= 250; ++i) {
     const auto time_ns = static_cast<std::int64_t>(4'000'000 * (i - 1));
     if (i > 50 && i <= 60) continue;

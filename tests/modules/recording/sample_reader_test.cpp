@@ -75,6 +75,42 @@ TEST_CASE("sample reader: goes on in the parts of a recorder that was started ag
   CHECK_FALSE(reader.torn());
 }
 
+TEST_CASE("sample reader: a topic was selected if each part says so") {
+  // Oracle: the selections given; thinned is selected. A recording that does not say has none.
+  const ScratchFolder folder;
+  const auto selected = [&](const std::vector<std::string>& first,
+                            const std::vector<std::string>& second, const std::string& topic) {
+    const auto file = folder / "a.mcap";
+    int part = 0;
+    for (const auto& words : {first, second}) {
+      SampleFile writer(part_of(file, ++part), {}, {0, 100 * part}, TopicSelection(words));
+      writer.add(raw_sample(bus::kProbeState, probe_state(1, 0, 1, {4, 5, 6}), 50));
+      writer.close();
+    }
+    SampleReader reader(file);
+    while (reader.next()) {
+    }
+    CHECK(reader.parts() == 2);
+    return reader.selected(topic);
+  };
+  const std::vector<std::string> states{"probe_state"}, both{"probe_state", "contacts=25"};
+  CHECK(selected({}, {}, "probe_input"));
+  CHECK(selected(both, both, "contacts"));
+  CHECK(selected(both, both, "scene"));
+  CHECK_FALSE(selected(both, both, "probe_input"));
+  CHECK_FALSE(selected(both, states, "contacts"));
+  CHECK_FALSE(selected(states, {}, "contacts"));
+  CHECK_FALSE(selected(both, both, "contact"));
+
+  const auto old = folder / "old.mcap";
+  McapWriter writer(old);
+  writer.add_metadata({kSessionMetadata, {{"session", "bench"}}});
+  writer.close();
+  SampleReader reader(old);
+  CHECK_FALSE(reader.next());
+  CHECK_FALSE(reader.selected("scene"));
+}
+
 TEST_CASE("sample reader: numbers of parts may be missing, and are read in their order") {
   // Oracle: what was written; names that are no part's are passed over.
   const ScratchFolder folder;

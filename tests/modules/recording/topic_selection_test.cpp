@@ -24,6 +24,14 @@ TEST_CASE("topic selection: words choose topics, later ones count, the scene is 
   CHECK(most.rate("node_positions") == 0.5);
 }
 
+TEST_CASE("topic selection: its text makes it again") {
+  // Oracle: by hand.
+  CHECK(TopicSelection().text() == "all");
+  CHECK(TopicSelection(std::vector<std::string>{}).text() == "all");
+  CHECK(TopicSelection({"node_positions=12.5", "contacts"}).text() ==
+        "contacts,node_positions=12.5,scene");
+}
+
 TEST_CASE("topic selection: bad words are refused with what there is") {
   // Oracle: the messages.
   const auto refusal = [](const std::string& word) -> std::string {

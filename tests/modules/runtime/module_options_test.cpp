@@ -81,3 +81,19 @@ TEST_CASE("module options: what is thrown decides the exit code") {
   CHECK(run({"s.yaml"}, [] { throw InputError("s.yaml:3: no"); }).code == kExitBadInput);
   CHECK(run({"s.yaml"}, [] { throw std::runtime_error("disk full"); }).code == kExitFailed);
 }
+
+TEST_CASE("module options: what is of a lockstep alone is refused without one") {
+  // Oracle: the exit codes of core/error.h. It was ignored.
+  const std::vector<std::vector<std::string>> alone{{"--from-snapshot", "x"},
+                                                    {"--snapshot-at", "3", "--snapshot", "x"}};
+  for (const auto& options : alone) {
+    auto words = options;
+    words.insert(words.begin(), "s.yaml");
+    CHECK(run(words).code == kExitBadInput);
+    CHECK_FALSE(run(words).ran);
+    words.insert(words.end(), {"--lockstep", "haptics"});
+    CHECK(run(words).code == kExitDone);
+  }
+  CHECK(run({"s.yaml", "--lockstep", "haptics", "--snapshot-at", "3"}).code == kExitBadInput);
+  CHECK(run({"s.yaml", "--lockstep", "haptics", "--snapshot", "x"}).code == kExitBadInput);
+}

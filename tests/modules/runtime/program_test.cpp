@@ -1,6 +1,7 @@
 #include "modules/runtime/program.h"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <new>
 #include <string>
 #include <vector>
@@ -102,4 +103,28 @@ TEST_CASE("program: the version names the project and the protocol") {
   const std::string text = runtime::version_text();
   CHECK(text.rfind("palpate ", 0) == 0);
   CHECK(text.ends_with(", protocol " + std::to_string(kProtocolVersion)));
+}
+
+TEST_CASE("program: a variable of the environment is blamed for what it says, not its option") {
+  // Oracle: the text. It was "--domain: Value abc not in range 0 to 200".
+  const auto said_of = [](std::vector<std::string> words) {
+    runtime::Program program("Tests.", "palpate-test");
+    std::string said;
+    program.report_to([&](const std::string& what) { said = what; });
+    int domain = 0;
+    program.add("--domain", domain, "Of it").environment("PALPATE_TEST_DOMAIN").range(0, 200);
+    words.insert(words.begin(), "palpate-test");
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    const int code = program.run(int(argv.size()), argv.data(), [] { return 0; });
+    return std::to_string(code) + " " + said;
+  };
+  setenv("PALPATE_TEST_DOMAIN", "abc", 1);
+  CHECK(said_of({}).find("2 PALPATE_TEST_DOMAIN of the environment, for --domain: Value abc") == 0);
+  CHECK(said_of({"--domain", "xyz"}) == "2 ");  // the parser's own words
+  CHECK(said_of({"--domain", "abc"}) == "2 ");
+  CHECK(said_of({"--domain=xyz"}) == "2 ");
+  CHECK(said_of({"--domain", "3"}) == "0 ");
+  unsetenv("PALPATE_TEST_DOMAIN");
+  CHECK(said_of({}) == "0 ");
 }

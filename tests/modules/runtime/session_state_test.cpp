@@ -66,6 +66,41 @@ TEST_CASE("session state: a step in real time goes on for as long as it says, an
   CHECK_FALSE(halted(211));
 }
 
+TEST_CASE("session state: a command that cannot have been given is not believed") {
+  // Oracle: definition. Whoever had the token ended a session by a start in the distant past, as
+  // simulated for a hundred years, and locked it by a command of the future.
+  const auto at = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
+  SessionState state;
+  const SessionControl start = next_command(state, SessionCommand::kStart, at(100));
+  CHECK(state.believes(start, at(100)));
+  CHECK(state.believes(start, at(99.5)));  // clocks of two hosts
+  CHECK_FALSE(state.believes(start, at(98)));
+  state.apply(start);
+  CHECK(state.believes(start, at(150)));  // said again
+  const SessionControl pause = next_command(state, SessionCommand::kPause, at(110));
+  CHECK(state.believes(pause, at(110)));
+  SessionControl later = pause;  // of a session that ran for an hour
+  later.header.sim_time_ns = at(3600);
+  CHECK_FALSE(state.believes(later, at(110)));
+  later.header.sim_time_ns = -1;
+  CHECK_FALSE(state.believes(later, at(110)));
+  state.apply(pause);
+  const SessionControl on = next_command(state, SessionCommand::kStart, at(200));
+  CHECK(state.believes(on, at(200)));
+  SessionControl absurd = on;
+  absurd.start_time_ns = -(std::int64_t{1} << 62);
+  CHECK_FALSE(state.believes(absurd, at(200)));
+  absurd.header.sim_time_ns = absurd.header.source_time_ns - absurd.start_time_ns;
+  CHECK_FALSE(state.believes(absurd, at(200)));
+  CHECK(state.believes(step_command(state, 5, at(200)), at(200)));
+  CHECK(state.believes(next_command(state, SessionCommand::kReset, at(200)), at(200)));
+  // Two of the commands between were never heard, and another launcher begins anew.
+  SessionState another;
+  another.apply(next_command(another, SessionCommand::kStart, at(110)));
+  CHECK(state.believes(next_command(another, SessionCommand::kPause, at(190)), at(190)));
+  CHECK(state.believes(next_command(SessionState{}, SessionCommand::kStart, at(210)), at(210)));
+}
+
 TEST_CASE("session state: a reset is told once, sets time to zero and waits for start") {
   // Oracle: definition.
   SessionState state;

@@ -1,8 +1,13 @@
 #include "modules/runtime/worker_team.h"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -58,6 +63,28 @@ TEST_CASE("worker team: more than one thread takes part where there is enough to
   });
   CHECK(ids[0] != ids[1]);
 }
+
+#ifndef __SANITIZE_ADDRESS__  // which needs more than any limit
+TEST_CASE("worker team: threads that the system does not give are an error, not the end") {
+  // Oracle: a limit on memory, in a process of its own, under which some of 200 stacks of 8 MiB
+  // fit; what is thrown. The first threads ended the program: "terminate called".
+  const pid_t process = ::fork();
+  if (process == 0) {
+    const rlimit most{500'000'000, 500'000'000}, stack{8u << 20, 8u << 20};
+    ::setrlimit(RLIMIT_STACK, &stack);
+    ::setrlimit(RLIMIT_AS, &most);
+    try {
+      const WorkerTeam team(200);
+    } catch (const std::system_error&) {
+      ::_exit(0);
+    }
+    ::_exit(1);
+  }
+  int status = 0;
+  ::waitpid(process, &status, 0);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+}
+#endif
 
 }  // namespace
 }  // namespace palpate::runtime
