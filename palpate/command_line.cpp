@@ -87,7 +87,7 @@ void add_run_options(Options& command, RunOptions& options) {
   command.flag("--overwrite", options.overwrite, "Replace the recording or snapshot of that name");
   command.add("--record-topics", options.record_topics,
               "What it holds: all, TOPIC, or TOPIC=HZ for at most so many a second; else all in "
-              "lockstep, and in real time all,node_positions=25,contact_model=25,contacts=25");
+              "lockstep, and in real time all,node_positions=20,contact_model=10,contacts=20");
   command.add_output("--summary", options.summary, "Text file for the summary of the end");
   const Option lockstep = command.flag(
       "--lockstep", options.lockstep,

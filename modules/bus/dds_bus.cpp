@@ -2,6 +2,7 @@
 
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "modules/bus/clock_exchange.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
+#include "modules/bus/sample_shortcut.h"
 #include "modules/bus/wall_clock_shift.h"
 #include "modules/messages/message_types.h"
 
@@ -22,9 +24,8 @@ namespace dds = eprosima::fastdds::dds;
 using eprosima::fastrtps::Duration_t;
 using eprosima::fastrtps::types::ReturnCode_t;
 
-WriterId writer_of(const dds::SampleInfo& info) {
+WriterId id_of(const eprosima::fastrtps::rtps::GUID_t& guid) {
   WriterId id;
-  const auto& guid = info.sample_identity.writer_guid();
   std::copy_n(guid.guidPrefix.value, 12, id.begin());
   std::copy_n(guid.entityId.value, 4, id.begin() + 12);
   return id;
@@ -61,15 +62,49 @@ class DdsWriter : public RawWriter {
   PayloadType::Sample sample_;
 };
 
+SampleShortcut::EntityId entity_of(const dds::DataReader& reader) {
+  SampleShortcut::EntityId id = 0;
+  for (const std::uint8_t byte : reader.guid().entityId.value) id = id << 8 | byte;
+  return id;
+}
+
+/// Connects an inbox with the writers that its reader matches.
+class InboxMatches : public dds::DataReaderListener {
+ public:
+  InboxMatches(SampleShortcut& shortcut, std::shared_ptr<SampleInbox> inbox)
+      : shortcut_(shortcut), inbox_(std::move(inbox)) {}
+
+  void on_subscription_matched(dds::DataReader* reader,
+                               const dds::SubscriptionMatchedStatus& status) override {
+    const WriterId writer = id_of(eprosima::fastrtps::rtps::iHandle2GUID(
+        eprosima::fastrtps::rtps::InstanceHandle_t(status.last_publication_handle)));
+    const auto own = entity_of(*reader);
+    shortcut_.disconnect(writer, own);
+    if (status.current_count_change > 0) shortcut_.connect(writer, own, inbox_);
+  }
+
+ private:
+  SampleShortcut& shortcut_;
+  std::shared_ptr<SampleInbox> inbox_;
+};
+
 class DdsReader : public RawReader {
  public:
   /// @param clocks  on which what is read is put on this host's; nullptr: it stays as it came
-  DdsReader(Participant& participant, const TopicInfo& topic, Keep keep, HostClocks* clocks)
+  /// @param inbox   where what comes by the shortcut is put; nullptr: nothing does
+  DdsReader(Participant& participant, const TopicInfo& topic, Keep keep, HostClocks* clocks,
+            std::shared_ptr<SampleInbox> inbox = nullptr)
       : participant_(participant),
         topic_(topic),
         clocks_(clocks),
-        reader_(participant.add_reader(topic, keep)) {}
-  ~DdsReader() override { participant_.remove(reader_); }
+        inbox_(std::move(inbox)),
+        matches_(inbox_ ? new InboxMatches(*participant.shortcut(), inbox_) : nullptr),
+        reader_(participant.add_reader(topic, keep, matches_.get())) {}
+  ~DdsReader() override {
+    reader_->set_listener(nullptr);
+    if (matches_) participant_.shortcut()->disconnect(entity_of(*reader_));
+    participant_.remove(reader_);
+  }
 
   bool take(RawSample& sample) override {
     if (clocks_ == nullptr) return take_as_it_came(sample);
@@ -82,6 +117,8 @@ class DdsReader : public RawReader {
     return false;
   }
   bool wait(double timeout) override {
+    if (inbox_ && !inbox_->empty()) return true;
+    if (inbox_) timeout = std::min(timeout, kLookAgain);
     // What waits for a clock wakes nobody: who waits looks again.
     if (!waiting_.empty()) timeout = std::min(timeout, kLookAgain);
     return reader_->wait_for_unread_message(Duration_t(static_cast<long double>(timeout)));
@@ -97,18 +134,29 @@ class DdsReader : public RawReader {
   static constexpr double kLookAgain = 0.01;  ///< [s]
 
   bool take_as_it_came(RawSample& sample) {
+    while (inbox_ && inbox_->take(sample)) {
+      if (participant_.admit(sample.payload)) return true;
+    }
     dds::SampleInfo info;
     sample_.into = &sample.payload;
     const std::int64_t asked = ns_of<std::chrono::steady_clock>();
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;  // a writer has left
       if (!participant_.admit(sample.payload)) continue;
-      sample.writer = writer_of(info);
-      sample.received_time_ns = monotonic(info.reception_timestamp.to_ns());
+      sample.writer = id_of(info.sample_identity.writer_guid());
+      sample.received_time_ns = monotonic(arrival_of(info));
       return true;
     }
-    wall_shift_.nothing_waits(asked);
+    // What is gathered may wait in a socket; there its stamps are seen to.
+    if (participant_.shortcut() == nullptr) wall_shift_.nothing_waits(asked);
     return false;
+  }
+
+  /// By the wall clock [ns].
+  std::int64_t arrival_of(const dds::SampleInfo& info) const {
+    // Gathered packets have it in place of their writer's time (packet_stamp.h), if that is told.
+    const bool stamped = participant_.shortcut() != nullptr && info.source_timestamp.seconds() > 0;
+    return (stamped ? info.source_timestamp : info.reception_timestamp).to_ns();
   }
 
   /// DDS stamps arrivals with the wall clock; everything else here runs on the monotonic one.
@@ -145,6 +193,8 @@ class DdsReader : public RawReader {
   Participant& participant_;
   TopicInfo topic_;
   HostClocks* clocks_;
+  std::shared_ptr<SampleInbox> inbox_;
+  std::unique_ptr<InboxMatches> matches_;
   dds::DataReader* reader_;
   PayloadType::Sample sample_;
   WallClockShift wall_shift_;
@@ -153,8 +203,9 @@ class DdsReader : public RawReader {
 
 }  // namespace
 
-DdsBus::DdsBus(const BusOptions& options)
-    : every_sample_(options.every_sample), participant_(new Participant(options)) {
+DdsBus::DdsBus(const BusOptions& options, Arrivals arrivals)
+    : every_sample_(options.every_sample),
+      participant_(new Participant(options, arrivals == Arrivals::kGathered)) {
   // In lockstep times are simulated ones, the same everywhere.
   if (!participant_->over_hosts() || options.every_sample) return;
   const TopicInfo topic = info_of(kClock);
@@ -172,7 +223,10 @@ std::unique_ptr<RawWriter> DdsBus::raw_writer(const TopicInfo& topic) {
 }
 
 std::unique_ptr<RawReader> DdsBus::raw_reader(const TopicInfo& topic, Keep keep) {
-  auto reader = std::make_unique<DdsReader>(*participant_, topic, keep, clocks_.get());
+  const bool plain =
+      participant_->shortcut() != nullptr && topic.delivery == Delivery::kStream && !every_sample_;
+  auto reader = std::make_unique<DdsReader>(*participant_, topic, keep, clocks_.get(),
+                                            plain ? std::make_shared<SampleInbox>() : nullptr);
   if (!is_bundled(topic)) return reader;
   return std::make_unique<BundledReader>(std::move(reader));
 }

@@ -13,6 +13,15 @@ class ClockExchanger;
 class HostClocks;
 class Participant;
 
+/// How what arrives is read.
+enum class Arrivals {
+  kAtOnce,
+  /// Some later, up to GatheringPause::kLongest (packet_gatherer.h), and with the times of arrival
+  /// all the same: that takes a third of the processor. Of streams every sample is kept for its
+  /// reader (sample_shortcut.h). On one host; over hosts as kAtOnce.
+  kGathered,
+};
+
 /// One DDS participant. Over hosts, times in what is read are on this host's clock: of what others
 /// say, states wait until their clock is known, streams are left out. Its threads inherit the
 /// scheduling of the thread that constructs it: set real-time priority before.
@@ -22,7 +31,7 @@ class DdsBus : public Bus {
   /// digits, '_', '-', '.', or an address in
   /// PALPATE_INTERFACES that this host does not have, or one in PALPATE_PEERS that is none
   /// @throws std::runtime_error if DDS cannot start (domain in use up, no loopback, …)
-  explicit DdsBus(const BusOptions& options);
+  explicit DdsBus(const BusOptions& options, Arrivals arrivals = Arrivals::kAtOnce);
   ~DdsBus() override;
 
   std::unique_ptr<RawWriter> raw_writer(const TopicInfo& topic) override;

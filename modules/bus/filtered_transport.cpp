@@ -8,9 +8,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <system_error>
 #include <vector>
 
 #include "modules/bus/packet_chunks.h"
+#include "modules/bus/packet_gatherer.h"
+#include "modules/bus/packet_stamp.h"
 
 namespace palpate::bus {
 namespace {
@@ -21,16 +29,18 @@ namespace rtps = eprosima::fastrtps::rtps;
 struct Descriptor : transport::ChainingTransportDescriptor {
   Descriptor(std::shared_ptr<transport::TransportDescriptorInterface> under,
              const SampleRules& sample_rules, std::shared_ptr<PacketTally> packets,
-             Addresses of_this_host)
+             Addresses of_this_host, Gathering gathered)
       : ChainingTransportDescriptor(std::move(under)),
         rules(sample_rules),
         tally(std::move(packets)),
-        addresses(std::move(of_this_host)) {}
+        addresses(std::move(of_this_host)),
+        gathering(std::move(gathered)) {}
   transport::TransportInterface* create_transport() const override;
 
   SampleRules rules;
   std::shared_ptr<PacketTally> tally;
   Addresses addresses;
+  Gathering gathering;
 };
 
 class FilteredTransport : public transport::ChainingTransport {
@@ -58,28 +68,81 @@ class FilteredTransport : public transport::ChainingTransport {
     return sent;
   }
 
+  // A gathered channel is not that of the transport below, but in its place.
+
+  bool IsInputChannelOpen(const rtps::Locator_t& at) const override {
+    if (!is_gathered(at)) return ChainingTransport::IsInputChannelOpen(at);
+    const std::lock_guard lock(channels_mutex_);
+    return channels_.contains(rtps::IPLocator::getPhysicalPort(at));
+  }
+  bool OpenInputChannel(const rtps::Locator_t& at, transport::TransportReceiverInterface* next,
+                        std::uint32_t most_bytes) override {
+    if (!is_gathered(at)) return ChainingTransport::OpenInputChannel(at, next, most_bytes);
+    return is_locator_allowed(at) && open(at, next);
+  }
+  bool CloseInputChannel(const rtps::Locator_t& at) override {
+    if (!is_gathered(at)) return ChainingTransport::CloseInputChannel(at);
+    decltype(channels_)::node_type closed;  // ends its thread, which may be waiting for the lock
+    const std::lock_guard lock(channels_mutex_);
+    closed = channels_.extract(rtps::IPLocator::getPhysicalPort(at));
+    return !closed.empty();
+  }
+
   void receive(transport::TransportReceiverInterface* next, const rtps::octet* packet,
                std::uint32_t bytes, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     std::vector<std::uint8_t> whole;  // takes memory only where it came in chunks
-    if (is_chunk({packet, bytes})) {
-      if (!chunks_.add({packet, bytes}, sender_of(remote), whole)) return;
-      packet = whole.data();
-      bytes = static_cast<std::uint32_t>(whole.size());
+    if (!is_chunk({packet, bytes})) {
+      hear(next, {packet, bytes}, local, remote);
+    } else if (chunks_.add({packet, bytes}, sender_of(remote), whole)) {
+      hear(next, whole, local, remote);
     }
+  }
+
+ private:
+  bool is_gathered(const rtps::Locator_t& at) const {
+    const int beyond = rtps::IPLocator::getPhysicalPort(at) - descriptor_.gathering.port;
+    return descriptor_.gathering.shortcut != nullptr && beyond >= 0 && beyond % 2 == 0;
+  }
+
+  /// @param arrived_ns  of a gathered packet, by the monotonic clock
+  void hear(transport::TransportReceiverInterface* next, std::span<const std::uint8_t> packet,
+            const rtps::Locator_t& local, const rtps::Locator_t& remote,
+            std::optional<std::int64_t> arrived_ns = {}) {
     std::vector<std::uint8_t>
         kept;  // takes memory only where a packet loses something in its middle
-    FilteredPacket filtered = filter_packet({packet, bytes}, descriptor_.rules, kept);
+    FilteredPacket filtered = filter_packet(packet, descriptor_.rules, kept);
     if (!filtered.packet.empty() && !known_sender(filtered.packet, remote)) {
       filtered = {{}, PacketFault::kIdentity};
     }
     if (filtered.fault != PacketFault::kNone) descriptor_.tally->refuse(filtered.fault);
     if (filtered.packet.empty()) return;
+    if (arrived_ns && descriptor_.gathering.shortcut->take(filtered.packet, *arrived_ns)) return;
     next->OnDataReceived(filtered.packet.data(), static_cast<std::uint32_t>(filtered.packet.size()),
                          local, remote);
   }
 
- private:
+  bool open(const rtps::Locator_t& at, transport::TransportReceiverInterface* next) {
+    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(at);
+    const auto take = [this, next, at](const ArrivedPacket& packet) {
+      rtps::Locator_t from;
+      from.kind = LOCATOR_KIND_UDPv4;
+      rtps::IPLocator::setIPv4(from, reinterpret_cast<const rtps::octet*>(&packet.sender.address));
+      rtps::IPLocator::setPhysicalPort(from, packet.sender.port);
+      stamp_arrival(packet.bytes, packet.by_wall_ns);
+      hear(next, packet.bytes, at, from, packet.arrived_ns);
+    };
+    const std::lock_guard lock(channels_mutex_);
+    if (channels_.contains(port)) return false;
+    try {
+      channels_.emplace(port, std::make_unique<PacketGatherer>(descriptor_.addresses.own, port,
+                                                               kSocketBufferBytes, take));
+      return true;
+    } catch (const std::system_error&) {  // taken: the library asks for another one
+      return false;
+    }
+  }
+
   static PacketSender sender_of(const rtps::Locator_t& remote) {
     PacketSender sender;
     std::memcpy(&sender.address, rtps::IPLocator::getIPv4(remote), sizeof sender.address);
@@ -115,6 +178,8 @@ class FilteredTransport : public transport::ChainingTransport {
   Descriptor descriptor_;
   std::atomic<std::uint32_t> chunked_{0};  ///< packets
   ChunkAssembler chunks_;
+  mutable std::mutex channels_mutex_;
+  std::map<std::uint16_t, std::unique_ptr<PacketGatherer>> channels_;  ///< by port
 };
 
 transport::TransportInterface* Descriptor::create_transport() const {
@@ -125,8 +190,9 @@ transport::TransportInterface* Descriptor::create_transport() const {
 
 std::shared_ptr<transport::TransportDescriptorInterface> filtered(
     std::shared_ptr<transport::TransportDescriptorInterface> under, const SampleRules& rules,
-    std::shared_ptr<PacketTally> tally, const Addresses& addresses) {
-  return std::make_shared<Descriptor>(std::move(under), rules, std::move(tally), addresses);
+    std::shared_ptr<PacketTally> tally, const Addresses& addresses, Gathering gathering) {
+  return std::make_shared<Descriptor>(std::move(under), rules, std::move(tally), addresses,
+                                      std::move(gathering));
 }
 
 }  // namespace palpate::bus

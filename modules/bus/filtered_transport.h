@@ -8,12 +8,16 @@
 #include "modules/bus/addresses.h"
 #include "modules/bus/packet_filter.h"
 #include "modules/bus/packet_senders.h"
+#include "modules/bus/sample_shortcut.h"
 
 namespace eprosima::fastdds::rtps {
 struct TransportDescriptorInterface;
 }
 
 namespace palpate::bus {
+
+/// Asked for of the system; a message of 19 000 nodes is 234 KB.
+inline constexpr std::uint32_t kSocketBufferBytes = 4u << 20;
 
 /// What a participant's filter did, and whom it heard. Written by its receiving threads, and by who
 /// takes samples.
@@ -28,11 +32,20 @@ struct PacketTally {
   }
 };
 
+/// Samples are read many at a time (packet_gatherer.h); they bear the time of their arrival
+/// (packet_stamp.h).
+struct Gathering {
+  int port = 0;  ///< the first one for samples; of a domain's others every second
+  std::shared_ptr<SampleShortcut> shortcut;  ///< none: nothing is gathered
+};
+
 /// Describes a filter over the transport that `under` describes. What goes to other hosts, or comes
 /// from there, and is larger than a packet of theirs, travels in chunks (packet_chunks.h).
 /// @param rules  for what may pass
+/// @param gathering  of a process of one host that needs every sample, and none at once
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> filtered(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> under,
-    const SampleRules& rules, std::shared_ptr<PacketTally> tally, const Addresses& addresses);
+    const SampleRules& rules, std::shared_ptr<PacketTally> tally, const Addresses& addresses,
+    Gathering gathering = {});
 
 }  // namespace palpate::bus

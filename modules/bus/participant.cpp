@@ -29,6 +29,7 @@
 #include "modules/bus/payload_type.h"
 #include "modules/bus/qos.h"
 #include "modules/bus/roles.h"
+#include "modules/bus/sample_shortcut.h"
 #include "modules/bus/session_token.h"
 #include "modules/core/error.h"
 
@@ -91,11 +92,13 @@ Entity* demand_created(Entity* entity, const std::string& what) {
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options) : every_sample_(options.every_sample) {
+Participant::Participant(const BusOptions& options, bool gather)
+    : every_sample_(options.every_sample) {
   check_session(options.domain, options.session);
   tell_plainly();
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
   addresses_ = addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS"));
+  if (gather && !addresses_.over_hosts()) shortcut_ = std::make_shared<SampleShortcut>();
   dds::DomainParticipantQos qos;
   if (const char* const folder = std::getenv("PALPATE_KEYS"); folder != nullptr) {
     const char* const role = std::getenv("PALPATE_ROLE");
@@ -103,7 +106,7 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
     if (const Role* known = find_role(role_)) role_ = known->name;
     apply_keys(folder, role_, qos);
   }
-  packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos);
+  packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos, shortcut_);
   qos.name(options.participant_name);
   participant_ = made_participant(options.domain, qos);
   if (participant_ == nullptr && !role_.empty()) {
@@ -113,6 +116,11 @@ Participant::Participant(const BusOptions& options) : every_sample_(options.ever
   if (participant_ == nullptr) {
     throw std::runtime_error("DDS cannot start in domain " + std::to_string(options.domain) +
                              ": is the loopback interface up?");
+  }
+  if (shortcut_ != nullptr) {
+    GuidPrefix own;
+    std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
+    shortcut_->set_participant(own);
   }
   try {
     check_files_left();
@@ -186,10 +194,14 @@ dds::DataWriter* Participant::add_writer(const TopicInfo& info) {
   return demand_created(publisher_->create_datawriter(topic(info), qos), what("writer", info));
 }
 
-dds::DataReader* Participant::add_reader(const TopicInfo& info, Keep keep) {
+dds::DataReader* Participant::add_reader(const TopicInfo& info, Keep keep,
+                                         dds::DataReaderListener* listener) {
   dds::DataReaderQos qos;
   apply_profile({info.delivery, keep, every_sample_, over_hosts()}, qos);
-  return demand_created(subscriber_->create_datareader(topic(info), qos), what("reader", info));
+  const auto told =
+      listener == nullptr ? dds::StatusMask::all() : dds::StatusMask::subscription_matched();
+  auto* const created = subscriber_->create_datareader(topic(info), qos, listener, told);
+  return demand_created(created, what("reader", info));
 }
 
 void Participant::remove(dds::DataWriter* writer) { publisher_->delete_datawriter(writer); }

@@ -13,6 +13,7 @@
 
 namespace eprosima::fastdds::dds {
 class DataReader;
+class DataReaderListener;
 class DataWriter;
 class DomainParticipant;
 class Publisher;
@@ -23,22 +24,27 @@ class Topic;
 namespace palpate::bus {
 
 struct PacketTally;
+class SampleShortcut;
 
 /// A participant with one publisher and one subscriber in the session's partition.
 class Participant {
  public:
+  /// @param gather  packets are read many at a time (packet_gatherer.h), on one host
   /// With PALPATE_KEYS in the environment it plays the role of its name, or PALPATE_ROLE (keys.h).
   /// @throws InputError if the session name, the domain or an address (addresses.h) is not
   /// acceptable
   /// @throws std::runtime_error if DDS cannot start
-  explicit Participant(const BusOptions& options);
+  explicit Participant(const BusOptions& options, bool gather = false);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
   // Endpoints are given back with remove() before the participant ends.
   eprosima::fastdds::dds::DataWriter* add_writer(const TopicInfo& topic);
-  eprosima::fastdds::dds::DataReader* add_reader(const TopicInfo& topic, Keep keep);
+  /// @param listener  told of the writers it matches
+  eprosima::fastdds::dds::DataReader* add_reader(
+      const TopicInfo& topic, Keep keep,
+      eprosima::fastdds::dds::DataReaderListener* listener = nullptr);
   void remove(eprosima::fastdds::dds::DataWriter* writer);
   void remove(eprosima::fastdds::dds::DataReader* reader);
 
@@ -48,6 +54,9 @@ class Participant {
   bool admit(std::span<std::uint8_t> payload);
 
   bool over_hosts() const { return addresses_.over_hosts(); }
+  /// Where packets are gathered; nullptr where not. What arrives has the time of its arrival as
+  /// source timestamp then.
+  SampleShortcut* shortcut() const { return shortcut_.get(); }
   /// Where a participant that was heard speaks from, as "10.0.0.6"; empty for this host.
   std::string host_of(const GuidPrefix& participant) const;
 
@@ -60,6 +69,7 @@ class Participant {
   std::uint64_t token_ = 0;
   std::string role_;  ///< empty: without keys
   Addresses addresses_;
+  std::shared_ptr<SampleShortcut> shortcut_;
   std::shared_ptr<PacketTally> packets_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;

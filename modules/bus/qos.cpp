@@ -18,8 +18,7 @@ namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 using eprosima::fastrtps::Duration_t;
 
-constexpr std::uint32_t kSocketBufferBytes = 4u << 20;  // a 19 000 node message is 234 KB
-constexpr std::uint32_t kMaxDatagramBytes = 65'500;     // larger samples travel in fragments
+constexpr std::uint32_t kMaxDatagramBytes = 65'500;  // larger samples travel in fragments
 constexpr std::uint32_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr int kUnlimited = -1;
 // Participants of a domain on a host: each has the first free ones of so many pairs of ports, for
@@ -74,7 +73,8 @@ rtps::Locator_t locator(const std::string& address, int port) {
 // Each takes the first free ports of its own addresses, whatever its number in its process, and is
 // sought at all that it may have taken. What is sent to a multicast group instead comes in from
 // every network on which any program of this host has joined it.
-void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolConfigQos& wire) {
+void apply_discovery(const Addresses& addresses, int domain, bool hears_only,
+                     dds::WireProtocolConfigQos& wire) {
   constexpr int kAnyPort = 0;
   const int first = kPortBase + kPortsPerDomain * domain;
   for (const std::string& own : addresses.own) {
@@ -90,7 +90,8 @@ void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolCo
   auto& discovery = wire.builtin.discovery_config;
   discovery.initial_announcements.count = 20;
   discovery.initial_announcements.period = milliseconds(50);
-  discovery.leaseDuration_announcementperiod = milliseconds(250);
+  // Each is a hundred packets. Newcomers are answered, and heard by those that they ask.
+  discovery.leaseDuration_announcementperiod = milliseconds(hears_only ? 950 : 250);
   // Every remote participant is checked once per lease. A check that meets one just leaving aborts
   // the process (2.9.1: assertion in PDP::check_remote_participant_liveliness; leases of 3 ms show
   // it in seconds): so not while a session lasts. Nobody waits for the lease: a silent process is
@@ -102,7 +103,8 @@ void apply_discovery(const Addresses& addresses, int domain, dds::WireProtocolCo
 
 std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
                                              const SampleRules& rules,
-                                             dds::DomainParticipantQos& qos) {
+                                             dds::DomainParticipantQos& qos,
+                                             std::shared_ptr<SampleShortcut> shortcut) {
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses.own;
   udp->sendBufferSize = kSocketBufferBytes;
@@ -111,8 +113,11 @@ std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int dom
   udp->maxInitialPeersRange = kMaxParticipants;
   auto tally = std::make_shared<PacketTally>();
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(filtered(udp, rules, tally, addresses));
-  apply_discovery(addresses, domain, qos.wire_protocol());
+  const bool gathers = shortcut != nullptr;
+  const int samples_port = kPortBase + kPortsPerDomain * domain + kUserPort;
+  qos.transport().user_transports.push_back(
+      filtered(udp, rules, tally, addresses, {samples_port, std::move(shortcut)}));
+  apply_discovery(addresses, domain, gathers, qos.wire_protocol());
   qos.allocation().participants = {0, PacketSenders::kMaxParticipants, 1};
   return tally;
 }

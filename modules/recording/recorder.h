@@ -106,7 +106,8 @@ class Recorder {
   Recorder(bus::Bus& bus, const bus::BusOptions& session, const std::filesystem::path& file,
            const TopicSelection& topics = {});
 
-  /// Takes all that has arrived. Call at least every 50 ms, or fast topics lose samples.
+  /// Takes all that has arrived. Call at least every 50 ms, or fast topics lose samples on a bus
+  /// that does not gather them (bus::Arrivals).
   /// @return what is to be said of the disk's space, mostly nothing
   /// @throws std::runtime_error naming the file and the system's reason (disk full, …)
   std::string poll();

@@ -40,7 +40,7 @@ class TopicSelection {
 
 /// What a session in real time leaves: what is felt in full, what is seen as often as a picture. A
 /// recording in lockstep holds everything.
-inline const std::vector<std::string> kRealTimeTopics{"all", "node_positions=25",
-                                                      "contact_model=25", "contacts=25"};
+inline const std::vector<std::string> kRealTimeTopics{"all", "node_positions=20",
+                                                      "contact_model=10", "contacts=20"};
 
 }  // namespace palpate::recording

@@ -8,6 +8,8 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <fstream>
+#include <string>
+#include <string_view>
 #include <thread>
 
 #include "modules/core/error.h"
@@ -53,6 +55,19 @@ class RecorderProcess {
       kill(id_, SIGKILL);
       waitpid(id_, &status_, 0);
     }
+  }
+  /// How often a thread of it has waited for something, so far.
+  long waits() const {
+    long sum = 0;
+    for (const auto& thread :
+         std::filesystem::directory_iterator("/proc/" + std::to_string(id_) + "/task")) {
+      std::ifstream status(thread.path() / "status");
+      for (std::string line; std::getline(status, line);) {
+        constexpr std::string_view kCount = "voluntary_ctxt_switches:";
+        if (line.starts_with(kCount)) sum += std::stol(line.substr(kCount.size()));
+      }
+    }
+    return sum;
   }
   void send(int signal) const { kill(id_, signal); }
   bool ended() { return ended_ = ended_ || waitpid(id_, &status_, WNOHANG) == id_; }
@@ -114,6 +129,32 @@ TEST_CASE("recorder program: on SIGTERM, Ctrl-C and SIGHUP it ends the file and 
   CHECK_FALSE(reading.torn);
   CHECK(reading.samples > 0);
   CHECK(reading.samples <= static_cast<std::size_t>(written));
+}
+
+TEST_CASE("recorder program: samples do not wake it one by one") {
+  // Oracle: the kernel's count. At most so many rounds a second, by their periods: 50 of gathering,
+  // 25 of taking, 20 of writing, and discovery's; with a thread woken by each sample there were
+  // 1200 here.
+  constexpr double kMostRounds = 50 + 25 + 20 + 105;  // [1/s]
+  constexpr int kCount = 3000;
+  const ScratchFolder folder;
+  const auto options = own_options();
+  bus::DdsBus bus(options);
+  auto writer = bus.writer(bus::kHapticForce);
+  RecorderProcess recorder(folder / "a.mcap", options);
+  REQUIRE(wait_until([&] { return writer.matched_readers() == 1; }));
+  const auto began = std::chrono::steady_clock::now();
+  const long before = recorder.waits();
+  for (int k = 0; k < kCount; ++k) {
+    HapticForce force;
+    REQUIRE(writer.write(force));
+    usleep(900);
+  }
+  const std::chrono::duration<double> lasted = std::chrono::steady_clock::now() - began;
+  CHECK(double(recorder.waits() - before) / lasted.count() < kMostRounds);
+  recorder.send(SIGTERM);
+  REQUIRE(wait_until([&] { return recorder.ended(); }));
+  CHECK(read(folder / "a.mcap").samples > kCount * 9 / 10);
 }
 
 TEST_CASE("recorder program: killed hard, what it had written can be read") {
