@@ -19,6 +19,7 @@
 #include "modules/bus/packet_chunks.h"
 #include "modules/bus/packet_gatherer.h"
 #include "modules/bus/packet_stamp.h"
+#include "modules/bus/rtps_words.h"
 
 namespace palpate::bus {
 namespace {
@@ -167,7 +168,6 @@ class FilteredTransport : public transport::ChainingTransport {
   }
 
   bool known_sender(std::span<const std::uint8_t> packet, const rtps::Locator_t& remote) {
-    constexpr std::size_t kPrefixAt = 8;  // in an RTPS header
     GuidPrefix prefix;
     std::copy_n(packet.begin() + kPrefixAt, prefix.size(), prefix.begin());
     const auto now = std::chrono::steady_clock::now().time_since_epoch();

@@ -7,6 +7,7 @@
 
 #include "modules/bus/authentication_words.h"
 #include "modules/bus/byte_cursor.h"
+#include "modules/bus/rtps_words.h"
 #include "modules/bus/secured_words.h"
 #include "modules/messages/message_types.h"
 
@@ -15,41 +16,18 @@ namespace {
 
 using Octets = std::span<const std::uint8_t>;
 
-constexpr std::size_t kRtpsHeaderBytes = 20, kSubmessageHeaderBytes = 4;
-constexpr std::size_t kPrefixAt = 8, kGuidPrefixBytes = 12;
+constexpr std::size_t kGuidPrefixBytes = 12;
 constexpr std::array<std::uint8_t, 5> kRtpsMagic{'R', 'T', 'P', 'S', 2};
 constexpr std::uint8_t kFirstVendorKind = 0x80;
 constexpr std::uint32_t kMaxSetBits = 256;  // of sequence and fragment numbers, by the standard
 constexpr std::size_t kLocatorBytes = 24;
-
-enum Kind : std::uint8_t {
-  kPad = 0x01,
-  kAckNack = 0x06,
-  kHeartbeat = 0x07,
-  kGap = 0x08,
-  kInfoTimestamp = 0x09,
-  kInfoReplyIp4 = 0x0d,
-  kInfoDestination = 0x0e,
-  kInfoReply = 0x0f,
-  kNackFrag = 0x12,
-  kHeartbeatFrag = 0x13,
-  kData = 0x15,
-  kDataFrag = 0x16,
-};
-
-enum Flag : std::uint8_t {
-  kLittleEndian = 1,
-  kSecond = 2,  // inline QoS in data; no time in INFO_TS; a second locator in replies
-  kPayload = 4,
-  kKey = 8,
-};
 
 struct Submessage {
   std::uint8_t kind = 0, flags = 0;
   Octets content;
   Octets owner;  ///< prefix of the packet's participant
   const SampleRules& rules;
-  bool has(Flag flag) const { return (flags & flag) != 0; }
+  bool has(SubmessageFlag flag) const { return (flags & flag) != 0; }
   Cursor cursor() const { return {content, has(kLittleEndian)}; }
 };
 
@@ -110,9 +88,9 @@ bool carries_parameters(std::uint32_t writer) {
 }
 
 PacketFault check_payload(const Submessage& message, std::uint32_t writer, Octets payload) {
-  if (!message.has(kPayload) && !message.has(kKey)) return PacketFault::kNone;
+  if (!message.has(kPayloadFlag) && !message.has(kKeyFlag)) return PacketFault::kNone;
   if (payload.size() < 4) return PacketFault::kLength;  // encapsulation
-  if (!built_in(writer) && message.has(kPayload) &&
+  if (!built_in(writer) && message.has(kPayloadFlag) &&
       messages::token_of(payload) != message.rules.token) {
     return PacketFault::kToken;
   }
@@ -140,7 +118,7 @@ PacketFault check_data(const Submessage& message) {
   cursor.skip(to_qos - kToInlineQos);
   if (cursor.missing()) return PacketFault::kLength;
   if (sequence <= 0) return PacketFault::kSequence;
-  if (message.has(kSecond)) {
+  if (message.has(kSecondFlag)) {
     const PacketFault fault = check_parameters(cursor, built_in(writer) ? message.owner : Owner());
     if (fault != PacketFault::kNone) return fault;
   }
@@ -162,7 +140,7 @@ PacketFault check_data_frag(const Submessage& message) {
   if (cursor.missing()) return PacketFault::kLength;
   if (sequence <= 0) return PacketFault::kSequence;
   if (built_in(writer)) return PacketFault::kFragment;  // theirs are small
-  if (message.has(kSecond)) {
+  if (message.has(kSecondFlag)) {
     const PacketFault fault = check_parameters(cursor, Owner());
     if (fault != PacketFault::kNone) return fault;
   }
@@ -219,7 +197,7 @@ PacketFault check_fragment_words(const Submessage& message) {
 
 PacketFault check_reply(const Submessage& message) {
   Cursor cursor = message.cursor();
-  for (int list = 0; list < (message.has(kSecond) ? 2 : 1); ++list) {
+  for (int list = 0; list < (message.has(kSecondFlag) ? 2 : 1); ++list) {
     const std::uint32_t locators = cursor.four();
     if (locators > cursor.left().size() / kLocatorBytes) return PacketFault::kLength;
     cursor.skip(locators * kLocatorBytes);
@@ -255,9 +233,9 @@ PacketFault check(const Submessage& message) {
     case kGap:
       return check_gap(message);
     case kInfoTimestamp:
-      return at_least(message, message.has(kSecond) ? 0 : 8);
+      return at_least(message, message.has(kSecondFlag) ? 0 : 8);
     case kInfoReplyIp4:
-      return at_least(message, message.has(kSecond) ? 16 : 8);
+      return at_least(message, message.has(kSecondFlag) ? 16 : 8);
     case kInfoDestination:
       return at_least(message, 12);
     case kInfoReply:
@@ -277,18 +255,7 @@ PacketFault check(const Submessage& message) {
 
 // No sample: that a key of a topic is not written any more.
 bool ends_key(const Submessage& message) {
-  return message.kind == kData && !message.has(kPayload) && is_of_topic(message);
-}
-
-// The bytes that a sub-message with this header takes; none if it ends beyond the packet.
-std::optional<std::size_t> size_of(Octets rest) {
-  if (rest.size() < kSubmessageHeaderBytes) return {};
-  const bool little = (rest[1] & kLittleEndian) != 0;
-  const std::size_t length = Cursor(rest.subspan(2, 2), little).two();
-  const bool to_the_end = length == 0 && rest[0] != kPad && rest[0] != kInfoTimestamp;
-  const std::size_t size = to_the_end ? rest.size() : kSubmessageHeaderBytes + length;
-  if (size > rest.size()) return {};
-  return size;
+  return message.kind == kData && !message.has(kPayloadFlag) && is_of_topic(message);
 }
 
 bool is_rtps(Octets packet) {
@@ -322,7 +289,7 @@ FilteredPacket filter_packet(Octets packet, const SampleRules& rules,
   SecuredWords secured;
   std::size_t sound = kRtpsHeaderBytes;  // bytes from the beginning that lost nothing
   for (Octets rest = packet.subspan(kRtpsHeaderBytes); !rest.empty();) {
-    const std::optional<std::size_t> size = size_of(rest);
+    const std::optional<std::size_t> size = submessage_size(rest);
     if (!size) return {{}, PacketFault::kLength};
     const bool vendor = rest[0] >= kFirstVendorKind;
     const Submessage message{rest[0], rest[1],

@@ -5,14 +5,13 @@
 #include <utility>
 
 #include "modules/bus/byte_cursor.h"
+#include "modules/bus/rtps_words.h"
 
 namespace palpate::bus {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 20, kWordHeaderBytes = 4, kPrefixFrom = 8;
-constexpr std::uint8_t kInfoTime = 0x09, kInfoReader = 0x0e, kPlainData = 0x15;
-constexpr std::uint8_t kLittle = 1, kWithPayload = 4;
-constexpr std::size_t kToPayload = 16;  // from behind the word that says so
+constexpr std::size_t kToPayload = 16;  // from behind the number that says so
+constexpr std::size_t kEncapsulationBytes = 4;
 
 struct PlainSample {
   std::span<const std::uint8_t> participant;  ///< to whom; empty: to all
@@ -25,8 +24,8 @@ struct PlainSample {
 /// Of a DATA sub-message with a payload and nothing beside it.
 std::optional<PlainSample> sample_in(std::span<const std::uint8_t> content, std::uint8_t flags,
                                      std::span<const std::uint8_t> prefix) {
-  if ((flags & ~kLittle) != kWithPayload) return {};
-  Cursor cursor(content, (flags & kLittle) != 0);
+  if ((flags & ~kLittleEndian) != kPayloadFlag) return {};
+  Cursor cursor(content, (flags & kLittleEndian) != 0);
   cursor.skip(2);  // extra flags
   if (cursor.two() != kToPayload) return {};
   PlainSample sample;
@@ -42,24 +41,23 @@ std::optional<PlainSample> sample_in(std::span<const std::uint8_t> content, std:
 
 /// If it is all there is in the packet.
 std::optional<PlainSample> only_sample(std::span<const std::uint8_t> packet) {
-  const auto prefix = packet.subspan(kPrefixFrom, GuidPrefix().size());
+  const auto prefix = packet.subspan(kPrefixAt, GuidPrefix().size());
   std::span<const std::uint8_t> participant;
-  for (auto rest = packet.subspan(kHeaderBytes); rest.size() >= kWordHeaderBytes;) {
-    const std::uint8_t kind = rest[0], flags = rest[1];
-    const std::size_t told = Cursor(rest.subspan(2, 2), (flags & kLittle) != 0).two();
-    rest = rest.subspan(kWordHeaderBytes);
-    const std::size_t size = told == 0 && kind == kPlainData ? rest.size() : told;
-    if (size > rest.size()) return {};
-    const auto content = rest.first(size);
-    rest = rest.subspan(size);
-    if (kind == kPlainData && rest.empty() && size > kToPayload + kWordHeaderBytes) {
+  for (auto rest = packet.subspan(kRtpsHeaderBytes); !rest.empty();) {
+    const std::uint8_t kind = rest[0];
+    const auto size = submessage_size(rest);
+    if (!size) return {};
+    const auto content = rest.subspan(kSubmessageHeaderBytes, *size - kSubmessageHeaderBytes);
+    const std::uint8_t flags = rest[1];
+    rest = rest.subspan(*size);
+    if (kind == kData && rest.empty() && content.size() > kToPayload + kEncapsulationBytes) {
       auto sample = sample_in(content, flags, prefix);
       if (sample) sample->participant = participant;
       return sample;
     }
-    if (kind == kInfoReader && size >= prefix.size()) {
+    if (kind == kInfoDestination && content.size() >= prefix.size()) {
       participant = content.first(prefix.size());
-    } else if (kind != kInfoTime) {
+    } else if (kind != kInfoTimestamp) {
       return {};
     }
   }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "modules/bus/rtps_words.h"
 #include "tests/modules/bus/rtps_packets.h"
 
 namespace palpate::bus {
