@@ -64,7 +64,7 @@ class LoopbackSocket {
 
 std::uint16_t free_port() { return LoopbackSocket().port(); }
 
-struct Heard {
+struct GatheredPacket {
   std::uint32_t number = 0;
   std::size_t bytes = 0;
   std::uint16_t from = 0;
@@ -76,19 +76,19 @@ class Ear {
  public:
   explicit Ear(std::uint16_t port)
       : gatherer_({"127.0.0.1"}, port, kRoom, [this](const ArrivedPacket& packet) {
-          Heard heard{0, packet.bytes.size(), packet.sender.port, packet.arrived_ns};
+          GatheredPacket heard{0, packet.bytes.size(), packet.sender.port, packet.arrived_ns};
           std::memcpy(&heard.number, packet.bytes.data(), sizeof heard.number);
           const std::lock_guard lock(mutex_);
           heard_.push_back(heard);
         }) {}
-  std::vector<Heard> heard() const {
+  std::vector<GatheredPacket> heard() const {
     const std::lock_guard lock(mutex_);
     return heard_;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::vector<Heard> heard_;
+  std::vector<GatheredPacket> heard_;
   PacketGatherer gatherer_;
 };
 
@@ -111,7 +111,7 @@ TEST_CASE("gatherer: every packet comes once, whole, in order, with its sender a
     usleep(500);
   }
   REQUIRE(wait_until([&] { return ear.heard().size() >= kCount; }));
-  const std::vector<Heard> heard = ear.heard();
+  const std::vector<GatheredPacket> heard = ear.heard();
   REQUIRE(heard.size() == kCount);
   std::uint32_t stamped = 0;
   for (std::uint32_t k = 0; k < kCount; ++k) {

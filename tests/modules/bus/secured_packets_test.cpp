@@ -8,6 +8,7 @@
 
 #include "modules/bus/keys.h"
 #include "modules/bus/roles.h"
+#include "modules/bus/rtps_words.h"
 #include "tests/modules/bus/keyed_process.h"
 #include "tests/modules/bus/wiretap.h"
 #include "tests/modules/messages/random_messages.h"
@@ -36,7 +37,7 @@ std::string role_that_writes(std::string_view topic) {
 /// Not the announcements of participants, which are many: who proves what to whom, and what is
 /// encrypted.
 bool worth_forging(const OverheardPacket& packet) {
-  constexpr std::uint8_t kEncrypted = 0x31, kData = 0x15;
+  constexpr std::uint8_t kEncrypted = 0x31;
   constexpr std::uint32_t kAuthentication = 0x0002'01c3;
   const auto& bytes = packet.bytes;
   for (std::size_t at = 20; at + 4 <= bytes.size();) {
