@@ -155,7 +155,7 @@ def run(scene, tool, speed, rate, folder):
     header = "t,x,y,z,qx,qy,qz,qw"
     shape, ply = TOOLS[tool][0], Path(folder) / "tool.ply"
     if shape is None:
-        palpate.mesh.write(ply, *pebble())
+        palpate.mesh.write(ply, *pebble(), overwrite=True)
         shape = {"mesh": {"file": str(ply)}}
     np.savetxt(table, rows, delimiter=",", header=header, comments="", fmt="%.9g")
     loaded["probes"] = [{"name": "tool", "shape": shape, "device": {"trajectory": {"file": str(table)}}}]
