@@ -113,7 +113,7 @@ TEST_CASE("command line: a summary whose folder vanishes meanwhile is a failure,
   std::filesystem::create_directory(folder);
   launcher::ChildProcess run(
       std::filesystem::path(PALPATE_BIN_DIR) / "palpate",
-      {"run", scene.file().string(), "--in-process", "--duration", "0.5", "--record",
+      {"run", scene.file().string(), "--in-process", "--duration", "20", "--record",
        (scene.folder() / "a.mcap").string(), "--summary", (folder / "a.txt").string()});
   REQUIRE(wait_until([&] { return std::filesystem::exists(scene.folder() / "a.mcap"); }));
   std::filesystem::remove_all(folder);
