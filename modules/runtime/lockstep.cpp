@@ -1,7 +1,5 @@
 #include "modules/runtime/lockstep.h"
 
-#include <ranges>
-
 namespace palpate::runtime {
 
 LockstepCursor::LockstepCursor(const scene::Scene& scene, const std::string& module,
@@ -10,9 +8,10 @@ LockstepCursor::LockstepCursor(const scene::Scene& scene, const std::string& mod
   open_until(CycleGrid::kSetUp);
 }
 
-/// The last one: stages read first what is said first, so when that is there, all is.
+/// The first one: stages read first what is said first. So it is read while others still work on
+/// what comes last, for which everybody waits.
 bus::Input* LockstepCursor::missing_at(std::int64_t time_ns) {
-  for (bus::Input* input : inputs_ | std::views::reverse) {
+  for (bus::Input* input : inputs_) {
     const std::size_t keys = rule_.keys(input->topic().name);
     const std::int64_t required = rule_.required(input->topic().name, time_ns);
     if (keys == 0 || required == CycleGrid::kNever) continue;

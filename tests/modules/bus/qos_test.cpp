@@ -78,6 +78,23 @@ TEST_CASE("qos: with every sample nothing is best effort and no stream forgets",
   CHECK(state_reader->get_qos().history().depth == kStateDepth);
 }
 
+TEST_CASE("qos: a stream of a lockstep on one host starts no timer with each sample", "[bus]") {
+  // Oracle: the profile's own reason: a time of no length runs out with every sample and reader.
+  BusOptions options = testing::own_options();
+  options.every_sample = true;
+  Participant participant(options);
+  const auto times_of = [&](const TopicInfo& topic) {
+    return participant.add_writer(topic)->get_qos().reliable_writer_qos().times;
+  };
+  const auto stream = times_of(info_of(kContacts)), state = times_of(info_of(kSurface));
+  constexpr std::int64_t kTenPeriods = 10'000'000;  // of the fastest loop that is usual, 1 kHz [ns]
+  CHECK(stream.nackSupressionDuration.to_ns() >= kTenPeriods);
+  CHECK(stream.heartbeatPeriod.to_ns() >= kTenPeriods);
+  // Whoever says a new mesh waits until it is heard.
+  CHECK(state.nackSupressionDuration.to_ns() == 0);
+  CHECK(state.heartbeatPeriod.to_ns() < stream.heartbeatPeriod.to_ns());
+}
+
 TEST_CASE("qos: a participant uses UDP on loopback only, and finds others quickly", "[bus]") {
   // Oracle: the settings of docs/topics.md.
   const BusOptions options = testing::own_options();

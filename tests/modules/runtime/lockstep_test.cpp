@@ -67,6 +67,25 @@ TEST_CASE("lockstep: a cycle waits for its inputs, however late they come") {
   CHECK(h.cursor.missing() == nullptr);
 }
 
+TEST_CASE("lockstep: what is said first is waited for first") {
+  // Oracle: the order of a period: haptics tells poses, then collision contacts, then deformation
+  // works. Poses are read while collision searches.
+  const scene::Scene scene = one_probe();
+  bus::MemoryBus bus(true);
+  const auto poses = bus.reader(bus::kProbeState);
+  const auto contacts = bus.reader(bus::kContacts);
+  LockstepCursor cursor(scene, "deformation", {bus.inputs().begin(), bus.inputs().end()});
+  const auto missing = [&] { return cursor.missing() ? cursor.missing()->topic().name : ""; };
+  bus.set_clock([] { return std::int64_t{0}; });
+  CHECK(missing() == "probe_state");
+  ProbeState pose;
+  REQUIRE(bus.writer(bus::kProbeState).write(pose));
+  CHECK(missing() == "contacts");
+  Contacts found;
+  REQUIRE(bus.writer(bus::kContacts).write(found));
+  CHECK(missing() == "");
+}
+
 TEST_CASE("lockstep: a cycle sees nothing of the future, however early it comes") {
   // Oracle: the same run with samples that come just in time.
   Haptics early, in_time;
