@@ -61,84 +61,115 @@ bool deeper(const FoundContact& a, const FoundContact& b) {
 
 Vec3 tissue_of(const FoundContact& c) { return c.point_P - c.gap * c.normal_P; }
 
-using Iterator = std::vector<FoundContact>::iterator;
+/// A contact with one organ, moved about in its place.
+struct Ranked {
+  const FoundContact* contact;
+  double gap;
+};
+using Ranking = std::vector<Ranked>;
+
+bool deeper_ranked(const Ranked& a, const Ranked& b) {
+  return a.gap != b.gap ? a.gap < b.gap : deepest_first(*a.contact) < deepest_first(*b.contact);
+}
 
 /// Of very many contacts with one organ keeps kThinnedDeepest, and of the others the deepest in
 /// each cell of a grid over them.
-/// @returns the end of those kept
-Iterator thin(Iterator first, Iterator last) {
+void thin(Ranking& ranking) {
   constexpr std::size_t kCells = kThinnedCells * kThinnedCells * kThinnedCells;
-  if (last - first <= static_cast<std::ptrdiff_t>(kThinnedDeepest + kCells)) return last;
-  const Iterator others = first + kThinnedDeepest;
-  std::nth_element(first, others, last, deeper);
+  if (ranking.size() <= kThinnedDeepest + kCells) return;
+  const auto others = ranking.begin() + static_cast<std::ptrdiff_t>(kThinnedDeepest);
+  std::nth_element(ranking.begin(), others, ranking.end(), deeper_ranked);
   Bounds box;
-  for (auto c = others; c != last; ++c) box.add(tissue_of(*c));
+  for (auto c = others; c != ranking.end(); ++c) box.add(tissue_of(*c->contact));
   const Vec3 size = (box.upper - box.lower).cwiseMax(kDirectionless);
-  std::array<const FoundContact*, kCells> deepest{};
-  for (auto c = others; c != last; ++c) {
-    const Vec3 place = (tissue_of(*c) - box.lower).cwiseQuotient(size) * double{kThinnedCells};
+  std::array<Ranked, kCells> deepest{};
+  for (auto c = others; c != ranking.end(); ++c) {
+    const Vec3 place =
+        (tissue_of(*c->contact) - box.lower).cwiseQuotient(size) * double{kThinnedCells};
     std::size_t cell = 0;
     for (const double along : place) {
       cell = kThinnedCells * cell + std::min(static_cast<std::size_t>(along), kThinnedCells - 1);
     }
-    if (deepest[cell] == nullptr || deeper(*c, *deepest[cell])) deepest[cell] = &*c;
+    Ranked& kept = deepest[cell];
+    if (kept.contact == nullptr || deeper_ranked(*c, kept)) kept = *c;
   }
-  std::array<FoundContact, kCells> kept;
-  auto end = kept.begin();
-  for (const FoundContact* c : deepest) {
-    if (c != nullptr) *end++ = *c;
+  const auto end = std::copy_if(deepest.begin(), deepest.end(), others,
+                                [](const Ranked& kept) { return kept.contact != nullptr; });
+  ranking.erase(end, ranking.end());
+}
+
+/// As merge_duplicates().
+void merge_ranked(Ranking& ranking) {
+  struct AtPlace {
+    std::uint64_t place;  ///< the same for the same feature, and for hardly any other
+    const FoundContact* contact;
+  };
+  std::vector<AtPlace> places;
+  places.reserve(ranking.size());
+  for (const auto& [contact, gap] : ranking) {
+    const auto& [a, b, c] = contact->feature;
+    constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;
+    places.push_back({((a * kOdd) ^ b) * kOdd ^ c, contact});
   }
-  return std::copy(kept.begin(), end, others);
+  std::sort(places.begin(), places.end(), [](const AtPlace& a, const AtPlace& b) {
+    if (a.place != b.place) return a.place < b.place;
+    const auto order = [](const FoundContact& c) {
+      return std::tuple_cat(std::tie(c.feature, c.triangle), order_within(c));
+    };
+    return order(*a.contact) < order(*b.contact);
+  });
+  ranking.clear();
+  std::size_t group = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const FoundContact& c = *places[i].contact;
+    if (i == 0 || places[i - 1].place != places[i].place ||
+        places[i - 1].contact->feature != c.feature) {
+      group = ranking.size();
+    }
+    const auto first = ranking.begin() + static_cast<std::ptrdiff_t>(group);
+    const auto is_same = [&](const Ranked& kept) { return same(*kept.contact, c); };
+    if (std::none_of(first, ranking.end(), is_same)) ranking.push_back({&c, c.gap});
+  }
 }
 
 /// Of contacts with one organ, as thin() leaves them, keeps kMostOfRound.
-/// @returns the end of those kept
-Iterator spread(Iterator first, Iterator last) {
-  if (last - first <= static_cast<std::ptrdiff_t>(kMostOfRound)) return last;
-  std::sort(first, last, deeper);
+void spread(Ranking& ranking) {
+  if (ranking.size() <= kMostOfRound) return;
+  std::sort(ranking.begin(), ranking.end(), deeper_ranked);
   // Coordinates by themselves: what is done with them vectorizes.
   using Numbers =
       Eigen::Array<double, kThinnedDeepest + kThinnedCells * kThinnedCells * kThinnedCells, 1>;
-  const Eigen::Index count = last - first;
+  const auto count = static_cast<Eigen::Index>(ranking.size());
   Numbers x, y, z,
       apart = Numbers::Constant(
           std::numeric_limits<double>::infinity());  // from what is kept, squared [m²]
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Vec3 tissue = tissue_of(first[i]);
+    const Vec3 tissue = tissue_of(*ranking[i].contact);
     x[i] = tissue[0];
     y[i] = tissue[1];
     z[i] = tissue[2];
   }
-  constexpr Eigen::Index kMost{kMostOfRound};
+  constexpr Eigen::Index kMost{kMostOfRound}, kAtOnce = 4;
+  static_assert(kMost % (2 * kAtOnce) == 0);
   Eigen::Index kept = kMost / 2;
   const auto rest = [&](Numbers& numbers) { return numbers.segment(kept, count - kept); };
-  const auto note = [&](Eigen::Index other) {
-    const double ox = x[other], oy = y[other], oz = z[other];
-    rest(apart) = rest(apart).min((rest(x) - ox).square() +
-                                  ((rest(y) - oy).square() + (rest(z) - oz).square()));
+  const auto from = [&](Eigen::Index other) {
+    return (rest(x) - x[other]).square() +
+           ((rest(y) - y[other]).square() + (rest(z) - z[other]).square());
   };
-  for (Eigen::Index i = 0; i < kept; ++i) note(i);
-  for (; kept < kMost; note(kept - 1)) {
+  for (Eigen::Index i = 0; i < kept; i += kAtOnce) {
+    rest(apart) = rest(apart).min(from(i).min(from(i + 1))).min(from(i + 2).min(from(i + 3)));
+  }
+  while (kept < kMost) {
     const double most = rest(apart).maxCoeff();
     const Eigen::Index farthest =
         std::find(apart.data() + kept, apart.data() + count, most) - apart.data();
-    std::swap(first[kept], first[farthest]);
+    std::swap(ranking[kept], ranking[farthest]);
     for (Numbers* along : {&x, &y, &z, &apart}) std::swap((*along)[kept], (*along)[farthest]);
     ++kept;
+    rest(apart) = rest(apart).min(from(kept - 1));
   }
-  return first + kept;
-}
-
-/// Keeps of each organ's contacts what `keep` does. @param found  sorted by organ
-void keep_of_each(std::vector<FoundContact>& found, Iterator keep(Iterator, Iterator)) {
-  auto kept = found.begin();
-  for (auto first = found.begin(); first != found.end();) {
-    const auto last = std::find_if(first, found.end(),
-                                   [&](const FoundContact& c) { return c.organ != first->organ; });
-    kept = std::move(first, keep(first, last), kept);
-    first = last;
-  }
-  found.erase(kept, found.end());
+  ranking.resize(kMostOfRound);
 }
 
 void reduce_of_round(std::vector<FoundContact>& found) {
@@ -148,9 +179,18 @@ void reduce_of_round(std::vector<FoundContact>& found) {
   if (!std::is_sorted(found.begin(), found.end(), by_organ)) {
     std::stable_sort(found.begin(), found.end(), by_organ);
   }
-  keep_of_each(found, thin);
-  merge_duplicates(found);
-  keep_of_each(found, spread);
+  std::vector<FoundContact> kept;
+  Ranking ranking;
+  for (auto c = found.begin(); c != found.end();) {
+    const std::uint32_t organ = c->organ;
+    ranking.clear();
+    for (; c != found.end() && c->organ == organ; ++c) ranking.push_back({&*c, c->gap});
+    thin(ranking);
+    merge_ranked(ranking);
+    spread(ranking);
+    for (const Ranked& ranked : ranking) kept.push_back(*ranked.contact);
+  }
+  found.assign(kept.begin(), kept.end());  // its memory is kept
 }
 
 bool is_on_node(const FoundContact& c) { return c.feature[1] == kNoNode; }
@@ -246,11 +286,11 @@ bool keep_nearest(std::vector<FoundContact>& found, std::size_t most, const Prob
 
 }  // namespace
 
-void append_contact(FoundContact contact, const geometry::Triangle& nodes,
+void append_contact(const FoundContact& contact, const geometry::Triangle& nodes,
                     std::vector<FoundContact>& found) {
-  for (int k = 0; k < 3; ++k) contact.feature[k] = contact.barycentric[k] > 0 ? nodes[k] : kNoNode;
-  std::sort(contact.feature.begin(), contact.feature.end());
-  found.push_back(contact);
+  auto& feature = found.emplace_back(contact).feature;
+  for (int k = 0; k < 3; ++k) feature[k] = contact.barycentric[k] > 0 ? nodes[k] : kNoNode;
+  std::sort(feature.begin(), feature.end());
 }
 
 void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact contact,

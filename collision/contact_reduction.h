@@ -36,7 +36,7 @@ struct FoundContact : Contact {
 };
 
 /// Fills in `feature` and appends.
-void append_contact(FoundContact contact, const geometry::Triangle& nodes,
+void append_contact(const FoundContact& contact, const geometry::Triangle& nodes,
                     std::vector<FoundContact>& found);
 
 /// Contact at an organ's node, named by the lowest of its triangles.

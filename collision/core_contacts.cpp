@@ -185,15 +185,17 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
   near_.clear();
   bool crosses = false;
   for (const SweptTriangle& triangle : candidates) {
-    CoreCandidate c(core, triangle);
-    if (before.empty() && c.gap(core) > std::max(step.margin, triangle.travel)) continue;
+    CoreCandidate& c = near_.emplace_back(core, triangle);
+    if (before.empty() && c.gap(core) > std::max(step.margin, triangle.travel)) {
+      near_.pop_back();
+      continue;
+    }
     c.remembered = std::binary_search(
         before.begin(), before.end(), Behind{0, 0, triangle.index, 0, 0},
         [](const Behind& a, const Behind& b) { return a.triangle < b.triangle; });
     c.crossing = crossed_inward(step, core, c);
     if (c.crossing) depth_limit = std::max(depth_limit, step.depth_limit);
     crosses = crosses || c.crossing;
-    near_.push_back(c);
   }
   const bool was_behind = !before.empty();
   const auto inside = crosses || was_behind ? place_inside(step, core) : std::nullopt;
@@ -201,11 +203,10 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
     find_behind(step, core, inside, depth_limit, found);
     return;
   }
-  node_marks_.begin();
-  edge_marks_.begin();
+  places_.begin();
   for (const CoreCandidate& c : near_) {
     if (c.side > 0 && c.gap(core) <= step.margin) {
-      if (is_new_place(step, core, c)) append_front(step, core, c, found);
+      if (is_new_place(core, c)) append_front(step, core, c, found);
     } else if (!was_behind) {  // a core that has just left touched walls from behind
       append_graze(step, core, c, found);
     }
@@ -214,24 +215,19 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
 
 /// Whether no triangle before had its closest point on the same node or edge: the contact would be
 /// the same but for rounding.
-bool CoreContacts::is_new_place(const OrganStep& step, const Core& core, const CoreCandidate& c) {
+bool CoreContacts::is_new_place(const Core& core, const CoreCandidate& c) {
   constexpr double kSteady = 1e-4;  // nearer, a rounding turns the normal [m]
   if (!core.is_point() || c.pair.distance < kSteady) return true;
   const Vec3& weights = c.pair.on_triangle.weights;
-  const auto off = (weights.array() == 0).count();
-  if (off == 0) return true;
-  Eigen::Index corner = 0;
-  weights.maxCoeff(&corner);
-  IndexMarks& marks = off == 2 ? node_marks_ : edge_marks_;
-  std::uint32_t place = c.triangle.nodes[static_cast<std::size_t>(corner)];
-  if (off == 1) {
-    weights.minCoeff(&corner);  // the edge opposite to it
-    place =
-        step.organ.edges_of_triangle(c.triangle.index)[(static_cast<std::size_t>(corner) + 1) % 3];
-  }
-  if (marks.at(place) != IndexMarks::kNone) return false;
-  marks.set(place, 0);
-  return true;
+  if ((weights.array() != 0).all()) return true;
+  // Both ends of the edge, or the node twice.
+  Eigen::Index on = 0, off = 0;
+  weights.maxCoeff(&on);
+  weights.minCoeff(&off);
+  const Eigen::Index other = weights[3 - on - off] == 0 ? on : 3 - on - off;
+  const auto [a, b] = std::minmax(c.triangle.nodes[static_cast<std::size_t>(on)],
+                                  c.triangle.nodes[static_cast<std::size_t>(other)]);
+  return places_.add(std::uint64_t{a} << 32 | b, 0);
 }
 
 /// Contacts of a core that is behind a wall, which is remembered.

@@ -79,7 +79,7 @@ class CoreContacts {
   bool has_left(const OrganStep& step, const Core& core, std::span<const Behind> before);
   void append_nearest_wall(const OrganStep& step, const Core& core, const Vec3& inside,
                            std::vector<FoundContact>& found);
-  bool is_new_place(const OrganStep& step, const Core& core, const CoreCandidate& c);
+  bool is_new_place(const Core& core, const CoreCandidate& c);
   void find_behind(const OrganStep& step, const Core& core, const std::optional<Vec3>& inside,
                    double depth_limit, std::vector<FoundContact>& found);
 
@@ -89,7 +89,7 @@ class CoreContacts {
   // Kept between calls for their memory only.
   std::vector<std::uint32_t> waiting_;
   WallBuffers wall_buffers_;
-  IndexMarks marks_, node_marks_, edge_marks_;
+  IndexMarks marks_, places_;
   std::vector<CoreCandidate> near_;
   std::vector<const CoreCandidate*> wall_;
 };

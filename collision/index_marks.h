@@ -18,11 +18,11 @@ class IndexMarks {
     ++walk_;
     used_ = 0;
   }
-  std::uint32_t at(std::uint32_t index) const {
+  std::uint32_t at(std::uint64_t index) const {
     const Mark& mark = marks_[place_of(index)];
     return mark.walk == walk_ ? mark.value : kNone;
   }
-  void set(std::uint32_t index, std::uint32_t value) {
+  void set(std::uint64_t index, std::uint32_t value) {
     std::size_t place = place_of(index);
     if (marks_[place].walk != walk_ && 2 * ++used_ > marks_.size()) {
       grow();
@@ -30,16 +30,23 @@ class IndexMarks {
     }
     marks_[place] = {walk_, index, value};
   }
+  /// Unless it has one. @returns whether it had none
+  bool add(std::uint64_t index, std::uint32_t value) {
+    const Mark& mark = marks_[place_of(index)];
+    if (mark.walk == walk_) return false;
+    set(index, value);
+    return true;
+  }
 
  private:
   /// Free unless of this walk.
   struct Mark {
-    std::uint64_t walk = 0;
-    std::uint32_t index = 0, value = 0;
+    std::uint64_t walk = 0, index = 0;
+    std::uint32_t value = 0;
   };
 
   /// Where the index is, or would be: the next free place after one that looks random.
-  std::size_t place_of(std::uint32_t index) const {
+  std::size_t place_of(std::uint64_t index) const {
     std::size_t place = (index * 0x9e3779b97f4a7c15u) >> (64 - std::bit_width(marks_.size() - 1));
     while (marks_[place].walk == walk_ && marks_[place].index != index) {
       place = (place + 1) & (marks_.size() - 1);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
@@ -10,7 +11,18 @@
 namespace palpate::collision {
 namespace {
 
-Bounds box_of(const Vec3& a, const Vec3& b) { return {a.cwiseMin(b), a.cwiseMax(b)}; }
+using Four = Eigen::Array4f;
+
+using Row = Eigen::Map<const Four>;  // of a box or of nodes: floats in a row
+
+/// A node's x, y and z, and something finite.
+Four row_of(const NodeArray& nodes, std::uint32_t node) {
+  const std::size_t first = 3 * std::size_t{node};
+  if (first + 3 < nodes.floats().size()) return Row(nodes.floats().data() + first);
+  Four row = Four::Zero();
+  row.head<3>() = nodes[node].cast<float>();
+  return row;
+}
 
 bool is_bounded(const Bounds& box) { return (box.upper - box.lower).maxCoeff() < 2 * kWorldReach; }
 
@@ -26,12 +38,20 @@ struct NearSurface::Wanted {
   Wanted(const RelativeMotion& motion, const Bounds& core, double beside_chord)
       : core_P(core), bounded(is_bounded(core)), reach(beside_chord + motion.chord_error()) {
     reach_squared = reach * reach;
+    const double sure = std::max(0.0, reach * (1 - kRounding) - kRounding);
+    sure_squared_ = sure * sure;
     if (!bounded) return;
     core_W = motion.swept(core);
     Bounds wide = core_W;
     wide.inflate(reach * (1 + kRounding) + kRounding);
     wide_.add(wide.lower);
     wide_.add(wide.upper);
+    geometry::BlockBox in_floats;
+    in_floats.add(core_W.lower);
+    in_floats.add(core_W.upper);
+    std::copy_n(in_floats.lower.data(), 3, lower_W_.data());
+    std::copy_n(in_floats.upper.data(), 3, upper_W_.data());
+    above_reach_squared_ = static_cast<float>(reach_squared * (1 + kRoundingOfFloats));
   }
   /// @param start, end  boxes of the block
   bool may_hold(const RelativeMotion& motion, const geometry::BlockBox& start,
@@ -46,61 +66,108 @@ struct NearSurface::Wanted {
     return core_P.squared_distance(in_P) <= reach_squared;
   }
 
+  /// How far the core is below and above a node's way through the world.
+  Apart apart(const Vec3& start, const Vec3& end) const {
+    geometry::BlockBox box;
+    box.add(start);
+    box.add(end);
+    const auto& [x, y, z] = box.upper;
+    return {lower_W_ - Four(x, y, z, 0), Row(box.lower.data()) - upper_W_};
+  }
+  Apart apart(const Row& start, const Row& end) const {
+    return {lower_W_ - start.max(end), start.min(end) - upper_W_};
+  }
+  /// Holds of every triangle that is wanted, and of few others: in floats, in a few instructions.
+  bool may_want(const Apart& x, const Apart& y, const Apart& z) const {
+    const Four below = x.below.min(y.below).min(z.below);
+    const Four above = x.above.min(y.above).min(z.above);
+    return !bounded || below.max(above).max(0).square().sum() <= above_reach_squared_;
+  }
+  /// A node that is so near at the step's end makes its triangles wanted.
+  bool is_sure(const Vec3& end) const {
+    return core_P.squared_distance(Bounds{end, end}) <= sure_squared_;
+  }
   /// A triangle; judged by its way through the world, too, as its block was.
-  bool may_hold(const SweptNode& x, const SweptNode& y, const SweptNode& z) const {
-    return squared_distance(core_P, x.box, y.box, z.box) <= reach_squared &&
-           (!bounded || squared_distance(core_W, x.box_W, y.box_W, z.box_W) <= reach_squared);
+  bool wants(const OrganStep& step, const geometry::Triangle& nodes,
+             const std::array<const SweptNode*, 3>& swept) const {
+    if (swept[0]->is_sure || swept[1]->is_sure || swept[2]->is_sure) return true;
+    Bounds box_P, box_W;
+    for (int k = 0; k < 3; ++k) {
+      box_P.add(swept[k]->start);
+      box_P.add(swept[k]->end);
+      box_W.add(step.start_positions()[nodes[k]]);
+      box_W.add(step.organ.positions()[nodes[k]]);
+    }
+    return core_P.squared_distance(box_P) <= reach_squared &&
+           (!bounded || core_W.squared_distance(box_W) <= reach_squared);
   }
 
  private:
   /// Most blocks are far away: this costs a few instructions each.
   bool overlaps(const geometry::BlockBox& start, const geometry::BlockBox& end) const {
-    using Four = Eigen::Map<const Eigen::Array4f>;  // a box is six floats in a row
-    const Eigen::Array4f lower = Four(start.lower.data()).min(Four(end.lower.data()));
-    const Eigen::Array4f upper = Four(start.lower.data() + 2).max(Four(end.lower.data() + 2));
-    const Eigen::Array4f lowest(wide_.upper[0], wide_.upper[1], wide_.upper[2], kFar);
-    const Eigen::Array4f highest(-kFar, wide_.lower[0], wide_.lower[1], wide_.lower[2]);
+    const Four lower = Row(start.lower.data()).min(Row(end.lower.data()));
+    const Four upper = Row(start.lower.data() + 2).max(Row(end.lower.data() + 2));
+    const Four lowest(wide_.upper[0], wide_.upper[1], wide_.upper[2], kFar);
+    const Four highest(-kFar, wide_.lower[0], wide_.lower[1], wide_.lower[2]);
     return (lower <= lowest).all() && (upper >= highest).all();
   }
 
-  /// From what holds three boxes.
-  static double squared_distance(const Bounds& from, const Bounds& x, const Bounds& y,
-                                 const Bounds& z) {
-    const auto below = from.lower - x.upper.cwiseMax(y.upper).cwiseMax(z.upper);
-    const auto above = x.lower.cwiseMin(y.lower).cwiseMin(z.lower) - from.upper;
-    return below.cwiseMax(above).cwiseMax(0).squaredNorm();
-  }
-
   static constexpr float kFar = std::numeric_limits<float>::infinity();
-  static constexpr double kRounding = 1e-12;  // [m], and relative
-  geometry::BlockBox wide_;                   ///< core_W and the reach
+  static constexpr double kRounding = 1e-12;         // [m], and relative
+  static constexpr double kRoundingOfFloats = 1e-6;  // relative
+  geometry::BlockBox wide_;                          ///< core_W and the reach
+  double sure_squared_ = 0;                          ///< [m²]
+  // core_W and, along no axis, anything; a little more than the reach: for apart().
+  Four lower_W_ = Four::Constant(-kFar), upper_W_ = Four::Constant(kFar);
+  float above_reach_squared_ = 0;
 };
 
-void NearSurface::open(const OrganStep& step, std::size_t block, const Wanted& wanted) {
+/// apart_ of nodes.
+void NearSurface::find_apart(const OrganStep& step, std::span<const std::uint32_t> nodes,
+                             const Wanted& wanted) {
   const NodeArray &starts = step.start_positions(), &ends = step.organ.positions();
-  const geometry::SurfaceBlocks& blocks = step.organ.blocks();
-  const auto first = static_cast<std::uint32_t>(nodes_.size());
-  Bounds all;
-  for (const std::uint32_t node : blocks.nodes_of(block)) {
-    const Vec3 start_W = starts[node], end_W = ends[node];
-    const Vec3 start = step.motion.start(start_W), end = step.motion.end(end_W);
-    const SweptNode& swept = nodes_.emplace_back(SweptNode{
-        start, end, box_of(start, end), box_of(start_W, end_W), (end - start).squaredNorm()});
-    all.add(swept.box.lower);
-    all.add(swept.box.upper);
+  const std::size_t rows = std::min(starts.floats().size(), ends.floats().size());
+  const float *const start = starts.floats().data(), *const end = ends.floats().data();
+  apart_.resize(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const std::size_t first = 3 * std::size_t{nodes[i]};
+    apart_[i] = first + 3 < rows ? wanted.apart(Row(start + first), Row(end + first))
+                                 : wanted.apart(starts[nodes[i]], ends[nodes[i]]);
   }
-  if (wanted.core_P.squared_distance(all) > wanted.reach_squared) {
-    nodes_.resize(first);
-    return;
+}
+
+void NearSurface::open(const OrganStep& step, std::size_t block, const Wanted& wanted) {
+  constexpr std::uint32_t kNotWanted = 0xffffffff;
+  const auto own = step.organ.blocks().nodes_of(block);
+  const auto triangles = step.organ.blocks().triangles_of(block);
+  const auto corners = step.organ.blocks().corners_of(block);
+  find_apart(step, own, wanted);
+  place_.assign(own.size(), kNotWanted);
+  maybe_.clear();
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = corners[i];
+    if (!wanted.may_want(apart_[a], apart_[b], apart_[c])) continue;
+    place_[a] = place_[b] = place_[c] = 0;
+    maybe_.push_back(i);
   }
-  const auto triangles = blocks.triangles_of(block);
-  const auto corners = blocks.corners_of(block);
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const auto [a, b, c] = corners[i];
-    const SweptNode &x = nodes_[first + a], &y = nodes_[first + b], &z = nodes_[first + c];
-    if (!wanted.may_hold(x, y, z)) continue;
-    near_.push_back({triangles[i], {first + a, first + b, first + c}});
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (place_[i] != kNotWanted) place_[i] = turn(step, own[i], wanted);
   }
+  for (const std::uint32_t i : maybe_) {
+    const auto& [a, b, c] = corners[i];
+    const Near near{triangles[i], {place_[a], place_[b], place_[c]}};
+    const auto& [x, y, z] = near.corners;
+    if (wanted.wants(step, {own[a], own[b], own[c]}, {&nodes_[x], &nodes_[y], &nodes_[z]})) {
+      near_.push_back(near);
+    }
+  }
+}
+
+/// @returns its place in nodes_
+std::uint32_t NearSurface::turn(const OrganStep& step, std::uint32_t node, const Wanted& wanted) {
+  const Vec3 start = step.node_start(node), end = step.node_end(node);
+  nodes_.push_back({start, end, (end - start).squaredNorm(), node, wanted.is_sure(end)});
+  return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
 void NearSurface::find_blocks(const OrganStep& step, const Wanted& wanted) {
@@ -118,62 +185,152 @@ void NearSurface::find_blocks(const OrganStep& step, const Wanted& wanted) {
 void NearSurface::gather(const OrganStep& step, const Bounds& core, double reach) {
   const Wanted wanted(step.motion, core, reach);
   find_blocks(step, wanted);
-  gather_from_blocks(step, wanted);
+  open_blocks(step, wanted);
+  sweep();
 }
 
-void NearSurface::gather_from_blocks(const OrganStep& step, const Wanted& wanted) {
+void NearSurface::open_blocks(const OrganStep& step, const Wanted& wanted) {
   nodes_.clear();
   near_.clear();
-  triangles_.clear();
   for (const std::uint32_t block : blocks_) open(step, block, wanted);
-  std::sort(near_.begin(), near_.end(),
-            [](const Near& a, const Near& b) { return a.triangle < b.triangle; });
+}
+
+/// Of blocks in a row there are not many triangles: they are sorted digit by digit.
+void NearSurface::sort_near() {
+  constexpr unsigned kDigit = 8;
+  if (near_.empty()) return;
+  const auto [lowest, highest] = std::ranges::minmax(near_, {}, &Near::triangle);
+  const std::uint32_t from = lowest.triangle, range = highest.triangle - from;
+  sorted_.resize(near_.size());
+  for (unsigned shift = 0; shift < 32 && range >> shift > 0; shift += kDigit) {
+    const auto digit = [&](const Near& near) {
+      return ((near.triangle - from) >> shift) & ((1u << kDigit) - 1);
+    };
+    std::array<std::uint32_t, 1u << kDigit> places{};
+    for (const Near& near : near_) ++places[digit(near)];
+    std::exclusive_scan(places.begin(), places.end(), places.begin(), 0u);
+    for (const Near& near : near_) sorted_[places[digit(near)]++] = near;
+    near_.swap(sorted_);
+  }
+}
+
+/// Fills triangles_ with those of near_, each once whether it is there once or twice.
+void NearSurface::sweep() {
+  sort_near();
+  const auto last = std::unique(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
+    return a.triangle == b.triangle;
+  });
+  near_.erase(last, near_.end());
+  triangles_.resize(near_.size());  // of those before, nothing is left
+  std::size_t count = 0;
   for (const Near& near : near_) {
-    const geometry::Triangle& nodes = step.organ.triangles()[near.triangle];
-    SweptTriangle& swept = triangles_.emplace_back();
+    SweptTriangle& swept = triangles_[count];
+    geometry::Triangle nodes;
     double squared = 0;
     for (int k = 0; k < 3; ++k) {
       const SweptNode& node = nodes_[near.corners[k]];
+      nodes[k] = node.index;
       swept.start[k] = node.start;
       swept.end[k] = node.end;
       squared = std::max(squared, node.travel_squared);
     }
-    if (!swept.complete(near.triangle, nodes, squared)) triangles_.pop_back();
+    count += swept.complete(near.triangle, nodes, squared);
   }
+  triangles_.resize(count);
 }
 
-/// The nearest node of each cell, of all within reach at the step's end.
-/// @returns how many triangles begin at such nodes
-std::size_t NearSurface::find_places(const OrganStep& step, const Core& core,
-                                     const Wanted& wanted) {
-  places_.fill({std::numeric_limits<double>::infinity(), 0});
-  const Vec3 a = step.motion.to_world_at_end(core.a);
-  const Vec3 along = step.motion.to_world_at_end(core.b) - a;
-  const double per_length = core.is_point() ? 0 : 1 / along.squaredNorm();
-  const Vec3 lower = a.cwiseMin(a + along) - Vec3::Constant(wanted.reach);
-  const Vec3 per_size = kCells / (along.cwiseAbs() + Vec3::Constant(2 * wanted.reach)).array();
-  std::size_t count = 0;
-  for (const std::uint32_t block : blocks_) {
-    within_.clear();
-    for (const std::uint32_t node : step.organ.blocks().nodes_of(block)) {
-      const Vec3 x = step.organ.positions()[node], from_a = x - a;
-      const double at = std::clamp(per_length * from_a.dot(along), 0.0, 1.0);
-      const double squared = (from_a - at * along).squaredNorm();
-      within_.push_back(squared <= wanted.reach_squared);
-      if (!within_.back()) continue;
-      const Vec3 cell = (x - lower).cwiseProduct(per_size);
-      std::size_t place = 0;
-      for (const double along_axis : cell) {
-        place = kCells * place + std::min(static_cast<std::size_t>(along_axis), kCells - 1);
+/// Of a grid around a round core at the step's end, as far as a reach. It says which of very many
+/// nodes stand for others: floats tell that well enough.
+struct NearSurface::Grid {
+  Grid(const RelativeMotion& motion, const Core& core, double reach) : is_point(core.is_point()) {
+    const Vec3 from = motion.to_world_at_end(core.a);
+    const Vec3 to_b = motion.to_world_at_end(core.b) - from;
+    const Vec3 corner = from.cwiseMin(from + to_b) - Vec3::Constant(reach);
+    const Vec3 size = to_b.cwiseAbs() + Vec3::Constant(2 * reach);
+    a.head<3>() = from.cast<float>();
+    along.head<3>() = to_b.cast<float>();
+    if (!is_point) per_length.head<3>() = (to_b / to_b.squaredNorm()).cast<float>();
+    lower.head<3>() = corner.cast<float>();
+    per_size.head<3>() = (double{kCells} / size.array()).cast<float>();
+    hull.add(from);
+    hull.add(from + to_b);
+    rounding = 1e-6 * (from.norm() + size.norm());
+  }
+  /// Distance of the core from a node's x, y and z [m²].
+  float squared_distance(const Four& x) const {
+    const Four from_a = (x - a) * axes;
+    if (is_point) return from_a.square().sum();
+    const float at = std::clamp((per_length * from_a).sum(), 0.0f, 1.0f);
+    return (from_a - at * along).square().sum();
+  }
+  /// At most that of any node in the box [m²].
+  float squared_distance(const geometry::BlockBox& box) const {
+    const double at_least = std::sqrt(hull.squared_distance(box)) - rounding;
+    return static_cast<float>(at_least > 0 ? at_least * at_least : 0);
+  }
+  Eigen::Array4i cell_along(const Four& x) const {
+    return ((x - lower) * per_size).max(0).min(kCells - 1).cast<int>();
+  }
+  std::size_t cell(const Four& x) const {
+    const Eigen::Array4i at = cell_along(x);
+    return static_cast<std::size_t>((at[0] * int{kCells} + at[1]) * int{kCells} + at[2]);
+  }
+  /// Whether any cell of the box asks for something as near.
+  bool any_cell(const geometry::BlockBox& box, float squared, const Places& places) const {
+    const auto first = cell_along({box.lower[0], box.lower[1], box.lower[2], 0});
+    const auto last = cell_along({box.upper[0], box.upper[1], box.upper[2], 0});
+    for (int i = first[0]; i <= last[0]; ++i) {
+      for (int j = first[1]; j <= last[1]; ++j) {
+        for (int k = first[2]; k <= last[2]; ++k) {
+          const auto place = static_cast<std::size_t>((i * int{kCells} + j) * int{kCells} + k);
+          if (squared <= places[place].squared) return true;
+        }
       }
-      Place& nearest = places_[place];
-      if (std::pair(squared, node) < std::pair(nearest.squared, nearest.node)) {
+    }
+    return false;
+  }
+
+  bool is_point;
+  Four axes{1, 1, 1, 0}, a = Four::Zero(), along = a, per_length = a, lower = a, per_size = a;
+  Bounds hull;
+  double rounding = 0;  ///< of distances [m]
+};
+
+/// The nearest node of each cell, of all within reach at the step's end. Blocks that are near come
+/// first, so that most of the others are not looked at.
+/// @returns whether very many triangles begin at nodes within reach
+bool NearSurface::find_places(const OrganStep& step, const Core& core, const Wanted& wanted) {
+  const Grid grid(step.motion, core, wanted.reach);
+  const NodeArray& ends = step.organ.positions();
+  const auto within = static_cast<float>(wanted.reach_squared);
+  places_.fill({std::numeric_limits<float>::infinity(), 0});
+  nearest_first_.clear();
+  for (const std::uint32_t block : blocks_) {
+    const float squared = grid.squared_distance(step.organ.boxes()[block]);
+    if (squared <= within) nearest_first_.push_back({squared, block});
+  }
+  std::sort(nearest_first_.begin(), nearest_first_.end());
+  std::size_t count = 0;
+  for (const auto& [of_block, block] : nearest_first_) {
+    const bool is_counted = count > kManyTriangles;
+    if (is_counted && !grid.any_cell(step.organ.boxes()[block], of_block, places_)) continue;
+    const auto nodes = step.organ.blocks().nodes_of(block);
+    within_.resize(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const std::uint32_t node = nodes[i];
+      const Four x = row_of(ends, node);
+      const float squared = grid.squared_distance(x);
+      within_[i] = squared <= within;
+      if (!within_[i]) continue;
+      Place& nearest = places_[grid.cell(x)];
+      if (squared < nearest.squared || (squared == nearest.squared && node < nearest.node)) {
         nearest = {squared, node};
       }
     }
+    if (is_counted) continue;
     for (const auto& corners : step.organ.blocks().corners_of(block)) count += within_[corners[0]];
   }
-  return count;
+  return count > kManyTriangles;
 }
 
 void NearSurface::gather_front(const OrganStep& step, const Core& core, double reach) {
@@ -182,25 +339,26 @@ void NearSurface::gather_front(const OrganStep& step, const Core& core, double r
   find_blocks(step, wanted);
   std::size_t most = 0;  // of the triangles within reach: few enough need not be counted
   for (const std::uint32_t block : blocks_) most += step.organ.blocks().corners_of(block).size();
-  if (most <= kManyTriangles || find_places(step, core, wanted) <= kManyTriangles) {
-    return gather_from_blocks(step, wanted);
+  if (most <= kManyTriangles || !find_places(step, core, wanted)) {
+    open_blocks(step, wanted);
+    return sweep();
   }
   const Wanted touching(step.motion, hull, core.radius);
   const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
   std::erase_if(blocks_, [&](std::uint32_t block) {
     return !touching.may_hold(step.motion, starts[block], ends[block]);
   });
-  gather_from_blocks(step, touching);
+  open_blocks(step, touching);
   const auto nearest = std::ranges::min_element(places_, {}, &Place::squared);
-  at_places_.clear();
   for (const Place& place : places_) {
     if (!(place.squared <= wanted.reach_squared)) continue;
     const auto around = step.organ.triangles_of_node(place.node);
-    const std::size_t of_nearest = &place == &*nearest ? around.size() : 1;
-    at_places_.insert(at_places_.end(), around.begin(),
-                      around.begin() + static_cast<std::ptrdiff_t>(of_nearest));
+    for (const std::uint32_t t : around.first(&place == &*nearest ? around.size() : 1)) {
+      const auto& [a, b, c] = step.organ.triangles()[t];
+      near_.push_back({t, {turn(step, a, wanted), turn(step, b, wanted), turn(step, c, wanted)}});
+    }
   }
-  add(step, at_places_);
+  sweep();
 }
 
 void NearSurface::gather_nodes(const OrganStep& step, const Bounds& core, double reach,
@@ -235,19 +393,6 @@ void NearSurface::add(const OrganStep& step, std::vector<std::uint32_t>& triangl
   std::inplace_merge(
       triangles_.begin(), triangles_.begin() + static_cast<std::ptrdiff_t>(there), triangles_.end(),
       [](const SweptTriangle& a, const SweptTriangle& b) { return a.index < b.index; });
-}
-
-void NearSurface::append_nodes(std::vector<std::uint32_t>& nodes) const {
-  for (const SweptTriangle& t : triangles_) {
-    nodes.insert(nodes.end(), t.nodes.begin(), t.nodes.end());
-  }
-  sort_unique(nodes);
-}
-
-double NearSurface::travel() const {
-  double travel = 0;
-  for (const SweptTriangle& t : triangles_) travel = std::max(travel, t.travel);
-  return travel;
 }
 
 }  // namespace palpate::collision

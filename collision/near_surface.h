@@ -6,10 +6,12 @@
 // step, comes within a reach of a box about the probe's core.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "collision/core_sweep.h"
+#include "modules/core/sort_unique.h"
 
 namespace palpate::collision {
 
@@ -37,16 +39,26 @@ class NearSurface {
   /// Ascending; degenerate ones left out.
   const std::vector<SweptTriangle>& triangles() const { return triangles_; }
   /// Appends the corners of triangles() and leaves `nodes` ascending, each once.
-  void append_nodes(std::vector<std::uint32_t>& nodes) const;
+  void append_nodes(std::vector<std::uint32_t>& nodes) const {
+    for (const SweptTriangle& t : triangles_) {
+      nodes.insert(nodes.end(), t.nodes.begin(), t.nodes.end());
+    }
+    sort_unique(nodes);
+  }
   /// The largest way of a corner [m].
-  double travel() const;
+  double travel() const {
+    double travel = 0;
+    for (const SweptTriangle& t : triangles_) travel = std::max(travel, t.travel);
+    return travel;
+  }
 
  private:
-  /// A node over the step, in P but for its box in W.
+  /// A node over the step, in P.
   struct SweptNode {
     Vec3 start, end;
-    Bounds box, box_W;
     double travel_squared = 0;
+    std::uint32_t index = 0;  ///< of the organ
+    bool is_sure = false;     ///< its triangles are wanted
   };
   struct Near {
     std::uint32_t triangle = 0;
@@ -54,25 +66,40 @@ class NearSurface {
   };
 
   struct Wanted;
+  struct Grid;
+  struct Place {
+    float squared = 0;  ///< distance from the core at the step's end [m²]
+    std::uint32_t node = 0;
+  };
+  using Places = std::array<Place, kCells * kCells * kCells>;
+  /// How far the core is below and above a node's way, along each axis; above 0 where they do not
+  /// overlap [m].
+  struct Apart {
+    Eigen::Array4f below, above;
+  };
 
   void find_blocks(const OrganStep& step, const Wanted& wanted);
-  void gather_from_blocks(const OrganStep& step, const Wanted& wanted);
+  void open_blocks(const OrganStep& step, const Wanted& wanted);
+  void sweep();
+  void sort_near();
+  std::uint32_t turn(const OrganStep& step, std::uint32_t node, const Wanted& wanted);
+  void find_apart(const OrganStep& step, std::span<const std::uint32_t> nodes,
+                  const Wanted& wanted);
   void open(const OrganStep& step, std::size_t block, const Wanted& wanted);
-  std::size_t find_places(const OrganStep& step, const Core& core, const Wanted& wanted);
+  bool find_places(const OrganStep& step, const Core& core, const Wanted& wanted);
 
   std::vector<SweptTriangle> triangles_;
   // Kept between calls for their memory only.
   std::vector<std::uint32_t> blocks_;  ///< that may come near
-  std::vector<SweptNode> nodes_;       ///< of all opened blocks
-  std::vector<Near> near_;
+  std::vector<Apart> apart_;           ///< by node of a block
+  std::vector<std::uint32_t> place_;   ///< likewise: where in nodes_
+  std::vector<SweptNode> nodes_;       ///< of triangles that may be wanted, in all opened blocks
+  std::vector<Near> near_, sorted_;
   std::vector<bool> seen_;  ///< by node
-  struct Place {
-    double squared = 0;  ///< distance from the core at the step's end [m²]
-    std::uint32_t node = 0;
-  };
-  std::array<Place, kCells * kCells * kCells> places_;
-  std::vector<std::uint8_t> within_;  ///< by node of a block
-  std::vector<std::uint32_t> at_places_;
+  Places places_;
+  std::vector<std::pair<float, std::uint32_t>> nearest_first_;  ///< blocks by distance [m²]
+  std::vector<std::uint8_t> within_;                            ///< by node of a block
+  std::vector<std::uint32_t> maybe_;  ///< triangles of a block that may be wanted
 };
 
 }  // namespace palpate::collision
