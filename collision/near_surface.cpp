@@ -271,19 +271,17 @@ struct NearSurface::Grid {
   Eigen::Array4i cell_along(const Four& x) const {
     return ((x - lower) * per_size).max(0).min(kCells - 1).cast<int>();
   }
-  std::size_t cell(const Four& x) const {
-    const Eigen::Array4i at = cell_along(x);
-    return static_cast<std::size_t>((at[0] * int{kCells} + at[1]) * int{kCells} + at[2]);
+  static std::size_t place_of(const Eigen::Array4i& cell) {
+    return static_cast<std::size_t>((cell[0] * int{kCells} + cell[1]) * int{kCells} + cell[2]);
   }
   /// Whether any cell of the box asks for something as near.
   bool any_cell(const geometry::BlockBox& box, float squared, const Places& places) const {
-    const auto first = cell_along({box.lower[0], box.lower[1], box.lower[2], 0});
-    const auto last = cell_along({box.upper[0], box.upper[1], box.upper[2], 0});
-    for (int i = first[0]; i <= last[0]; ++i) {
-      for (int j = first[1]; j <= last[1]; ++j) {
-        for (int k = first[2]; k <= last[2]; ++k) {
-          const auto place = static_cast<std::size_t>((i * int{kCells} + j) * int{kCells} + k);
-          if (squared <= places[place].squared) return true;
+    const Eigen::Array4i first = cell_along({box.lower[0], box.lower[1], box.lower[2], 0});
+    const Eigen::Array4i last = cell_along({box.upper[0], box.upper[1], box.upper[2], 0});
+    for (Eigen::Array4i at = first; at[0] <= last[0]; ++at[0]) {
+      for (at[1] = first[1]; at[1] <= last[1]; ++at[1]) {
+        for (at[2] = first[2]; at[2] <= last[2]; ++at[2]) {
+          if (squared <= places[place_of(at)].squared) return true;
         }
       }
     }
@@ -322,7 +320,7 @@ bool NearSurface::find_places(const OrganStep& step, const Core& core, const Wan
       const float squared = grid.squared_distance(x);
       within_[i] = squared <= within;
       if (!within_[i]) continue;
-      Place& nearest = places_[grid.cell(x)];
+      Place& nearest = places_[Grid::place_of(grid.cell_along(x))];
       if (squared < nearest.squared || (squared == nearest.squared && node < nearest.node)) {
         nearest = {squared, node};
       }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 #include <random>
+#include <set>
 
 namespace palpate::collision {
 
@@ -18,6 +19,22 @@ TEST_CASE("index marks: begin forgets all") {
   CHECK(marks.at(1) == IndexMarks::kNone);
   marks.begin();
   for (std::uint32_t i = 0; i < 10; ++i) CHECK(marks.at(i) == IndexMarks::kNone);
+}
+
+TEST_CASE("index marks: one that is there is not added, whatever else shares its low half") {
+  // Oracle: std::set.
+  IndexMarks marks;
+  std::mt19937_64 random(5);
+  for (int walk = 0; walk < 5; ++walk) {
+    marks.begin();
+    std::set<std::uint64_t> there;
+    for (std::uint32_t k = 0; k < 2000; ++k) {
+      const std::uint64_t index = (random() % 40) << 32 | random() % 40;
+      const bool is_new = there.insert(index).second;
+      if (marks.add(index, k) != is_new) FAIL_CHECK(index << " is added twice, or never");
+    }
+    CHECK(there.size() > 1000);
+  }
 }
 
 TEST_CASE("index marks: thousands of them, near and far, again and again") {
