@@ -6,6 +6,8 @@
       and of solids have, the other rates a scene's own. Simulated per wall time of both, run in turns, each as the
       difference of two durations, so that starting and ending drop out; what each process computes in a period of
       deformation, of the first pair; whether both said the same of nodes, probes and forces (palpate diff).
+      Yardstick, in the same turns: two simulators of half of the organs, each all in one process, that share nothing,
+      beside one alone. A machine whose cores are not its own gives them less than two.
 """
 import argparse
 import json
@@ -67,6 +69,16 @@ def run(palpate, scene, duration, record=None):
     return time.monotonic() - began, computed
 
 
+def time_at_once(palpate, scene, duration, count):
+    """@returns wall time of so many simulators that know nothing of each other [s]."""
+    command = [palpate, "run", scene, "--in-process", "--headless", "--duration", str(duration)]
+    began = time.monotonic()
+    running = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(count)]
+    if any([process.wait() for process in running]):
+        sys.exit(f"{' '.join(map(str, command))}: failed")
+    return time.monotonic() - began
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--organs", type=int, default=8)
@@ -89,7 +101,9 @@ def main():
         rows = dict(re.findall(r"^(\w+) +(\d+ +\d+ +\d+ +\d+)$", told.stdout, re.M))
         same = all(rows[topic].split()[1:] == ["0", "0", "0"] for topic in SAME)
 
-        ratios, speeds, shares = [], {1: [], 2: []}, {}
+        half = pathlib.Path(folder) / "half.yaml"
+        half.write_text(scene_text(argparse.Namespace(**{**vars(arguments), "organs": arguments.organs // 2}), 1))
+        ratios, speeds, shares, unconnected = [], {1: [], 2: []}, {}, []
         for pair in range(arguments.pairs):
             speed = {}
             for processes in ((1, 2), (2, 1))[pair % 2]:
@@ -100,6 +114,9 @@ def main():
                 periods = arguments.rate * (long - short)
                 shares.setdefault(processes, {m: 1e3 * (t - before.get(m, 0)) / periods for m, t in computed.items()})
             ratios.append(speed[2] / speed[1])
+            alone, both = (time_at_once(arguments.palpate, half, long, count)
+                           - time_at_once(arguments.palpate, half, short, count) for count in (1, 2))
+            unconnected.append(2 * alone / both)
     for processes, modules in shares.items():
         print(f"{processes}: {statistics.median(speeds[processes]):.2f} times real time; computed per period: "
               + ", ".join(f"{module} {ms:.2f} ms" for module, ms in sorted(modules.items())))
@@ -107,6 +124,9 @@ def main():
     print(f"{arguments.organs} organs of {arguments.nodes} nodes, {arguments.model} at {arguments.rate:g} Hz: two "
           f"processes simulate {statistics.median(ratios):.2f} times what one does ({ratios[0]:.2f} to {ratios[-1]:.2f}, "
           f"{arguments.pairs} pairs); {'the same bits' if same else 'DIFFERENT BITS'}")
+    unconnected.sort()
+    print(f"two simulators of half of them that share nothing: {statistics.median(unconnected):.2f} times what one does alone "
+          f"({unconnected[0]:.2f} to {unconnected[-1]:.2f})")
     return 0 if same else 1
 
 
