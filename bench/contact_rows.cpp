@@ -9,10 +9,10 @@
 
 #include "collision/activation_distance.h"
 #include "collision/contact_finder.h"
+#include "collision/contact_reduction.h"
 #include "deformation/contact/probe_contacts.h"
 #include "deformation/models.h"
 #include "modules/core/data_folder.h"
-#include "modules/messages/messages.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
@@ -101,7 +101,7 @@ Result press(const scene::Organ& organ, const geometry::TriangleSurface& surface
     const double depth = std::min(kDepth, kSpeed * period * k);
     const Pose now{Vec3(x, front - radius + depth, z), Quat::Identity()};
     finder.update_organ(0, std::span(state.positions).first(model.surface_node_count));
-    finder.find(0, {before, now}, margin, {kMaxContactsPerProbe, 0, 0}, found);
+    finder.find(0, {before, now}, margin, {collision::kUsualContacts, 0, 0}, found);
     contacts.set_pose(now);
     contacts.set_contacts(found.contacts);
     contacts.begin(period);

@@ -17,10 +17,10 @@
 #include "bench/fine_surface.h"
 #include "collision/activation_distance.h"
 #include "collision/contact_finder.h"
+#include "collision/contact_reduction.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/closest_points.h"
-#include "modules/messages/messages.h"
 #include "modules/runtime/program.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/scene_reader.h"
@@ -107,7 +107,7 @@ class OurSearch {
     const Pose now{centre_at(site, height_, k_), Quat::Identity()};
     update_s = seconds_of([&] { finder_.take_organ(0, message_, boxes_); });
     search_s = seconds_of([&] {
-      finder_.find(0, {before_, now}, margin_, {kMaxContactsPerProbe, 0, 0}, contacts);
+      finder_.find(0, {before_, now}, margin_, {collision::kUsualContacts, 0, 0}, contacts);
     });
     before_ = now;
   }

@@ -22,6 +22,7 @@ struct ProbeMotion {
 struct ContactLimits {
   std::size_t contacts = 0;  ///< beside faces
   std::size_t faces = 0, face_nodes = 0;
+  std::size_t needed = 0;  ///< more than `contacts`, of those that the answer needs
 };
 
 /// What a search found out beside contacts.

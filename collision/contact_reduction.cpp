@@ -250,9 +250,11 @@ void take_faces(std::vector<FoundContact>& found, const ContactLimits& limits, C
 
 /// Of what a message must hold, what touches and of each place on the tissue the nearest that the
 /// probe may come to are first, then the nearest of the others.
-/// @returns whether it must hold more than `most`
-bool keep_nearest(std::vector<FoundContact>& found, std::size_t most, const ProbeReach& reach) {
-  if (found.size() <= most) return false;
+/// @returns whether it must hold more than it can
+bool keep_nearest(std::vector<FoundContact>& found, const ContactLimits& limits,
+                  const ProbeReach& reach) {
+  if (found.size() <= limits.contacts) return false;
+  const std::size_t most = std::max(limits.contacts, limits.needed);
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.feature), deepest_first(a)) <
            std::tuple_cat(std::tie(b.organ, b.feature), deepest_first(b));
@@ -279,7 +281,7 @@ bool keep_nearest(std::vector<FoundContact>& found, std::size_t most, const Prob
     const double gap_a = reach.least_gap(a), gap_b = reach.least_gap(b);
     return gap_a != gap_b ? gap_a < gap_b : deeper(a, b);
   });
-  cut(others, most - found.size(), deeper);
+  cut(others, limits.contacts - std::min(limits.contacts, found.size()), deeper);
   found.insert(found.end(), others.begin(), others.end());
   return needed > most;
 }
@@ -313,7 +315,7 @@ void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const Cont
     merge_duplicates(found);
     take_faces(found, limits, result);
   }
-  result.truncated = keep_nearest(found, limits.contacts, reach);
+  result.truncated = keep_nearest(found, limits, reach);
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.triangle), order_within(a)) <
            std::tuple_cat(std::tie(b.organ, b.triangle), order_within(b));

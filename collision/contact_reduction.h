@@ -45,6 +45,8 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
 
 /// A plane of the probe that so many nodes of an organ touch is told as a face.
 inline constexpr std::size_t kFewestOnFace = 16;
+/// Contacts of a sharp probe that are handed out whether the answer needs them or not.
+inline constexpr std::size_t kUsualContacts = 1024;
 /// Contacts of a round probe with an organ: half of them the deepest, half spread over the others.
 /// They say where tissue is; deformation finds its own rows around them (deformation/contact).
 inline constexpr std::size_t kMostOfRound = 64;
@@ -56,9 +58,10 @@ inline constexpr std::size_t kThinnedDeepest = 128, kThinnedCells = 4;
 /// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others
 /// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more
 /// than `limits.contacts`, as of a sharp probe in a hurry, which may come to far more than it will,
-/// what touches and of each place the nearest contact that it may come to are kept, then the
-/// nearest of the others. Where that is not enough those are that it meets first on its way ahead,
-/// and result.truncated says so. Writes them into result.
+/// what touches and of each place the nearest contact that it may come to are kept, up to
+/// `limits.needed`, and the nearest of the others while there are fewer than `limits.contacts`.
+/// Where more are needed than that those are kept that it meets first on its way ahead, and
+/// result.truncated says so. Writes them into result.
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
                      ContactSet& result, const ProbeReach& reach = {});
 

@@ -112,7 +112,8 @@ struct Acted {
 };
 
 /// What a message holds.
-constexpr ContactLimits kLimits{kMaxContactsPerProbe, kMaxFacesPerProbe, kMaxFaceNodes};
+constexpr ContactLimits kLimits{kUsualContacts, kMaxFacesPerProbe, kMaxFaceNodes,
+                                kMaxContactsPerProbe};
 
 const char* acting_guard(const Acted& acted) {
   if (acted.found.was_lost) {

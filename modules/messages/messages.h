@@ -14,10 +14,10 @@
 namespace palpate {
 
 /// Version of the message set; processes with different versions refuse to work together.
-inline constexpr std::uint32_t kProtocolVersion = 13;
+inline constexpr std::uint32_t kProtocolVersion = 14;
 
 // Bounds of the lists on the wire.
-inline constexpr std::size_t kMaxContactsPerProbe = 1024;
+inline constexpr std::size_t kMaxContactsPerProbe = 16384;
 inline constexpr std::size_t kMaxOrgans = 256;  ///< of a scene
 inline constexpr std::size_t kMaxProbes = 256;  ///< of a scene
 inline constexpr std::size_t kMaxFacesPerProbe = 1024;

@@ -115,7 +115,18 @@ TEST_CASE("contact reduction: where a place has many, what touches and its neare
   for (const Contact& c : result.contacts) gaps.push_back(c.gap);
   std::sort(gaps.begin(), gaps.end());
   CHECK(gaps == kept);
-  // Fewer than touch, or than there are places: that is said.
+  // Fewer than touch, or than there are places, are made up for while a message holds them; those
+  // that nobody needs are not.
+  found = all;
+  reduce_contacts(found, false, {50, 0, 0, 2000}, result);
+  CHECK_FALSE(result.truncated);
+  CHECK(result.contacts.size() == all.size() - others.size());
+  double deepest_unneeded = 0;
+  for (const Contact& c : result.contacts) {
+    if (c.gap > 0 && c.gap != nearest[c.triangle]) deepest_unneeded = c.gap;
+  }
+  CHECK(deepest_unneeded == 0);
+  // Beyond what it holds that is said.
   for (const std::size_t most : {std::size_t{50}, std::size_t{299}}) {
     found = all;
     reduce_contacts(found, false, {most, 0, 0}, result);

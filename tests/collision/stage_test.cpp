@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "collision/contact_reduction.h"
 #include "modules/bus/memory_bus.h"
 #include "modules/geometry/primitives.h"
 #include "modules/runtime/wiring.h"
@@ -113,6 +114,45 @@ TEST_CASE("collision stage: a finger in the ball touches it, one far away does n
   session.move_finger(0.055, 5 * kMs);
   CHECK(session.search(stage, 5 * kMs) > 0);
   CHECK(session.newest.probe_pose.position.z() == 0.055);
+}
+
+TEST_CASE("collision stage: of a sharp tool in a hurry all that it may come to is told") {
+  // Oracle: the nodes that a box at 2.5 m/s may come to before the next search's contacts: those
+  // within its way ahead, to whatever side. They are more than a list usually holds.
+  Session session;
+  constexpr double kHalf = 0.015, kSpeed = 2.5, kHeight = kRadius + kHalf + 1e-3;
+  session.scene.probes[0].shape = scene::BoxShape{Vec3::Constant(2 * kHalf)};
+  session.scene.rates.deformation = session.scene.rates.collision = 100;
+  auto stage = session.stage();
+  session.publish_ball(0, 6);
+  ProbeState state;
+  state.header.source_time_ns = kMs;
+  state.pose.position = Vec3(0, 0, kHeight);
+  state.twist.linear = Vec3(0, 0, -kSpeed);
+  REQUIRE(session.probes.write(state));
+  CHECK(session.search(stage, kMs) > collision::kUsualContacts);
+  CHECK_FALSE(session.newest.truncated);
+  CHECK(session.guard.empty());
+  // The box's bottom, and what lies around it, each node once.
+  std::vector<std::uint32_t> told = session.newest.face_nodes;
+  const auto ball = geometry::make_ball(kRadius, 6);
+  for (const Contact& c : session.newest.contacts) {
+    for (int k = 0; k < 3; ++k) {
+      if (c.barycentric[k] == 1) told.push_back(ball.triangles[c.triangle][k]);
+    }
+  }
+  std::ranges::sort(told);
+  const double way = kSpeed * 2 / 100;
+  std::size_t near = 0;
+  for (std::uint32_t node = 0; node < ball.nodes.size(); ++node) {
+    const Vec3 from_box = ball.nodes[node] - Vec3(0, 0, kHeight);
+    const Vec3 off = from_box - from_box.cwiseMax(-kHalf).cwiseMin(kHalf);
+    // Some of what faces the box, well within the way ahead.
+    if (ball.nodes[node].z() < 0.02 || off.norm() > way / 2) continue;
+    ++near;
+    if (!std::ranges::binary_search(told, node)) FAIL_CHECK("node " << node << " is not told");
+  }
+  CHECK(near > collision::kUsualContacts);
 }
 
 TEST_CASE(
