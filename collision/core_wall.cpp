@@ -73,11 +73,12 @@ void append_crossed(const OrganStep& step, const Core& core, const CoreCandidate
 void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates,
                WallBuffers& buffers) {
   Vec3 outward = Vec3::Zero();
-  auto& [marks, waiting] = buffers;
+  auto& [places, seen_nodes, waiting] = buffers;
   waiting.clear();
-  marks.begin();
+  places.begin();
+  seen_nodes.begin();
   for (CoreCandidate& c : candidates) {
-    marks.set(c.triangle.index, static_cast<std::uint32_t>(&c - candidates.data()));
+    places.set(c.triangle.index, static_cast<std::uint32_t>(&c - candidates.data()));
     if (!c.crossing && !c.remembered) continue;
     outward += c.triangle.normal_end;
     c.on_wall = true;
@@ -85,9 +86,8 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
   }
   const double limit = kSameWall * outward.norm();
   const auto visit = [&](std::uint32_t triangle) {
-    const std::uint32_t place = marks.at(triangle);
+    const std::uint32_t place = places.at(triangle);
     if (place == IndexMarks::kNone) return;
-    marks.set(triangle, IndexMarks::kNone);  // decided here, once for all
     CoreCandidate& c = candidates[place];
     if (c.on_wall || !(c.triangle.normal_end.dot(outward) > limit)) return;
     c.on_wall = true;
@@ -97,6 +97,7 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
     const geometry::Triangle& nodes = waiting.back()->triangle.nodes;
     waiting.pop_back();
     for (const std::uint32_t node : nodes) {
+      if (!seen_nodes.add(node, 0)) continue;
       for (const std::uint32_t t : organ.triangles_of_node(node)) visit(t);
     }
   }

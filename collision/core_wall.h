@@ -47,7 +47,7 @@ void append_nearest(const OrganStep& step, const Core& core, const CoreCandidate
 
 /// Kept between calls for their memory only.
 struct WallBuffers {
-  IndexMarks marks;
+  IndexMarks places, seen_nodes;
   std::vector<CoreCandidate*> waiting;
 };
 
