@@ -29,6 +29,26 @@ void sort_unless_sorted(std::vector<FoundContact>& found, const Before& before) 
   }
 }
 
+/// Of the same place and normal found twice keeps the first.
+/// @param sorted      those at a feature follow each other
+/// @param contact_of  a FoundContact of each
+template <class Sorted, class ContactOf>
+void keep_distinct(Sorted& sorted, const ContactOf& contact_of) {
+  std::size_t kept = 0, group = 0;  // the group: kept ones at the feature
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const FoundContact& c = contact_of(sorted[i]);
+    if (kept == group || contact_of(sorted[group]).organ != c.organ ||
+        contact_of(sorted[group]).feature != c.feature) {
+      group = kept;
+    }
+    const auto is_same = [&](const auto& other) { return same(contact_of(other), c); };
+    const auto first = sorted.begin() + static_cast<std::ptrdiff_t>(group);
+    const auto last = sorted.begin() + static_cast<std::ptrdiff_t>(kept);
+    if (std::none_of(first, last, is_same)) sorted[kept++] = sorted[i];
+  }
+  sorted.resize(kept);
+}
+
 void merge_duplicates(std::vector<FoundContact>& found) {
   sort_unless_sorted(found, [](const FoundContact& a, const FoundContact& b) {
     if (a.organ != b.organ) return a.organ < b.organ;
@@ -36,18 +56,7 @@ void merge_duplicates(std::vector<FoundContact>& found) {
     if (a.triangle != b.triangle) return a.triangle < b.triangle;
     return order_within(a) < order_within(b);
   });
-  std::size_t kept = 0, group = 0;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (kept == 0 || found[group].organ != found[i].organ ||
-        found[group].feature != found[i].feature) {
-      group = kept;
-    }
-    const auto is_same = [&](const FoundContact& c) { return same(c, found[i]); };
-    const auto first = found.begin() + static_cast<std::ptrdiff_t>(group);
-    const auto last = found.begin() + static_cast<std::ptrdiff_t>(kept);
-    if (std::none_of(first, last, is_same)) found[kept++] = found[i];
-  }
-  found.resize(kept);
+  keep_distinct(found, [](const FoundContact& c) -> const FoundContact& { return c; });
 }
 
 auto deepest_first(const FoundContact& c) {
@@ -63,8 +72,9 @@ Vec3 tissue_of(const FoundContact& c) { return c.point_P - c.gap * c.normal_P; }
 
 /// A contact with one organ, moved about in its place.
 struct Ranked {
-  const FoundContact* contact;
-  double gap;
+  const FoundContact* contact = nullptr;
+  double gap = 0;
+  std::uint64_t place = 0;  ///< the same for the same feature, and for hardly any other
 };
 using Ranking = std::vector<Ranked>;
 
@@ -98,38 +108,21 @@ void thin(Ranking& ranking) {
   ranking.erase(end, ranking.end());
 }
 
-/// As merge_duplicates().
-void merge_ranked(Ranking& ranking) {
-  struct AtPlace {
-    std::uint64_t place;  ///< the same for the same feature, and for hardly any other
-    const FoundContact* contact;
-  };
-  std::vector<AtPlace> places;
-  places.reserve(ranking.size());
-  for (const auto& [contact, gap] : ranking) {
-    const auto& [a, b, c] = contact->feature;
+/// The same of contacts with one organ, sorted by numbers.
+void merge_duplicates(Ranking& ranking) {
+  for (Ranked& ranked : ranking) {
+    const auto& [a, b, c] = ranked.contact->feature;
     constexpr std::uint64_t kOdd = 0x9e3779b97f4a7c15;
-    places.push_back({((a * kOdd) ^ b) * kOdd ^ c, contact});
+    ranked.place = ((a * kOdd) ^ b) * kOdd ^ c;
   }
-  std::sort(places.begin(), places.end(), [](const AtPlace& a, const AtPlace& b) {
+  std::sort(ranking.begin(), ranking.end(), [](const Ranked& a, const Ranked& b) {
     if (a.place != b.place) return a.place < b.place;
     const auto order = [](const FoundContact& c) {
       return std::tuple_cat(std::tie(c.feature, c.triangle), order_within(c));
     };
     return order(*a.contact) < order(*b.contact);
   });
-  ranking.clear();
-  std::size_t group = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const FoundContact& c = *places[i].contact;
-    if (i == 0 || places[i - 1].place != places[i].place ||
-        places[i - 1].contact->feature != c.feature) {
-      group = ranking.size();
-    }
-    const auto first = ranking.begin() + static_cast<std::ptrdiff_t>(group);
-    const auto is_same = [&](const Ranked& kept) { return same(*kept.contact, c); };
-    if (std::none_of(first, ranking.end(), is_same)) ranking.push_back({&c, c.gap});
-  }
+  keep_distinct(ranking, [](const Ranked& c) -> const FoundContact& { return *c.contact; });
 }
 
 /// Of contacts with one organ, as thin() leaves them, keeps kMostOfRound.
@@ -184,9 +177,9 @@ void reduce_of_round(std::vector<FoundContact>& found) {
   for (auto c = found.begin(); c != found.end();) {
     const std::uint32_t organ = c->organ;
     ranking.clear();
-    for (; c != found.end() && c->organ == organ; ++c) ranking.push_back({&*c, c->gap});
+    for (; c != found.end() && c->organ == organ; ++c) ranking.push_back({&*c, c->gap, 0});
     thin(ranking);
-    merge_ranked(ranking);
+    merge_duplicates(ranking);
     spread(ranking);
     for (const Ranked& ranked : ranking) kept.push_back(*ranked.contact);
   }
