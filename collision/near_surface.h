@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "collision/core_sweep.h"
+#include "collision/wanted_triangles.h"
 #include "modules/core/sort_unique.h"
 
 namespace palpate::collision {
@@ -19,7 +19,7 @@ class NearSurface {
  public:
   /// Of more triangles near a round core some stand for others.
   static constexpr std::size_t kManyTriangles = 512;
-  static constexpr std::size_t kCells = 4;  ///< along each axis of their grid
+  static constexpr int kCells = 4;  ///< along each axis of their grid
 
   void clear() { triangles_.clear(); }
   /// @param core   in P; may be without end
@@ -53,40 +53,20 @@ class NearSurface {
   }
 
  private:
-  /// A node over the step, in P.
-  struct SweptNode {
-    Vec3 start, end;
-    double travel_squared = 0;
-    std::uint32_t index = 0;  ///< of the organ
-    bool is_sure = false;     ///< its triangles are wanted
-  };
   struct Near {
     std::uint32_t triangle = 0;
     std::array<std::uint32_t, 3> corners{};  ///< in nodes_
   };
 
-  struct Wanted;
-  struct Grid;
-  struct Place {
-    float squared = 0;  ///< distance from the core at the step's end [m²]
-    std::uint32_t node = 0;
-  };
-  using Places = std::array<Place, kCells * kCells * kCells>;
-  /// How far the core is below and above a node's way, along each axis; above 0 where they do not
-  /// overlap [m].
-  struct Apart {
-    Eigen::Array4f below, above;
-  };
-
-  void find_blocks(const OrganStep& step, const Wanted& wanted);
-  void open_blocks(const OrganStep& step, const Wanted& wanted);
+  void find_blocks(const OrganStep& step, const WantedTriangles& wanted);
+  void open_blocks(const OrganStep& step, const WantedTriangles& wanted);
   void sweep();
   void sort_near();
-  std::uint32_t turn(const OrganStep& step, std::uint32_t node, const Wanted& wanted);
+  std::uint32_t turn(const OrganStep& step, std::uint32_t node, const WantedTriangles& wanted);
   void find_apart(const OrganStep& step, std::span<const std::uint32_t> nodes,
-                  const Wanted& wanted);
-  void open(const OrganStep& step, std::size_t block, const Wanted& wanted);
-  bool find_places(const OrganStep& step, const Core& core, const Wanted& wanted);
+                  const WantedTriangles& wanted);
+  void open(const OrganStep& step, std::size_t block, const WantedTriangles& wanted);
+  bool find_places(const OrganStep& step, const Core& core, const WantedTriangles& wanted);
 
   std::vector<SweptTriangle> triangles_;
   // Kept between calls for their memory only.
@@ -96,7 +76,7 @@ class NearSurface {
   std::vector<SweptNode> nodes_;       ///< of triangles that may be wanted, in all opened blocks
   std::vector<Near> near_, sorted_;
   std::vector<bool> seen_;  ///< by node
-  Places places_;
+  NodeGrid grid_{kCells};
   std::vector<std::pair<float, std::uint32_t>> nearest_first_;  ///< blocks by distance [m²]
   std::vector<std::uint8_t> within_;                            ///< by node of a block
   std::vector<std::uint32_t> maybe_;  ///< triangles of a block that may be wanted
