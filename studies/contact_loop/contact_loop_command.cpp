@@ -25,14 +25,15 @@ std::vector<T> or_else(const std::vector<T>& given, std::vector<T> usual) {
   return given.empty() ? usual : given;
 }
 
-/// The first is the usual one; the others are drawn where the line along y meets the organ, the
-/// same each time.
+/// The first is the usual one, if the organ is there; the others are drawn where the line along y
+/// meets it, the same each time.
 std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3& first,
                             int count) {
   const auto box = geometry::bounding_box(surface.nodes);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> share;
-  std::vector<Vec3> places{first};
+  std::vector<Vec3> places;
+  if (rigs::find_front(surface, first.x(), first.z())) places.push_back(first);
   while (std::ssize(places) < count) {
     const double x = box.min().x() + share(random) * box.sizes().x();
     const double z = box.min().z() + share(random) * box.sizes().z();

@@ -17,7 +17,7 @@ struct ContactLoopOptions {
   std::vector<double> rates;                  ///< of deformation [Hz]; empty: 50, 100, 250
   std::vector<double> collision_rates;        ///< [Hz]; empty: 250
   double loss = 0;                            ///< LoopCase::loss
-  int places = 1;  ///< on an organ's front: the usual one, others at random
+  int places = 1;  ///< on an organ's front: the usual one, if it is on it, others at random
   bool quick = false;
 };
 
