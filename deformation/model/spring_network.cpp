@@ -5,33 +5,13 @@
 #include <limits>
 
 #include "modules/core/error.h"
-#include "modules/core/sort_unique.h"
 #include "modules/geometry/edge_uses.h"
+#include "modules/scene/spring_count.h"
 
 namespace palpate::deformation {
 namespace {
 
 using NodePair = std::array<std::uint32_t, 2>;
-
-/// Pairs of nodes joined by a path of two edges but by no edge, each once, sorted.
-std::vector<NodePair> secondary_pairs(std::size_t node_count, const std::vector<NodePair>& edges) {
-  const auto neighbours = geometry::neighbours_of(node_count, edges);
-  std::vector<NodePair> pairs;
-  std::vector<std::uint32_t> second_ring;
-  for (std::uint32_t a = 0; a < node_count; ++a) {
-    second_ring.clear();
-    for (const std::uint32_t middle : neighbours[a]) {
-      for (const std::uint32_t b : neighbours[middle]) {
-        if (b > a && !std::binary_search(neighbours[a].begin(), neighbours[a].end(), b)) {
-          second_ring.push_back(b);
-        }
-      }
-    }
-    sort_unique(second_ring);
-    for (const std::uint32_t b : second_ring) pairs.push_back({a, b});
-  }
-  return pairs;
-}
 
 std::size_t nearest(const std::vector<Vec3>& points, const Vec3& p) {
   std::size_t best = 0;
@@ -59,7 +39,8 @@ void add_membrane_springs(const geometry::TriangleSurface& surface, const scene:
   for (const auto& pair : edges) add(pair, structural);
   network.structural_count = edges.size();
   if (bending_ratio <= 0) return;
-  const auto pairs = secondary_pairs(surface.nodes.size(), edges);
+  const auto neighbours = geometry::neighbours_of(surface.nodes.size(), edges);
+  const auto pairs = geometry::second_neighbours_of(neighbours, kMaxSprings);
   for (const auto& pair : pairs) add(pair, bending_ratio * structural);
   network.bending_count = pairs.size();
 }
@@ -123,6 +104,7 @@ std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, 
 SpringNetwork build_spring_network(const geometry::TriangleSurface& surface,
                                    const scene::Tissue& tissue, const scene::Springs& springs) {
   PALPATE_DEMAND(!surface.nodes.empty() && !surface.triangles.empty());
+  scene::check_spring_count(surface, springs);
   SpringNetwork network;
   network.node_areas.assign(surface.nodes.size(), 0);
   for (const auto& triangle : surface.triangles) {

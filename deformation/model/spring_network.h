@@ -58,7 +58,8 @@ struct SpringNetwork {
 std::vector<Vec3> place_virtual_nodes(const geometry::TriangleSurface& surface, std::size_t count);
 
 /// Every stiffness is proportional to kMembraneFactor · E t.
-/// @param surface  closed, at rest [m]
+/// @param surface  closed, at rest [m], of at most kMaxNodes and kMaxTriangles
+/// @throws InputError for more than kMaxSprings springs, before there are any of them
 SpringNetwork build_spring_network(const geometry::TriangleSurface& surface,
                                    const scene::Tissue& tissue, const scene::Springs& springs);
 

@@ -11,6 +11,15 @@
 namespace palpate::deformation {
 namespace {
 
+SpringNetwork springs_of(const scene::Organ& organ, const geometry::TriangleSurface& rest_surface) {
+  try {
+    return build_spring_network(rest_surface, organ.tissue, organ.springs);
+  } catch (const InputError& error) {
+    throw InputError("organ '" + organ.name + "': " + organ.mesh.file.string() + ": " +
+                     error.what());
+  }
+}
+
 /// Σ_j k_ij of each node [N/m].
 std::vector<double> stiffness_sums(const SpringNetwork& network, std::size_t node_count) {
   std::vector<double> sums(node_count, 0);
@@ -79,7 +88,7 @@ OrganModel build_spring_organ(const scene::Organ& organ, const Vec3& gravity,
   if (!(model.rest_volume > 0)) {
     throw InputError("organ '" + organ.name + "': its surface encloses no positive volume");
   }
-  SpringNetwork network = build_spring_network(rest_surface, organ.tissue, organ.springs);
+  SpringNetwork network = springs_of(organ, rest_surface);
   model.surface_node_count = rest_surface.nodes.size();
   model.rest_positions = rest_surface.nodes;
   model.rest_positions.insert(model.rest_positions.end(), network.virtual_nodes.begin(),

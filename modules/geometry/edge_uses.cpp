@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "modules/core/sort_unique.h"
+
 namespace palpate::geometry {
 
 std::vector<EdgeUse> edge_uses_of(std::span<const Triangle> triangles) {
@@ -29,6 +31,25 @@ std::vector<std::vector<std::uint32_t>> neighbours_of(
     neighbours[b].push_back(a);
   }
   return neighbours;
+}
+
+std::vector<std::array<std::uint32_t, 2>> second_neighbours_of(
+    std::span<const std::vector<std::uint32_t>> neighbours, std::size_t most) {
+  std::vector<std::array<std::uint32_t, 2>> pairs;
+  std::vector<std::uint32_t> second_ring;
+  for (std::uint32_t a = 0; a < neighbours.size() && pairs.size() <= most; ++a) {
+    second_ring.clear();
+    for (const std::uint32_t middle : neighbours[a]) {
+      for (const std::uint32_t b : neighbours[middle]) {
+        if (b > a && !std::binary_search(neighbours[a].begin(), neighbours[a].end(), b)) {
+          second_ring.push_back(b);
+        }
+      }
+    }
+    sort_unique(second_ring);
+    for (const std::uint32_t b : second_ring) pairs.push_back({a, b});
+  }
+  return pairs;
 }
 
 DisjointSets::DisjointSets(std::size_t count) : parent_(count) {

@@ -32,6 +32,12 @@ void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
 std::vector<std::vector<std::uint32_t>> neighbours_of(
     std::size_t node_count, std::span<const std::array<std::uint32_t, 2>> edges);
 
+/// Pairs of nodes joined by a path of two edges but by no edge, each once, sorted. Of a node with n
+/// neighbours there are about n²/2: where there are more than `most`, not all are found.
+/// @param neighbours  ascending
+std::vector<std::array<std::uint32_t, 2>> second_neighbours_of(
+    std::span<const std::vector<std::uint32_t>> neighbours, std::size_t most);
+
 /// Sets joined together, for components and fans.
 class DisjointSets {
  public:

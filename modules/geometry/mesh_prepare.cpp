@@ -6,15 +6,15 @@
 namespace palpate::geometry {
 
 TriangleSurface load_organ_surface(const std::filesystem::path& file, std::string_view unit,
-                                   std::size_t node_count) {
+                                   std::size_t node_count,
+                                   const std::function<void(const TriangleSurface&)>& admit) {
   TriangleSurface surface = read_surface(file, unit);
   repair_surface(surface);
-  if (node_count > 0) {
-    try {
-      surface = resample_surface(surface, node_count);
-    } catch (const InputError& error) {
-      throw InputError(file.string() + ": " + error.what());
-    }
+  try {
+    if (node_count > 0) surface = resample_surface(surface, node_count);
+    if (admit) admit(surface);
+  } catch (const InputError& error) {
+    throw InputError(file.string() + ": " + error.what());
   }
   const MeshReport report = check_surface(surface);
   if (report.holds_volume()) return surface;

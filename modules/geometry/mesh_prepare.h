@@ -31,8 +31,11 @@ TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t nod
                                  const std::function<void(double)>& progress = {});
 
 /// Reads, repairs, resamples if node_count > 0, and checks.
+/// @param admit  may refuse the surface by an InputError before it is checked, which takes as long
+///               as there are pairs of triangles at a node
 /// @throws InputError naming file, problems and what to do if the result cannot hold a volume.
 TriangleSurface load_organ_surface(const std::filesystem::path& file, std::string_view unit,
-                                   std::size_t node_count);
+                                   std::size_t node_count,
+                                   const std::function<void(const TriangleSurface&)>& admit = {});
 
 }  // namespace palpate::geometry

@@ -1,6 +1,7 @@
 #include "modules/scene/assets.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "modules/core/error.h"
@@ -11,13 +12,17 @@
 #include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/models.h"
 #include "modules/scene/region.h"
+#include "modules/scene/spring_count.h"
 
 namespace palpate::scene {
 namespace {
 
-geometry::TriangleSurface load(const Mesh& mesh, const std::string& owner) {
+using Admit = std::function<void(const geometry::TriangleSurface&)>;
+
+geometry::TriangleSurface load(const Mesh& mesh, const std::string& owner,
+                               const Admit& admit = {}) {
   try {
-    return geometry::load_organ_surface(mesh.file, mesh.unit, mesh.nodes);
+    return geometry::load_organ_surface(mesh.file, mesh.unit, mesh.nodes, admit);
   } catch (const InputError& error) {
     throw InputError(owner + ": " + error.what());
   }
@@ -115,7 +120,10 @@ geometry::OrganShape load_organ(const Organ& organ) {
     shape = load_tetrahedra(organ, owner);
     if (!format.is_solid()) shape = geometry::OrganShape(std::move(shape.surface));
   } else {
-    shape = geometry::OrganShape(load(organ.mesh, owner));
+    const Admit count_springs = [&](const geometry::TriangleSurface& surface) {
+      if (!format.is_solid()) check_spring_count(surface, organ.springs);
+    };
+    shape = geometry::OrganShape(load(organ.mesh, owner, count_springs));
     if (format.is_solid()) shape = filled(shape.surface, organ, owner);
   }
   for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {
