@@ -26,7 +26,7 @@ bool ContactRelaxation::choose(double h, const std::vector<Vec3>& positions,
   }
   std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  if (touched.empty() || touched.size() > kMostInReach) return false;
+  if (touched.empty() || touched.size() > kMostTouched) return false;
   Vec3 centre = Vec3::Zero();
   double mass = 0, whole = 0;
   for (const std::uint32_t node : touched) {
@@ -36,7 +36,9 @@ bool ContactRelaxation::choose(double h, const std::vector<Vec3>& positions,
   }
   const double edges = edges_in_reach(whole / mass - 1);
   if (edges < kEdges) return false;
-  const std::size_t reach = std::min(nodes_in_reach(touched.size(), edges), kMostInReach);
+  // What is touched alone would be as stiff as if all about it stood still.
+  const std::size_t most = std::max(kMostInReach, 2 * touched.size());
+  const std::size_t reach = std::min(nodes_in_reach(touched.size(), edges), most);
   grow_patch(model_, neighbours_, positions, touched, centre, reach, patch_);
   springs_.find_slices(patch_.nodes, slices_);
   return !patch_.nodes.empty();

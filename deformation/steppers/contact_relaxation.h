@@ -30,9 +30,13 @@ class ContactRelaxation {
   /// @param springs  A, linearised before each step; outlives this
   ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs);
 
-  /// Chooses the nodes that go along with the rows', at most kMostInReach.
+  /// A touch of more nodes is not local: that of a plate.
+  static constexpr std::size_t kMostTouched = 2000;
+
+  /// Chooses the nodes that go along with the rows', at most kMostInReach or twice as many as
+  /// those.
   /// @param positions  where A is taken [m]  (node_count)
-  /// @returns false: there is no need, or a touch of more is not local
+  /// @returns false: there is no need, or the touch is not local
   bool choose(double h, const std::vector<Vec3>& positions, std::span<const ContactRow> rows);
   const std::vector<std::uint32_t>& nodes() const { return patch_.nodes; }
   const std::vector<std::uint32_t>& slices() const { return slices_; }
