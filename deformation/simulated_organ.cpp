@@ -102,22 +102,28 @@ bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
   const TargetVolume target_start = target_volume_;
   const double target_before = begin_step(time, h, rows);
   const double target = state_.target_volume;
+  double aim = target;
   const int unsolved_before = report.contacts_unsolved;
   bool is_held = true;
   StepReport stepped = dynamics_->step(h, rows, state_);
-  for (int revision = 0; revise(start_, state_); ++revision) {
+  for (int revision = 0;; ++revision) {
+    const Missed missed = revise(start_, state_);
+    if (missed == Missed::kNothing) break;
     is_held = revision < kMostRevisions;
-    if (!is_held && last_resort) break;
+    if (!is_held && (last_resort || missed == Missed::kDepth)) break;
+    aim += missed_volume(target, stepped);
     state_ = start_;
     started_.give(rows);
     if (!is_held) {
       target_volume_ = target_start;
       return false;
     }
-    state_.target_volume = target;
+    state_.target_volume = aim;
     state_.pressure_limit = pressure_limit_;
+    push_gently(h, rows);
     stepped = dynamics_->step(h, rows, state_);
   }
+  state_.target_volume = target;
   end_step(h, rows, target_before, stepped, report);
   if (!is_held) report.contacts_unsolved = unsolved_before + 1;
   return true;
@@ -127,10 +133,21 @@ double SimulatedOrgan::begin_step(double time, double h, std::span<ContactRow> r
   const double target_before = state_.target_volume;
   state_.target_volume = model_->rest_volume * target_volume_.follow(time, h);
   state_.pressure_limit = pressure_limit_;
-  if (gentle_time_ > 0) {
-    for (ContactRow& row : rows) row.gap = std::max(row.gap, -kGentleSpeed * h);
-  }
+  push_gently(h, rows);
   return target_before;
+}
+
+/// What the linearised constraint missed V* by: a step that is taken again aims as much beside it.
+double SimulatedOrgan::missed_volume(double asked, const StepReport& stepped) const {
+  if (!holds_volume_ || stepped.volume_skipped || stepped.pressure_capped) return 0;
+  const double volume = geometry::enclosed_volume(state_.positions, model_->triangles);
+  const double most = kMaxVolumeError * model_->rest_volume;
+  return std::isfinite(volume) ? std::clamp(asked - volume, -most, most) : 0;
+}
+
+void SimulatedOrgan::push_gently(double h, std::span<ContactRow> rows) const {
+  if (gentle_time_ <= 0) return;
+  for (ContactRow& row : rows) row.gap = std::max(row.gap, -kGentleSpeed * h);
 }
 
 void SimulatedOrgan::end_step(double h, std::span<const ContactRow> rows, double target_before,

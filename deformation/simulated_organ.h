@@ -76,11 +76,11 @@ class SimulatedOrgan {
   /// One step of h [s] that ends at simulated `time` [s].
   void step(double time, double h, std::span<ContactRow> rows, AdvanceReport& report);
   /// The same; it is taken again from its start, with the rows there are then and the impulses
-  /// they started from, while `revise`,
-  /// given the states at its start and end, wants it, at most kMostRevisions times. None: once.
-  /// @param last_resort  whether it is taken even if revise() is not content then
+  /// they started from, while `revise`, given the states at its start and end, finds that they
+  /// missed something, at most kMostRevisions times. None: once.
+  /// @param last_resort  whether it is taken even if that is a crossing then
   /// @returns false if it was not: the organ is as before
-  using Revise = std::function<bool(const OrganState& start, const OrganState& end)>;
+  using Revise = std::function<Missed(const OrganState& start, const OrganState& end)>;
   bool step(double time, double h, std::vector<ContactRow>& rows, const Revise& revise,
             bool last_resort, AdvanceReport& report);
 
@@ -113,6 +113,9 @@ class SimulatedOrgan {
  private:
   /// @returns V* before it
   double begin_step(double time, double h, std::span<ContactRow> rows);
+  /// Of what the guards put back, for a while.
+  void push_gently(double h, std::span<ContactRow> rows) const;
+  double missed_volume(double asked, const StepReport& stepped) const;
   void end_step(double h, std::span<const ContactRow> rows, double target_before,
                 const StepReport& stepped, AdvanceReport& report);
   void release_volume();

@@ -50,18 +50,14 @@ struct DeformationWorld::Impl {
       if (contacts_suspended) break;
       probe.append_rows(index, *organ.surface, organ.simulated.state(), h, to, organ.rows);
     }
-    SimulatedOrgan::Revise crossed;
+    SimulatedOrgan::Revise revise;
     if (!contacts_suspended && any_may_cross(index)) {
-      crossed = [&](const OrganState& start, const OrganState& end) {
-        bool any = false;
-        for (auto& probe : probes) {
-          any |= probe.hold_crossed(index, *organ.surface, start.positions, end.positions, h, to,
-                                    organ.rows);
-        }
-        return any;
+      revise = [&](const OrganState& start, const OrganState& end) {
+        return ProbeContacts::hold_missed(probes, index, *organ.surface, start.positions,
+                                          end.positions, h, to, organ.rows);
       };
     }
-    return organ.simulated.step(time + to * period, h, organ.rows, crossed, last_resort, report);
+    return organ.simulated.step(time + to * period, h, organ.rows, revise, last_resort, report);
   }
 
   void take_rows(std::uint32_t index, double from, double to, AdvanceReport& report) {
@@ -99,18 +95,18 @@ struct DeformationWorld::Impl {
                                [&](const ProbeContacts& probe) { return probe.may_cross(organ); });
   }
 
-  /// Did what organs do to each other take one through a probe that its own step had held?
-  bool crossed_together(double h, double to) {
-    bool any = false;
+  /// What organs do to each other may take one through a probe, or into it, that its own step had
+  /// held.
+  Missed missed_together(double h, double to) {
+    Missed missed = Missed::kNothing;
     for (std::uint32_t i = 0; i < organs.size(); ++i) {
       WorldOrgan& organ = organs[i];
       if (organ.simulated.contacts_suspended()) continue;
-      for (auto& probe : probes) {
-        any |= probe.hold_crossed(i, *organ.surface, organ.start.state.positions,
-                                  organ.simulated.state().positions, h, to, organ.rows);
-      }
+      missed = std::max(
+          missed, ProbeContacts::hold_missed(probes, i, *organ.surface, organ.start.state.positions,
+                                             organ.simulated.state().positions, h, to, organ.rows));
     }
-    return any;
+    return missed;
   }
 
   /// All organs from one fraction of the advance to another, then their contacts with each other.
@@ -131,10 +127,9 @@ struct DeformationWorld::Impl {
       rows.emplace_back(organs[i].rows);
     }
     if (held) organ_contacts->end_step(h, rows, tried);
-    if (held && may_cross && crossed_together(h, to)) {
-      held = last_resort;
-      ++tried.contacts_unsolved;
-    }
+    const Missed missed = held && may_cross ? missed_together(h, to) : Missed::kNothing;
+    held &= last_resort || missed != Missed::kCrossing;
+    tried.contacts_unsolved += missed != Missed::kNothing;
     if (!held) {
       for (WorldOrgan& organ : organs) organ.simulated.go_back(organ.start);
       return false;

@@ -36,20 +36,19 @@ struct SingleContact {
 
 using Bodies = std::vector<const Body*>;
 
+/// Of a sum of pushes; where these cancel each other so far that friction outweighs them, that of
+/// the force: no row pulls.
+Vec3 normal_of(const Vec3& pushes, const Vec3& force) {
+  const Vec3 normal = pushes.normalized();
+  return normal.dot(force) < 0 ? force.normalized() : normal;
+}
+
 template <class F>
 void for_each_weight(const CarriedContact& contact, const Body& body, const F& f) {
   for (int k = 0; k < 3; ++k) {
     const double weight = contact.barycentric[k];
     if (weight != 0) f(body.triangles[contact.triangle][static_cast<std::size_t>(k)], weight);
   }
-}
-
-bool is_held(const CarriedContact& contact, const Body& body) {
-  bool held = true;
-  for_each_weight(contact, body, [&](std::uint32_t node, double) {
-    held = held && body.inverse_masses[node] == 0;
-  });
-  return held;
 }
 
 SingleContact single_of(const CarriedContact& contact, const ProbeContacts& probe, const Body& body,
@@ -63,8 +62,8 @@ SingleContact single_of(const CarriedContact& contact, const ProbeContacts& prob
   });
   one.row.point_P = contact.point_P;
   if (is_pushed(contact)) {
-    one.row.normal = contact.pushed / contact.pushed.norm();
     one.row.force = (contact.pushed + contact.dragged) / period;
+    one.row.normal = normal_of(contact.pushed, one.row.force);
     return one;
   }
   one.row.normal = (probe.pose().rotation * contact.normal_P).stableNormalized();
@@ -187,7 +186,7 @@ class Merged {
   }
   bool empty() const { return weights_.empty(); }
   CondensedContact take() {
-    sum_.normal = normal_.norm() > 0 ? normal_.normalized() : first_;
+    sum_.normal = normal_of(normal_.norm() > 0 ? normal_ : first_, sum_.force);
     if (!(turning_ > total_ / 2)) sum_.radius = 0;
     sum_.point_P /= total_;
     sum_.velocity /= total_;
@@ -234,12 +233,14 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe, cons
   // Of those near, those first that would be the first to press if probe and tissue went on.
   const auto take = [&](const CarriedContact& contact) {
     const Body& body = *bodies[contact.organ];
+    // Gives way by nothing, and pushes no more: what it did was before it came there.
+    if (is_on_fixed_nodes(contact, body)) return;
     SingleContact one = single_of(contact, probe, body, *states[contact.organ], period);
     if (!is_unit(one.row.normal) || !std::isfinite(one.row.gap)) return;  // says nothing
     if (one.presses()) {
       one.order = -one.row.force.dot(one.row.normal);
       pressing.push_back(one);
-    } else if (!is_held(contact, body)) {
+    } else {
       one.order = one.row.gap + one.row.normal.dot(probe.went() - period * one.row.velocity);
       near.push_back(one);
     }

@@ -36,6 +36,13 @@ struct ContactRow {
   Vec3 tangential_impulse = Vec3::Zero();  ///< on the tissue, ⟂ n, norm ≤ friction·j [N·s]
 };
 
+/// What its nodes have (positions, velocities) at the place of the tissue that the row is of.
+inline Vec3 at_tissue(const ContactRow& row, std::span<const Vec3> of_nodes) {
+  Vec3 sum = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) sum += row.weights[k] * of_nodes[row.nodes[k]];
+  return sum;
+}
+
 /// What the volume solve needs of this step; absent for plain mass-spring.
 struct VolumeRow {
   const VolumeGradient& at;

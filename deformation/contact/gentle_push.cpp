@@ -8,8 +8,7 @@ namespace {
 /// Of the tissue towards the probe [m/s], along the row: as it moves, or as it moves beside a probe
 /// that goes inwards.
 double approach_of(const ContactRow& row, const OrganState& state) {
-  Vec3 velocity = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
+  const Vec3 velocity = at_tissue(row, state.velocities);
   const double tissue = row.normal.dot(velocity), probe = row.normal.dot(row.probe_velocity);
   return std::min(tissue, tissue - probe);
 }

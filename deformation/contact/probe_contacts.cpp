@@ -17,15 +17,19 @@ constexpr double kResting = 1e-6;
 /// two.
 constexpr double kSamePlace = 0.99;
 
-std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
-  return {contact.organ, contact.triangle};
-}
-
 double apart(const CarriedContact& a, const CarriedContact& b) {
   return (a.barycentric - b.barycentric).lpNorm<Eigen::Infinity>();
 }
 
 }  // namespace
+
+bool is_on_fixed_nodes(const CarriedContact& contact, const Body& body) {
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t node = body.triangles[contact.triangle][static_cast<std::size_t>(k)];
+    if (contact.barycentric[k] != 0 && body.inverse_masses[node] != 0) return false;
+  }
+  return true;
+}
 
 ProbeContacts::ProbeContacts(const scene::Probe& probe) : friction_(probe.friction) {
   const geometry::ProbeForm form = scene::form_of(probe.shape);
@@ -104,18 +108,21 @@ void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceT
     contact.barycentric = moved.weights;
   }
   std::ranges::stable_sort(contacts_, {}, triangle_of);
-  if (core_) unite_contacts_of_triangles();
+  if (core_) unite_contacts(organ);
 }
 
-/// Of a round probe there is one to a triangle; forces of several are its.
-void ProbeContacts::unite_contacts_of_triangles() {
+/// Of a round probe there is one to a triangle; what several did is its.
+void ProbeContacts::unite_contacts(std::uint32_t organ) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (kept > 0 && triangle_of(contacts_[kept - 1]) == triangle_of(contacts_[i])) {
+    if (kept > 0 && contacts_[i].organ == organ &&
+        triangle_of(contacts_[kept - 1]) == triangle_of(contacts_[i])) {
       CarriedContact& one = contacts_[kept - 1];
       one.normal_force += contacts_[i].normal_force;
       one.tangential_force += contacts_[i].tangential_force;
       one.behind |= contacts_[i].behind;
+      one.pushed += contacts_[i].pushed;
+      one.dragged += contacts_[i].dragged;
     } else {
       if (kept != i) contacts_[kept] = contacts_[i];
       ++kept;
@@ -285,13 +292,13 @@ ContactRow ProbeContacts::row_of(const CarriedContact& contact, const Body& body
   row.nodes = body.triangles[contact.triangle];
   row.weights = contact.barycentric;
   row.normal = after.rotation * contact.normal_P;
-  Vec3 tissue = Vec3::Zero();
-  for (int k = 0; k < 3; ++k) tissue += row.weights[k] * positions[row.nodes[k]];
   const Vec3 point = before.to_world(contact.point_P);
-  row.gap = row.normal.dot(point - tissue);
+  row.gap = row.normal.dot(point - at_tissue(row, positions));
   row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
   row.friction = friction_;
   row.radius = radius();
+  // No step moves what is fixed, or finds a force there: one from before it came there would stay.
+  if (is_on_fixed_nodes(contact, body)) return row;
   row.normal_impulse = h * contact.normal_force;
   row.tangential_impulse = h * contact.tangential_force;
   return row;
@@ -306,6 +313,7 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
     watch_from_afar(organ, surface, state, before);
   }
   if (!has_contacts(organ) && !knows(organ)) return;
+  if (core_) unite_contacts(organ);
   if (core_) look_around(organ, surface, state, before);
   const bool inside = core_ && near_of(organ).inside;
   for (CarriedContact& contact : contacts_) {
@@ -337,6 +345,7 @@ std::size_t ProbeContacts::take_rows(std::uint32_t organ, double h,
     contact.pushed += row.normal_impulse * row.normal;
     contact.dragged -= row.tangential_impulse;
   }
+  if (core_) unite_contacts(organ);
   return taken;
 }
 

@@ -4,11 +4,13 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "deformation/contact/contact_solve.h"
 #include "deformation/contact/gentle_push.h"
 #include "deformation/contact/outer_seat.h"
+#include "deformation/contact/starting_impulses.h"
 #include "deformation/contact/surface_walk.h"
 #include "deformation/model/organ_state.h"
 #include "modules/core/touch.h"
@@ -39,6 +41,14 @@ struct CarriedContact : Contact {
     archive(row, behind, normal_force, tangential_force, pushed, dragged);
   }
 };
+
+/// Whether nothing but fixed nodes carries its place.
+bool is_on_fixed_nodes(const CarriedContact& contact, const Body& body);
+
+/// Contacts are sorted by it.
+inline std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
+  return {contact.organ, contact.triangle};
+}
 
 class ProbeContacts {
  public:
@@ -81,12 +91,24 @@ class ProbeContacts {
   bool hold_crossed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
                     std::span<const Vec3> end, double h, double fraction,
                     std::vector<ContactRow>& rows);
+  /// The same where tissue that it sees ended deeper in a round probe than kUnsolvedDepth: all
+  /// that is in it and that no row is of gets one. Then a triangle may have several contacts, until
+  /// the sub-step is over.
+  bool hold_swallowed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
+                      std::span<const Vec3> end, double h, double fraction,
+                      std::vector<ContactRow>& rows);
+  /// Both, for all probes.
+  static Missed hold_missed(std::span<ProbeContacts> probes, std::uint32_t organ,
+                            SurfaceWalk& surface, std::span<const Vec3> start,
+                            std::span<const Vec3> end, double h, double fraction,
+                            std::vector<ContactRow>& rows);
   /// Takes the solved rows back. @param rows  all of the sub-step of h [s]
   /// @returns the number of its own
   std::size_t take_rows(std::uint32_t organ, double h, std::span<const ContactRow> rows);
 
   /// After take_rows() of all: a wall that the step left across the core of a round probe that was
-  /// outside is moved off it (seat_outside). @returns whether one was
+  /// outside is moved off it (seat_outside), but not where the core is outside all the same: one
+  /// folded inside out. @returns whether there was one
   static bool put_back_outside(std::span<ProbeContacts> probes, std::uint32_t organ,
                                SurfaceWalk& surface, std::span<Vec3> positions, double fraction);
 
@@ -138,7 +160,7 @@ class ProbeContacts {
   void look_around(std::uint32_t organ, SurfaceWalk& surface, const OrganState& state,
                    const Pose& pose);
   void take_forces_of_previous(CarriedContact& carried);
-  void unite_contacts_of_triangles();
+  void unite_contacts(std::uint32_t organ);
   CarriedContact& contact_on(std::uint32_t organ, std::uint32_t triangle);
   /// Appends the core if the step may have left it across a wall that it was outside of: no row
   /// held it, or it lies through a triangle. No crossing within the step may have told: one over an
@@ -150,6 +172,10 @@ class ProbeContacts {
   void hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
                std::span<const Vec3> start, const Pose& before, const Pose& after, double h,
                std::vector<ContactRow>& rows);
+  double way_to_tissue(const SurfaceWalk& surface, std::span<const Vec3> start,
+                       std::span<const Vec3> end, const Pose& before, const Pose& after) const;
+  bool is_held(std::uint32_t organ, const Vec3& place, std::span<const Vec3> end,
+               std::span<const ContactRow> rows) const;
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
   /// @returns false if it is seen from behind by a core outside: the wall is not touched there
   bool measure_again(const SurfaceWalk& surface, const OrganState& state, const Pose& pose,

@@ -43,7 +43,7 @@ bool ProbeContacts::put_back_outside(std::span<ProbeContacts> probes, std::uint3
     Near& near = probe.near_of(organ);
     if (std::exchange(near.crossed, false)) near.inside = !outside;
   }
-  return crossed;
+  return true;
 }
 
 /// Ends of the core through triangles, and its side over edges: crossings_.
@@ -83,6 +83,21 @@ void ProbeContacts::hold_at(const WallCrossing& crossing, std::uint32_t organ,
   row.normal_impulse = rows[contact.row].normal_impulse;
   row.tangential_impulse = rows[contact.row].tangential_impulse;
   rows[contact.row] = row;
+}
+
+Missed ProbeContacts::hold_missed(std::span<ProbeContacts> probes, std::uint32_t organ,
+                                  SurfaceWalk& surface, std::span<const Vec3> start,
+                                  std::span<const Vec3> end, double h, double fraction,
+                                  std::vector<ContactRow>& rows) {
+  Missed missed = Missed::kNothing;
+  for (ProbeContacts& probe : probes) {
+    if (probe.hold_crossed(organ, surface, start, end, h, fraction, rows)) {
+      missed = Missed::kCrossing;
+    } else if (probe.hold_swallowed(organ, surface, start, end, h, fraction, rows)) {
+      missed = std::max(missed, Missed::kDepth);
+    }
+  }
+  return missed;
 }
 
 bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,

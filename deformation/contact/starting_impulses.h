@@ -1,8 +1,9 @@
-// What rows bring to a step, for a step that is taken again: friction starts from where the step
-// before left it, not from what a dropped attempt made of it.
+// For a step that is taken again: why, and what rows bring to it. Friction starts from where the
+// step before left it, not from what a dropped attempt made of it.
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,6 +11,13 @@
 #include "deformation/contact/contact_solve.h"
 
 namespace palpate::deformation {
+
+/// What the rows of a step did not hold, from mild to harsh.
+enum class Missed : std::uint8_t {
+  kNothing,
+  kDepth,     ///< tissue is in a probe; taken after all, the step counts as not solved
+  kCrossing,  ///< a probe's core went through the wall; it is to be taken in halves
+};
 
 class StartingImpulses {
  public:

@@ -79,8 +79,7 @@ void DivergenceDetector::add_work(double h, std::span<const ContactRow> rows, do
                                   const OrganState& state) {
   injected_energy_ -= std::min(h / kInjectionMemory, 1.0) * injected_energy_;
   for (const ContactRow& row : rows) {
-    Vec3 velocity = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) velocity += row.weights[k] * state.velocities[row.nodes[k]];
+    const Vec3 velocity = at_tissue(row, state.velocities);
     const Vec3 impulse = row.tangential_impulse - row.normal_impulse * row.normal;
     const double work = impulse.dot(velocity);
     energy_budget_ += work;

@@ -133,7 +133,7 @@ def table(name, out, deepest):
     text = []
     for depth, function, count, file in merged(rows):
         left = "  " * depth + function + (f" x{count}" if count > 1 else "")
-        text.append(f"{left:<58}{file}".rstrip())
+        text.append(f"{left:<57} {file}".rstrip())
     return "\n".join(text)
 
 

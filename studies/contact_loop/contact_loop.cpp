@@ -5,7 +5,9 @@
 #include <deque>
 #include <limits>
 #include <random>
+#include <utility>
 
+#include "deformation/contact/contact_solve.h"
 #include "modules/bus/tap.h"
 #include "modules/core/error.h"
 #include "modules/core/rotation_vector.h"
@@ -25,6 +27,7 @@ constexpr double kTurnX = 0.31, kTurnZ = 0.23;  // of the rate of presses
 constexpr double kWait = 0.1, kHold = 0.3;      // before and after the motion [s]
 constexpr double kLeastMotion = 1.0;            // [s]
 constexpr double kLeastPresses = 2;
+constexpr double kRounding = 1e-7;  // of positions in a message [m]
 
 /// In and out along y, to and fro along x and z, then held where it is.
 class Sliding final : public haptics::Device {
@@ -121,6 +124,39 @@ class Judge {
     result.crossings += crossed;
     result.put_back += crossed && *session_.health("deformation").guard != '\0';
     was_inside_ = inside;
+    const long unsolved = session_.contact_troubles().unsolved;
+    const bool said = std::exchange(unsolved_, unsolved) != unsolved;
+    const double before = left_;
+    left_ = std::numeric_limits<double>::infinity();
+    if (!tool_.is_round() || inside) return;
+    left_ = tissue_in(law_.anchor, *at);
+    result.deepest_tissue = std::max(result.deepest_tissue, left_);
+    const double allowed = std::max(before, deformation::kUnsolvedDepth) + kRounding;
+    result.swallowed += left_ > allowed && !said;
+  }
+
+  /// How deep tissue that can move and that its core sees is in a round tool [m].
+  double tissue_in(const Pose& pose, const Surface& surface) const {
+    const Vec3 a = pose.to_world(tool_.inside.front()), b = pose.to_world(tool_.inside.back());
+    double deepest = 0;
+    for (const auto& triangle : surface.mesh->triangles) {
+      const auto corners = corners_of(triangle, surface);
+      const auto [core, place] = nearest_to(a, b, corners);
+      const Vec3 away = core - place.point;
+      const double depth = tool_.radius - away.norm();
+      if (depth > deepest && geometry::unit_normal(corners).dot(away) > 0 &&
+          can_move(triangle, place.weights, surface)) {
+        deepest = depth;
+      }
+    }
+    return deepest;
+  }
+
+  static std::pair<Vec3, geometry::PointOnTriangle> nearest_to(
+      const Vec3& a, const Vec3& b, const geometry::TriangleCorners& corners) {
+    if (a == b) return {a, geometry::closest_on_triangle(a, corners)};
+    const auto pair = geometry::closest_of_segment_and_triangle(a, b, corners);
+    return {pair.on_segment, pair.on_triangle};
   }
 
   void judge(LoopResult& result) {
@@ -163,16 +199,30 @@ class Judge {
     return points;
   }
 
+  static bool can_move(const geometry::Triangle& triangle, const Vec3& weights,
+                       const Surface& surface) {
+    bool moves = false;
+    for (int k = 0; k < 3; ++k) {
+      const auto& fixed = surface.mesh->fixed_nodes;
+      moves |= weights[k] > 0 && std::ranges::find(fixed, triangle[k]) == fixed.end();
+    }
+    return moves;
+  }
+
   double depth_of(const Vec3& p, const Surface& surface) const {
     double nearest = std::numeric_limits<double>::infinity();
-    const auto at = [&](std::uint32_t node) -> Vec3 {
-      return Eigen::Map<const Eigen::Vector3f>(&surface.nodes.positions[3 * node]).cast<double>();
-    };
-    for (const auto& t : surface.mesh->triangles) {
-      const auto q = geometry::closest_on_triangle(p, {at(t[0]), at(t[1]), at(t[2])});
+    for (const auto& triangle : surface.mesh->triangles) {
+      const auto q = geometry::closest_on_triangle(p, corners_of(triangle, surface));
       nearest = std::min(nearest, (q.point - p).norm());
     }
     return nearest;
+  }
+
+  static geometry::TriangleCorners corners_of(const geometry::Triangle& t, const Surface& surface) {
+    const auto at = [&](std::uint32_t node) -> Vec3 {
+      return Eigen::Map<const Eigen::Vector3f>(&surface.nodes.positions[3 * node]).cast<double>();
+    };
+    return {at(t[0]), at(t[1]), at(t[2])};
   }
 
   session::InProcess& session_;
@@ -187,6 +237,9 @@ class Judge {
   ContactModel law_;
   bool was_inside_ = true;  ///< a tool that begins inside has crossed nothing
   double lost_since_ = -1;
+  long unsolved_ = 0;  ///< of the advances before
+  /// Tissue in a round tool, which goes out gently where it was not seen coming [m]
+  double left_ = std::numeric_limits<double>::infinity();
 };
 
 /// The same samples each time.
@@ -209,12 +262,13 @@ session::InProcessOptions options_of(double loss) {
 }
 
 Tool ball_of(double radius) {
-  return {"ball", scene::SphereShape{radius}, {}, Quat::Identity(), radius, {Vec3::Zero()}};
+  return {"ball", scene::SphereShape{radius}, {}, Quat::Identity(), radius, radius, {Vec3::Zero()}};
 }
 
 Tool needle() {
   const scene::CapsuleShape shape{5e-4, 0.04};
-  Tool tool{"needle", shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitY()), 0, {}};
+  Tool tool{"needle",     shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitY()),
+            shape.radius, 0,     {}};
   tool.reach = shape.length / 2 + shape.radius;
   for (int i = 0; i <= 8; ++i)
     tool.inside.push_back((i / 8.0 - 0.5) * shape.length * Vec3::UnitZ());
@@ -224,20 +278,20 @@ Tool needle() {
 /// Lying on the wall: its side goes in first, its ends may never.
 Tool rod_of(const std::string& name, double radius) {
   const scene::CapsuleShape shape{radius, 0.04};
-  Tool tool{name, shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()), shape.radius, {}};
+  Tool tool{name, shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()), radius, radius, {}};
   for (int i = 0; i <= 32; ++i)
     tool.inside.push_back((i / 32.0 - 0.5) * shape.length * Vec3::UnitZ());
   return tool;
 }
 
 Tool box_of(const std::string& name, const Vec3& size) {
-  return {name,         scene::BoxShape{size},         {}, Quat::Identity(),
+  return {name,         scene::BoxShape{size},         {}, Quat::Identity(), 0,
           size.y() / 2, geometry::make_box(size).nodes};
 }
 
 /// No two corners at one distance from the middle.
 Tool pebble() {
-  Tool tool{"mesh", scene::MeshShape{}, geometry::make_ball(5e-3, 1), Quat::Identity(), 0, {}};
+  Tool tool{"mesh", scene::MeshShape{}, geometry::make_ball(5e-3, 1), Quat::Identity(), 0, 0, {}};
   for (std::size_t i = 0; i < tool.mesh.nodes.size(); ++i) {
     tool.mesh.nodes[i] *= 1 + 0.1 * std::sin(7.0 * static_cast<double>(i));
     tool.reach = std::max(tool.reach, tool.mesh.nodes[i].y());
@@ -248,7 +302,7 @@ Tool pebble() {
 
 /// Along −z of the probe, which is turned into +y of the world.
 Tool tips_first(const std::string& name, const scene::ProbeShape& shape) {
-  Tool tool{name, shape, {}, rotation_between(-Vec3::UnitZ(), Vec3::UnitY()), 0, {}};
+  Tool tool{name, shape, {}, rotation_between(-Vec3::UnitZ(), Vec3::UnitY()), 0, 0, {}};
   tool.inside = std::get<geometry::TriangleSurface>(scene::form_of(shape)).nodes;
   return tool;
 }

@@ -16,6 +16,7 @@ struct Tool {
   scene::ProbeShape shape;
   geometry::TriangleSurface mesh;  ///< of a MeshShape
   Quat rotation = Quat::Identity();
+  double radius = 0;         ///< of a round one [m]
   double reach = 0;          ///< of the tip before the probe's origin, along +y in W [m]
   std::vector<Vec3> inside;  ///< points in P that are judged: a ball's centre, corners, … [m]
 
@@ -50,12 +51,17 @@ struct LoopResult {
   /// they left it for, and none before.
   long crossings = 0;
   long put_back = 0;  ///< of these: while a guard acted on the organ, and said so
+  /// Advances that left tissue in a round tool whose core was outside, seen by it, deeper than
+  /// before and than a step may leave it (deformation::kUnsolvedDepth), and did not say that they
+  /// were not solved.
+  long swallowed = 0;
+  double deepest_tissue = 0;  ///< in such a tool after an advance, said or not [m]
   long searches = 0;
   long inside = 0;           ///< a point of the tool was inside the surface
   long lost = 0;             ///< of these: no contact that pushes it out
   double longest_lost = 0;   ///< the longest such time [s]
   ContactTroubles troubles;  ///< as the session counts them
-  double deepest = 0;        ///< such a point below the nearest of the surface [m]
+  double deepest = 0;        ///< a point of the tool below the nearest of the surface [m]
 };
 
 /// The first organ of the scene and one tool, from the front (-y) at `place` (x, z) [m].

@@ -6,6 +6,7 @@
 #include <ostream>
 #include <random>
 
+#include "deformation/contact/contact_solve.h"
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/bounding_box.h"
@@ -44,7 +45,7 @@ std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3
 
 struct Sum {
   long runs = 0, inside = 0, lost = 0;
-  long presses = 0, crossings = 0, put_back = 0;  ///< of round tools
+  long presses = 0, advances = 0, crossings = 0, put_back = 0, swallowed = 0;  ///< of round tools
   ContactTroubles troubles;
 
   void add(const Tool& tool, const LoopResult& result) {
@@ -55,6 +56,8 @@ struct Sum {
     presses += tool.is_round() ? result.presses : 0;
     crossings += result.crossings;
     put_back += result.put_back;
+    advances += tool.is_round() ? result.advances : 0;
+    swallowed += result.swallowed;
   }
 };
 
@@ -79,12 +82,12 @@ void print_line(const std::string& scene, const Vec3& place, const LoopCase& loo
   const auto* ball = std::get_if<scene::SphereShape>(&loop.tool.shape);
   out << fmt::format(
              "{:<23} {:4.0f} {:4.0f}  {:<7} {:>6} {:7g} {:4g} {:11g} {:9} {:6} {:6} {:11.3f} "
-             "{:12.2f} {:7} {:8} {:9} {:9} {:8}\n",
+             "{:12.2f} {:7} {:8} {:9} {:11.3f} {:9} {:9} {:8}\n",
              scene, 1e3 * place.x(), 1e3 * place.z(), loop.tool.name,
              ball != nullptr ? fmt::format("{:g}", 1e3 * ball->radius) : "", loop.speed,
              loop.deformation_hz, loop.collision_hz, r.searches, r.inside, r.lost, r.longest_lost,
-             1e3 * r.deepest, r.presses, r.advances, r.crossings, r.troubles.truncated,
-             r.troubles.unsolved)
+             1e3 * r.deepest, r.presses, r.advances, r.crossings, 1e3 * r.deepest_tissue,
+             r.swallowed, r.troubles.truncated, r.troubles.unsolved)
       << std::flush;
 }
 
@@ -121,7 +124,8 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
   }
   const Numbers searches = or_else(options.collision_rates, Numbers{250});
   out << "scene                   x, z [mm]  tool   r [mm] v [m/s] [Hz] of searches  searches "
-         "inside   lost longest [s] deepest [mm] presses advances crossings truncated unsolved\n";
+         "inside   lost longest [s] deepest [mm] presses advances crossings tissue [mm] swallowed "
+         "truncated unsolved\n";
   Sum sum;
   for (const auto& file : files) {
     const scene::Scene scene = scene::load_scene(file);
@@ -138,11 +142,13 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
     }
   }
   out << fmt::format(
-             "{} runs: {} searches inside an organ, {} of them without contact\n{} presses of "
-             "round tools: {} times the organ was left with a point of the core inside, {} of them "
-             "while a "
-             "guard acted\n",
-             sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings, sum.put_back)
+             "{} runs: {} searches inside an organ, {} of them without contact\n"
+             "{} presses of round tools: {} times the organ was left with a point of the core "
+             "inside, {} of them while a guard acted\n"
+             "{} advances under round tools: {} left tissue deeper in one than {:g} mm and did not "
+             "say so\n",
+             sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings, sum.put_back, sum.advances,
+             sum.swallowed, 1e3 * deformation::kUnsolvedDepth)
       << session::contact_line(sum.troubles) << '\n';
   return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone
                                                                             : kExitFailed;

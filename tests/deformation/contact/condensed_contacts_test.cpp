@@ -1,6 +1,7 @@
 #include "deformation/contact/condensed_contacts.h"
 
 #include <catch2/catch.hpp>
+#include <random>
 
 #include "tests/deformation/organs.h"
 
@@ -187,6 +188,50 @@ TEST_CASE("contact law: a round probe's normal turns over nodes and edges, not o
     REQUIRE_FALSE(contacts.empty());
     CHECK(contacts.front().row.radius == (on_face ? 0 : radius));
   }
+}
+
+TEST_CASE("contact law: what has come onto fixed nodes is no row, whatever it pushed before") {
+  // Oracle: definition. It gives way by nothing, which no law may: W_ii > 0.
+  Plate plate;
+  plate.press(3, [](std::size_t i) { return i == 0 ? 2e-3 : i == 1 ? 1e-3 : 0; });
+  REQUIRE(plate.condense().size() == 3);
+  for (const std::uint32_t node : plate.model.triangles[0]) plate.model.inverse_masses[node] = 0;
+  const auto contacts = plate.condense();
+  REQUIRE(contacts.size() == 2);
+  CHECK(contacts[0].row.force.norm() == Approx(1e-3 / Plate::kPeriod));
+  CHECK(contacts[1].row.force.isZero(0));
+}
+
+TEST_CASE("contact law: where pushes cancel each other their friction makes no row pull") {
+  // Oracle: definition of a row, and the sum of the forces. Pushes every which way, one by one and
+  // taken together, with friction across each of nearly its size.
+  const std::uint32_t count = GENERATE(16u, 90u);
+  Plate plate;
+  plate.press(count, [](std::size_t) { return 0; });
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto direction = [&] {
+    return Vec3(number(random), number(random), number(random)).normalized();
+  };
+  for (const double fraction : {0.5, 1.0}) {
+    std::vector<ContactRow> rows;
+    plate.probe.append_rows(0, plate.surface, plate.state, Plate::kPeriod / 2, fraction, rows);
+    for (ContactRow& row : rows) {
+      row.normal = direction();
+      row.normal_impulse = 1e-3;
+      row.tangential_impulse = 0.9e-3 * row.normal.cross(direction()).normalized();
+    }
+    plate.probe.take_rows(0, Plate::kPeriod / 2, rows);
+  }
+  Vec3 sum = Vec3::Zero();
+  const auto contacts = plate.condense();
+  REQUIRE(contacts.size() == kMaxLawRows);
+  for (const CondensedContact& c : contacts) {
+    CHECK(c.row.normal.norm() == Approx(1));
+    CHECK(c.row.normal.dot(c.row.force) >= 0);
+    sum += c.row.force;
+  }
+  CHECK((sum - plate.probe.impulse() / Plate::kPeriod).norm() < 1e-12);
 }
 
 }  // namespace

@@ -94,6 +94,33 @@ TEST_CASE("probe contacts: a shorter step starts from as large a force, not as l
   CHECK(rows[0].tangential_impulse.x() == Approx(0.1));
 }
 
+TEST_CASE("probe contacts: a contact that has come onto fixed tissue keeps no force") {
+  // Oracle: definition. No solver visits a row on fixed nodes: what it began with was its answer.
+  TouchedBall ball;
+  ProbeContacts probe(plate(0.1));
+  probe.set_pose(pose_at(Vec3::Zero()));
+  auto contacts = contacts_on({2}, Vec3::Zero(), Vec3::UnitZ());
+  contacts[0].barycentric = Vec3(0.5, 0.5, 0);
+  probe.set_contacts(contacts);
+  probe.begin(kPeriod);
+  const auto begun = [&] {
+    std::vector<ContactRow> rows;
+    probe.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+    REQUIRE(rows.size() == 1);
+    const Vec3 impulse = rows[0].tangential_impulse - rows[0].normal_impulse * rows[0].normal;
+    rows[0].normal_impulse = 8;
+    rows[0].tangential_impulse = Vec3(0.4, 0, 0);
+    probe.take_rows(0, kPeriod, rows);
+    return impulse;
+  };
+  begun();
+  const geometry::Triangle& nodes = ball.model.triangles[2];
+  ball.model.inverse_masses[nodes[0]] = 0;
+  CHECK((begun() - Vec3(0.4, 0, -8)).norm() < 1e-12);
+  ball.model.inverse_masses[nodes[1]] = 0;
+  CHECK(begun().isZero(0));
+}
+
 TEST_CASE("probe contacts: of several on a triangle each starts from what was at its own node") {
   // Oracle: definition; of three nodes of triangle 4 the first is gone, two come in other order.
   TouchedBall ball;

@@ -99,6 +99,27 @@ TEST_CASE("probe contacts: a wall that a step left across a core is put back off
   }
 }
 
+TEST_CASE(
+    "probe contacts: a core through a wall that is inside out is told, and left where it is") {
+  // Oracle: the winding number is nowhere above 0 in an organ that is turned inside out.
+  Tip tip;
+  scene::CapsuleShape rod{Tip::kRadius, 4 * testing::kBallRadius};
+  tip.probe = ProbeContacts({"rod", rod, 0, scene::ScriptedDevice{}});
+  const Pose pose{tip.above(1e-3), rotation_between(Vec3::UnitZ(), Vec3(1, 0.3, 0))};
+  tip.probe.set_pose(pose);
+  tip.probe.begin(kPeriod);
+  tip.probe.end();
+  tip.probe.set_contacts(contacts_on({tip.one}, Vec3(Tip::kRadius, 0, 0), -Vec3::UnitX()));
+  tip.probe.begin(kPeriod);
+  tip.probe.append_rows(0, tip.organ.surface, tip.organ.state, kPeriod, 1.0, tip.rows);
+  auto& x = tip.organ.state.positions;
+  for (Vec3& p : x) p = Vec3(-p.x(), p.y(), p.z() + 3e-3);
+  const auto before = x;
+  tip.probe.take_rows(0, kPeriod, tip.rows);
+  CHECK(ProbeContacts::put_back_outside(std::span(&tip.probe, 1), 0, tip.organ.surface, x, 1));
+  CHECK(x == before);
+}
+
 TEST_CASE("probe contacts: another fold that a new mesh brought near is watched for crossings") {
   // Oracle: geometry. Of two balls that share no node one is under a tip, the other comes down on
   // it from above after the mesh changed; no search told of that one.

@@ -26,7 +26,7 @@ TEST_CASE(
   CHECK(run_contact_loop(
             options, [] {}, out) == kExitDone);
   const std::string said = out.str();
-  CHECK(std::count(said.begin(), said.end(), '\n') == 8);
+  CHECK(std::count(said.begin(), said.end(), '\n') == 9);
   CHECK(said.find("4 runs:") != std::string::npos);
   CHECK(said.find(" 0 of them without contact") != std::string::npos);
   options.loss = 0.5;

@@ -25,6 +25,7 @@ TEST_CASE("contact loop: no ball at any speed is inside the stomach without a co
         INFO(radius << " m at " << speed << " m/s, " << rate << " Hz");
         CHECK(result.lost == 0);
         CHECK(result.crossings == 0);
+        CHECK(result.swallowed == 0);
         CHECK(result.troubles.truncated == 0);
         CHECK(result.troubles.lost == 0);
         inside += result.inside;
@@ -58,6 +59,16 @@ TEST_CASE("contact loop: no ball goes through the wall of the solid liver, whate
   }
 }
 
+TEST_CASE("contact loop: no step leaves tissue in a ball that came over it and says nothing") {
+  // Oracle: every triangle's nearest place to the ball's centre, after every advance. Where only
+  // the way of its centre was watched, 35 of 142 advances left tissue up to 6 mm deep.
+  const auto scene = scene::load_scene(data_file("scenes/stomach_probe_refined.yaml"));
+  const LoopResult result = run_loop(scene, session::load_assets(scene), {0.022, 0, -0.004},
+                                     {make_tool("ball", 8e-3), 2.5, 100, 250});
+  CHECK(result.advances > 100);
+  CHECK(result.swallowed == 0);
+}
+
 TEST_CASE("contact loop: a mesh that changes under a small tip in a hurry loses it no contact") {
   // Oracle: winding number over all triangles, of the surface of each search and each advance. Each
   // of these lost contact or was crossed: searched with boxes of an earlier mesh, walled in where
@@ -65,6 +76,7 @@ TEST_CASE("contact loop: a mesh that changes under a small tip in a hurry loses 
   // an earlier search saw, over a fold turned inside out, by a fold that a new mesh brought near.
   const auto scene = scene::load_scene(data_file("scenes/liver_touch.yaml"));
   const session::Assets assets = session::load_assets(scene);
+  long inside = 0, cases = 0;
   const Vec3 usual(-0.020, 0, 0.013), edge(0.020781514, 0, 0.021756684),
       lobe(-0.0788558858275641, 0, -0.0525599454110841),
       rim(0.0207815136525307, 0, 0.0217566838504579);
@@ -81,8 +93,10 @@ TEST_CASE("contact loop: a mesh that changes under a small tip in a hurry loses 
     CHECK(result.lost == 0);
     CHECK(result.troubles.lost == 0);
     CHECK(result.crossings == 0);
-    CHECK(result.inside > 50);  // else nothing was tried
+    inside += result.inside;
+    ++cases;
   }
+  CHECK(inside > 50 * cases);  // else nothing was tried
 }
 
 TEST_CASE("contact loop: no other tool is inside the stomach without a contact either") {

@@ -49,6 +49,7 @@ TEST_CASE("contact loop: no tool loses contact with any shipped scene's organ") 
                 << loop.deformation_hz << " Hz");
       CHECK(result.lost == 0);
       CHECK(result.crossings == 0);
+      CHECK(result.swallowed == 0);
       CHECK(result.troubles.lost == 0);
       CHECK(result.troubles.truncated == 0);
       inside += result.inside;
