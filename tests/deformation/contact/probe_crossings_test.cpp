@@ -66,17 +66,7 @@ TEST_CASE("probe contacts: a wall that a step left across a core is put back off
   // top, and past a ball; taken as a last resort, no row having held it.
   for (const double length : {0.0, 4 * testing::kBallRadius}) {
     Tip tip;
-    if (length > 0) {
-      scene::CapsuleShape rod{Tip::kRadius, length};
-      tip.probe = ProbeContacts({"rod", rod, 0, scene::ScriptedDevice{}});
-    }
-    const Pose pose{tip.above(1e-3), rotation_between(Vec3::UnitZ(), Vec3(1, 0.3, 0))};
-    tip.probe.set_pose(pose);
-    tip.probe.begin(kPeriod);
-    tip.probe.end();
-    tip.probe.set_contacts(contacts_on({tip.one}, Vec3(Tip::kRadius, 0, 0), -Vec3::UnitX()));
-    tip.probe.begin(kPeriod);
-    tip.probe.append_rows(0, tip.organ.surface, tip.organ.state, kPeriod, 1.0, tip.rows);
+    const Pose pose = tip.lay_across(length);
     auto& x = tip.organ.state.positions;
     const auto put_back = [&] {
       tip.probe.take_rows(0, kPeriod, tip.rows);
@@ -103,15 +93,7 @@ TEST_CASE(
     "probe contacts: a core through a wall that is inside out is told, and left where it is") {
   // Oracle: the winding number is nowhere above 0 in an organ that is turned inside out.
   Tip tip;
-  scene::CapsuleShape rod{Tip::kRadius, 4 * testing::kBallRadius};
-  tip.probe = ProbeContacts({"rod", rod, 0, scene::ScriptedDevice{}});
-  const Pose pose{tip.above(1e-3), rotation_between(Vec3::UnitZ(), Vec3(1, 0.3, 0))};
-  tip.probe.set_pose(pose);
-  tip.probe.begin(kPeriod);
-  tip.probe.end();
-  tip.probe.set_contacts(contacts_on({tip.one}, Vec3(Tip::kRadius, 0, 0), -Vec3::UnitX()));
-  tip.probe.begin(kPeriod);
-  tip.probe.append_rows(0, tip.organ.surface, tip.organ.state, kPeriod, 1.0, tip.rows);
+  tip.lay_across(4 * testing::kBallRadius);
   auto& x = tip.organ.state.positions;
   for (Vec3& p : x) p = Vec3(-p.x(), p.y(), p.z() + 3e-3);
   const auto before = x;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "deformation/contact/probe_contacts.h"
+#include "modules/core/rotation_vector.h"
 #include "tests/deformation/organs.h"
 
 namespace palpate::deformation::testing {
@@ -63,6 +64,22 @@ struct Tip {
     probe.begin(kPeriod);
     rows.clear();
     probe.append_rows(0, organ.surface, organ.state, kPeriod, 1.0, rows);
+  }
+  /// A rod of this length in its place, a ball if 0, lies across the top, as a period begins in
+  /// which it rests. @returns where
+  Pose lay_across(double length) {
+    if (length > 0) {
+      const scene::CapsuleShape rod{kRadius, length};
+      probe = ProbeContacts({"rod", rod, 0, scene::ScriptedDevice{}});
+    }
+    const Pose pose{above(1e-3), rotation_between(Vec3::UnitZ(), Vec3(1, 0.3, 0))};
+    probe.set_pose(pose);
+    probe.begin(kPeriod);
+    probe.end();
+    probe.set_contacts(contacts_on({one}, Vec3(kRadius, 0, 0), -Vec3::UnitX()));
+    probe.begin(kPeriod);
+    probe.append_rows(0, organ.surface, organ.state, kPeriod, 1.0, rows);
+    return pose;
   }
   bool held(const std::vector<Vec3>& end) {
     return probe.hold_crossed(0, organ.surface, organ.state.positions, end, kPeriod, 1.0, rows);
