@@ -6,6 +6,7 @@
 
 #include "collision/core_contacts.h"
 #include "collision/edge_contacts.h"
+#include "collision/front_contacts.h"
 #include "collision/near_surface.h"
 #include "collision/node_contacts.h"
 #include "collision/probe_model.h"
@@ -123,13 +124,14 @@ class ProbeSearch {
       nodes_.find(step, *model_.solid, node_list_, found_);
       return;
     }
-    gather_triangles(step);
+    if (gather_triangles(step)) return;
     for (const Core& core : model_.cores) cores_.find(step, core, near_.triangles(), found_);
     if (model_.sharp) find_sharp(step);
   }
 
   /// Every triangle the probe may touch in the step.
-  void gather_triangles(OrganStep& step) {
+  /// @returns whether their contacts are found as well
+  bool gather_triangles(OrganStep& step) {
     double reach = 0;
     triangle_list_.clear();
     bool all_behind = !model_.cores.empty();
@@ -142,7 +144,10 @@ class ProbeSearch {
     // Behind a wall nothing else is touched; what a core goes through is met whatever the reach.
     if (!all_behind) reach = std::max(reach, model_.hull_radius + step.margin);
     const bool in_front = !model_.cores.empty() && triangle_list_.empty();
-    if (in_front) near_.gather_front(step, model_.cores[0], step.margin);
+    if (in_front && near_.gather_front(step, model_.cores[0], step.margin)) {
+      if (front_.find(step, model_.cores[0], near_, found_)) return true;
+      near_.sweep_candidates(step);
+    }
     if (!in_front) near_.gather(step, model_.hull, reach);
     held_.clear();
     if (model_.sharp) cores_.append_held(step.organ_index, held_);
@@ -156,6 +161,7 @@ class ProbeSearch {
     }
     near_.add(step, triangle_list_);
     step.depth_limit += near_.travel();
+    return false;
   }
 
   void find_sharp(const OrganStep& step) {
@@ -218,6 +224,7 @@ class ProbeSearch {
   // Kept between calls for their memory only.
   std::vector<FoundContact> found_;
   NearSurface near_;
+  FrontContacts front_;
   std::vector<SweptTriangle> near_triangles_;
   std::vector<std::uint32_t> triangle_list_, node_list_, near_vertices_, near_edges_, held_;
   std::vector<VertexPair> vertex_pairs_;

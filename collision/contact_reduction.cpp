@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "collision/thinning.h"
 #include "modules/core/tolerances.h"
 
 namespace palpate::collision {
@@ -82,32 +83,6 @@ bool deeper_ranked(const Ranked& a, const Ranked& b) {
   return a.gap != b.gap ? a.gap < b.gap : deepest_first(*a.contact) < deepest_first(*b.contact);
 }
 
-/// Of very many contacts with one organ keeps kThinnedDeepest, and of the others the deepest in
-/// each cell of a grid over them.
-void thin(Ranking& ranking) {
-  constexpr std::size_t kCells = kThinnedCells * kThinnedCells * kThinnedCells;
-  if (ranking.size() <= kThinnedDeepest + kCells) return;
-  const auto others = ranking.begin() + static_cast<std::ptrdiff_t>(kThinnedDeepest);
-  std::nth_element(ranking.begin(), others, ranking.end(), deeper_ranked);
-  Bounds box;
-  for (auto c = others; c != ranking.end(); ++c) box.add(tissue_of(*c->contact));
-  const Vec3 size = (box.upper - box.lower).cwiseMax(kDirectionless);
-  std::array<Ranked, kCells> deepest{};
-  for (auto c = others; c != ranking.end(); ++c) {
-    const Vec3 place =
-        (tissue_of(*c->contact) - box.lower).cwiseQuotient(size) * double{kThinnedCells};
-    std::size_t cell = 0;
-    for (const double along : place) {
-      cell = kThinnedCells * cell + std::min(static_cast<std::size_t>(along), kThinnedCells - 1);
-    }
-    Ranked& kept = deepest[cell];
-    if (kept.contact == nullptr || deeper_ranked(*c, kept)) kept = *c;
-  }
-  const auto end = std::copy_if(deepest.begin(), deepest.end(), others,
-                                [](const Ranked& kept) { return kept.contact != nullptr; });
-  ranking.erase(end, ranking.end());
-}
-
 /// The same of contacts with one organ, sorted by numbers.
 void merge_duplicates(Ranking& ranking) {
   for (Ranked& ranked : ranking) {
@@ -130,17 +105,17 @@ void spread(Ranking& ranking) {
   if (ranking.size() <= kMostOfRound) return;
   std::sort(ranking.begin(), ranking.end(), deeper_ranked);
   // Coordinates by themselves: what is done with them vectorizes.
-  using Numbers =
-      Eigen::Array<double, kThinnedDeepest + kThinnedCells * kThinnedCells * kThinnedCells, 1>;
+  using Numbers = Eigen::Array<float, kMostThinned, 1>;
   const auto count = static_cast<Eigen::Index>(ranking.size());
   Numbers x, y, z,
       apart = Numbers::Constant(
-          std::numeric_limits<double>::infinity());  // from what is kept, squared [m²]
+          std::numeric_limits<float>::infinity());      // from what is kept, squared [m²]
+  const Vec3 deepest = tissue_of(*ranking[0].contact);  // floats are fine beside it
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Vec3 tissue = tissue_of(*ranking[i].contact);
-    x[i] = tissue[0];
-    y[i] = tissue[1];
-    z[i] = tissue[2];
+    const Eigen::Vector3f beside = (tissue_of(*ranking[i].contact) - deepest).cast<float>();
+    x[i] = beside[0];
+    y[i] = beside[1];
+    z[i] = beside[2];
   }
   constexpr Eigen::Index kMost{kMostOfRound}, kAtOnce = 4;
   static_assert(kMost % (2 * kAtOnce) == 0);
@@ -154,7 +129,7 @@ void spread(Ranking& ranking) {
     rest(apart) = rest(apart).min(from(i).min(from(i + 1))).min(from(i + 2).min(from(i + 3)));
   }
   while (kept < kMost) {
-    const double most = rest(apart).maxCoeff();
+    const float most = rest(apart).maxCoeff();
     const Eigen::Index farthest =
         std::find(apart.data() + kept, apart.data() + count, most) - apart.data();
     std::swap(ranking[kept], ranking[farthest]);
@@ -172,18 +147,20 @@ void reduce_of_round(std::vector<FoundContact>& found) {
   if (!std::is_sorted(found.begin(), found.end(), by_organ)) {
     std::stable_sort(found.begin(), found.end(), by_organ);
   }
-  std::vector<FoundContact> kept;
+  std::vector<const FoundContact*> kept;
   Ranking ranking;
   for (auto c = found.begin(); c != found.end();) {
     const std::uint32_t organ = c->organ;
     ranking.clear();
     for (; c != found.end() && c->organ == organ; ++c) ranking.push_back({&*c, c->gap, 0});
-    thin(ranking);
+    thin(ranking, deeper_ranked, [](const Ranked& of) { return tissue_of(*of.contact); });
     merge_duplicates(ranking);
     spread(ranking);
-    for (const Ranked& ranked : ranking) kept.push_back(*ranked.contact);
+    for (const Ranked& ranked : ranking) kept.push_back(ranked.contact);
   }
-  found.assign(kept.begin(), kept.end());  // its memory is kept
+  std::sort(kept.begin(), kept.end());
+  for (std::size_t i = 0; i < kept.size(); ++i) found[i] = *kept[i];
+  found.resize(kept.size());
 }
 
 bool is_on_node(const FoundContact& c) { return c.feature[1] == kNoNode; }

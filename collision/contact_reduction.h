@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "collision/relative_motion.h"
@@ -35,6 +36,21 @@ struct FoundContact : Contact {
   std::array<std::uint32_t, 3> feature{kNoNode, kNoNode, kNoNode};
 };
 
+/// The node or the edge of a triangle that a place lies on, as one number; nothing off them.
+inline std::optional<std::uint64_t> node_or_edge(const Vec3& weights,
+                                                 const geometry::Triangle& nodes) {
+  std::uint32_t low = kNoNode, high = 0;
+  bool is_inside = true;
+  for (int k = 0; k < 3; ++k) {
+    const bool is_on = weights[k] != 0;
+    low = std::min(low, is_on ? nodes[k] : kNoNode);
+    high = std::max(high, is_on ? nodes[k] : 0);
+    is_inside = is_inside && is_on;
+  }
+  if (is_inside) return {};
+  return std::uint64_t{low} << 32 | high;
+}
+
 /// Fills in `feature` and appends.
 void append_contact(const FoundContact& contact, const geometry::Triangle& nodes,
                     std::vector<FoundContact>& found);
@@ -50,9 +66,6 @@ inline constexpr std::size_t kUsualContacts = 1024;
 /// Contacts of a round probe with an organ: half of them the deepest, half spread over the others.
 /// They say where tissue is; deformation finds its own rows around them (deformation/contact).
 inline constexpr std::size_t kMostOfRound = 64;
-/// More than these are thinned first: to so many deepest, and one in each of so many cells along
-/// each axis.
-inline constexpr std::size_t kThinnedDeepest = 128, kThinnedCells = 4;
 
 /// The same place and normal found twice (over triangles that share it) becomes one contact, of the
 /// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others

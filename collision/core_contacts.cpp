@@ -206,7 +206,9 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
   places_.begin();
   for (const CoreCandidate& c : near_) {
     if (c.side > 0 && c.gap(core) <= step.margin) {
-      if (is_new_place(core, c)) append_front(step, core, c, found);
+      if (!is_new_place(core, c)) continue;
+      append_front(step, core, c.pair, c.triangle.index, c.triangle.nodes, c.triangle.normal_end,
+                   found);
     } else if (!was_behind) {  // a core that has just left touched walls from behind
       append_graze(step, core, c, found);
     }
@@ -216,18 +218,9 @@ void CoreContacts::find(const OrganStep& step, const Core& core,
 /// Whether no triangle before had its closest point on the same node or edge: the contact would be
 /// the same but for rounding.
 bool CoreContacts::is_new_place(const Core& core, const CoreCandidate& c) {
-  constexpr double kSteady = 1e-4;  // nearer, a rounding turns the normal [m]
-  if (!core.is_point() || c.pair.distance < kSteady) return true;
-  const Vec3& weights = c.pair.on_triangle.weights;
-  if ((weights.array() != 0).all()) return true;
-  // Both ends of the edge, or the node twice.
-  Eigen::Index on = 0, off = 0;
-  weights.maxCoeff(&on);
-  weights.minCoeff(&off);
-  const Eigen::Index other = weights[3 - on - off] == 0 ? on : 3 - on - off;
-  const auto [a, b] = std::minmax(c.triangle.nodes[static_cast<std::size_t>(on)],
-                                  c.triangle.nodes[static_cast<std::size_t>(other)]);
-  return places_.add(std::uint64_t{a} << 32 | b, 0);
+  if (!core.is_point() || c.pair.distance < kSteadyDistance) return true;
+  const auto place = node_or_edge(c.pair.on_triangle.weights, c.triangle.nodes);
+  return !place || places_.add(*place, 0) == IndexMarks::kNone;
 }
 
 /// Contacts of a core that is behind a wall, which is remembered.

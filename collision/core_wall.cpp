@@ -16,12 +16,15 @@ double height_over(const geometry::TriangleCorners& triangle, const Vec3& p) {
   return geometry::unit_normal(triangle).dot(p - triangle[0]);
 }
 
-FoundContact contact_of(const OrganStep& step, const CoreCandidate& candidate) {
+FoundContact contact_of(const OrganStep& step, std::uint32_t triangle, const Vec3& weights) {
   FoundContact result;
   result.organ = step.organ_index;
-  result.triangle = candidate.triangle.index;
-  result.barycentric = candidate.pair.on_triangle.weights;
+  result.triangle = triangle;
+  result.barycentric = weights;
   return result;
+}
+FoundContact contact_of(const OrganStep& step, const CoreCandidate& candidate) {
+  return contact_of(step, candidate.triangle.index, candidate.pair.on_triangle.weights);
 }
 
 /// Depth of the rounded core below q, measured against n on the line through q along n, where it is
@@ -97,7 +100,7 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
     const geometry::Triangle& nodes = waiting.back()->triangle.nodes;
     waiting.pop_back();
     for (const std::uint32_t node : nodes) {
-      if (!seen_nodes.add(node, 0)) continue;
+      if (seen_nodes.add(node, 0) != IndexMarks::kNone) continue;
       for (const std::uint32_t t : organ.triangles_of_node(node)) visit(t);
     }
   }
@@ -126,16 +129,16 @@ std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
   return crossing;
 }
 
-void append_front(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
+void append_front(const OrganStep& step, const Core& core, const geometry::SegmentAndTriangle& pair,
+                  std::uint32_t triangle, const geometry::Triangle& nodes, const Vec3& normal_end,
                   std::vector<FoundContact>& found) {
-  FoundContact contact = contact_of(step, candidate);
-  const geometry::SegmentAndTriangle& pair = candidate.pair;
+  FoundContact contact = contact_of(step, triangle, pair.on_triangle.weights);
   contact.normal_P = pair.distance > kDirectionless
                          ? Vec3((pair.on_segment - pair.on_triangle.point) / pair.distance)
-                         : candidate.triangle.normal_end;
+                         : normal_end;
   contact.point_P = pair.on_segment - core.radius * contact.normal_P;
   contact.gap = contact.normal_P.dot(contact.point_P - pair.on_triangle.point);
-  append_contact(contact, candidate.triangle.nodes, found);
+  append_contact(contact, nodes, found);
 }
 
 void append_graze(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
@@ -181,7 +184,10 @@ void append_wall(const OrganStep& step, const Core& core, double depth_limit,
   for (const CoreCandidate& c : candidates) {
     if (!c.on_wall) continue;
     if (c.side > 0 && !c.crossing) {
-      if (c.gap(core) <= step.margin) append_front(step, core, c, found);
+      if (c.gap(core) <= step.margin) {
+        append_front(step, core, c.pair, c.triangle.index, c.triangle.nodes, c.triangle.normal_end,
+                     found);
+      }
       continue;
     }
     bool is_behind = c.side <= 0 && append_behind(step, core, c, depth_limit, &c == nearest, found);

@@ -32,8 +32,13 @@ struct CoreCandidate {
 std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
                                        const CoreCandidate& candidate);
 
-/// Core in front of the triangle at the end.
-void append_front(const OrganStep& step, const Core& core, const CoreCandidate& candidate,
+/// Nearer than that a rounding turns the direction of a contact [m].
+inline constexpr double kSteadyDistance = 1e-4;
+
+/// Core in front of a triangle at the end.
+/// @param normal_end  of the triangle, for a core that is on it
+void append_front(const OrganStep& step, const Core& core, const geometry::SegmentAndTriangle& pair,
+                  std::uint32_t triangle, const geometry::Triangle& nodes, const Vec3& normal_end,
                   std::vector<FoundContact>& found);
 
 /// Contact of the closest approach, carried to the end, for a triangle touched in passing that is

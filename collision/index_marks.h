@@ -4,6 +4,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -15,8 +16,12 @@ class IndexMarks {
 
   /// Forgets all.
   void begin() {
-    ++walk_;
     used_ = 0;
+    if (walk_ == std::numeric_limits<std::uint32_t>::max()) {
+      marks_.assign(marks_.size(), {});
+      walk_ = 0;
+    }
+    ++walk_;
   }
   std::uint32_t at(std::uint64_t index) const {
     const Mark& mark = marks_[place_of(index)];
@@ -28,21 +33,26 @@ class IndexMarks {
       grow();
       place = place_of(index);
     }
-    marks_[place] = {walk_, index, value};
+    marks_[place] = {index, walk_, value};
   }
-  /// Unless it has one. @returns whether it had none
-  bool add(std::uint64_t index, std::uint32_t value) {
-    const Mark& mark = marks_[place_of(index)];
-    if (mark.walk == walk_) return false;
-    set(index, value);
-    return true;
+  /// Unless it has one. @returns the one it had, or kNone
+  std::uint32_t add(std::uint64_t index, std::uint32_t value) {
+    Mark& mark = marks_[place_of(index)];
+    if (mark.walk == walk_) return mark.value;
+    if (2 * (used_ + 1) > marks_.size()) {
+      set(index, value);
+    } else {
+      ++used_;
+      mark = {index, walk_, value};
+    }
+    return kNone;
   }
 
  private:
   /// Free unless of this walk.
   struct Mark {
-    std::uint64_t walk = 0, index = 0;
-    std::uint32_t value = 0;
+    std::uint64_t index = 0;
+    std::uint32_t walk = 0, value = 0;
   };
 
   /// Where the index is, or would be: the next free place after one that looks random.
@@ -62,7 +72,7 @@ class IndexMarks {
   }
 
   std::vector<Mark> marks_ = std::vector<Mark>(256);  ///< a power of two, at most half of it used
-  std::uint64_t walk_ = 1;
+  std::uint32_t walk_ = 1;
   std::size_t used_ = 0;
 };
 

@@ -6,6 +6,67 @@
 #include "modules/core/sort_unique.h"
 
 namespace palpate::collision {
+namespace {
+
+/// Appends nodes as seen from the probe over the step.
+class TurnNodes {
+ public:
+  TurnNodes(const OrganStep& step, const WantedTriangles& wanted, std::vector<SweptNode>& nodes)
+      : motion_(step.motion),
+        starts_(step.start_positions()),
+        ends_(step.organ.positions()),
+        wanted_(wanted),
+        nodes_(nodes) {
+    nodes_.clear();
+  }
+
+  void operator()(std::uint32_t node) const {
+    const Vec3 start = motion_.start(starts_[node]), end = motion_.end(ends_[node]);
+    nodes_.push_back({start, end, (end - start).squaredNorm(), node, wanted_.is_sure(end)});
+  }
+  std::size_t count() const { return nodes_.size(); }
+  bool is_wanted(const OrganStep& step, const NearSurface::Candidate& triangle) const {
+    const auto& [x, y, z] = triangle.corners;
+    return wanted_.is(step, {nodes_[x].index, nodes_[y].index, nodes_[z].index},
+                      {&nodes_[x], &nodes_[y], &nodes_[z]});
+  }
+
+ private:
+  const RelativeMotion& motion_;
+  const NodeArray &starts_, &ends_;
+  const WantedTriangles& wanted_;
+  std::vector<SweptNode>& nodes_;
+};
+
+/// Of their way only how long the longest is.
+class TurnEnds {
+ public:
+  TurnEnds(const OrganStep& step, std::vector<NearSurface::EndNode>& nodes, double& travel_squared)
+      : motion_(step.motion),
+        starts_(step.start_positions()),
+        ends_(step.organ.positions()),
+        nodes_(nodes),
+        travel_squared_(travel_squared) {
+    nodes_.clear();
+    travel_squared_ = 0;
+  }
+
+  void operator()(std::uint32_t node) const {
+    const Vec3 start = motion_.start(starts_[node]), end = motion_.end(ends_[node]);
+    travel_squared_ = std::max(travel_squared_, (end - start).squaredNorm());
+    nodes_.push_back({end, node});
+  }
+  std::size_t count() const { return nodes_.size(); }
+  bool is_wanted(const OrganStep&, const NearSurface::Candidate&) const { return true; }
+
+ private:
+  const RelativeMotion& motion_;
+  const NodeArray &starts_, &ends_;
+  std::vector<NearSurface::EndNode>& nodes_;
+  double& travel_squared_;
+};
+
+}  // namespace
 
 /// apart_ of nodes.
 void NearSurface::find_apart(const OrganStep& step, std::span<const std::uint32_t> nodes,
@@ -22,7 +83,9 @@ void NearSurface::find_apart(const OrganStep& step, std::span<const std::uint32_
   }
 }
 
-void NearSurface::open(const OrganStep& step, std::size_t block, const WantedTriangles& wanted) {
+template <class Turn>
+void NearSurface::open(const OrganStep& step, std::size_t block, const WantedTriangles& wanted,
+                       const Turn& turn) {
   constexpr std::uint32_t kNotWanted = 0xffffffff;
   const auto own = step.organ.blocks().nodes_of(block);
   const auto triangles = step.organ.blocks().triangles_of(block);
@@ -37,24 +100,15 @@ void NearSurface::open(const OrganStep& step, std::size_t block, const WantedTri
     maybe_.push_back(i);
   }
   for (std::size_t i = 0; i < own.size(); ++i) {
-    if (place_[i] != kNotWanted) place_[i] = turn(step, own[i], wanted);
+    if (place_[i] == kNotWanted) continue;
+    place_[i] = static_cast<std::uint32_t>(turn.count());
+    turn(own[i]);
   }
   for (const std::uint32_t i : maybe_) {
     const auto& [a, b, c] = corners[i];
-    const Near near{triangles[i], {place_[a], place_[b], place_[c]}};
-    const auto& [x, y, z] = near.corners;
-    if (wanted.is(step, {own[a], own[b], own[c]}, {&nodes_[x], &nodes_[y], &nodes_[z]})) {
-      near_.push_back(near);
-    }
+    const Candidate near{triangles[i], {place_[a], place_[b], place_[c]}};
+    if (wanted.told_by_floats() || turn.is_wanted(step, near)) candidates_.push_back(near);
   }
-}
-
-/// @returns its place in nodes_
-std::uint32_t NearSurface::turn(const OrganStep& step, std::uint32_t node,
-                                const WantedTriangles& wanted) {
-  const Vec3 start = step.node_start(node), end = step.node_end(node);
-  nodes_.push_back({start, end, (end - start).squaredNorm(), node, wanted.is_sure(end)});
-  return static_cast<std::uint32_t>(nodes_.size() - 1);
 }
 
 void NearSurface::find_blocks(const OrganStep& step, const WantedTriangles& wanted) {
@@ -72,45 +126,41 @@ void NearSurface::find_blocks(const OrganStep& step, const WantedTriangles& want
 void NearSurface::gather(const OrganStep& step, const Bounds& core, double reach) {
   const WantedTriangles wanted(step.motion, core, reach);
   find_blocks(step, wanted);
-  open_blocks(step, wanted);
+  open_blocks(step, wanted, TurnNodes(step, wanted, nodes_));
   sweep();
 }
 
-void NearSurface::open_blocks(const OrganStep& step, const WantedTriangles& wanted) {
-  nodes_.clear();
-  near_.clear();
-  for (const std::uint32_t block : blocks_) open(step, block, wanted);
+template <class Turn>
+void NearSurface::open_blocks(const OrganStep& step, const WantedTriangles& wanted,
+                              const Turn& turn) {
+  candidates_.clear();
+  for (const std::uint32_t block : blocks_) open(step, block, wanted, turn);
 }
 
 /// Of blocks in a row there are not many triangles: they are sorted digit by digit.
-void NearSurface::sort_near() {
+void NearSurface::sort_candidates() {
   constexpr unsigned kDigit = 8;
-  if (near_.empty()) return;
-  const auto [lowest, highest] = std::ranges::minmax(near_, {}, &Near::triangle);
+  if (candidates_.empty()) return;
+  const auto [lowest, highest] = std::ranges::minmax(candidates_, {}, &Candidate::triangle);
   const std::uint32_t from = lowest.triangle, range = highest.triangle - from;
-  sorted_.resize(near_.size());
+  sorted_.resize(candidates_.size());
   for (unsigned shift = 0; shift < 32 && range >> shift > 0; shift += kDigit) {
-    const auto digit = [&](const Near& near) {
+    const auto digit = [&](const Candidate& near) {
       return ((near.triangle - from) >> shift) & ((1u << kDigit) - 1);
     };
     std::array<std::uint32_t, 1u << kDigit> places{};
-    for (const Near& near : near_) ++places[digit(near)];
+    for (const Candidate& near : candidates_) ++places[digit(near)];
     std::exclusive_scan(places.begin(), places.end(), places.begin(), 0u);
-    for (const Near& near : near_) sorted_[places[digit(near)]++] = near;
-    near_.swap(sorted_);
+    for (const Candidate& near : candidates_) sorted_[places[digit(near)]++] = near;
+    candidates_.swap(sorted_);
   }
 }
 
-/// Fills triangles_ with those of near_, each once whether it is there once or twice.
 void NearSurface::sweep() {
-  sort_near();
-  const auto last = std::unique(near_.begin(), near_.end(), [](const Near& a, const Near& b) {
-    return a.triangle == b.triangle;
-  });
-  near_.erase(last, near_.end());
-  triangles_.resize(near_.size());  // of those before, nothing is left
+  sort_candidates();
+  triangles_.resize(candidates_.size());  // of those before, nothing is left
   std::size_t count = 0;
-  for (const Near& near : near_) {
+  for (const Candidate& near : candidates_) {
     SweptTriangle& swept = triangles_[count];
     geometry::Triangle nodes;
     double squared = 0;
@@ -161,32 +211,67 @@ bool NearSurface::find_places(const OrganStep& step, const Core& core,
   return count > kManyTriangles;
 }
 
-void NearSurface::gather_front(const OrganStep& step, const Core& core, double reach) {
+bool NearSurface::gather_front(const OrganStep& step, const Core& core, double reach) {
   const Bounds hull{core.a.cwiseMin(core.b), core.a.cwiseMax(core.b)};
   const WantedTriangles wanted(step.motion, hull, core.radius + reach);
   find_blocks(step, wanted);
   std::size_t most = 0;  // of the triangles within reach: few enough need not be counted
   for (const std::uint32_t block : blocks_) most += step.organ.blocks().corners_of(block).size();
   if (most <= kManyTriangles || !find_places(step, core, wanted)) {
-    open_blocks(step, wanted);
-    return sweep();
+    open_blocks(step, wanted, TurnNodes(step, wanted, nodes_));
+    sweep();
+    return false;
   }
   const WantedTriangles touching(step.motion, hull, core.radius);
   const auto &starts = step.organ.boxes_at(step.start_version), &ends = step.organ.boxes();
   std::erase_if(blocks_, [&](std::uint32_t block) {
     return !touching.may_be_in(step.motion, starts[block], ends[block]);
   });
-  open_blocks(step, touching);
+  const auto open_and_add = [&](const auto& turn) {
+    open_blocks(step, touching, turn);
+    add_places(step, touching, turn);
+  };
+  if (touching.told_by_floats()) {
+    open_and_add(TurnEnds(step, end_nodes_, end_travel_squared_));
+    return true;
+  }
+  open_and_add(TurnNodes(step, touching, nodes_));
+  sweep();
+  return false;
+}
+
+void NearSurface::sweep_candidates(const OrganStep& step) {
+  sort_candidates();
+  triangles_.clear();
+  SweptTriangle swept;
+  for (const Candidate& candidate : candidates_) {
+    if (step.sweep(candidate.triangle, swept)) triangles_.push_back(swept);
+  }
+}
+
+/// One triangle at each node of the grid, and all around the nearest of them.
+/// @param there  those are candidates already
+template <class Turn>
+void NearSurface::add_places(const OrganStep& step, const WantedTriangles& there,
+                             const Turn& turn) {
   const auto nearest = std::ranges::min_element(grid_.places(), {}, &NodeGrid::Place::squared);
+  at_places_.clear();
   for (const NodeGrid::Place& place : grid_.places()) {
     if (!place.is_taken()) continue;
     const auto around = step.organ.triangles_of_node(place.node);
-    for (const std::uint32_t t : around.first(&place == &*nearest ? around.size() : 1)) {
-      const auto& [a, b, c] = step.organ.triangles()[t];
-      near_.push_back({t, {turn(step, a, wanted), turn(step, b, wanted), turn(step, c, wanted)}});
-    }
+    const auto some = around.first(&place == &*nearest ? around.size() : 1);
+    at_places_.insert(at_places_.end(), some.begin(), some.end());
   }
-  sweep();
+  sort_unique(at_places_);
+  for (const std::uint32_t t : at_places_) {
+    const geometry::Triangle& nodes = step.organ.triangles()[t];
+    if (there.told_by_floats() && there.is_told(step, nodes)) continue;
+    const auto first = static_cast<std::uint32_t>(turn.count());
+    for (const std::uint32_t node : nodes) turn(node);
+    const Candidate candidate{t, {first, first + 1, first + 2}};
+    if (!there.told_by_floats() && turn.is_wanted(step, candidate)) continue;
+    candidates_.push_back(candidate);
+  }
 }
 
 void NearSurface::gather_nodes(const OrganStep& step, const Bounds& core, double reach,

@@ -28,7 +28,24 @@ class NearSurface {
   /// The same for a round core that is behind no wall. Where very many triangles are so near
   /// (kManyTriangles), only those that may come within its radius in the step, and of the others
   /// one at the nearest node of each cell of a grid around the core: they say where tissue is.
-  void gather_front(const OrganStep& step, const Core& core, double reach);
+  /// @returns whether they are candidates() until sweep_candidates(): very many near a ball that
+  ///          does not turn
+  bool gather_front(const OrganStep& step, const Core& core, double reach);
+  /// A triangle that is looked at where it ends.
+  struct Candidate {
+    std::uint32_t triangle = 0;
+    std::array<std::uint32_t, 3> corners{};  ///< in candidate_nodes()
+  };
+  struct EndNode {
+    Vec3 end;                 ///< in P
+    std::uint32_t index = 0;  ///< of the organ
+  };
+  /// In no order, each once.
+  std::span<const Candidate> candidates() const { return candidates_; }
+  std::span<const EndNode> candidate_nodes() const { return end_nodes_; }
+  /// The largest way of a corner, rounded up [m].
+  double candidate_travel() const { return SweptTriangle::travel_of(end_travel_squared_); }
+  void sweep_candidates(const OrganStep& step);
   /// The nodes that come so near instead, each once, in no useful order. Of a core without end they
   /// are far fewer than the triangles' worth.
   void gather_nodes(const OrganStep& step, const Bounds& core, double reach,
@@ -53,20 +70,19 @@ class NearSurface {
   }
 
  private:
-  struct Near {
-    std::uint32_t triangle = 0;
-    std::array<std::uint32_t, 3> corners{};  ///< in nodes_
-  };
-
   void find_blocks(const OrganStep& step, const WantedTriangles& wanted);
-  void open_blocks(const OrganStep& step, const WantedTriangles& wanted);
+  template <class Turn>
+  void open_blocks(const OrganStep& step, const WantedTriangles& wanted, const Turn& turn);
   void sweep();
-  void sort_near();
-  std::uint32_t turn(const OrganStep& step, std::uint32_t node, const WantedTriangles& wanted);
+  void sort_candidates();
   void find_apart(const OrganStep& step, std::span<const std::uint32_t> nodes,
                   const WantedTriangles& wanted);
-  void open(const OrganStep& step, std::size_t block, const WantedTriangles& wanted);
+  template <class Turn>
+  void open(const OrganStep& step, std::size_t block, const WantedTriangles& wanted,
+            const Turn& turn);
   bool find_places(const OrganStep& step, const Core& core, const WantedTriangles& wanted);
+  template <class Turn>
+  void add_places(const OrganStep& step, const WantedTriangles& there, const Turn& turn);
 
   std::vector<SweptTriangle> triangles_;
   // Kept between calls for their memory only.
@@ -74,12 +90,15 @@ class NearSurface {
   std::vector<Apart> apart_;           ///< by node of a block
   std::vector<std::uint32_t> place_;   ///< likewise: where in nodes_
   std::vector<SweptNode> nodes_;       ///< of triangles that may be wanted, in all opened blocks
-  std::vector<Near> near_, sorted_;
+  std::vector<EndNode> end_nodes_;     ///< likewise
+  double end_travel_squared_ = 0;      ///< the largest of them [m²]
+  std::vector<Candidate> candidates_, sorted_;
   std::vector<bool> seen_;  ///< by node
   NodeGrid grid_{kCells};
   std::vector<std::pair<float, std::uint32_t>> nearest_first_;  ///< blocks by distance [m²]
   std::vector<std::uint8_t> within_;                            ///< by node of a block
-  std::vector<std::uint32_t> maybe_;  ///< triangles of a block that may be wanted
+  std::vector<std::uint32_t> maybe_;      ///< triangles of a block that may be wanted
+  std::vector<std::uint32_t> at_places_;  ///< triangles
 };
 
 }  // namespace palpate::collision

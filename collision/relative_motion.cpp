@@ -69,11 +69,15 @@ Bounds SweptTriangle::bounds() const {
   return box;
 }
 
+double SweptTriangle::travel_of(double squared) {
+  return std::sqrt(squared) * (1 + kRounding) + kRounding;
+}
+
 bool SweptTriangle::complete(std::uint32_t triangle, const geometry::Triangle& corners,
                              double travel_squared) {
   index = triangle;
   nodes = corners;
-  travel = std::sqrt(travel_squared) * (1 + kRounding) + kRounding;
+  travel = travel_of(travel_squared);
   normal_end = geometry::unit_normal(end);
   return normal_end != Vec3::Zero();
 }

@@ -18,10 +18,15 @@ class RelativeMotion {
 
   Vec3 start(const Vec3& p_W) const { return to_start_ * (p_W - position_start_); }
   Vec3 end(const Vec3& p_W) const { return to_end_ * (p_W - position_end_); }
+  Vec3 to_world_at_start(const Vec3& p_P) const {
+    return position_start_ + to_start_.transpose() * p_P;
+  }
   Vec3 to_world_at_end(const Vec3& p_P) const { return position_end_ + to_end_.transpose() * p_P; }
   Vec3 direction_at_start(const Vec3& v_W) const { return to_start_ * v_W; }
   Vec3 direction_at_end(const Vec3& v_W) const { return to_end_ * v_W; }
 
+  /// P does not turn.
+  bool is_translation() const { return to_start_ == to_end_; }
   /// Way of the probe's origin [m].
   double travel() const { return (position_end_ - position_start_).norm(); }
   /// Bound of how far a node near the probe strays from its chord because P rotates [m]: for a
@@ -48,6 +53,8 @@ struct SweptTriangle {
 
   geometry::TriangleCorners at(double t) const;
   Bounds bounds() const;
+  /// @param squared  of a corner [m²]. @returns its root, rounded up
+  static double travel_of(double squared);
   /// Fills in the rest once start and end are there.
   /// @param travel_squared  the largest of a corner [m²]. @returns false for a degenerate triangle
   bool complete(std::uint32_t triangle, const geometry::Triangle& corners, double travel_squared);

@@ -1,5 +1,7 @@
 // Which triangles, over a step, come near a core: asked of blocks first, then of nodes, then of
-// each triangle.
+// each triangle. Near a point that does not turn, what is asked of all three is the box of their
+// way as seen from it, in floats: rounding keeps their order, so that no block is told to be
+// further than what it holds.
 #pragma once
 
 #include <array>
@@ -37,6 +39,10 @@ class WantedTriangles {
   bool may_be_in(const RelativeMotion& motion, const geometry::BlockBox& start,
                  const geometry::BlockBox& end) const {
     if (bounded_ && !overlaps(start, end)) return false;
+    if (in_floats_) {
+      const Apart block = apart(start, end);
+      return may_be(block, block, block);
+    }
     Bounds both;
     both.add(start);
     both.add(end);
@@ -47,27 +53,39 @@ class WantedTriangles {
   }
 
   using Row = Eigen::Map<const Four>;  ///< of nodes: floats in a row
-  Apart apart(const Vec3& start, const Vec3& end) const {
-    geometry::BlockBox box;
-    box.add(start);
-    box.add(end);
-    const auto& [x, y, z] = box.upper;
-    return {lower_W_ - Four(x, y, z, 0), Row(box.lower.data()) - upper_W_};
+  Apart apart(const geometry::BlockBox& start, const geometry::BlockBox& end) const {
+    const auto upper = [](const geometry::BlockBox& box) {
+      const auto& [x, y, z] = box.upper;
+      return Four(x, y, z, 0);
+    };
+    return {(lower_start_ - upper(start)).min(lower_end_ - upper(end)),
+            (Row(start.lower.data()) - upper_start_).min(Row(end.lower.data()) - upper_end_)};
   }
   Apart apart(const Row& start, const Row& end) const {
-    return {lower_W_ - start.max(end), start.min(end) - upper_W_};
+    return {(lower_start_ - start).min(lower_end_ - end),
+            (start - upper_start_).min(end - upper_end_)};
   }
-  /// Holds of every triangle that is wanted, and of few others: in floats, in a few instructions.
+  Apart apart(const Vec3& start, const Vec3& end) const {
+    geometry::BlockBox at_start, at_end;
+    at_start.add(start);
+    at_end.add(end);
+    return apart(at_start, at_end);
+  }
+  /// Holds of every triangle that is wanted, and of few others, of none if told_by_floats().
   bool may_be(const Apart& x, const Apart& y, const Apart& z) const {
     const Four below = x.below.min(y.below).min(z.below);
     const Four above = x.above.min(y.above).min(z.above);
     return !bounded_ || below.max(above).max(0).square().sum() <= above_reach_squared_;
   }
+  bool told_by_floats() const { return in_floats_; }
+  /// A triangle, if told_by_floats().
+  bool is_told(const OrganStep& step, const geometry::Triangle& nodes) const;
   /// A node that is so near at the step's end makes its triangles wanted.
   bool is_sure(const Vec3& end) const {
     return core_P_.squared_distance(Bounds{end, end}) <= sure_squared_;
   }
-  /// A triangle; judged by its way through the world, too, as its block was.
+  /// A triangle, if not told_by_floats(); judged by its way through the world, too, as its block
+  /// was.
   bool is(const OrganStep& step, const geometry::Triangle& nodes,
           const std::array<const SweptNode*, 3>& swept) const;
 
@@ -83,13 +101,15 @@ class WantedTriangles {
 
   static constexpr float kFar = std::numeric_limits<float>::infinity();
   Bounds core_P_, core_W_;  ///< over the step
-  bool bounded_ = true;
+  bool bounded_ = true, in_floats_ = false;
   double reach_ = 0;          ///< [m]
   double reach_squared_ = 0;  ///< [m²]
   double sure_squared_ = 0;   ///< [m²]
   geometry::BlockBox wide_;   ///< core_W_ and the reach
-  // core_W_ and, along no axis, anything; a little more than the reach: for apart().
-  Four lower_W_ = Four::Constant(-kFar), upper_W_ = Four::Constant(kFar);
+  // For apart(): the core at the step's start and end, or for both all of its way; along no axis,
+  // anything. And a little more than the reach.
+  Four lower_start_ = Four::Constant(-kFar), upper_start_ = Four::Constant(kFar);
+  Four lower_end_ = lower_start_, upper_end_ = upper_start_;
   float above_reach_squared_ = 0;
 };
 

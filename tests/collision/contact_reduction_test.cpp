@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 
+#include "collision/thinning.h"
 #include "tests/collision/finder_scene.h"
 #include "tests/collision/step_scene.h"
 
@@ -289,7 +290,7 @@ TEST_CASE("contact reduction: of a round probe the deepest and a spread remain, 
       CHECK(std::equal(kept.begin(), kept.begin() + kMostOfRound / 2, gaps.begin()));
       // Gonzalez 1985: each of the others was farther from all kept than any that is left out is
       // now; one that was thinned out is no farther than a cell from one that was not.
-      const double cell = of_each > kThinnedDeepest + 64 ? (box.upper - box.lower).norm() / 4 : 0;
+      const double cell = of_each > kMostThinned ? (box.upper - box.lower).norm() / 4 : 0;
       for (const Contact& k : result.contacts) {
         if (k.organ != organ || k.gap <= kept[kMostOfRound / 2 - 1]) continue;
         for (const Contact& other : result.contacts) {

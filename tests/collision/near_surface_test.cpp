@@ -112,7 +112,8 @@ TEST_CASE(
       const RelativeMotion motion(way, probe.reach, probe.is_round);
       std::array<NearSurface, 2> near;
       for (std::size_t i = 0; i < 2; ++i) {
-        near[i].gather_front({0, organs[i], motion, before, 0.005, 1}, probe.cores[0], 0.005);
+        const OrganStep step{0, organs[i], motion, before, 0.005, 1};
+        if (near[i].gather_front(step, probe.cores[0], 0.005)) near[i].sweep_candidates(step);
       }
       const auto& found = near[1].triangles();
       CHECK(same_triangles(near[0].triangles(), found));
