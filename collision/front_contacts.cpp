@@ -7,7 +7,6 @@
 #include "collision/thinning.h"
 
 namespace palpate::collision {
-
 namespace {
 
 /// A degenerate triangle has no front.
