@@ -8,20 +8,27 @@
 namespace palpate::collision {
 namespace {
 
-/// Appends nodes as seen from the probe over the step.
+/// Where nodes are in P, over the step.
+struct NodeWays {
+  const RelativeMotion& motion;
+  const NodeArray &starts, &ends;
+
+  explicit NodeWays(const OrganStep& step)
+      : motion(step.motion), starts(step.start_positions()), ends(step.organ.positions()) {}
+  Vec3 start(std::uint32_t node) const { return motion.start(starts[node]); }
+  Vec3 end(std::uint32_t node) const { return motion.end(ends[node]); }
+};
+
+/// Appends nodes with their ways.
 class TurnNodes {
  public:
   TurnNodes(const OrganStep& step, const WantedTriangles& wanted, std::vector<SweptNode>& nodes)
-      : motion_(step.motion),
-        starts_(step.start_positions()),
-        ends_(step.organ.positions()),
-        wanted_(wanted),
-        nodes_(nodes) {
+      : ways_(step), wanted_(wanted), nodes_(nodes) {
     nodes_.clear();
   }
 
   void operator()(std::uint32_t node) const {
-    const Vec3 start = motion_.start(starts_[node]), end = motion_.end(ends_[node]);
+    const Vec3 start = ways_.start(node), end = ways_.end(node);
     nodes_.push_back({start, end, (end - start).squaredNorm(), node, wanted_.is_sure(end)});
   }
   std::size_t count() const { return nodes_.size(); }
@@ -32,36 +39,31 @@ class TurnNodes {
   }
 
  private:
-  const RelativeMotion& motion_;
-  const NodeArray &starts_, &ends_;
+  const NodeWays ways_;
   const WantedTriangles& wanted_;
   std::vector<SweptNode>& nodes_;
 };
 
-/// Of their way only how long the longest is.
+/// Appends nodes where they end; of their ways only how long the longest is.
 class TurnEnds {
  public:
   TurnEnds(const OrganStep& step, std::vector<NearSurface::EndNode>& nodes, double& travel_squared)
-      : motion_(step.motion),
-        starts_(step.start_positions()),
-        ends_(step.organ.positions()),
-        nodes_(nodes),
-        travel_squared_(travel_squared) {
+      : ways_(step), nodes_(nodes), travel_squared_(travel_squared) {
     nodes_.clear();
     travel_squared_ = 0;
   }
 
   void operator()(std::uint32_t node) const {
-    const Vec3 start = motion_.start(starts_[node]), end = motion_.end(ends_[node]);
-    travel_squared_ = std::max(travel_squared_, (end - start).squaredNorm());
+    const Vec3 end = ways_.end(node);
+    travel_squared_ = std::max(travel_squared_, (end - ways_.start(node)).squaredNorm());
     nodes_.push_back({end, node});
   }
   std::size_t count() const { return nodes_.size(); }
+  /// Floats told it.
   bool is_wanted(const OrganStep&, const NearSurface::Candidate&) const { return true; }
 
  private:
-  const RelativeMotion& motion_;
-  const NodeArray &starts_, &ends_;
+  const NodeWays ways_;
   std::vector<NearSurface::EndNode>& nodes_;
   double& travel_squared_;
 };
