@@ -1,7 +1,7 @@
-// What the machine itself keeps of 1 kHz: a loop as haptics has it, with its priority and nothing
-// in it. Runs beside a session; prints the part of its periods that had their cycle, and of the
-// others why: the loop was awake in time and waited for a processor, which the kernel or somebody
-// of its priority held, or its timer came late, for the host had taken the processor away.
+// What the machine itself keeps of 1 kHz: a loop as haptics has it, with its priority, cores awake
+// and nothing in it. Runs beside a session; prints the part of its periods that had their cycle,
+// and of the others why: the loop was awake in time and waited for a processor, which the kernel or
+// somebody of its priority held, or its timer came late, for the host had taken the processor away.
 #include <cstdio>
 #include <fstream>
 
@@ -30,8 +30,13 @@ int main(int argc, char** argv) {
   Program program(
       "An empty loop of 1 kHz at haptics' priority, until it is stopped: its share on time.",
       "palpate-bench-empty-loop");
-  return program.run(argc, argv, [] {
+  bool cores_may_sleep = false;
+  program.flag("--cores-may-sleep", cores_may_sleep,
+               "Do not keep idle cores awake, as haptics does");
+  return program.run(argc, argv, [&] {
     const Realtime granted = request_realtime(kPriority, /*lock_memory=*/true);
+    const AwakeCores cores;
+    if (!cores_may_sleep) cores.keep();
     const palpate::StopSignal stop;
     PeriodicLoop loop(kRateHz);
     std::int64_t waited_before_ns = waited_ns();
@@ -47,10 +52,11 @@ int main(int argc, char** argv) {
       if (2 * (now_ns - waited_before_ns) > late_ns) waiting += more;
       waited_before_ns = now_ns;
     }
-    std::printf("%.3f %% on time, of %llu missed %llu waiting for a processor%s\n",
+    std::printf("%.3f %% on time, of %llu missed %llu waiting for a processor%s%s\n",
                 100 * loop.statistics().on_time_fraction(), static_cast<unsigned long long>(missed),
                 static_cast<unsigned long long>(waiting),
-                granted.priority ? "" : ", without priority");
+                granted.priority ? "" : ", without priority",
+                cores_may_sleep || !cores.refused().empty() ? ", cores may sleep" : "");
     return 0;
   });
 }

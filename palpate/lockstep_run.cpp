@@ -14,6 +14,7 @@
 #include "modules/recording/recorder_stage.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
+#include "modules/runtime/realtime.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/wiring.h"
@@ -125,6 +126,7 @@ class LockstepRun {
                         scene_.name);
     if (!wait_until_ready()) return end(false);
     monitor_.tally().start();
+    if (options_.realtime) cores_.keep();
     Progress progress(start_ns_, duration_, out_);
     while (next_cycle() && slowest_ns() < end_ns()) {
       grant();
@@ -243,6 +245,8 @@ class LockstepRun {
   std::ostream& out_;
   std::ostream& log_;
   StopSignal stop_;
+  /// It is handed on some thousand times a second, each time to who sleeps.
+  runtime::AwakeCores cores_;
   scene::Scene scene_;
   std::string digest_;
   double duration_;

@@ -33,6 +33,13 @@ Realtime take_priority(Priority priority, bool realtime_wanted) {
   return granted;
 }
 
+std::unique_ptr<AwakeCores> cores_for(Priority priority, bool realtime_wanted) {
+  if (!realtime_wanted || priority != Priority::kRealtime) return nullptr;
+  auto cores = std::make_unique<AwakeCores>();
+  if (const std::string refused = cores->refused(); !refused.empty()) spdlog::warn("{}", refused);
+  return cores;
+}
+
 bus::BusOptions named(bus::BusOptions options, const std::string& name) {
   options.participant_name = name;
   return options;
@@ -45,6 +52,7 @@ Module::Module(const ModuleOptions& options, const scene::Scene& scene, std::str
     : name_(std::move(name)),
       priority_(priority),
       realtime_(take_priority(priority, options.realtime)),
+      cores_(cores_for(priority, options.realtime)),
       bus_(named(options.bus, name_)),
       session_(bus_, scene::scene_digest(scene)),
       loop_(rate_hz),
@@ -86,7 +94,9 @@ bool Module::next_cycle() {
 /// The bus' threads have had it since they were made; who loads or waits would keep other sessions
 /// from starting.
 void Module::run_with_priority() {
-  if (std::exchange(ran_, true) || !realtime_.priority) return;
+  if (std::exchange(ran_, true)) return;
+  if (cores_) cores_->keep();
+  if (!realtime_.priority) return;
   resume_realtime(priority_ == Priority::kRealtime ? kRealtimeFifo : kPreferredFifo);
   judged_since_ns_ = now_ns();
   busy_then_ns_ = loop_.statistics().busy_ns;

@@ -70,6 +70,7 @@ class Module {
   Priority priority_;
   StopSignal stop_;
   Realtime realtime_;
+  std::unique_ptr<AwakeCores> cores_;  ///< none: it does not ask
   bus::DdsBus bus_;
   Session session_;
   PeriodicLoop loop_;

@@ -1,5 +1,6 @@
 #include "modules/runtime/realtime.h"
 
+#include <fcntl.h>
 #include <linux/capability.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 namespace palpate::runtime {
@@ -47,6 +49,25 @@ Realtime request_realtime(int fifo_priority, bool lock_memory) {
   return granted;
 }
 
+AwakeCores::AwakeCores(const char* file)
+    : file_(file), descriptor_(::open(file, O_WRONLY | O_CLOEXEC)), failure_(errno) {}
+
+AwakeCores::~AwakeCores() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::string AwakeCores::refused() const {
+  if (descriptor_ >= 0 || failure_ == ENOENT) return "";
+  return std::string("idle cores may sleep (") + std::strerror(failure_) +
+         "; allow it with the right to write to " + file_ + ")";
+}
+
+void AwakeCores::keep() const {
+  if (descriptor_ < 0) return;
+  constexpr std::int32_t kLongestWakingUs = 0;
+  [[maybe_unused]] const auto asked = ::write(descriptor_, &kLongestWakingUs, sizeof(std::int32_t));
+}
+
 void give_up_realtime() {
   const sched_param none{};
   sched_setscheduler(0, SCHED_OTHER, &none);
@@ -56,6 +77,11 @@ void resume_realtime(int fifo_priority) {
   sched_param parameters{};
   parameters.sched_priority = fifo_priority;
   sched_setscheduler(0, SCHED_FIFO, &parameters);
+}
+
+void wait_for_turn() {
+  const sched_param none{};
+  if (sched_getscheduler(0) == SCHED_OTHER) sched_setscheduler(0, SCHED_BATCH, &none);
 }
 
 void lower_priority(int steps) {

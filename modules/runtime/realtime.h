@@ -16,10 +16,36 @@ struct Realtime {
 /// @param lock_memory  ask for locked memory, too
 Realtime request_realtime(int fifo_priority, bool lock_memory);
 
+/// Keeps the machine's idle cores from sleeping: a core that sleeps is woken some tens of
+/// microseconds late, in a virtual machine some hundreds. Costs power.
+class AwakeCores {
+ public:
+  /// @param file  where the kernel is asked (Documentation/power/pm_qos_interface of Linux)
+  explicit AwakeCores(const char* file = "/dev/cpu_dma_latency");
+  ~AwakeCores();
+  AwakeCores(const AwakeCores&) = delete;
+  AwakeCores& operator=(const AwakeCores&) = delete;
+
+  /// One line: why it cannot, and what grants it. Empty if it can, and where the kernel has no such
+  /// thing.
+  std::string refused() const;
+  /// From now on, while this lives; without the right to it nothing.
+  void keep() const;
+
+ private:
+  const char* file_;
+  int descriptor_, failure_;
+};
+
 /// Puts the calling thread back to normal scheduling.
 void give_up_realtime();
 /// What was granted before, for the calling thread.
 void resume_realtime(int fifo_priority);
+
+/// The calling thread, and those it starts from now on, wait when they are woken until a core is
+/// free or who works there has had its turn: of processes that take turns each ends what it is at.
+/// Nothing for who has real-time priority.
+void wait_for_turn();
 
 /// Gives way to everybody else. @param steps  of niceness, 0 … 19
 void lower_priority(int steps);

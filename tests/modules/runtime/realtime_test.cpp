@@ -6,7 +6,13 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
+#include <thread>
+
+#include "modules/core/temporary_folder.h"
 
 using namespace palpate::runtime;
 
@@ -19,6 +25,11 @@ int in_child(const std::function<int()>& job) {
   int status = 0;
   waitpid(child, &status, 0);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
@@ -50,6 +61,39 @@ TEST_CASE("realtime: where it is not granted, one line says what would grant it"
         }) == 0);
 }
 
+TEST_CASE("realtime: cores are kept awake while it is asked for, and not longer") {
+  // Oracle: what stands in a file in the kernel's place: 0 microseconds, as Linux documents it; and
+  // the number of files that are open.
+  const palpate::TemporaryFolder folder;
+  const auto file = folder.write("latency", "....");
+  const auto open_files = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+  };
+  const auto before = open_files();
+  {
+    const AwakeCores cores(file.c_str());
+    CHECK(cores.refused().empty());
+    CHECK(text_of(file) == "....");
+    CHECK(open_files() == before + 1);
+    cores.keep();
+    CHECK(text_of(file) == std::string(4, '\0'));
+  }
+  CHECK(open_files() == before);
+}
+
+TEST_CASE("realtime: cores that may sleep are told where that could be granted, and only there") {
+  // Oracle: a file that nobody may write to as a file, and one that is not there.
+  CHECK(in_child([] {
+          const AwakeCores none("/nowhere/cpu_dma_latency"), folder("/proc/self");
+          none.keep();
+          folder.keep();
+          const std::string refused = folder.refused();
+          const bool says = refused.find("/proc/self") != std::string::npos &&
+                            refused.find('\n') == std::string::npos;
+          return none.refused().empty() && says ? 0 : 1;
+        }) == 0);
+}
+
 TEST_CASE("realtime: can be given up, and asked for without locked memory") {
   // Oracle: the scheduler's own answer.
   CHECK(in_child([] {
@@ -57,6 +101,20 @@ TEST_CASE("realtime: can be given up, and asked for without locked memory") {
           if (granted.memory_locked) return 1;
           give_up_realtime();
           return sched_getscheduler(0) == SCHED_OTHER ? 0 : 2;
+        }) == 0);
+}
+
+TEST_CASE("realtime: who takes turns is no longer preferred when woken, unless it has priority") {
+  // Oracle: the scheduler's own answer, for a thread started afterwards, too.
+  CHECK(in_child([] {
+          const bool prioritized = request_realtime(10, false).priority;
+          wait_for_turn();
+          if (prioritized && sched_getscheduler(0) != SCHED_FIFO) return 1;
+          give_up_realtime();
+          wait_for_turn();
+          int inherited = -1;
+          std::thread([&] { inherited = sched_getscheduler(0); }).join();
+          return sched_getscheduler(0) == SCHED_BATCH && inherited == SCHED_BATCH ? 0 : 2;
         }) == 0);
 }
 
