@@ -3,9 +3,9 @@
 
   bench/processes.py [--organs N] [--nodes N] [--model WORD] [--rate HZ]   N stomachs side by side, each with a
       probe that presses it; 100 Hz of deformation unless told otherwise, as shipped scenes of two organs, of folds
-      and of solids have, the other rates a scene's own. Simulated per wall time of both, run in turns, each as the
-      difference of two durations, so that starting and ending drop out; what each process computes in a period of
-      deformation, of the first pair; whether both said the same of nodes, probes and forces (palpate diff).
+      and of solids have, the other rates a scene's own. Simulated per wall time of both, run in turns, as the
+      runs tell it, from where all are ready; what each process computes in a period of deformation, its start too,
+      of the first pair; whether both said the same of nodes, probes and forces (palpate diff).
       Yardstick, in the same turns: two simulators of half of the organs, each all in one process, that share nothing,
       beside one alone. A machine whose cores are not its own gives them less than two.
 """
@@ -41,13 +41,18 @@ def scene_text(arguments, processes):
                        "rates": {"deformation_hz": arguments.rate}})
 
 
+def factor_told(text):
+    """@returns simulated per wall time, of the summary of a run."""
+    return float(re.search(r"real-time factor ([\d.]+)", text)[1])
+
+
 def run(palpate, scene, duration, record=None):
-    """@returns wall time [s], and the time that each child computed [s]."""
+    """@returns simulated per wall time, and the time that each child computed [s]."""
     command = [palpate, "run", scene, "--lockstep", "--headless", "--duration", str(duration),
                "--domain", str(random.Random(os.getpid()).randrange(1, 200))]
     command += ["--record", record, "--overwrite"] if record else []
-    began, computed = time.monotonic(), {}
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    computed = {}
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while process.poll() is None:
         time.sleep(0.05)
         try:
@@ -66,17 +71,18 @@ def run(palpate, scene, duration, record=None):
             pass
     if process.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{process.stderr.read()}")
-    return time.monotonic() - began, computed
+    return factor_told(process.stdout.read()), computed
 
 
-def time_at_once(palpate, scene, duration, count):
-    """@returns wall time of so many simulators that know nothing of each other [s]."""
+def speed_at_once(palpate, scene, duration, count):
+    """@returns simulated per wall time of so many simulators together that know nothing of each other."""
     command = [palpate, "run", scene, "--in-process", "--headless", "--duration", str(duration)]
-    began = time.monotonic()
-    running = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for _ in range(count)]
-    if any([process.wait() for process in running]):
+    running = [subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+               for _ in range(count)]
+    told = [process.communicate()[0] for process in running]
+    if any(process.returncode for process in running):
         sys.exit(f"{' '.join(map(str, command))}: failed")
-    return time.monotonic() - began
+    return sum(map(factor_told, told))
 
 
 def main():
@@ -86,17 +92,16 @@ def main():
     parser.add_argument("--model", default="implicit_volume")
     parser.add_argument("--rate", type=float, default=100, help="of deformation [Hz]")
     parser.add_argument("--pairs", type=int, default=5)
-    parser.add_argument("--duration", type=float, default=1, help="simulated seconds, and four times as many")
+    parser.add_argument("--duration", type=float, default=4, help="of each run [simulated s]")
     parser.add_argument("--palpate", default=ROOT / "build/release/bin/palpate", type=pathlib.Path)
     arguments = parser.parse_args()
-    short, long = arguments.duration, 4 * arguments.duration
     with tempfile.TemporaryDirectory() as folder:
         scenes, records = {}, {}
         for processes in (1, 2):
             scenes[processes] = pathlib.Path(folder) / f"{processes}.yaml"
             records[processes] = pathlib.Path(folder) / f"{processes}.mcap"
             scenes[processes].write_text(scene_text(arguments, processes))
-            run(arguments.palpate, scenes[processes], short, records[processes])
+            run(arguments.palpate, scenes[processes], min(1, arguments.duration), records[processes])
         told = subprocess.run([arguments.palpate, "diff", records[1], records[2]], capture_output=True, text=True)
         rows = dict(re.findall(r"^(\w+) +(\d+ +\d+ +\d+ +\d+)$", told.stdout, re.M))
         same = all(rows[topic].split()[1:] == ["0", "0", "0"] for topic in SAME)
@@ -107,16 +112,13 @@ def main():
         for pair in range(arguments.pairs):
             speed = {}
             for processes in ((1, 2), (2, 1))[pair % 2]:
-                slow, computed = run(arguments.palpate, scenes[processes], long)
-                quick, before = run(arguments.palpate, scenes[processes], short)
-                speed[processes] = (long - short) / (slow - quick)
+                speed[processes], computed = run(arguments.palpate, scenes[processes], arguments.duration)
                 speeds[processes].append(speed[processes])
-                periods = arguments.rate * (long - short)
-                shares.setdefault(processes, {m: 1e3 * (t - before.get(m, 0)) / periods for m, t in computed.items()})
+                periods = arguments.rate * arguments.duration
+                shares.setdefault(processes, {m: 1e3 * t / periods for m, t in computed.items()})
             ratios.append(speed[2] / speed[1])
-            alone, both = (time_at_once(arguments.palpate, half, long, count)
-                           - time_at_once(arguments.palpate, half, short, count) for count in (1, 2))
-            unconnected.append(2 * alone / both)
+            alone, both = (speed_at_once(arguments.palpate, half, arguments.duration, count) for count in (1, 2))
+            unconnected.append(both / alone)
     for processes, modules in shares.items():
         print(f"{processes}: {statistics.median(speeds[processes]):.2f} times real time; computed per period: "
               + ", ".join(f"{module} {ms:.2f} ms" for module, ms in sorted(modules.items())))

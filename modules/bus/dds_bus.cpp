@@ -13,8 +13,10 @@
 #include "modules/bus/clock_exchange.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
+#include "modules/bus/polled_sockets.h"
 #include "modules/bus/sample_shortcut.h"
 #include "modules/bus/wall_clock_shift.h"
+#include "modules/core/units.h"
 #include "modules/messages/message_types.h"
 
 namespace palpate::bus {
@@ -52,11 +54,22 @@ class DdsWriter : public RawWriter {
     return status.current_count;
   }
   bool wait_until_received(double longest) override {
+    PolledSockets* const polled = participant_.polled();
+    if (polled == nullptr) return is_acknowledged(longest);
+    const std::int64_t until = ns_of<std::chrono::steady_clock>() + ns_from_seconds(longest);
+    for (;;) {
+      if (is_acknowledged(0)) return true;
+      const std::int64_t left = until - ns_of<std::chrono::steady_clock>();
+      if (!polled->hear(seconds_from_ns(left))) return is_acknowledged(0);
+    }
+  }
+
+ private:
+  bool is_acknowledged(double longest) {
     const Duration_t duration(static_cast<long double>(longest));
     return writer_->wait_for_acknowledgments(duration) == ReturnCode_t::RETCODE_OK;
   }
 
- private:
   Participant& participant_;
   dds::DataWriter* writer_;
   PayloadType::Sample sample_;
@@ -121,6 +134,9 @@ class DdsReader : public RawReader {
     if (inbox_) timeout = std::min(timeout, kLookAgain);
     // What waits for a clock wakes nobody: who waits looks again.
     if (!waiting_.empty()) timeout = std::min(timeout, kLookAgain);
+    PolledSockets* const polled = participant_.polled();
+    // Whoever else waited or read has heard for all.
+    if (polled != nullptr) return reader_->get_unread_count() > 0 || polled->hear(timeout);
     return reader_->wait_for_unread_message(Duration_t(static_cast<long double>(timeout)));
   }
   int matched_writers() const override {
@@ -146,6 +162,9 @@ class DdsReader : public RawReader {
       sample.writer = id_of(info.sample_identity.writer_guid());
       sample.received_time_ns = monotonic(arrival_of(info));
       return true;
+    }
+    if (participant_.polled() != nullptr && participant_.polled()->hear(0)) {
+      return take_as_it_came(sample);
     }
     // What is gathered may wait in a socket; there its stamps are seen to.
     if (participant_.shortcut() == nullptr) wall_shift_.nothing_waits(asked);
@@ -204,8 +223,7 @@ class DdsReader : public RawReader {
 }  // namespace
 
 DdsBus::DdsBus(const BusOptions& options, Arrivals arrivals)
-    : every_sample_(options.every_sample),
-      participant_(new Participant(options, arrivals == Arrivals::kGathered)) {
+    : every_sample_(options.every_sample), participant_(new Participant(options, arrivals)) {
   // In lockstep times are simulated ones, the same everywhere.
   if (!participant_->over_hosts() || options.every_sample) return;
   const TopicInfo topic = info_of(kClock);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "modules/bus/bus.h"
+#include "modules/bus/hearing.h"
 
 namespace palpate::bus {
 
@@ -12,15 +13,6 @@ class BundleSender;
 class ClockExchanger;
 class HostClocks;
 class Participant;
-
-/// How what arrives is read.
-enum class Arrivals {
-  kAtOnce,
-  /// Some later, up to GatheringPause::kLongest (packet_gatherer.h), and with the times of arrival
-  /// all the same: that takes a third of the processor. Of streams every sample is kept for its
-  /// reader (sample_shortcut.h). On one host; over hosts as kAtOnce.
-  kGathered,
-};
 
 /// One DDS participant. Over hosts, times in what is read are on this host's clock: of what others
 /// say, states wait until their clock is known, streams are left out. Its threads inherit the

@@ -19,7 +19,9 @@
 #include "modules/bus/packet_chunks.h"
 #include "modules/bus/packet_gatherer.h"
 #include "modules/bus/packet_stamp.h"
+#include "modules/bus/polled_sockets.h"
 #include "modules/bus/rtps_words.h"
+#include "modules/bus/sample_shortcut.h"
 
 namespace palpate::bus {
 namespace {
@@ -30,18 +32,20 @@ namespace rtps = eprosima::fastrtps::rtps;
 struct Descriptor : transport::ChainingTransportDescriptor {
   Descriptor(std::shared_ptr<transport::TransportDescriptorInterface> under,
              const SampleRules& sample_rules, std::shared_ptr<PacketTally> packets,
-             Addresses of_this_host, Gathering gathered)
+             Addresses of_this_host, Hearing heard, int first_port)
       : ChainingTransportDescriptor(std::move(under)),
         rules(sample_rules),
         tally(std::move(packets)),
         addresses(std::move(of_this_host)),
-        gathering(std::move(gathered)) {}
+        hearing(std::move(heard)),
+        samples_port(first_port) {}
   transport::TransportInterface* create_transport() const override;
 
   SampleRules rules;
   std::shared_ptr<PacketTally> tally;
   Addresses addresses;
-  Gathering gathering;
+  Hearing hearing;
+  int samples_port;
 };
 
 class FilteredTransport : public transport::ChainingTransport {
@@ -69,23 +73,27 @@ class FilteredTransport : public transport::ChainingTransport {
     return sent;
   }
 
-  // A gathered channel is not that of the transport below, but in its place.
+  // A channel of samples may not be that of the transport below, but in its place.
 
   bool IsInputChannelOpen(const rtps::Locator_t& at) const override {
-    if (!is_gathered(at)) return ChainingTransport::IsInputChannelOpen(at);
+    if (!is_own(at)) return ChainingTransport::IsInputChannelOpen(at);
+    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(at);
+    if (descriptor_.hearing.polled) return descriptor_.hearing.polled->is_open(port);
     const std::lock_guard lock(channels_mutex_);
-    return channels_.contains(rtps::IPLocator::getPhysicalPort(at));
+    return channels_.contains(port);
   }
   bool OpenInputChannel(const rtps::Locator_t& at, transport::TransportReceiverInterface* next,
                         std::uint32_t most_bytes) override {
-    if (!is_gathered(at)) return ChainingTransport::OpenInputChannel(at, next, most_bytes);
+    if (!is_own(at)) return ChainingTransport::OpenInputChannel(at, next, most_bytes);
     return is_locator_allowed(at) && open(at, next);
   }
   bool CloseInputChannel(const rtps::Locator_t& at) override {
-    if (!is_gathered(at)) return ChainingTransport::CloseInputChannel(at);
+    if (!is_own(at)) return ChainingTransport::CloseInputChannel(at);
+    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(at);
+    if (descriptor_.hearing.polled) return descriptor_.hearing.polled->close(port);
     decltype(channels_)::node_type closed;  // ends its thread, which may be waiting for the lock
     const std::lock_guard lock(channels_mutex_);
-    closed = channels_.extract(rtps::IPLocator::getPhysicalPort(at));
+    closed = channels_.extract(port);
     return !closed.empty();
   }
 
@@ -101,9 +109,9 @@ class FilteredTransport : public transport::ChainingTransport {
   }
 
  private:
-  bool is_gathered(const rtps::Locator_t& at) const {
-    const int beyond = rtps::IPLocator::getPhysicalPort(at) - descriptor_.gathering.port;
-    return descriptor_.gathering.shortcut != nullptr && beyond >= 0 && beyond % 2 == 0;
+  bool is_own(const rtps::Locator_t& at) const {
+    const int beyond = rtps::IPLocator::getPhysicalPort(at) - descriptor_.samples_port;
+    return !descriptor_.hearing.by_library() && beyond >= 0 && beyond % 2 == 0;
   }
 
   /// @param arrived_ns  of a gathered packet, by the monotonic clock
@@ -118,30 +126,51 @@ class FilteredTransport : public transport::ChainingTransport {
     }
     if (filtered.fault != PacketFault::kNone) descriptor_.tally->refuse(filtered.fault);
     if (filtered.packet.empty()) return;
-    if (arrived_ns && descriptor_.gathering.shortcut->take(filtered.packet, *arrived_ns)) return;
+    if (arrived_ns && descriptor_.hearing.shortcut->take(filtered.packet, *arrived_ns)) return;
     next->OnDataReceived(filtered.packet.data(), static_cast<std::uint32_t>(filtered.packet.size()),
                          local, remote);
   }
 
+  /// False if the port is taken: the library asks for another one.
   bool open(const rtps::Locator_t& at, transport::TransportReceiverInterface* next) {
-    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(at);
-    const auto take = [this, next, at](const ArrivedPacket& packet) {
-      rtps::Locator_t from;
-      from.kind = LOCATOR_KIND_UDPv4;
-      rtps::IPLocator::setIPv4(from, reinterpret_cast<const rtps::octet*>(&packet.sender.address));
-      rtps::IPLocator::setPhysicalPort(from, packet.sender.port);
-      stamp_arrival(packet.bytes, packet.by_wall_ns);
-      hear(next, packet.bytes, at, from, packet.arrived_ns);
-    };
-    const std::lock_guard lock(channels_mutex_);
-    if (channels_.contains(port)) return false;
     try {
-      channels_.emplace(port, std::make_unique<PacketGatherer>(descriptor_.addresses.own, port,
-                                                               kSocketBufferBytes, take));
+      if (descriptor_.hearing.polled) {
+        open_polled(at, next);
+      } else {
+        gather(at, next);
+      }
       return true;
-    } catch (const std::system_error&) {  // taken: the library asks for another one
+    } catch (const std::system_error&) {
       return false;
     }
+  }
+
+  void open_polled(const rtps::Locator_t& at, transport::TransportReceiverInterface* next) {
+    const auto take = [this, next, at](std::span<const std::uint8_t> packet,
+                                       const PacketSender& sender) {
+      hear(next, packet, at, locator_of(sender));
+    };
+    descriptor_.hearing.polled->open(
+        descriptor_.addresses.own, rtps::IPLocator::getPhysicalPort(at), kSocketBufferBytes, take);
+  }
+
+  void gather(const rtps::Locator_t& at, transport::TransportReceiverInterface* next) {
+    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(at);
+    const auto take = [this, next, at](const ArrivedPacket& packet) {
+      stamp_arrival(packet.bytes, packet.by_wall_ns);
+      hear(next, packet.bytes, at, locator_of(packet.sender), packet.arrived_ns);
+    };
+    const std::lock_guard lock(channels_mutex_);
+    channels_[port] =
+        std::make_unique<PacketGatherer>(descriptor_.addresses.own, port, kSocketBufferBytes, take);
+  }
+
+  static rtps::Locator_t locator_of(const PacketSender& sender) {
+    rtps::Locator_t from;
+    from.kind = LOCATOR_KIND_UDPv4;
+    rtps::IPLocator::setIPv4(from, reinterpret_cast<const rtps::octet*>(&sender.address));
+    rtps::IPLocator::setPhysicalPort(from, sender.port);
+    return from;
   }
 
   static PacketSender sender_of(const rtps::Locator_t& remote) {
@@ -190,9 +219,10 @@ transport::TransportInterface* Descriptor::create_transport() const {
 
 std::shared_ptr<transport::TransportDescriptorInterface> filtered(
     std::shared_ptr<transport::TransportDescriptorInterface> under, const SampleRules& rules,
-    std::shared_ptr<PacketTally> tally, const Addresses& addresses, Gathering gathering) {
+    std::shared_ptr<PacketTally> tally, const Addresses& addresses, Hearing hearing,
+    int samples_port) {
   return std::make_shared<Descriptor>(std::move(under), rules, std::move(tally), addresses,
-                                      std::move(gathering));
+                                      std::move(hearing), samples_port);
 }
 
 }  // namespace palpate::bus

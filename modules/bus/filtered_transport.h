@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "modules/bus/addresses.h"
+#include "modules/bus/hearing.h"
 #include "modules/bus/packet_filter.h"
 #include "modules/bus/packet_senders.h"
-#include "modules/bus/sample_shortcut.h"
 
 namespace eprosima::fastdds::rtps {
 struct TransportDescriptorInterface;
@@ -32,20 +32,14 @@ struct PacketTally {
   }
 };
 
-/// Samples are read many at a time (packet_gatherer.h); they bear the time of their arrival
-/// (packet_stamp.h).
-struct Gathering {
-  int port = 0;  ///< the first one for samples; of a domain's others every second
-  std::shared_ptr<SampleShortcut> shortcut;  ///< none: nothing is gathered
-};
-
 /// Describes a filter over the transport that `under` describes. What goes to other hosts, or comes
 /// from there, and is larger than a packet of theirs, travels in chunks (packet_chunks.h).
 /// @param rules  for what may pass
-/// @param gathering  of a process of one host that needs every sample, and none at once
+/// @param hearing  of a process of one host
+/// @param samples_port  the first one for samples; of a domain's others every second
 std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> filtered(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> under,
     const SampleRules& rules, std::shared_ptr<PacketTally> tally, const Addresses& addresses,
-    Gathering gathering = {});
+    Hearing hearing = {}, int samples_port = 0);
 
 }  // namespace palpate::bus

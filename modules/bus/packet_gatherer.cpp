@@ -1,9 +1,7 @@
 #include "modules/bus/packet_gatherer.h"
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -19,13 +17,18 @@ namespace {
 
 constexpr std::size_t kPacketsAtOnce = 32;
 constexpr std::size_t kMostCalls = 64;  // then it looks whether it is to end
-constexpr std::size_t kMostPacketBytes = 65'536;
 /// What the kernel counts beside a packet's bytes, about.
 constexpr std::size_t kBesideBytes = 1024;
 
 template <class Clock>
 std::int64_t clock_ns() {
   return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+}
+
+void stamp_packets(const ListeningSocket& socket, const std::string& address) {
+  const int on = 1;
+  if (::setsockopt(socket.descriptor(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) == 0) return;
+  throw std::system_error(errno, std::generic_category(), address);
 }
 
 /// The kernel's stamp.
@@ -110,11 +113,9 @@ class PacketGatherer::Batch {
 PacketGatherer::PacketGatherer(const std::vector<std::string>& addresses, std::uint16_t port,
                                int room, Take take)
     : take_(std::move(take)) {
-  try {
-    for (const std::string& address : addresses) listen(address, port, room);
-  } catch (...) {
-    close();
-    throw;
+  for (const std::string& address : addresses) {
+    const Socket& socket = sockets_.emplace_back(Socket{ListeningSocket(address, port, room), {}});
+    stamp_packets(socket.listening, address);
   }
   thread_ = std::thread([this] { run(); });
 }
@@ -126,34 +127,6 @@ PacketGatherer::~PacketGatherer() {
   }
   wake_.notify_one();
   thread_.join();
-  close();
-}
-
-void PacketGatherer::listen(const std::string& address, std::uint16_t port, int room) {
-  const auto check = [&](int result) {
-    if (result < 0) throw std::system_error(errno, std::generic_category(), address);
-    return result;
-  };
-  const int descriptor = check(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  Socket& socket = sockets_.emplace_back(Socket{descriptor, 0, {}});
-  const int on = 1;
-  check(::setsockopt(descriptor, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on));
-  check(::setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &room, sizeof room));
-  int granted = 0;
-  socklen_t size = sizeof granted;
-  check(::getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &granted, &size));
-  socket.room = static_cast<std::size_t>(granted);
-  sockaddr_in at{};
-  at.sin_family = AF_INET;
-  at.sin_port = htons(port);
-  errno = EINVAL;
-  check(::inet_pton(AF_INET, address.c_str(), &at.sin_addr) == 1 ? 0 : -1);
-  check(::bind(descriptor, reinterpret_cast<const sockaddr*>(&at), sizeof at));
-}
-
-void PacketGatherer::close() {
-  for (const Socket& socket : sockets_) ::close(socket.descriptor);
-  sockets_.clear();
 }
 
 void PacketGatherer::run() {
@@ -163,7 +136,7 @@ void PacketGatherer::run() {
   while (!wake_.wait_for(lock, std::chrono::duration<double>(pause.seconds()),
                          [this] { return stopping_; })) {
     lock.unlock();
-    for (Socket& socket : sockets_) pause.note(drain(socket, batch), socket.room);
+    for (Socket& socket : sockets_) pause.note(drain(socket, batch), socket.listening.room());
     lock.lock();
   }
 }
@@ -173,7 +146,7 @@ std::size_t PacketGatherer::drain(Socket& socket, Batch& batch) const {
   std::size_t waited = 0;
   std::size_t count = kPacketsAtOnce;
   for (std::size_t calls = 0; count == kPacketsAtOnce && calls < kMostCalls; ++calls) {
-    count = batch.take(socket.descriptor);
+    count = batch.take(socket.listening.descriptor());
     for (std::size_t i = 0; i < count; ++i) {
       const ArrivedPacket packet = batch.at(i, socket.shift);
       waited += packet.bytes.size() + kBesideBytes;

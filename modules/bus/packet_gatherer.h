@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "modules/bus/listening_socket.h"
 #include "modules/bus/packet_senders.h"
 #include "modules/bus/wall_clock_shift.h"
 
@@ -54,14 +55,11 @@ class PacketGatherer {
 
  private:
   struct Socket {
-    int descriptor = -1;
-    std::size_t room = 0;
+    ListeningSocket listening;
     WallClockShift shift;  ///< the kernel stamps with the wall clock
   };
   class Batch;
 
-  void listen(const std::string& address, std::uint16_t port, int room);
-  void close();
   void run();
   std::size_t drain(Socket& socket, Batch& batch) const;
 

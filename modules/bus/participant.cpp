@@ -27,6 +27,7 @@
 #include "modules/bus/keys.h"
 #include "modules/bus/packet_filter.h"
 #include "modules/bus/payload_type.h"
+#include "modules/bus/polled_sockets.h"
 #include "modules/bus/qos.h"
 #include "modules/bus/roles.h"
 #include "modules/bus/sample_shortcut.h"
@@ -92,13 +93,16 @@ Entity* demand_created(Entity* entity, const std::string& what) {
 
 }  // namespace
 
-Participant::Participant(const BusOptions& options, bool gather)
+Participant::Participant(const BusOptions& options, Arrivals arrivals)
     : every_sample_(options.every_sample) {
   check_session(options.domain, options.session);
   tell_plainly();
   token_ = options.token ? *options.token : session_token(options.domain, options.session);
   addresses_ = addresses_from(std::getenv("PALPATE_INTERFACES"), std::getenv("PALPATE_PEERS"));
-  if (gather && !addresses_.over_hosts()) shortcut_ = std::make_shared<SampleShortcut>();
+  if (!addresses_.over_hosts()) {
+    if (arrivals == Arrivals::kGathered) hearing_.shortcut = std::make_shared<SampleShortcut>();
+    if (arrivals == Arrivals::kPolled) hearing_.polled = std::make_shared<PolledSockets>();
+  }
   dds::DomainParticipantQos qos;
   if (const char* const folder = std::getenv("PALPATE_KEYS"); folder != nullptr) {
     const char* const role = std::getenv("PALPATE_ROLE");
@@ -106,7 +110,7 @@ Participant::Participant(const BusOptions& options, bool gather)
     if (const Role* known = find_role(role_)) role_ = known->name;
     apply_keys(folder, role_, qos);
   }
-  packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos, shortcut_);
+  packets_ = apply_transport(addresses_, options.domain, {token_, !role_.empty()}, qos, hearing_);
   qos.name(options.participant_name);
   participant_ = made_participant(options.domain, qos);
   if (participant_ == nullptr && !role_.empty()) {
@@ -117,10 +121,10 @@ Participant::Participant(const BusOptions& options, bool gather)
     throw std::runtime_error("DDS cannot start in domain " + std::to_string(options.domain) +
                              ": is the loopback interface up?");
   }
-  if (shortcut_ != nullptr) {
+  if (shortcut() != nullptr) {
     GuidPrefix own;
     std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
-    shortcut_->set_participant(own);
+    shortcut()->set_participant(own);
   }
   try {
     check_files_left();

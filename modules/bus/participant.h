@@ -9,6 +9,7 @@
 
 #include "modules/bus/addresses.h"
 #include "modules/bus/bus.h"
+#include "modules/bus/hearing.h"
 #include "modules/bus/packet_senders.h"
 
 namespace eprosima::fastdds::dds {
@@ -24,17 +25,16 @@ class Topic;
 namespace palpate::bus {
 
 struct PacketTally;
-class SampleShortcut;
 
 /// A participant with one publisher and one subscriber in the session's partition.
 class Participant {
  public:
-  /// @param gather  packets are read many at a time (packet_gatherer.h), on one host
+  /// @param arrivals  how packets are heard, on one host
   /// With PALPATE_KEYS in the environment it plays the role of its name, or PALPATE_ROLE (keys.h).
   /// @throws InputError if the session name, the domain or an address (addresses.h) is not
   /// acceptable
   /// @throws std::runtime_error if DDS cannot start
-  explicit Participant(const BusOptions& options, bool gather = false);
+  explicit Participant(const BusOptions& options, Arrivals arrivals = Arrivals::kAtOnce);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
@@ -56,7 +56,9 @@ class Participant {
   bool over_hosts() const { return addresses_.over_hosts(); }
   /// Where packets are gathered; nullptr where not. What arrives has the time of its arrival as
   /// source timestamp then.
-  SampleShortcut* shortcut() const { return shortcut_.get(); }
+  SampleShortcut* shortcut() const { return hearing_.shortcut.get(); }
+  /// Who waits for something has to let them hear; nullptr where others do.
+  PolledSockets* polled() const { return hearing_.polled.get(); }
   /// Where a participant that was heard speaks from, as "10.0.0.6"; empty for this host.
   std::string host_of(const GuidPrefix& participant) const;
 
@@ -69,7 +71,7 @@ class Participant {
   std::uint64_t token_ = 0;
   std::string role_;  ///< empty: without keys
   Addresses addresses_;
-  std::shared_ptr<SampleShortcut> shortcut_;
+  Hearing hearing_;
   std::shared_ptr<PacketTally> packets_;
   eprosima::fastdds::dds::DomainParticipant* participant_ = nullptr;
   eprosima::fastdds::dds::Publisher* publisher_ = nullptr;

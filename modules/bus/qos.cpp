@@ -108,8 +108,7 @@ void apply_discovery(const Addresses& addresses, int domain, bool hears_only,
 
 std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
                                              const SampleRules& rules,
-                                             dds::DomainParticipantQos& qos,
-                                             std::shared_ptr<SampleShortcut> shortcut) {
+                                             dds::DomainParticipantQos& qos, Hearing hearing) {
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = addresses.own;
   udp->sendBufferSize = kSocketBufferBytes;
@@ -118,10 +117,10 @@ std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int dom
   udp->maxInitialPeersRange = kMaxParticipants;
   auto tally = std::make_shared<PacketTally>();
   qos.transport().use_builtin_transports = false;
-  const bool gathers = shortcut != nullptr;
+  const bool gathers = hearing.shortcut != nullptr;
   const int samples_port = kPortBase + kPortsPerDomain * domain + kUserPort;
   qos.transport().user_transports.push_back(
-      filtered(udp, rules, tally, addresses, {samples_port, std::move(shortcut)}));
+      filtered(udp, rules, tally, addresses, std::move(hearing), samples_port));
   apply_discovery(addresses, domain, gathers, qos.wire_protocol());
   qos.allocation().participants = {0, PacketSenders::kMaxParticipants, 1};
   return tally;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "modules/bus/addresses.h"
+#include "modules/bus/hearing.h"
 #include "modules/bus/raw_bus.h"
 
 namespace eprosima::fastdds::dds {
@@ -16,7 +17,6 @@ namespace palpate::bus {
 
 struct PacketTally;
 struct SampleRules;
-class SampleShortcut;
 
 /// Keys (organs, probes, modules) a topic may carry at a time.
 inline constexpr int kMaxKeys = 256;
@@ -24,12 +24,12 @@ inline constexpr int kMaxKeys = 256;
 /// UDP on our own addresses only, through the packet filter, without multicast or shared memory;
 /// quick discovery, a lease of a day. To other hosts in chunks that fit their packets.
 /// @param rules  for what may pass
-/// @param shortcut  if there is one, packets are gathered (filtered_transport.h)
+/// @param hearing  see filtered()
 /// @returns what the filter will have done
 std::shared_ptr<PacketTally> apply_transport(const Addresses& addresses, int domain,
                                              const SampleRules& rules,
                                              eprosima::fastdds::dds::DomainParticipantQos& qos,
-                                             std::shared_ptr<SampleShortcut> shortcut = nullptr);
+                                             Hearing hearing = {});
 
 /// stream: best effort, volatile; state: reliable, transient local. Both: newest sample per key (a
 /// reader may ask for more), written in the calling thread, no data sharing, memory grows to the

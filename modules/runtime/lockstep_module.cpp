@@ -10,6 +10,7 @@
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/lockstep.h"
+#include "modules/runtime/realtime.h"
 #include "modules/runtime/session.h"
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/status_reporter.h"
@@ -36,7 +37,7 @@ class LockstepModule {
         scene_(scene),
         name_(name),
         participants_(options.lockstep),
-        bus_(lockstep_options(options.bus, name)),
+        bus_(lockstep_options(options.bus, name), bus::Arrivals::kPolled),
         session_(bus_, scene::scene_digest(scene), Session::Kind::kLockstep),
         status_(bus_, name, rate_of(name, scene), false) {
     if (std::ranges::find(participants_, name) == participants_.end()) {
@@ -92,6 +93,7 @@ class LockstepModule {
       const Health health = cursor_->step(*stage_);
       ++loop_.cycles;
       wait_until_states_are_heard();
+      if (is_awaited(name_, clock_ns_, scene_, participants_)) bus_.flush();
       if (*health.guard != '\0') guard_ = health.guard;
       status_.set_contact_troubles(health.contacts);
       status_.set_extremes(health.organs, health.probes);
@@ -214,6 +216,7 @@ class LockstepModule {
 
 void run_in_lockstep(const ModuleOptions& options, const scene::Scene& scene,
                      const std::string& module, const MakeStage& make) {
+  wait_for_turn();
   LockstepModule(options, scene, module, make).run();
 }
 

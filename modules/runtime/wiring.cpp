@@ -125,6 +125,28 @@ std::size_t InputRule::keys(std::string_view topic) const {
   return 0;
 }
 
+bool is_awaited(std::string_view module, std::int64_t time_ns, const scene::Scene& scene,
+                const std::vector<std::string>& participants) {
+  const auto waits = [&](const Wire& wire, std::string_view reader) {
+    const std::int64_t period_ns = CycleGrid(rate_of(reader, scene)).period_ns();
+    const InputRule rule(scene, reader);
+    // Of its cycles from then on the first that sees what was said then.
+    std::int64_t cycle_ns = (time_ns + period_ns - 1) / period_ns * period_ns;
+    if (rule.horizon(wire.topic, cycle_ns) < time_ns) cycle_ns += period_ns;
+    return rule.required(wire.topic, cycle_ns) == time_ns;
+  };
+  for (const Wire& wire : kWires) {
+    if (!wire.every_cycle || wire.writer != job_of(module)) continue;
+    for (const std::string& name : participants) {
+      const std::string_view reader = job_of(name);
+      if (std::ranges::find(wire.readers, reader) != wire.readers.end() && waits(wire, reader)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 int reader_count(std::string_view topic, const std::vector<std::string>& participants) {
   const Wire* wire = find_wire(topic);
   if (wire == nullptr) return 0;

@@ -89,6 +89,11 @@ class InputRule {
   std::size_t rank_;  ///< in kModules
 };
 
+/// Whether a cycle of another participant waits for what `module` says in its cycle at `time_ns`,
+/// and for nothing that it says later. Recorders wait for nobody's sake.
+bool is_awaited(std::string_view module, std::int64_t time_ns, const scene::Scene& scene,
+                const std::vector<std::string>& participants);
+
 /// How many of `participants` read a topic.
 int reader_count(std::string_view topic, const std::vector<std::string>& participants);
 

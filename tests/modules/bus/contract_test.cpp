@@ -1,4 +1,4 @@
-// One contract, two buses, one of them heard in two ways: what holds of any is tested on all.
+// One contract, two buses, one of them heard in three ways: what holds of any is tested on all.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -37,6 +37,13 @@ struct GatheredSession : DdsSession {
   }
 };
 
+// As the processes of a lockstep hear.
+struct PolledSession : DdsSession {
+  explicit PolledSession(bool every_sample = false) : DdsSession(every_sample) {
+    far = std::make_unique<DdsBus>(options, Arrivals::kPolled);
+  }
+};
+
 struct MemorySession {
   explicit MemorySession(bool every_sample = false) : bus(every_sample) {}
   Bus& writers() { return bus; }
@@ -72,7 +79,7 @@ std::vector<Message> take_all(Reader<Message>& reader, std::size_t count) {
 
 }  // namespace
 
-#define PALPATE_BOTH_BUSES DdsSession, GatheredSession, MemorySession
+#define PALPATE_BOTH_BUSES DdsSession, GatheredSession, PolledSession, MemorySession
 
 TEMPLATE_TEST_CASE("bus contract: what was written arrives, bit by bit, and is counted", "[bus]",
                    PALPATE_BOTH_BUSES) {

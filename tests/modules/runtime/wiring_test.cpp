@@ -111,6 +111,30 @@ TEST_CASE("wiring: a topic's readers are counted among those who take part") {
   CHECK(reader_count("module_status", {"visualizer", "recorder"}) == 0);
 }
 
+TEST_CASE("wiring: what another one's cycle waits for is told from what can wait") {
+  // Oracle: by hand, of 1000, 300, 100 and 30 Hz.
+  const auto scene = two_probes_one_organ();
+  const std::vector<std::string> loop{"haptics", "collision", "deformation"};
+  const auto awaited = [&](const char* module, std::int64_t time_ns) {
+    return is_awaited(module, time_ns, scene, loop);
+  };
+  CHECK(awaited("haptics", 0));
+  CHECK_FALSE(awaited("haptics", 1'000'000));
+  CHECK_FALSE(awaited("haptics", 2'000'000));
+  CHECK(awaited("haptics", 3'000'000));  // by collision at 3.333333 ms
+  CHECK(awaited("haptics", 10'000'000));
+  CHECK_FALSE(awaited("collision", 3'333'333));  // deformation goes on at 10 ms
+  CHECK(awaited("collision", 9'999'999));
+  CHECK(awaited("deformation", 0));
+  CHECK(awaited("deformation", 10'000'000));
+  CHECK(is_awaited("deformation_2", 10'000'000, scene, loop));
+
+  CHECK_FALSE(is_awaited("haptics", 3'000'000, scene, {"haptics", "deformation", "recorder"}));
+  CHECK(is_awaited("haptics", 33'000'000, scene, {"haptics", "visualizer"}));  // at 33.333333 ms
+  CHECK_FALSE(is_awaited("haptics", 32'000'000, scene, {"haptics", "visualizer"}));
+  CHECK_FALSE(is_awaited("visualizer", 0, scene, loop));
+}
+
 TEST_CASE("wiring: a scene that lets laws grow old lets probes and contacts, and none is hurried") {
   // Oracle: the rule. A limit below 50 ms would be shorter than the period of slow collision.
   scene::Scene scene = two_probes_one_organ();

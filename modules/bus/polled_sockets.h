@@ -1,0 +1,53 @@
+// Hears packets in the thread that waits for them. Where a process has nothing to do until a packet
+// comes, a thread of its own for hearing is woken first, and wakes it then: on the way from process
+// to process that was half of the time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "modules/bus/listening_socket.h"
+#include "modules/bus/packet_senders.h"
+
+namespace palpate::bus {
+
+/// Sockets that nobody reads but hear(): meanwhile packets wait in them, as far as there is room.
+/// All calls come from one thread.
+class PolledSockets {
+ public:
+  using Take = std::function<void(std::span<const std::uint8_t>, const PacketSender&)>;
+  /// Of one socket in one hear(), so that it ends while packets rain.
+  static constexpr int kMostAtOnce = 4096;
+
+  /// @param addresses  of this host, in dotted form
+  /// @param room       of each socket, asked for [bytes]
+  /// @param take       called by hear()
+  /// @throws std::system_error as ListeningSocket does, and listens at none of them then
+  void open(const std::vector<std::string>& addresses, std::uint16_t port, int room, Take take);
+  bool is_open(std::uint16_t port) const;
+  bool close(std::uint16_t port);  ///< false if it is not open
+
+  /// Takes what has come; if nothing has, waits until something comes, at most `longest` [s].
+  /// @return whether anything was taken
+  bool hear(double longest);
+
+ private:
+  struct Channel {
+    std::uint16_t port = 0;
+    std::vector<ListeningSocket> sockets;
+    Take take;
+  };
+  bool drain();
+  bool drain(const ListeningSocket& socket, const Take& take);
+
+  std::vector<Channel> channels_;
+  /// Memory for a packet; touched as far as packets are long.
+  std::unique_ptr<std::uint8_t[]> packet_ =
+      std::make_unique_for_overwrite<std::uint8_t[]>(kMostPacketBytes);
+};
+
+}  // namespace palpate::bus
