@@ -32,7 +32,8 @@ Approach approach_of(const geometry::ProbeForm& probe,
 
   Approach approach;
   approach.duration = duration;
-  approach.nearest = std::numeric_limits<double>::infinity();
+  double squared_nearest = std::numeric_limits<double>::infinity();
+  approach.nearest = squared_nearest;
   Eigen::AlignedBox3d box;
   ContactSet contacts;
   Pose before = pose_at(0);
@@ -43,9 +44,10 @@ Approach approach_of(const geometry::ProbeForm& probe,
     approach.fastest =
         std::max(approach.fastest, (pose.position - before.position).norm() / kLookEvery);
     for (const auto& tree : trees) {
-      const double distance = std::sqrt(tree.nearest(pose.position).squared_distance);
-      if (distance >= approach.nearest) continue;
-      approach.nearest = distance;
+      const auto nearer = tree.nearest_within(pose.position, squared_nearest);
+      if (!nearer) continue;
+      squared_nearest = nearer->squared_distance;
+      approach.nearest = std::sqrt(squared_nearest);
       approach.nearest_at = time;
     }
     if (!approach.touches_at && !approach.begins_inside) {

@@ -60,8 +60,14 @@ Vec3 AabbTree::nearest_on(std::uint32_t triangle, const Vec3& point) const {
 
 AabbTree::Nearest AabbTree::nearest(const Vec3& point) const {
   PALPATE_DEMAND(!order_.empty());
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  return nearest_within(point, kAnywhere).value_or(Nearest{0, Vec3::Zero(), kAnywhere});
+}
+
+std::optional<AabbTree::Nearest> AabbTree::nearest_within(const Vec3& point,
+                                                          double squared_limit) const {
   Nearest best;
-  best.squared_distance = std::numeric_limits<double>::infinity();
+  best.squared_distance = squared_limit;
   std::vector<std::uint32_t> open{0};
   while (!open.empty()) {
     const Branch& branch = branches_[open.back()];
@@ -83,7 +89,8 @@ AabbTree::Nearest AabbTree::nearest(const Vec3& point) const {
     open.push_back(left_first ? right : left);
     open.push_back(left_first ? left : right);
   }
-  return best;
+  if (best.squared_distance < squared_limit) return best;
+  return std::nullopt;
 }
 
 void AabbTree::append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const {

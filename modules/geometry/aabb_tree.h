@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <functional>
+#include <optional>
 
 #include "modules/geometry/triangle_surface.h"
 
@@ -23,6 +24,9 @@ class AabbTree {
   /// The point of the surface nearest to `point`; of equally near triangles the first visited. Of
   /// a surface with triangles only.
   Nearest nearest(const Vec3& point) const;
+  /// The same if it is nearer than that; else none, at once where all is far beyond.
+  /// @param squared_limit  [m²]
+  std::optional<Nearest> nearest_within(const Vec3& point, double squared_limit) const;
 
   /// Appends the triangles whose own boxes touch `box`, in no useful order.
   void append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const;

@@ -1,5 +1,6 @@
 #include "modules/geometry/aabb_tree.h"
 
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -58,6 +59,11 @@ TEST_CASE("nearest: the tree finds the distance that brute force finds") {
     const AabbTree::Nearest nearest = tree.nearest(p);
     CHECK(nearest.squared_distance == brute);
     CHECK((nearest.point - p).squaredNorm() == brute);
+    const auto within = tree.nearest_within(p, std::nextafter(brute, 1e9));
+    REQUIRE(within);
+    CHECK(within->triangle == nearest.triangle);
+    CHECK(within->squared_distance == brute);
+    CHECK_FALSE(tree.nearest_within(p, brute));
   }
 }
 
