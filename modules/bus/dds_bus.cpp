@@ -57,11 +57,11 @@ class DdsWriter : public RawWriter {
     PolledSockets* const polled = participant_.polled();
     if (polled == nullptr) return is_acknowledged(longest);
     const std::int64_t until = ns_of<std::chrono::steady_clock>() + ns_from_seconds(longest);
-    for (;;) {
+    for (std::int64_t left = 1; left > 0; left = until - ns_of<std::chrono::steady_clock>()) {
       if (is_acknowledged(0)) return true;
-      const std::int64_t left = until - ns_of<std::chrono::steady_clock>();
-      if (!polled->hear(seconds_from_ns(left))) return is_acknowledged(0);
+      polled->hear(seconds_from_ns(left));
     }
+    return is_acknowledged(0);
   }
 
  private:
@@ -153,9 +153,19 @@ class DdsReader : public RawReader {
     while (inbox_ && inbox_->take(sample)) {
       if (participant_.admit(sample.payload)) return true;
     }
+    const std::int64_t asked = ns_of<std::chrono::steady_clock>();
+    if (take_heard(sample)) return true;
+    PolledSockets* const polled = participant_.polled();
+    if (polled != nullptr && polled->hear(0) && take_heard(sample)) return true;
+    // What is gathered may wait in a socket; there its stamps are seen to.
+    if (participant_.shortcut() == nullptr) wall_shift_.nothing_waits(asked);
+    return false;
+  }
+
+  /// What the library has.
+  bool take_heard(RawSample& sample) {
     dds::SampleInfo info;
     sample_.into = &sample.payload;
-    const std::int64_t asked = ns_of<std::chrono::steady_clock>();
     while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
       if (!info.valid_data) continue;  // a writer has left
       if (!participant_.admit(sample.payload)) continue;
@@ -163,11 +173,6 @@ class DdsReader : public RawReader {
       sample.received_time_ns = monotonic(arrival_of(info));
       return true;
     }
-    if (participant_.polled() != nullptr && participant_.polled()->hear(0)) {
-      return take_as_it_came(sample);
-    }
-    // What is gathered may wait in a socket; there its stamps are seen to.
-    if (participant_.shortcut() == nullptr) wall_shift_.nothing_waits(asked);
     return false;
   }
 
