@@ -63,35 +63,12 @@ TEST_CASE("average nodal pressure: the matrix is no smaller than the forces' der
   // pressures are many times μ.
   const auto model = small_cube(0.5);
   auto elements = elements_of<AverageNodalPressure>(model);
-  const double h = 0.02, apart = 1e-6;
-  const auto n = static_cast<Eigen::Index>(3 * model.node_count());
-  std::vector<Vec4f> unit(model.node_count()), product(model.node_count());
   for (const double size : {1.0, 0.8}) {
     for (const double by : {1e-4, 3e-3, 1.5e-2}) {
       auto positions = shaken(model, by);
       for (Vec3& x : positions) x *= size;
-      Eigen::MatrixXd excess(n, n);
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const auto node = static_cast<std::size_t>(k / 3);
-        const auto axis = static_cast<int>(k % 3);
-        std::fill(unit.begin(), unit.end(), Vec4f::Zero());
-        unit[node][axis] = 1;
-        linearise(elements, model, positions, h);
-        elements.apply(unit, product);
-        auto moved = positions;
-        moved[node][axis] += apart;
-        linearise(elements, model, moved, h);
-        const auto ahead = elements.forces();
-        moved[node][axis] -= 2 * apart;
-        linearise(elements, model, moved, h);
-        for (std::size_t i = 0; i < model.node_count(); ++i) {
-          const Vec3 derivative = h * h / (2 * apart) * (elements.forces()[i] - ahead[i]);
-          excess.block<3, 1>(static_cast<Eigen::Index>(3 * i), k) =
-              product[i].head<3>().cast<double>() - derivative;
-        }
-        excess(k, k) -= model.masses[node];
-      }
-      const Eigen::VectorXd values = eigenvalues_of(0.5 * (excess + excess.transpose()));
+      const Eigen::VectorXd values =
+          eigenvalues_of(excess_over_derivative(elements, model, positions, 0.02, 1e-6).excess);
       CAPTURE(size, by, values.maxCoeff());
       double largest = 0;
       for (const Mat3& block : elements.diagonal()) largest = std::max(largest, block.trace());

@@ -75,4 +75,40 @@ inline double matrix_error(ElasticForceElements& elements, const OrganModel& mod
   return error / largest;
 }
 
+/// A, and what it has more than M − h² ∂f/∂x, symmetrically, the derivative by central differences
+/// over `apart` [m].
+struct MatrixAndExcess {
+  Eigen::MatrixXd matrix, excess;
+};
+inline MatrixAndExcess excess_over_derivative(ElasticForceElements& elements,
+                                              const OrganModel& model,
+                                              const std::vector<Vec3>& positions, double h,
+                                              double apart) {
+  const auto n = static_cast<Eigen::Index>(3 * model.node_count());
+  std::vector<Vec4f> unit(model.node_count()), product(model.node_count());
+  Eigen::MatrixXd excess(n, n), matrix(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto node = static_cast<std::size_t>(k / 3);
+    const auto axis = static_cast<int>(k % 3);
+    std::fill(unit.begin(), unit.end(), Vec4f::Zero());
+    unit[node][axis] = 1;
+    linearise(elements, model, positions, h);
+    elements.apply(unit, product);
+    auto moved = positions;
+    moved[node][axis] += apart;
+    linearise(elements, model, moved, h);
+    const auto ahead = elements.forces();
+    moved[node][axis] -= 2 * apart;
+    linearise(elements, model, moved, h);
+    for (std::size_t i = 0; i < model.node_count(); ++i) {
+      const auto row = static_cast<Eigen::Index>(3 * i);
+      matrix.block<3, 1>(row, k) = product[i].head<3>().cast<double>();
+      excess.block<3, 1>(row, k) =
+          matrix.block<3, 1>(row, k) - h * h / (2 * apart) * (elements.forces()[i] - ahead[i]);
+    }
+    excess(k, k) -= model.masses[node];
+  }
+  return {matrix, 0.5 * (excess + excess.transpose())};
+}
+
 }  // namespace palpate::deformation::testing
