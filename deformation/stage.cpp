@@ -36,17 +36,16 @@ constexpr double kHeardWithin = 1.0;
 /// Laws have no rows meanwhile: the hand lets go.
 class ProbeInputs {
  public:
-  /// @param stale_after  of a pose, and of contacts [s]
-  ProbeInputs(bus::Bus& bus, std::size_t probes, const OwnOrgans& organs, double stale_after)
+  ProbeInputs(bus::Bus& bus, std::size_t probes, const OwnOrgans& organs, const scene::Scene& scene)
       : organs_(organs),
         states_(bus.reader(bus::kProbeState)),
         contacts_(bus.reader(bus::kContacts)),
-        states_heard_(probes, stale_after),
-        held_(probes, std::max(stale_after, kHeldUnheard)),
-        contacts_heard_(probes, stale_after),
+        states_heard_(probes, runtime::input_stale_after(scene)),
+        held_(probes, std::max(runtime::input_stale_after(scene), kHeldUnheard)),
+        contacts_heard_(probes, runtime::input_stale_after(scene)),
         sampled_ns_(probes, 0),
         found_ns_(probes, 0),
-        usual_ages_(probes, UsualAge(stale_after)) {}
+        usual_ages_(probes, {runtime::input_stale_after(scene), 1 / scene.rates.collision}) {}
 
   void bring(DeformationWorld& world) {
     while (states_.take(state_)) {
@@ -292,7 +291,7 @@ struct DeformationStage::Impl {
        std::size_t process, ChunkRunner* runner, Guarding guarding)
       : organs(scene, process),
         world(scene::part_of(scene, process), std::move(shapes), runner, guarding),
-        inputs(bus, world.probe_count(), organs, runtime::input_stale_after(scene)),
+        inputs(bus, world.probe_count(), organs, scene),
         outputs(bus, organs, world.probe_count(), process),
         period(1 / scene.rates.deformation),
         pauses(period) {

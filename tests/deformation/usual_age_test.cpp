@@ -6,7 +6,7 @@ using palpate::deformation::UsualAge;
 
 TEST_CASE("usual age: it is the oldest of late, no less than a floor, and no silence") {
   // Oracle: the stated rule, by hand.
-  UsualAge age(0.05);
+  UsualAge age(0.05, 0.004);
   CHECK(age.limit() == UsualAge::kLeast);
   age.note(0.004, 0.004);
   CHECK(age.limit() == UsualAge::kLeast);
@@ -17,4 +17,5 @@ TEST_CASE("usual age: it is the oldest of late, no less than a floor, and no sil
   CHECK(age.limit() > 0.028);
   age.note(0.004, UsualAge::kForgotten);
   CHECK(age.limit() == UsualAge::kLeast);
+  CHECK(UsualAge(0.05, 1 / 61.0).limit() == 1 / 61.0);  // of a source that is slow
 }
