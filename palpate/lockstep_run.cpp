@@ -126,7 +126,7 @@ class LockstepRun {
                         scene_.name);
     if (!wait_until_ready()) return end(false);
     monitor_.tally().start();
-    if (options_.realtime) cores_.keep();
+    if (options_.realtime) cores_.emplace().keep();
     Progress progress(start_ns_, duration_, out_);
     while (next_cycle() && slowest_ns() < end_ns()) {
       grant();
@@ -246,7 +246,7 @@ class LockstepRun {
   std::ostream& log_;
   StopSignal stop_;
   /// It is handed on some thousand times a second, each time to who sleeps.
-  runtime::AwakeCores cores_;
+  std::optional<runtime::AwakeCores> cores_;
   scene::Scene scene_;
   std::string digest_;
   double duration_;
@@ -265,7 +265,8 @@ class LockstepRun {
 /// This host's part of a lockstep that another one conducts.
 int follow_lockstep(const RunOptions& options, std::ostream& log) {
   const StopSignal stop;
-  ModuleGroup modules(module_commands(options, program_folder()), log);
+  const std::size_t processes = scene::process_count(scene::load_scene(options.scene));
+  ModuleGroup modules(module_commands(options, program_folder(), processes), log);
   runtime::PeriodicLoop loop(1 / kLongestWait);
   int exit_code = kExitDone;
   while (modules.any_running() && !stop.requested()) {

@@ -15,6 +15,7 @@
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/status_reporter.h"
 #include "modules/runtime/wiring.h"
+#include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
 namespace palpate::runtime {
@@ -216,7 +217,8 @@ class LockstepModule {
 
 void run_in_lockstep(const ModuleOptions& options, const scene::Scene& scene,
                      const std::string& module, const MakeStage& make) {
-  wait_for_turn();
+  // Who is told second must not wait until the first is done.
+  if (scene::process_count(scene) > 1) wait_for_turn();
   LockstepModule(options, scene, module, make).run();
 }
 
