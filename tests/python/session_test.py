@@ -315,7 +315,7 @@ session, live = palpate.Session(palpate.scene_path("stomach_probe")), palpate.co
 for call in (lambda: session.run_until(1e5), lambda: live.latest("scene", timeout_s=1e5)):
     threading.Thread(target=call, daemon=True).start()
 time.sleep(0.2)
-threading.excepthook = lambda told: print(told.exc_type.__name__)
+threading.excepthook = lambda told: print(told.exc_type.__name__ + "\\n", end="")
 """
         ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
