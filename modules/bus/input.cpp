@@ -15,11 +15,6 @@ Input::Input(Bus& bus, const TopicInfo& topic, Keep keep)
 
 Input::~Input() { std::erase(bus_.inputs_, this); }
 
-bool Input::wait(double timeout) {
-  const bool ready = !pending_.empty() && pending_.front().header.source_time_ns <= horizon_;
-  return ready || raw_->wait(timeout);
-}
-
 void Input::set_horizon(std::int64_t source_time_ns) {
   horizon_ = source_time_ns;
   gated_ = true;
@@ -35,8 +30,8 @@ bool Input::heard_until(std::int64_t source_time_ns, std::size_t keys) {
 
 const RawSample* Input::next() {
   if (!gated_) return raw_->take(current_) ? &current_ : nullptr;
-  pull();
-  if (pending_.empty() || pending_.front().header.source_time_ns > horizon_) return nullptr;
+  if (!has_admitted()) pull();
+  if (!has_admitted()) return nullptr;
   spare_.splice(spare_.end(), pending_, pending_.begin());
   return &spare_.back().sample;
 }

@@ -41,8 +41,9 @@ class Input {
   const ReaderStatistics& statistics() const { return statistics_; }
   const WriterId& writer() const { return writer_; }  ///< of the last sample taken
   int matched_writers() const { return raw_->matched_writers(); }
-  /// Waits until a sample may have come; false on timeout [s].
-  bool wait(double timeout);
+  /// Waits until a sample may have come that nobody heard of yet; false on timeout [s]. What is
+  /// held back by the horizon, or was heard by heard_until(), ends no wait.
+  bool wait(double timeout) { return raw_->wait(timeout); }
 
   /// Samples with a later header.source_time_ns wait until the horizon has moved on.
   void set_horizon(std::int64_t source_time_ns);
@@ -68,6 +69,10 @@ class Input {
   };
 
   void pull();
+  /// Has something come that the horizon admits?
+  bool has_admitted() const {
+    return !pending_.empty() && pending_.front().header.source_time_ns <= horizon_;
+  }
   Waiting& spare();
   void read_header(Waiting& arrived) const;
   void insert(std::list<Waiting>::iterator arrived);

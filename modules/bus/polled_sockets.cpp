@@ -5,7 +5,6 @@
 #include <sys/socket.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "modules/core/units.h"
@@ -17,6 +16,7 @@ void PolledSockets::open(const std::vector<std::string>& addresses, std::uint16_
   Channel channel{port, {}, std::move(take)};
   for (const std::string& address : addresses) channel.sockets.emplace_back(address, port, room);
   channels_.push_back(std::move(channel));
+  list();
 }
 
 bool PolledSockets::is_open(std::uint16_t port) const {
@@ -24,27 +24,32 @@ bool PolledSockets::is_open(std::uint16_t port) const {
 }
 
 bool PolledSockets::close(std::uint16_t port) {
-  return std::erase_if(channels_, [&](const Channel& c) { return c.port == port; }) > 0;
+  const bool closed =
+      std::erase_if(channels_, [&](const Channel& c) { return c.port == port; }) > 0;
+  list();
+  return closed;
 }
 
-bool PolledSockets::hear(double longest) {
-  if (drain()) return true;
-  if (longest <= 0) return false;
-  std::vector<pollfd> waited;
+void PolledSockets::list() {
+  polled_.clear();
   for (const Channel& channel : channels_) {
     for (const ListeningSocket& socket : channel.sockets) {
-      waited.push_back({socket.descriptor(), POLLIN, 0});
+      polled_.push_back({socket.descriptor(), POLLIN, 0});
     }
   }
-  const std::int64_t ns = ns_from_seconds(longest);
-  const timespec time{ns / kNanosecondsPerSecond, ns % kNanosecondsPerSecond};
-  return ::ppoll(waited.data(), waited.size(), &time, nullptr) > 0 && drain();
 }
 
-bool PolledSockets::drain() {
+// To ask each socket for a packet would cost as many calls as there are sockets, nearly all in vain.
+bool PolledSockets::hear(double longest) {
+  const std::int64_t ns = ns_from_seconds(std::max(longest, 0.0));
+  const timespec time{ns / kNanosecondsPerSecond, ns % kNanosecondsPerSecond};
+  if (::ppoll(polled_.data(), polled_.size(), &time, nullptr) <= 0) return false;
   bool any = false;
+  std::size_t place = 0;
   for (const Channel& channel : channels_) {
-    for (const ListeningSocket& socket : channel.sockets) any |= drain(socket, channel.take);
+    for (const ListeningSocket& socket : channel.sockets) {
+      if (polled_[place++].revents != 0) any |= drain(socket, channel.take);
+    }
   }
   return any;
 }

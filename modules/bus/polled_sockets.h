@@ -3,6 +3,8 @@
 // to process that was half of the time.
 #pragma once
 
+#include <poll.h>
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -41,10 +43,11 @@ class PolledSockets {
     std::vector<ListeningSocket> sockets;
     Take take;
   };
-  bool drain();
+  void list();
   bool drain(const ListeningSocket& socket, const Take& take);
 
   std::vector<Channel> channels_;
+  std::vector<pollfd> polled_;  ///< their sockets
   /// Memory for a packet; touched as far as packets are long.
   std::unique_ptr<std::uint8_t[]> packet_ =
       std::make_unique_for_overwrite<std::uint8_t[]>(kMostPacketBytes);
