@@ -213,12 +213,23 @@ class LockstepModule {
   bool finished_ = false;
 };
 
+/// Of several processes of deformation, which compute at the same time.
+void share_cores(const scene::Scene& scene, const std::string& module) {
+  const std::size_t processes = scene::process_count(scene);
+  if (processes == 1) return;
+  // Who is told second must not wait until the first is done.
+  wait_for_turn();
+  const auto named = module_named(module);
+  if (scene.deformation_threads == 1 && named && named->job == "deformation") {
+    keep_to_own_core(named->process - 1, processes);
+  }
+}
+
 }  // namespace
 
 void run_in_lockstep(const ModuleOptions& options, const scene::Scene& scene,
                      const std::string& module, const MakeStage& make) {
-  // Who is told second must not wait until the first is done.
-  if (scene::process_count(scene) > 1) wait_for_turn();
+  share_cores(scene, module);
   LockstepModule(options, scene, module, make).run();
 }
 

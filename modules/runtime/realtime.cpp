@@ -84,6 +84,18 @@ void wait_for_turn() {
   if (sched_getscheduler(0) == SCHED_OTHER) sched_setscheduler(0, SCHED_BATCH, &none);
 }
 
+bool keep_to_own_core(std::size_t place, std::size_t count) {
+  cpu_set_t allowed, own;
+  CPU_ZERO(&own);
+  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return false;
+  if (static_cast<std::size_t>(CPU_COUNT(&allowed)) != count) return false;
+  std::size_t seen = 0;
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &allowed) && seen++ == place) CPU_SET(core, &own);
+  }
+  return CPU_COUNT(&own) == 1 && sched_setaffinity(0, sizeof own, &own) == 0;
+}
+
 void lower_priority(int steps) {
   errno = 0;
   const int ignored = nice(steps);

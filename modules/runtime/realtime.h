@@ -1,6 +1,7 @@
 // Privileges the system may grant a module: real-time priority, locked memory, niceness.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace palpate::runtime {
@@ -46,6 +47,13 @@ void resume_realtime(int fifo_priority);
 /// free or who works there has had its turn: of processes that take turns each ends what it is at.
 /// Nothing for who has real-time priority.
 void wait_for_turn();
+
+/// The calling thread, and those it starts from now on, keep to one core, where there are as many
+/// cores for it as processes that compute at the same time: where others still work on the core
+/// that it was on, it would wait for them while another core idles. @param place  of `count`, from
+/// 0
+/// @return whether it does
+bool keep_to_own_core(std::size_t place, std::size_t count);
 
 /// Gives way to everybody else. @param steps  of niceness, 0 … 19
 void lower_priority(int steps);

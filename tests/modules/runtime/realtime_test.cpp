@@ -118,6 +118,27 @@ TEST_CASE("realtime: who takes turns is no longer preferred when woken, unless i
         }) == 0);
 }
 
+TEST_CASE("realtime: as many processes as cores keep to one each, other numbers of them to none") {
+  // Oracle: the cores that the scheduler says it allows, for a thread started afterwards, too.
+  CHECK(in_child([] {
+          cpu_set_t all, own, inherited;
+          sched_getaffinity(0, sizeof all, &all);
+          const auto cores = static_cast<std::size_t>(CPU_COUNT(&all));
+          if (keep_to_own_core(0, cores + 1)) return 1;
+          sched_getaffinity(0, sizeof own, &own);
+          if (!CPU_EQUAL(&own, &all)) return 2;
+          if (!keep_to_own_core(cores - 1, cores)) return 3;
+          sched_getaffinity(0, sizeof own, &own);
+          std::thread([&] { sched_getaffinity(0, sizeof inherited, &inherited); }).join();
+          int last = 0;
+          for (int core = 0; core < CPU_SETSIZE; ++core) {
+            if (CPU_ISSET(core, &all)) last = core;
+          }
+          const bool kept = CPU_COUNT(&own) == 1 && CPU_ISSET(last, &own);
+          return kept && CPU_EQUAL(&own, &inherited) ? 0 : 4;
+        }) == 0);
+}
+
 TEST_CASE("realtime: a background process gives way") {
   // Oracle: the system's niceness.
   CHECK(in_child([] {
