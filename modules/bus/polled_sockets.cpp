@@ -1,57 +1,64 @@
 #include "modules/bus/polled_sockets.h"
 
 #include <netinet/in.h>
-#include <poll.h>
+#include <sys/epoll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <system_error>
 #include <utility>
 
-#include "modules/core/units.h"
-
 namespace palpate::bus {
+
+PolledSockets::PolledSockets() : ready_(::epoll_create1(EPOLL_CLOEXEC)) {
+  if (ready_ < 0) throw std::system_error(errno, std::generic_category(), "epoll_create1");
+}
+
+PolledSockets::~PolledSockets() { ::close(ready_); }
 
 void PolledSockets::open(const std::vector<std::string>& addresses, std::uint16_t port, int room,
                          Take take) {
   Channel channel{port, {}, std::move(take)};
-  for (const std::string& address : addresses) channel.sockets.emplace_back(address, port, room);
+  for (const std::string& address : addresses) {
+    const int socket = channel.sockets.emplace_back(address, port, room).descriptor();
+    epoll_event event{EPOLLIN, {.fd = socket}};
+    if (::epoll_ctl(ready_, EPOLL_CTL_ADD, socket, &event) != 0) {
+      throw std::system_error(errno, std::generic_category(), address);
+    }
+  }
   channels_.push_back(std::move(channel));
-  list();
 }
 
 bool PolledSockets::is_open(std::uint16_t port) const {
   return std::ranges::find(channels_, port, &Channel::port) != channels_.end();
 }
 
+// A socket that is closed leaves the set by itself.
 bool PolledSockets::close(std::uint16_t port) {
-  const bool closed =
-      std::erase_if(channels_, [&](const Channel& c) { return c.port == port; }) > 0;
-  list();
-  return closed;
+  return std::erase_if(channels_, [&](const Channel& c) { return c.port == port; }) > 0;
 }
 
-void PolledSockets::list() {
-  polled_.clear();
-  for (const Channel& channel : channels_) {
-    for (const ListeningSocket& socket : channel.sockets) {
-      polled_.push_back({socket.descriptor(), POLLIN, 0});
-    }
-  }
-}
-
-// To ask each socket for a packet would cost as many calls as there are sockets, nearly all in vain.
+// To ask each socket for a packet would cost as many calls as there are sockets, nearly all in
+// vain.
 bool PolledSockets::hear(double longest) {
-  const std::int64_t ns = ns_from_seconds(std::max(longest, 0.0));
-  const timespec time{ns / kNanosecondsPerSecond, ns % kNanosecondsPerSecond};
-  if (::ppoll(polled_.data(), polled_.size(), &time, nullptr) <= 0) return false;
+  epoll_event events[kMostReady];
+  const int ms = static_cast<int>(std::ceil(std::max(longest, 0.0) * 1e3));
+  const int count = ::epoll_wait(ready_, events, kMostReady, ms);
   bool any = false;
-  std::size_t place = 0;
+  for (int i = 0; i < count; ++i) any |= drain(events[i].data.fd);
+  return any;
+}
+
+bool PolledSockets::drain(int descriptor) {
   for (const Channel& channel : channels_) {
     for (const ListeningSocket& socket : channel.sockets) {
-      if (polled_[place++].revents != 0) any |= drain(socket, channel.take);
+      if (socket.descriptor() == descriptor) return drain(socket, channel.take);
     }
   }
-  return any;
+  return false;
 }
 
 bool PolledSockets::drain(const ListeningSocket& socket, const Take& take) {

@@ -3,8 +3,6 @@
 // to process that was half of the time.
 #pragma once
 
-#include <poll.h>
-
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -25,15 +23,24 @@ class PolledSockets {
   /// Of one socket in one hear(), so that it ends while packets rain.
   static constexpr int kMostAtOnce = 4096;
 
+  /// @throws std::system_error if the system has no descriptor left
+  PolledSockets();
+  ~PolledSockets();
+  PolledSockets(const PolledSockets&) = delete;
+  PolledSockets& operator=(const PolledSockets&) = delete;
+
   /// @param addresses  of this host, in dotted form
   /// @param room       of each socket, asked for [bytes]
   /// @param take       called by hear()
-  /// @throws std::system_error as ListeningSocket does, and listens at none of them then
+  /// @throws std::system_error as ListeningSocket does, or if the system takes no more, and listens
+  /// at
+  ///                  none of them then
   void open(const std::vector<std::string>& addresses, std::uint16_t port, int room, Take take);
   bool is_open(std::uint16_t port) const;
   bool close(std::uint16_t port);  ///< false if it is not open
 
-  /// Takes what has come; if nothing has, waits until something comes, at most `longest` [s].
+  /// Takes what has come; if nothing has, waits until something comes, at most `longest` [s], to
+  /// the next millisecond.
   /// @return whether anything was taken
   bool hear(double longest);
 
@@ -43,11 +50,12 @@ class PolledSockets {
     std::vector<ListeningSocket> sockets;
     Take take;
   };
-  void list();
+  static constexpr int kMostReady = 64;  ///< in one call of the system
+  bool drain(int descriptor);
   bool drain(const ListeningSocket& socket, const Take& take);
 
   std::vector<Channel> channels_;
-  std::vector<pollfd> polled_;  ///< their sockets
+  int ready_;  ///< tells which of their sockets have something
   /// Memory for a packet; touched as far as packets are long.
   std::unique_ptr<std::uint8_t[]> packet_ =
       std::make_unique_for_overwrite<std::uint8_t[]>(kMostPacketBytes);
