@@ -25,11 +25,16 @@ void read_boxes(std::span<const float> from, std::vector<geometry::BlockBox>& bo
 
 }  // namespace
 
-OrganInputs::OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes, std::size_t organs)
+OrganInputs::OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes,
+                         const std::vector<scene::Organ>& organs)
     : surfaces_(bus.reader(bus::kSurface)),
       positions_(bus.reader(bus::kNodePositions)),
       probes_(std::move(probes)),
-      organs_(organs) {}
+      organs_(organs.size()) {
+  for (std::size_t i = 0; i < organs.size(); ++i) {
+    organs_[i].follows = organs[i].solid.refine.follow;
+  }
+}
 
 void OrganInputs::take() {
   while (surfaces_.take(surface_)) take_surface();
@@ -76,7 +81,8 @@ void OrganInputs::OrganInput::exchange(StateArchive& archive) {
 /// remembered of the search before no longer holds. It has not if positions told after it are
 /// there already: of a deformation that begins anew they may be heard first. One of the same
 /// generation is told by a process that may go on where the one before it was: until positions come
-/// the organ is there, too. One of other triangles waits for its positions likewise.
+/// the organ is there, too. One of other triangles waits for its positions likewise, and of an
+/// organ that follows one of a later generation: it may have changed inside alone.
 void OrganInputs::take_surface() {
   if (surface_.organ >= organs_.size()) return;
   OrganInput& organ = organs_[surface_.organ];
@@ -85,7 +91,8 @@ void OrganInputs::take_surface() {
     organ.placed = surface_.header.source_time_ns == runtime::CycleGrid::kSetUp;
     return make_finder();
   }
-  if (!organ.next.empty() || organ.triangles != surface_.triangles ||
+  const bool changed_inside = organ.follows && surface_.generation > organ.generation;
+  if (!organ.next.empty() || changed_inside || organ.triangles != surface_.triangles ||
       organ.triangle_blocks != surface_.triangle_blocks) {
     if (organ.next.size() == kMostTold) organ.next.erase(organ.next.begin());
     organ.next.push_back(surface_);

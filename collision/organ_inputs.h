@@ -8,12 +8,14 @@
 
 #include "collision/contact_finder.h"
 #include "modules/bus/bus.h"
+#include "modules/scene/scene.h"
 
 namespace palpate::collision {
 
 class OrganInputs {
  public:
-  OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes, std::size_t organs);
+  OrganInputs(bus::Bus& bus, std::vector<geometry::ProbeForm> probes,
+              const std::vector<scene::Organ>& organs);
 
   void take();
   /// What was remembered of searches no longer holds, and nothing is known of where the organs are
@@ -37,6 +39,7 @@ class OrganInputs {
 
  private:
   struct OrganInput {
+    bool follows = false;  ///< its mesh changes, sometimes inside alone
     std::uint32_t generation = 0;
     std::vector<geometry::Triangle> triangles;
     std::vector<std::uint32_t> triangle_blocks;

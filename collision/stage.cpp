@@ -138,7 +138,7 @@ const char* acting_guard(const Acted& acted) {
 struct CollisionStage::Impl {
   Impl(const scene::Scene& scene, std::vector<geometry::ProbeForm> forms, bus::Bus& bus)
       : rates(scene.rates),
-        organs(bus, std::move(forms), scene.organs.size()),
+        organs(bus, std::move(forms), scene.organs),
         probes(bus, scene),
         writer(bus.writer(bus::kContacts)),
         pauses(1 / scene.rates.collision) {}

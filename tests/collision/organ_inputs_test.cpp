@@ -28,6 +28,7 @@ struct Pressed {
   bus::Reader<Contacts> contacts = bus.reader(bus::kContacts);
   geometry::TriangleSurface ball = geometry::make_ball(kBall, 4);
   Contacts newest;
+  std::uint32_t of_positions = 1;  ///< their generation
 
   Pressed() {
     bus.set_clock([this] { return now_ns; });
@@ -66,7 +67,7 @@ struct Pressed {
   void tell_positions(const std::vector<Vec3>& nodes) {
     NodePositions told;
     told.header.source_time_ns = now_ns;
-    told.generation = 1;
+    told.generation = of_positions;
     told.positions = floats(nodes);
     REQUIRE(positions.write(told));
   }
@@ -148,6 +149,28 @@ TEST_CASE(
   pressed.tell_finger(-5e-4);
   REQUIRE(pressed.search(stage));
   CHECK(pressed.newest.deepest_gap() < -0.02);
+}
+
+TEST_CASE("organ inputs: an organ that follows and changes inside alone stays in its dent") {
+  // Oracle: geometry, as above. The same surface is told as of the next generation, and positions
+  // of the one before and then of it; an organ that does not follow begins anew so, at rest.
+  for (const bool follows : {true, false}) {
+    Pressed pressed;
+    pressed.scene.organs[0].solid.refine.follow = follows;
+    auto stage = pressed.stage();
+    pressed.tell_surface(runtime::CycleGrid::kSetUp);
+    pressed.tell_dented();
+    pressed.tell_finger(-5e-4);
+    REQUIRE(pressed.search(stage));
+    pressed.tell_surface(pressed.now_ns, 2);
+    for (int k = 0; k < 3; ++k) {
+      pressed.tell_finger(-5e-4);
+      if (follows) pressed.tell_dented();
+      REQUIRE(pressed.search(stage));
+      CHECK(pressed.is_held_by_bottom(-5e-4) == follows);
+      pressed.of_positions = k < 1 ? 1 : 2;
+    }
+  }
 }
 
 TEST_CASE("organ inputs: an organ of a process that goes on where another was stays in its dent") {
