@@ -13,6 +13,9 @@ namespace {
 
 /// Pairs are looked for within this part of the mean edge, so that a search lasts some steps.
 constexpr double kReachOfEdge = 0.5;
+/// What was looked for within more than so many times what is wanted now is looked for anew: all
+/// pairs within it are looked at in every step.
+constexpr double kMostReach = 4;
 /// Tries of a step, each with pairs looked for further around.
 constexpr int kMostTries = 3;
 
@@ -219,12 +222,14 @@ OrganContactReport OrganContacts::solve(double h) {
 }
 
 Confinement OrganContacts::try_step(double h, double spare, OrganContactReport& solved) {
-  if (!measure_travel(spare)) {
-    double step = 0;
-    for (std::size_t i = 0; i < organs_.size(); ++i) {
-      step = std::max(step, farthest_travel(start_[i], asked_[i]));
-    }
-    search(std::max(least_reach_, 4 * (step + spare + kRestGap)));
+  double step = 0;
+  for (std::size_t i = 0; i < organs_.size(); ++i) {
+    step = std::max(step, farthest_travel(start_[i], asked_[i]));
+  }
+  const double wanted = std::max(least_reach_, 4 * (step + spare + kRestGap));
+  // What was looked for in a hurry may be all there is: organs at rest would never look anew.
+  if (!measure_travel(spare) || reach_ > kMostReach * wanted) {
+    search(wanted);
     if (!measure_travel(spare)) return Confinement::kIncomplete;
   }
   collect_pairs();
