@@ -51,7 +51,7 @@ struct DeformationWorld::Impl {
       probe.append_rows(index, *organ.surface, organ.simulated.state(), h, to, organ.rows);
     }
     SimulatedOrgan::Revise revise;
-    if (!contacts_suspended && any_may_cross(index)) {
+    if (!contacts_suspended && any_may_miss(index)) {
       revise = [&](const OrganState& start, const OrganState& end) {
         return ProbeContacts::hold_missed(probes, index, *organ.surface, start.positions,
                                           end.positions, h, to, organ.rows);
@@ -90,9 +90,9 @@ struct DeformationWorld::Impl {
     }
   }
 
-  bool any_may_cross(std::uint32_t organ) const {
+  bool any_may_miss(std::uint32_t organ) const {
     return std::ranges::any_of(probes,
-                               [&](const ProbeContacts& probe) { return probe.may_cross(organ); });
+                               [&](const ProbeContacts& probe) { return probe.may_miss(organ); });
   }
 
   /// What organs do to each other may take one through a probe, or into it, that its own step had
@@ -112,9 +112,9 @@ struct DeformationWorld::Impl {
   /// All organs from one fraction of the advance to another, then their contacts with each other.
   /// @returns false if a probe was not held: the organs are as before, but not as a last resort
   bool try_together(double from, double to, bool last_resort, AdvanceReport& report) {
-    bool may_cross = false;
-    for (std::uint32_t i = 0; i < organs.size(); ++i) may_cross |= any_may_cross(i);
-    if (may_cross) {
+    bool may_miss = false;
+    for (std::uint32_t i = 0; i < organs.size(); ++i) may_miss |= any_may_miss(i);
+    if (may_miss) {
       for (WorldOrgan& organ : organs) organ.simulated.keep(organ.start);
     }
     organ_contacts->begin_step();
@@ -127,7 +127,7 @@ struct DeformationWorld::Impl {
       rows.emplace_back(organs[i].rows);
     }
     if (held) organ_contacts->end_step(h, rows, tried);
-    const Missed missed = held && may_cross ? missed_together(h, to) : Missed::kNothing;
+    const Missed missed = held && may_miss ? missed_together(h, to) : Missed::kNothing;
     held &= last_resort || missed != Missed::kCrossing;
     tried.contacts_unsolved += missed != Missed::kNothing;
     if (!held) {
@@ -169,7 +169,10 @@ struct DeformationWorld::Impl {
       if (!organ.following) continue;
       if (organ.following->next() != nullptr) {
         cores.clear();
-        for (const auto& probe : probes) probe.append_kept_outside(i, cores);
+        for (const auto& probe : probes) {
+          probe.append_kept_outside(i, organ.surface->body(), organ.simulated.state().positions,
+                                    cores);
+        }
         organ.change_mesh(cores);
         for (auto& probe : probes) {
           probe.change_surface(i, organ.following->last_transfer(), *organ.surface,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "deformation/contact/inner_cores.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
 
@@ -31,9 +32,11 @@ bool is_on_fixed_nodes(const CarriedContact& contact, const Body& body) {
   return true;
 }
 
-ProbeContacts::ProbeContacts(const scene::Probe& probe) : friction_(probe.friction) {
+ProbeContacts::ProbeContacts(const scene::Probe& probe)
+    : friction_(probe.friction), inner_cores_(inner_cores(probe.shape)) {
   const geometry::ProbeForm form = scene::form_of(probe.shape);
   if (const auto* core = std::get_if<geometry::RoundedSegment>(&form)) core_ = *core;
+  if (const auto* box = std::get_if<geometry::Box>(&form)) half_extents_ = box->size / 2;
 }
 
 void ProbeContacts::reset() {

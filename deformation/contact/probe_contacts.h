@@ -97,7 +97,13 @@ class ProbeContacts {
   bool hold_swallowed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
                       std::span<const Vec3> end, double h, double fraction,
                       std::vector<ContactRow>& rows);
-  /// Both, for all probes.
+  /// The same where the wall went over one of a sharp tool's inner cores, or a node ended deeper in
+  /// a box than kUnsolvedDepth: its contacts come from the search alone, and what passes between
+  /// two of them takes the tool through the wall.
+  bool hold_pierced(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
+                    std::span<const Vec3> end, double h, double fraction,
+                    std::vector<ContactRow>& rows);
+  /// All of them, for all probes.
   static Missed hold_missed(std::span<ProbeContacts> probes, std::uint32_t organ,
                             SurfaceWalk& surface, std::span<const Vec3> start,
                             std::span<const Vec3> end, double h, double fraction,
@@ -119,8 +125,15 @@ class ProbeContacts {
   bool may_cross(std::uint32_t organ) const {
     return core_ && (has_contacts(organ) || is_watched(organ));
   }
-  /// Appends a round probe's core if it was kept outside an organ.
-  void append_kept_outside(std::uint32_t organ, std::vector<CoreLine>& cores) const;
+  /// Whether a step may leave tissue and probe where rows do not hold them, so that it is looked
+  /// at.
+  bool may_miss(std::uint32_t organ) const {
+    return may_cross(organ) || (!inner_cores_.empty() && has_contacts(organ));
+  }
+  /// Appends a round probe's core if it was kept outside an organ, and of a sharp tool that touches
+  /// it the inner cores that are outside.
+  void append_kept_outside(std::uint32_t organ, const Body& body, std::span<const Vec3> positions,
+                           std::vector<CoreLine>& cores) const;
   /// Whether penetration of an organ that was not seen coming is being undone.
   bool is_gentle(std::uint32_t organ) const;
   double friction() const { return friction_; }
@@ -168,10 +181,17 @@ class ProbeContacts {
   void append_crossed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> positions,
                       double fraction, std::vector<CoreLine>& cores);
   void find_crossings(SurfaceWalk& surface, std::span<const Vec3> start, std::span<const Vec3> end,
-                      const Pose& before, const Pose& after);
+                      const CoreWay& core);
   void hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
                std::span<const Vec3> start, const Pose& before, const Pose& after, double h,
                std::vector<ContactRow>& rows);
+  /// Puts a contact that the search did not tell among the others, and its row at the end.
+  void add_row(CarriedContact contact, const SurfaceWalk& surface, std::span<const Vec3> start,
+               const Pose& before, const Pose& after, double h, std::vector<ContactRow>& rows);
+  void hold_nodes_in_box(std::uint32_t organ, std::span<const std::uint32_t> triangles,
+                         const SurfaceWalk& surface, std::span<const Vec3> start,
+                         std::span<const Vec3> end, const Pose& before, const Pose& after, double h,
+                         std::vector<ContactRow>& rows);
   double way_to_tissue(const SurfaceWalk& surface, std::span<const Vec3> start,
                        std::span<const Vec3> end, const Pose& before, const Pose& after) const;
   bool is_held(std::uint32_t organ, const Vec3& place, std::span<const Vec3> end,
@@ -195,6 +215,8 @@ class ProbeContacts {
 
   double friction_;
   std::optional<geometry::RoundedSegment> core_;
+  std::vector<geometry::RoundedSegment> inner_cores_;  ///< of a sharp tool
+  std::optional<Vec3> half_extents_;                   ///< of a box [m]
   bool placed_ = false;
   bool searched_ = false;  ///< a search has told of it since it was placed, jumped or fell silent
   Pose start_, target_;

@@ -5,10 +5,20 @@
 #include "deformation/contact/probe_contacts.h"
 
 namespace palpate::deformation {
-void ProbeContacts::append_kept_outside(std::uint32_t organ, std::vector<CoreLine>& cores) const {
+
+void ProbeContacts::append_kept_outside(std::uint32_t organ, const Body& body,
+                                        std::span<const Vec3> positions,
+                                        std::vector<CoreLine>& cores) const {
+  const auto line_of = [&](const geometry::RoundedSegment& core) {
+    return CoreLine{start_.to_world(core.a), start_.to_world(core.b)};
+  };
   const auto near = std::ranges::find(near_, organ, &Near::organ);
-  if (!core_ || near == near_.end() || near->inside) return;
-  cores.push_back({start_.to_world(core_->a), start_.to_world(core_->b)});
+  if (core_ && near != near_.end() && !near->inside) cores.push_back(line_of(*core_));
+  if (!has_contacts(organ) || is_gentle(organ)) return;
+  for (const geometry::RoundedSegment& core : inner_cores_) {
+    const CoreLine line = line_of(core);
+    if (are_outside({&line, 1}, body, positions)) cores.push_back(line);
+  }
 }
 
 void ProbeContacts::append_crossed(std::uint32_t organ, SurfaceWalk& surface,
@@ -48,16 +58,14 @@ bool ProbeContacts::put_back_outside(std::span<ProbeContacts> probes, std::uint3
 
 /// Ends of the core through triangles, and its side over edges: crossings_.
 void ProbeContacts::find_crossings(SurfaceWalk& surface, std::span<const Vec3> start,
-                                   std::span<const Vec3> end, const Pose& before,
-                                   const Pose& after) {
-  const CoreWay core{before.to_world(core_->a), before.to_world(core_->b), after.to_world(core_->a),
-                     after.to_world(core_->b)};
+                                   std::span<const Vec3> end, const CoreWay& core) {
+  const bool is_ball = core.a0 == core.b0;
   crossings_.clear();
-  if (!core_->is_ball()) surface.find_side_crossings(core, start, end, seeds_, crossings_);
+  if (!is_ball) surface.find_side_crossings(core, start, end, seeds_, crossings_);
   if (const auto a = surface.first_crossing(core.a0, core.a1, start, end, seeds_)) {
     crossings_.push_back(*a);
   }
-  if (core_->is_ball()) return;
+  if (is_ball) return;
   if (const auto b = surface.first_crossing(core.b0, core.b1, start, end, seeds_)) {
     crossings_.push_back(*b);
     crossings_.back().along = 1;
@@ -91,7 +99,8 @@ Missed ProbeContacts::hold_missed(std::span<ProbeContacts> probes, std::uint32_t
                                   std::vector<ContactRow>& rows) {
   Missed missed = Missed::kNothing;
   for (ProbeContacts& probe : probes) {
-    if (probe.hold_crossed(organ, surface, start, end, h, fraction, rows)) {
+    if (probe.hold_crossed(organ, surface, start, end, h, fraction, rows) ||
+        probe.hold_pierced(organ, surface, start, end, h, fraction, rows)) {
       missed = Missed::kCrossing;
     } else if (probe.hold_swallowed(organ, surface, start, end, h, fraction, rows)) {
       missed = std::max(missed, Missed::kDepth);
@@ -106,7 +115,9 @@ bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
   if (!may_cross(organ) || near_of(organ).inside) return false;
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   take_seeds(near_of(organ));
-  find_crossings(surface, start, end, before, after);
+  find_crossings(surface, start, end,
+                 {before.to_world(core_->a), before.to_world(core_->b), after.to_world(core_->a),
+                  after.to_world(core_->b)});
   near_of(organ).crossed = !crossings_.empty();
   // A core on its gentle way out may swing back in; it is not kept from it at a blow.
   const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);

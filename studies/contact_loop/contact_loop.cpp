@@ -27,6 +27,7 @@ constexpr double kTurnX = 0.31, kTurnZ = 0.23;  // of the rate of presses
 constexpr double kWait = 0.1, kHold = 0.3;      // before and after the motion [s]
 constexpr double kLeastMotion = 1.0;            // [s]
 constexpr double kLeastPresses = 2;
+constexpr double kWithin = 0.8;     // of a half extent, from a box's or cone's middle
 constexpr double kRounding = 1e-7;  // of positions in a message [m]
 
 /// In and out along y, to and fro along x and z, then held where it is.
@@ -119,8 +120,8 @@ class Judge {
     });
     if (at == surfaces_.rend()) return;
     ++result.advances;
-    const bool inside = !points_inside(law_.anchor, *at).empty();
-    const bool crossed = tool_.is_round() && inside && !was_inside_;
+    const bool inside = !points_inside(tool_.within, law_.anchor, *at).empty();
+    const bool crossed = inside && !was_inside_;
     result.crossings += crossed;
     result.put_back += crossed && *session_.health("deformation").guard != '\0';
     was_inside_ = inside;
@@ -167,7 +168,7 @@ class Judge {
              (newest_.generations.empty() || s.nodes.generation == newest_.generations[0]);
     });
     if (on == surfaces_.rend()) return;
-    const auto points = points_inside(newest_.probe_pose, *on);
+    const auto points = points_inside(tool_.inside, newest_.probe_pose, *on);
     if (points.empty()) {
       lost_since_ = -1;
       return;
@@ -188,9 +189,10 @@ class Judge {
         std::max(result.longest_lost, now - lost_since_ + 1 / session_.scene().rates.collision);
   }
 
-  std::vector<Vec3> points_inside(const Pose& pose, const Surface& surface) const {
+  static std::vector<Vec3> points_inside(const std::vector<Vec3>& of_tool, const Pose& pose,
+                                         const Surface& surface) {
     std::vector<Vec3> points;
-    for (const Vec3& p_P : tool_.inside) {
+    for (const Vec3& p_P : of_tool) {
       const Vec3 p = pose.to_world(p_P);
       if (geometry::winding_number(p, surface.nodes.positions, surface.mesh->triangles) > 0.5) {
         points.push_back(p);
@@ -262,36 +264,52 @@ session::InProcessOptions options_of(double loss) {
 }
 
 Tool ball_of(double radius) {
-  return {"ball", scene::SphereShape{radius}, {}, Quat::Identity(), radius, radius, {Vec3::Zero()}};
+  return {"ball",
+          scene::SphereShape{radius},
+          {},
+          Quat::Identity(),
+          radius,
+          radius,
+          {Vec3::Zero()},
+          {Vec3::Zero()}};
 }
 
 Tool needle() {
   const scene::CapsuleShape shape{5e-4, 0.04};
   Tool tool{"needle",     shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitY()),
-            shape.radius, 0,     {}};
+            shape.radius, 0,     {}, {}};
   tool.reach = shape.length / 2 + shape.radius;
   for (int i = 0; i <= 8; ++i)
     tool.inside.push_back((i / 8.0 - 0.5) * shape.length * Vec3::UnitZ());
+  tool.within = tool.inside;
   return tool;
 }
 
 /// Lying on the wall: its side goes in first, its ends may never.
 Tool rod_of(const std::string& name, double radius) {
   const scene::CapsuleShape shape{radius, 0.04};
-  Tool tool{name, shape, {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()), radius, radius, {}};
+  Tool tool{name,   shape,  {}, rotation_between(Vec3::UnitZ(), Vec3::UnitX()),
+            radius, radius, {}, {}};
   for (int i = 0; i <= 32; ++i)
     tool.inside.push_back((i / 32.0 - 0.5) * shape.length * Vec3::UnitZ());
+  tool.within = tool.inside;
   return tool;
 }
 
 Tool box_of(const std::string& name, const Vec3& size) {
-  return {name,         scene::BoxShape{size},         {}, Quat::Identity(), 0,
-          size.y() / 2, geometry::make_box(size).nodes};
+  Tool tool{name,         scene::BoxShape{size},          {}, Quat::Identity(), 0,
+            size.y() / 2, geometry::make_box(size).nodes, {}};
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 at(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    tool.within.emplace_back(kWithin / 2 * at.cwiseProduct(size));
+  }
+  return tool;
 }
 
 /// No two corners at one distance from the middle.
 Tool pebble() {
-  Tool tool{"mesh", scene::MeshShape{}, geometry::make_ball(5e-3, 1), Quat::Identity(), 0, 0, {}};
+  Tool tool{"mesh", scene::MeshShape{}, geometry::make_ball(5e-3, 1), Quat::Identity(), 0, 0, {},
+            {}};
   for (std::size_t i = 0; i < tool.mesh.nodes.size(); ++i) {
     tool.mesh.nodes[i] *= 1 + 0.1 * std::sin(7.0 * static_cast<double>(i));
     tool.reach = std::max(tool.reach, tool.mesh.nodes[i].y());
@@ -302,8 +320,13 @@ Tool pebble() {
 
 /// Along −z of the probe, which is turned into +y of the world.
 Tool tips_first(const std::string& name, const scene::ProbeShape& shape) {
-  Tool tool{name, shape, {}, rotation_between(-Vec3::UnitZ(), Vec3::UnitY()), 0, 0, {}};
+  Tool tool{name, shape, {}, rotation_between(-Vec3::UnitZ(), Vec3::UnitY()), 0, 0, {}, {}};
   tool.inside = std::get<geometry::TriangleSurface>(scene::form_of(shape)).nodes;
+  if (const auto* cone = std::get_if<scene::ConeShape>(&shape)) {
+    for (int i = 0; i <= 8; ++i) {
+      tool.within.emplace_back(0, 0, (1 + kWithin * (i / 4.0 - 1)) / 2 * cone->length);
+    }
+  }
   return tool;
 }
 

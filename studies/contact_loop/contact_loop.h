@@ -19,8 +19,10 @@ struct Tool {
   double radius = 0;         ///< of a round one [m]
   double reach = 0;          ///< of the tip before the probe's origin, along +y in W [m]
   std::vector<Vec3> inside;  ///< points in P that are judged: a ball's centre, corners, … [m]
+  /// Points in P that no wall may come over [m]: a round tool's core, some of a box's and a cone's
+  /// inside; none of others. Corners are in a wall by what contacts give.
+  std::vector<Vec3> within;
 
-  /// Its points are its core, which goes through no wall. Corners are in it by what contacts give.
   bool is_round() const {
     return std::holds_alternative<scene::SphereShape>(shape) ||
            std::holds_alternative<scene::CapsuleShape>(shape);
@@ -47,8 +49,8 @@ struct LoopCase {
 struct LoopResult {
   long presses = 0;   ///< in and out
   long advances = 0;  ///< of deformation
-  /// Of these, of a round tool: a point of its core was inside the surface they left at the pose
-  /// they left it for, and none before.
+  /// Of these: a point within the tool was inside the surface they left at the pose they left it
+  /// for, and none before.
   long crossings = 0;
   long put_back = 0;  ///< of these: while a guard acted on the organ, and said so
   /// Advances that left tissue in a round tool whose core was outside, seen by it, deeper than

@@ -45,7 +45,8 @@ std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3
 
 struct Sum {
   long runs = 0, inside = 0, lost = 0;
-  long presses = 0, advances = 0, crossings = 0, put_back = 0, swallowed = 0;  ///< of round tools
+  long presses = 0, crossings = 0, put_back = 0;  ///< of tools with points within
+  long advances = 0, swallowed = 0;               ///< of round tools
   ContactTroubles troubles;
 
   void add(const Tool& tool, const LoopResult& result) {
@@ -53,7 +54,7 @@ struct Sum {
     inside += result.inside;
     lost += result.lost;
     troubles += result.troubles;
-    presses += tool.is_round() ? result.presses : 0;
+    presses += tool.within.empty() ? 0 : result.presses;
     crossings += result.crossings;
     put_back += result.put_back;
     advances += tool.is_round() ? result.advances : 0;
@@ -143,8 +144,8 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
   }
   out << fmt::format(
              "{} runs: {} searches inside an organ, {} of them without contact\n"
-             "{} presses of round tools: {} times the organ was left with a point of the core "
-             "inside, {} of them while a guard acted\n"
+             "{} presses of round tools, boxes and cones: {} times the organ was left with a point "
+             "within the tool inside, {} of them while a guard acted\n"
              "{} advances under round tools: {} left tissue deeper in one than {:g} mm and did not "
              "say so\n",
              sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings, sum.put_back, sum.advances,

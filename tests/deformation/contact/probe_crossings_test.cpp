@@ -61,6 +61,43 @@ TEST_CASE("probe contacts: a core that lies across the wall is held where its si
   CHECK_FALSE(tip.held(yielded));
 }
 
+TEST_CASE("probe contacts: a wall that goes through a sharp tool where it has no row is held") {
+  // Oracle: geometry. A cone and a box rest over the ball's top, with a row of a place beside it
+  // alone; tissue comes up past the tip and into the face, by 3 mm, and the rows that it gets there
+  // ask of it to stay where the tool is. Tissue that stays is not held.
+  const scene::BoxShape box{Vec3(8e-3, 8e-3, 8e-3)};
+  for (const scene::ProbeShape& shape :
+       {scene::ProbeShape(scene::ConeShape{}), scene::ProbeShape(box)}) {
+    Tip tip;
+    const bool is_box = std::holds_alternative<scene::BoxShape>(shape);
+    tip.probe = ProbeContacts({"tool", shape, 0, scene::ScriptedDevice{}});
+    const Pose pose = pose_at(tip.above(is_box ? box.size.z() / 2 + 1e-4 : 1e-4));
+    tip.probe.set_pose(pose);
+    tip.probe.begin(kPeriod);
+    tip.probe.end();
+    tip.probe.set_contacts(contacts_on({tip.one}, pose.to_body(tip.above(1e-4)), Vec3::UnitX()));
+    tip.probe.begin(kPeriod);
+    tip.probe.append_rows(0, tip.organ.surface, tip.organ.state, kPeriod, 1.0, tip.rows);
+    REQUIRE(tip.rows.size() == 1);
+    const auto& start = tip.organ.state.positions;
+    const auto held = [&](const std::vector<Vec3>& end) {
+      return tip.probe.hold_pierced(0, tip.organ.surface, start, end, kPeriod, 1.0, tip.rows);
+    };
+    REQUIRE(tip.probe.may_miss(0));
+    CHECK_FALSE(held(start));
+    auto risen = start;
+    for (Vec3& x : risen) x.z() += 3e-3;
+    CHECK(held(risen));
+    REQUIRE(tip.rows.size() > 1);
+    for (const ContactRow& row : std::span(tip.rows).subspan(1)) {
+      CHECK(row.normal.z() > 0.5);
+      CHECK(row.gap > -1e-9);
+      CHECK(row.gap < 2e-3);
+      CHECK(row.probe_velocity.norm() == 0);
+    }
+  }
+}
+
 TEST_CASE("probe contacts: a wall that a step left across a core is put back off it") {
   // Oracle: the winding number all along the core. Tissue comes up past a rod that lies over the
   // top, and past a ball; taken as a last resort, no row having held it.
@@ -84,7 +121,7 @@ TEST_CASE("probe contacts: a wall that a step left across a core is put back off
     CHECK(put_back());
     CHECK(is_outside());
     std::vector<CoreLine> kept;
-    tip.probe.append_kept_outside(0, kept);
+    tip.probe.append_kept_outside(0, tip.organ.model, x, kept);
     CHECK(kept.size() == 1);
   }
 }

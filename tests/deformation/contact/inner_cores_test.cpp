@@ -1,0 +1,45 @@
+#include "deformation/contact/inner_cores.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace palpate::deformation {
+namespace {
+
+/// Distance of p from the outside of a tool, negative beyond it [m].
+double depth_in(const scene::BoxShape& box, const Vec3& p) {
+  return (box.size / 2 - p.cwiseAbs()).minCoeff();
+}
+double depth_in(const scene::ConeShape& cone, const Vec3& p) {
+  const double slant = std::hypot(cone.radius, cone.length);
+  const double flank = (p.z() * cone.radius - std::hypot(p.x(), p.y()) * cone.length) / slant;
+  return std::min(flank, cone.length - p.z());
+}
+
+template <class Shape>
+void check_within(const Shape& shape, std::size_t count) {
+  const auto cores = inner_cores(shape);
+  CHECK(cores.size() == count);
+  for (const auto& core : cores) {
+    CHECK(core.radius > 0);
+    for (const double at : {0.0, 0.25, 0.5, 1.0}) {
+      CHECK(depth_in(shape, core.a + at * (core.b - core.a)) > core.radius * (1 - 1e-9));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("inner cores: all of them are within their tool, whatever its size") {
+  // Oracle: geometry: the distance of their ends and places between them from the tool's outside.
+  for (const double size : {1e-4, 2e-3, 0.02, 0.3}) {
+    check_within(scene::ConeShape{size / 10, size}, 1);
+    check_within(scene::ConeShape{size, size / 2}, 1);
+    check_within(scene::BoxShape{Vec3(size, size, size)}, 24);
+    check_within(scene::BoxShape{Vec3(size, size / 20, 3 * size)}, 24);
+  }
+  CHECK(inner_cores(scene::SphereShape{}).empty());
+  CHECK(inner_cores(scene::PlaneShape{}).empty());
+}
+
+}  // namespace palpate::deformation
