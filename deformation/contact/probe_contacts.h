@@ -180,14 +180,18 @@ class ProbeContacts {
   /// edge of a fold that is turned inside out looks like one from within.
   void append_crossed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> positions,
                       double fraction, std::vector<CoreLine>& cores);
+  static CoreWay way_of(const geometry::RoundedSegment& core, const Pose& before,
+                        const Pose& after);
+  /// On the wall where a core of the probe went through it.
+  static void put_at(const WallCrossing& crossing, const geometry::RoundedSegment& core,
+                     const Pose& pose, CarriedContact& contact);
   void find_crossings(SurfaceWalk& surface, std::span<const Vec3> start, std::span<const Vec3> end,
                       const CoreWay& core);
   void hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
                std::span<const Vec3> start, const Pose& before, const Pose& after, double h,
                std::vector<ContactRow>& rows);
   /// Puts a contact that the search did not tell among the others, and its row at the end.
-  void add_row(CarriedContact contact, const SurfaceWalk& surface, std::span<const Vec3> start,
-               const Pose& before, const Pose& after, double h, std::vector<ContactRow>& rows);
+  void add_row(CarriedContact contact, const ContactRow& row, std::vector<ContactRow>& rows);
   void hold_nodes_in_box(std::uint32_t organ, std::span<const std::uint32_t> triangles,
                          const SurfaceWalk& surface, std::span<const Vec3> start,
                          std::span<const Vec3> end, const Pose& before, const Pose& after, double h,

@@ -56,6 +56,12 @@ bool ProbeContacts::put_back_outside(std::span<ProbeContacts> probes, std::uint3
   return true;
 }
 
+CoreWay ProbeContacts::way_of(const geometry::RoundedSegment& core, const Pose& before,
+                              const Pose& after) {
+  return {before.to_world(core.a), before.to_world(core.b), after.to_world(core.a),
+          after.to_world(core.b)};
+}
+
 /// Ends of the core through triangles, and its side over edges: crossings_.
 void ProbeContacts::find_crossings(SurfaceWalk& surface, std::span<const Vec3> start,
                                    std::span<const Vec3> end, const CoreWay& core) {
@@ -72,16 +78,20 @@ void ProbeContacts::find_crossings(SurfaceWalk& surface, std::span<const Vec3> s
   }
 }
 
+void ProbeContacts::put_at(const WallCrossing& crossing, const geometry::RoundedSegment& core,
+                           const Pose& pose, CarriedContact& contact) {
+  contact.barycentric = crossing.weights;
+  contact.normal_P = pose.rotation.conjugate() * crossing.normal;
+  contact.point_P = core.a + crossing.along * (core.b - core.a) - core.radius * contact.normal_P;
+}
+
 /// A row where the core went through, or in the place of that triangle's.
 void ProbeContacts::hold_at(const WallCrossing& crossing, std::uint32_t organ,
                             const SurfaceWalk& surface, std::span<const Vec3> start,
                             const Pose& before, const Pose& after, double h,
                             std::vector<ContactRow>& rows) {
   CarriedContact& contact = contact_on(organ, crossing.triangle);
-  contact.barycentric = crossing.weights;
-  contact.normal_P = after.rotation.conjugate() * crossing.normal;
-  contact.point_P =
-      core_->a + crossing.along * (core_->b - core_->a) - core_->radius * contact.normal_P;
+  put_at(crossing, *core_, after, contact);
   ContactRow row = row_of(contact, surface.body(), start, before, after, h);
   if (contact.row == CarriedContact::kNoRow) {
     contact.row = rows.size();
@@ -115,9 +125,7 @@ bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
   if (!may_cross(organ) || near_of(organ).inside) return false;
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   take_seeds(near_of(organ));
-  find_crossings(surface, start, end,
-                 {before.to_world(core_->a), before.to_world(core_->b), after.to_world(core_->a),
-                  after.to_world(core_->b)});
+  find_crossings(surface, start, end, way_of(*core_, before, after));
   near_of(organ).crossed = !crossings_.empty();
   // A core on its gentle way out may swing back in; it is not kept from it at a blow.
   const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);

@@ -69,7 +69,7 @@ bool ProbeContacts::hold_swallowed(std::uint32_t organ, SurfaceWalk& surface,
     contact.point_P = after.to_body(found.pair.on_segment - core_->radius * found.away);
     const ContactRow row = row_of(contact, surface.body(), start, before, after, h);
     if (gentle && row.gap < 0) continue;  // it was in before, and goes out gently
-    add_row(contact, surface, start, before, after, h, rows);
+    add_row(contact, row, rows);
   }
   return rows.size() > had;
 }

@@ -7,11 +7,10 @@
 
 namespace palpate::deformation {
 
-void ProbeContacts::add_row(CarriedContact contact, const SurfaceWalk& surface,
-                            std::span<const Vec3> start, const Pose& before, const Pose& after,
-                            double h, std::vector<ContactRow>& rows) {
+void ProbeContacts::add_row(CarriedContact contact, const ContactRow& row,
+                            std::vector<ContactRow>& rows) {
   contact.row = rows.size();
-  rows.push_back(row_of(contact, surface.body(), start, before, after, h));
+  rows.push_back(row);
   contacts_.insert(std::ranges::upper_bound(contacts_, triangle_of(contact), {}, triangle_of),
                    contact);
 }
@@ -40,7 +39,7 @@ void ProbeContacts::hold_nodes_in_box(std::uint32_t organ, std::span<const std::
       contact.normal_P = -std::copysign(1.0, was[axis]) * Vec3::Unit(axis);
       contact.point_P = at;
       contact.point_P[axis] = std::copysign((*half_extents_)[axis], was[axis]);
-      add_row(contact, surface, start, before, after, h, rows);
+      add_row(contact, row_of(contact, surface.body(), start, before, after, h), rows);
     }
   }
 }
@@ -59,24 +58,21 @@ bool ProbeContacts::hold_pierced(std::uint32_t organ, SurfaceWalk& surface,
   std::vector<std::uint32_t> near = touched;
   const std::size_t had = rows.size();
   for (const geometry::RoundedSegment& core : inner_cores_) {
-    const CoreWay way{before.to_world(core.a), before.to_world(core.b), after.to_world(core.a),
-                      after.to_world(core.b)};
+    const CoreWay way = way_of(core, before, after);
     surface.find(way.a0, way.b0, start, touched, kTouched, found_);
     if (is_behind_nearest(found_)) continue;
     seeds_ = touched;
-    for (const NearTriangle& found : found_) seeds_.push_back(found.index);
-    near.insert(near.end(), seeds_.begin() + static_cast<std::ptrdiff_t>(touched.size()),
-                seeds_.end());
+    for (const NearTriangle& found : found_) {
+      seeds_.push_back(found.index);
+      near.push_back(found.index);
+    }
     find_crossings(surface, start, end, way);
     for (const WallCrossing& crossing : crossings_) {
       CarriedContact contact;
       contact.organ = organ;
       contact.triangle = crossing.triangle;
-      contact.barycentric = crossing.weights;
-      contact.normal_P = after.rotation.conjugate() * crossing.normal;
-      contact.point_P =
-          core.a + crossing.along * (core.b - core.a) - core.radius * contact.normal_P;
-      add_row(contact, surface, start, before, after, h, rows);
+      put_at(crossing, core, after, contact);
+      add_row(contact, row_of(contact, surface.body(), start, before, after, h), rows);
     }
   }
   if (half_extents_) {
