@@ -1,6 +1,9 @@
 #include "deformation/organ_contacts.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <ctime>
+#include <limits>
 #include <random>
 
 #include "deformation/models.h"
@@ -121,6 +124,28 @@ TEST_CASE("organ contacts: two organs flung at each other keep momentum and neve
     CHECK(after.momentum.norm() < 1e-6 * scale);
     CHECK_FALSE(balls.report.organ_motion_cut);
   }
+}
+
+TEST_CASE("organ contacts: organs that were in a hurry cost no more once they are still") {
+  // Oracle: the processor's time of the same steps of the same organs at rest, before and after a
+  // step at 20 m/s, the least of three; with all pairs looked at in each it is 58 times.
+  TwoBalls balls;
+  const auto least_time = [&] {
+    std::clock_t least = std::numeric_limits<std::clock_t>::max();
+    for (int k = 0; k < 3; ++k) {
+      balls.fling(0);
+      const std::clock_t began = std::clock();
+      for (int step = 0; step < 20; ++step) balls.step();
+      least = std::min(least, std::clock() - began);
+    }
+    return static_cast<double>(least);
+  };
+  const double before = least_time();
+  balls.fling(-20);
+  balls.step();
+  const double after = least_time();
+  INFO("over before " << after / before);
+  CHECK(after < 5 * before);
 }
 
 TEST_CASE("organ contacts: whatever the speed, organs never pass through each other") {
