@@ -68,8 +68,9 @@ double press_scale(WorldOrgan& organ, std::uint32_t index, const Pressed& presse
 /// The contacts on one organ.
 struct OwnRows {
   std::vector<ComplianceRow> directions;
-  std::vector<std::size_t> places;  ///< of these, in W of all contacts
-  LocalLaw law;                     ///< the rows alone
+  std::vector<std::size_t> places;     ///< of these, in W of all contacts
+  std::vector<double> fixed_yielding;  ///< of these [m/N]
+  LocalLaw law;                        ///< the rows alone
 };
 
 OwnRows rows_on(std::uint32_t organ, const std::vector<CondensedContact>& contacts,
@@ -81,7 +82,10 @@ OwnRows rows_on(std::uint32_t organ, const std::vector<CondensedContact>& contac
     if (contacts[c].organ != organ) continue;
     append_compliance_rows(contacts[c], directions, own.directions);
     own.law.rows.push_back(contacts[c].row);
-    for (std::size_t k = 0; k < directions; ++k) own.places.push_back(directions * c + k);
+    for (std::size_t k = 0; k < directions; ++k) {
+      own.places.push_back(directions * c + k);
+      own.fixed_yielding.push_back(contacts[c].fixed_yielding);
+    }
   }
   return own;
 }
@@ -91,13 +95,21 @@ Eigen::MatrixXd own_compliance(WorldOrgan& organ, std::uint32_t index, const Pre
   Eigen::MatrixXd W = organ.contact_compliance(own.directions, pressed.period);
   const int steps = organ.simulated.substeps(pressed.period);
   std::vector<double> stiffer;
-  for (const LawRow& row : own.law.rows) {
-    stiffer.push_back(stiffer_by_closing(row, pressed.probe().went(), pressed.period, steps));
+  for (std::size_t r = 0; r < own.law.rows.size(); ++r) {
+    const LawRow& row = own.law.rows[r];
+    const bool fixed = own.fixed_yielding[r * own.law.directions()] > 0;
+    stiffer.push_back(
+        fixed ? 1 : stiffer_by_closing(row, pressed.probe().went(), pressed.period, steps));
   }
+  const auto fixed = Eigen::VectorXd::Map(own.fixed_yielding.data(), W.rows());
+  W.diagonal() += fixed;
   stiffen_closing_rows(stiffer, W);
   if (!organ.copy) return W;
   own.law.compliance = lower_of(W);
-  return press_scale(organ, index, pressed, own.law) * W;
+  const double scale = press_scale(organ, index, pressed, own.law);
+  W *= scale;
+  W.diagonal() += (1 - scale) * fixed;  // what is fixed is known
+  return W;
 }
 
 /// W of the contacts, organ by organ; organs do not answer each other. Lower triangle.

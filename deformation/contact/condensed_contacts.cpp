@@ -30,7 +30,8 @@ bool is_pushed(const CarriedContact& contact) {
 struct SingleContact {
   const CarriedContact* from = nullptr;
   LawRow row;
-  double order = 0;  ///< the least first
+  double order = 0;           ///< the least first
+  double fixed_yielding = 0;  ///< as of a CondensedContact
   bool presses() const { return !row.force.isZero(0); }
 };
 
@@ -54,6 +55,8 @@ void for_each_weight(const CarriedContact& contact, const Body& body, const F& f
 SingleContact single_of(const CarriedContact& contact, const ProbeContacts& probe, const Body& body,
                         const OrganState& state, double period) {
   SingleContact one{&contact, {}};
+  if (is_on_fixed_nodes(contact, body))
+    one.fixed_yielding = 1 / fixed_stiffness(body, contact.triangle);
   one.row.radius = turning_radius(contact, probe.radius());
   Vec3 tissue = Vec3::Zero();
   for_each_weight(contact, body, [&](std::uint32_t node, double weight) {
@@ -73,7 +76,7 @@ SingleContact single_of(const CarriedContact& contact, const ProbeContacts& prob
 }
 
 CondensedContact condensed(const SingleContact& one, const Bodies& bodies) {
-  CondensedContact contact{one.from->organ, one.row, {}};
+  CondensedContact contact{one.from->organ, one.row, {}, one.fixed_yielding};
   for_each_weight(*one.from, *bodies[one.from->organ], [&](std::uint32_t node, double weight) {
     contact.weights.push_back({node, weight});
   });
@@ -177,6 +180,7 @@ class Merged {
     sum_.force += row.force;
     sum_.point_P += share * row.point_P;
     sum_.velocity += share * row.velocity;
+    fixed_yielding_ += share * share * member.fixed_yielding;
     turning_ += row.radius > 0 ? share : 0;
     sum_.radius = std::max(sum_.radius, row.radius);
     for_each_weight(*member.from, body, [&](std::uint32_t node, double weight) {
@@ -191,13 +195,13 @@ class Merged {
     sum_.point_P /= total_;
     sum_.velocity /= total_;
     for (auto& [node, weight] : weights_) weight /= total_;
-    return {organ_, sum_, std::move(weights_)};
+    return {organ_, sum_, std::move(weights_), fixed_yielding_ / (total_ * total_)};
   }
 
  private:
   LawRow sum_;
   Vec3 normal_ = Vec3::Zero(), first_ = Vec3::Zero();
-  double total_ = 0, turning_ = 0;
+  double total_ = 0, turning_ = 0, fixed_yielding_ = 0;
   std::uint32_t organ_ = 0;
   std::vector<std::pair<std::uint32_t, double>> weights_;
 };
@@ -233,10 +237,9 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe, cons
   // Of those near, those first that would be the first to press if probe and tissue went on.
   const auto take = [&](const CarriedContact& contact) {
     const Body& body = *bodies[contact.organ];
-    // Gives way by nothing, and pushes no more: what it did was before it came there.
-    if (is_on_fixed_nodes(contact, body)) return;
     SingleContact one = single_of(contact, probe, body, *states[contact.organ], period);
-    if (!is_unit(one.row.normal) || !std::isfinite(one.row.gap)) return;  // says nothing
+    const bool says = is_unit(one.row.normal) && std::isfinite(one.row.gap + one.fixed_yielding);
+    if (!says) return;
     if (one.presses()) {
       one.order = -one.row.force.dot(one.row.normal);
       pressing.push_back(one);
@@ -257,7 +260,8 @@ std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe, cons
   }
   if (rows.size() >= kMaxLawRows) return rows;
   for (const CarriedContact& contact : probe.contacts()) {
-    const bool says = contact.row != CarriedContact::kNoRow || !contact.pushed.isZero(0);
+    const bool says =
+        contact.row != CarriedContact::kNoRow || contact.on_fixed || !contact.pushed.isZero(0);
     if (says && !is_pushed(contact)) take(contact);
   }
   fill_up(rows, near, bodies);

@@ -14,6 +14,7 @@ struct CondensedContact {
   std::uint32_t organ = 0;
   LawRow row;
   std::vector<std::pair<std::uint32_t, double>> weights;  ///< of the organ's nodes
+  double fixed_yielding = 0;  ///< how far what is fixed gives way to 1 N any way [m/N]
 };
 
 /// The radius of a row is 0 for a flat probe, and for a round one on a triangle's face: sliding

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "deformation/contact/gauss_seidel.h"
 #include "deformation/contact/inner_cores.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
@@ -17,6 +18,20 @@ constexpr double kResting = 1e-6;
 /// Contacts on one triangle, in barycentric coordinates as far from each other as two nodes, are
 /// two.
 constexpr double kSamePlace = 0.99;
+
+/// What fixed tissue is given in a step of h: along the normal by a spring, across it by one from
+/// where it sticks, within the cone.
+/// @param row  of the contact, as if the tissue could move
+CarriedContact::OnFixed press_fixed(const CarriedContact& contact, const Body& body, double h,
+                                    ContactRow row) {
+  const double stiffness = fixed_stiffness(body, contact.triangle);
+  const double closing = -row.normal.dot(row.probe_velocity);
+  row.normal_impulse = h * stiffness * std::max(0.0, h * closing - row.gap);
+  if (!(row.normal_impulse > 0)) return {};
+  row.tangential_impulse += h * h * stiffness * row.probe_velocity;
+  take_guess(row);
+  return {-row.normal_impulse * row.normal, row.tangential_impulse};
+}
 
 double apart(const CarriedContact& a, const CarriedContact& b) {
   return (a.barycentric - b.barycentric).lpNorm<Eigen::Infinity>();
@@ -300,8 +315,6 @@ ContactRow ProbeContacts::row_of(const CarriedContact& contact, const Body& body
   row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
   row.friction = friction_;
   row.radius = radius();
-  // No step moves what is fixed, or finds a force there: one from before it came there would stay.
-  if (is_on_fixed_nodes(contact, body)) return row;
   row.normal_impulse = h * contact.normal_force;
   row.tangential_impulse = h * contact.tangential_force;
   return row;
@@ -322,9 +335,15 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;
     contact.row = CarriedContact::kNoRow;
+    contact.on_fixed.reset();
     if (core_ && !measure_again(surface, state, before, inside, contact)) continue;
-    contact.row = rows.size();
-    rows.push_back(row_of(contact, surface.body(), state.positions, before, after, h));
+    const ContactRow row = row_of(contact, surface.body(), state.positions, before, after, h);
+    if (is_on_fixed_nodes(contact, surface.body())) {
+      contact.on_fixed = press_fixed(contact, surface.body(), h, row);
+    } else {
+      contact.row = rows.size();
+      rows.push_back(row);
+    }
   }
   if (!gentle_.empty() || !begun_.empty()) {
     be_gentle(organ, state, h, std::span(rows).subspan(first));
@@ -339,6 +358,13 @@ std::size_t ProbeContacts::take_rows(std::uint32_t organ, double h,
     if (contact.organ != organ) continue;
     contact.normal_force = 0;
     contact.tangential_force.setZero();
+    if (contact.on_fixed) {
+      const auto& [normal, tangential] = *contact.on_fixed;
+      contact.normal_force = normal.norm() / h;
+      contact.tangential_force = tangential / h;
+      contact.pushed -= normal;
+      contact.dragged -= tangential;
+    }
     if (contact.row == CarriedContact::kNoRow) continue;
     const ContactRow& row = rows[contact.row];
     ++taken;

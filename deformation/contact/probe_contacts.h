@@ -27,18 +27,25 @@ namespace palpate::deformation {
 struct CarriedContact : Contact {
   static constexpr std::size_t kNoRow = ~std::size_t{0};
 
-  std::size_t row = kNoRow;  ///< of the sub-step; none where a round probe sees it from behind
-  bool behind = false;       ///< a round probe's core was found inside, through this wall
+  /// Of the sub-step; none where a round probe sees it from behind, and none of fixed tissue.
+  std::size_t row = kNoRow;
+  bool behind = false;  ///< a round probe's core was found inside, through this wall
   // In the last sub-step, on the tissue, for the next one, however long, to start from [N]:
   double normal_force = 0;
   Vec3 tangential_force = Vec3::Zero();
+  /// On fixed tissue, which no step moves: what that gives in the sub-step, on the tissue [N·s].
+  struct OnFixed {
+    Vec3 normal = Vec3::Zero(), tangential = Vec3::Zero();
+    void exchange(StateArchive& archive) { archive(normal, tangential); }
+  };
+  std::optional<OnFixed> on_fixed;
   // On the probe over the advance, in W [N·s]:
   Vec3 pushed = Vec3::Zero();   ///< along the normals
   Vec3 dragged = Vec3::Zero();  ///< by friction
 
   void exchange(StateArchive& archive) {
     exchange_state(archive, static_cast<Contact&>(*this));
-    archive(row, behind, normal_force, tangential_force, pushed, dragged);
+    archive(row, behind, normal_force, tangential_force, on_fixed, pushed, dragged);
   }
 };
 

@@ -92,6 +92,7 @@ void ProbeContacts::hold_at(const WallCrossing& crossing, std::uint32_t organ,
                             std::vector<ContactRow>& rows) {
   CarriedContact& contact = contact_on(organ, crossing.triangle);
   put_at(crossing, *core_, after, contact);
+  if (is_on_fixed_nodes(contact, surface.body())) return;
   ContactRow row = row_of(contact, surface.body(), start, before, after, h);
   if (contact.row == CarriedContact::kNoRow) {
     contact.row = rows.size();

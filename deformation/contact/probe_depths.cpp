@@ -67,6 +67,7 @@ bool ProbeContacts::hold_swallowed(std::uint32_t organ, SurfaceWalk& surface,
     contact.barycentric = found.pair.on_triangle.weights;
     contact.normal_P = after.rotation.conjugate() * found.away;
     contact.point_P = after.to_body(found.pair.on_segment - core_->radius * found.away);
+    if (is_on_fixed_nodes(contact, surface.body())) continue;
     const ContactRow row = row_of(contact, surface.body(), start, before, after, h);
     if (gentle && row.gap < 0) continue;  // it was in before, and goes out gently
     add_row(contact, row, rows);

@@ -28,6 +28,7 @@ void ProbeContacts::hold_nodes_in_box(std::uint32_t organ, std::span<const std::
       const Vec3 outside = was.cwiseAbs() - *half_extents_;
       if ((at.cwiseAbs() - *half_extents_).maxCoeff() > -kUnsolvedDepth) continue;
       if (outside.maxCoeff() < -kUnsolvedDepth) continue;
+      if (surface.body().inverse_masses[node] == 0) continue;
       if (std::ranges::find(seen, node) != seen.end()) continue;
       seen.push_back(node);
       Eigen::Index axis = 0;
@@ -72,6 +73,7 @@ bool ProbeContacts::hold_pierced(std::uint32_t organ, SurfaceWalk& surface,
       contact.organ = organ;
       contact.triangle = crossing.triangle;
       put_at(crossing, core, after, contact);
+      if (is_on_fixed_nodes(contact, surface.body())) continue;
       add_row(contact, row_of(contact, surface.body(), start, before, after, h), rows);
     }
   }

@@ -1,6 +1,7 @@
 #include "deformation/model/body.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "modules/core/error.h"
@@ -13,7 +14,13 @@ bool is_fixed(const scene::Organ& organ, const Vec3& rest_position) {
                      [&](const auto& region) { return scene::contains(region, rest_position); });
 }
 
+double fixed_stiffness(const Body& body, std::uint32_t triangle) {
+  const Vec3 area = geometry::area_vector(body.rest_positions, body.triangles[triangle]);
+  return body.youngs_modulus * std::sqrt(area.norm());
+}
+
 void fix_nodes(const scene::Organ& organ, std::size_t count, Body& body) {
+  body.youngs_modulus = organ.tissue.youngs_modulus;
   std::size_t held = 0;  // of the surface
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!is_fixed(organ, body.rest_positions[i])) continue;

@@ -20,6 +20,7 @@ struct Body {
   /// Upper bound of what a node resists with all others held [N/m]  (node_count)
   std::vector<double> node_stiffness;
   std::vector<std::uint32_t> fixed_nodes;
+  double youngs_modulus = 0;    ///< of what is fixed [Pa]
   Vec3 gravity = Vec3::Zero();  ///< [m/s²]
   double drag = 0;              ///< [1/s]
   double rest_volume = 0;       ///< V₀ [m³]
@@ -30,6 +31,10 @@ struct Body {
 
 /// Whether a node at this place is held by one of the organ's regions.
 bool is_fixed(const scene::Organ& organ, const Vec3& rest_position);
+
+/// What the tissue before a triangle of fixed nodes resists with: no step moves these, so it gives
+/// way as a block of it would that is as thick as the triangle is wide, E √A [N/m].
+double fixed_stiffness(const Body& body, std::uint32_t triangle);
 
 /// Fixes the first `count` nodes where their rest positions lie in the organ's regions.
 /// @throws InputError naming the organ if no node of the surface is left free

@@ -45,6 +45,10 @@ class Pressed {
     none.probe = 1;
     none.contacts.emplace_back().normal_P = Vec3::Constant(std::nan(""));
     none.contacts[0].barycentric = Vec3::UnitX();
+    const auto& triangles = world_.model(0).triangles;
+    while (world_.positions(0)[triangles[none.contacts[0].triangle][0]].z() <= 0) {
+      ++none.contacts[0].triangle;
+    }
     world_.set_probe(1, Pose{});
     world_.set_contacts(none);
   }
