@@ -228,9 +228,8 @@ void CoreContacts::find_behind(const OrganStep& step, const Core& core,
                                const std::optional<Vec3>& inside, double depth_limit,
                                std::vector<FoundContact>& found) {
   const std::size_t others = found.size();
-  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
   wall_.clear();
-  append_wall(step, core, inside ? kUnlimited : depth_limit, near_, wall_buffers_, wall_, found);
+  append_wall(step, core, inside ? kInside : depth_limit, near_, wall_buffers_, wall_, found);
   if (inside && wall_.empty()) append_nearest_wall(step, core, *inside, found);
   if (inside) {  // from here it may be dragged back through a far side
     for (std::size_t i = others; i < found.size(); ++i) {

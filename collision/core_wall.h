@@ -2,6 +2,7 @@
 // passing, or of a wall that the core is behind.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -55,6 +56,9 @@ struct WallBuffers {
   IndexMarks places, seen_nodes;
   std::vector<CoreCandidate*> waiting;
 };
+
+/// The depth limit of a core that is inside: its wall is never given up.
+inline constexpr double kInside = std::numeric_limits<double>::infinity();
 
 /// Contacts of a core that is behind the wall of the crossed and remembered candidates and of what
 /// is connected with them and faces the same way.

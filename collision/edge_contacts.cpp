@@ -54,7 +54,7 @@ Edges edges_at_end(const OrganStep& step, const SharpMesh& probe, const EdgePair
           step.node_end(nodes[1]), Vec3::Zero()};
 }
 
-/// Is the organ's edge, seen along `apart` (tissue to probe), nearer than its triangles?
+/// Is the organ's edge, seen along `apart` (tissue to probe, unit), nearer than its triangles?
 bool is_ridge(const OrganStep& step, const EdgePair& pair, const Edges& edges, const Vec3& apart) {
   const SurfaceEdge& edge = step.organ.edges()[pair.second];
   for (const std::uint32_t t : edge.triangles) {
@@ -62,18 +62,25 @@ bool is_ridge(const OrganStep& step, const EdgePair& pair, const Edges& edges, c
       if (node == edge.nodes[0] || node == edge.nodes[1]) continue;
       const Vec3 along = (edges.b1 - edges.b0).normalized(), in = step.node_end(node) - edges.b0;
       const Vec3 into_triangle = (in - along * along.dot(in)).normalized();
-      if (apart.dot(into_triangle) > kConeSlack * apart.norm()) return false;
+      if (apart.dot(into_triangle) > kConeSlack) return false;
     }
   }
   return true;
 }
 
-bool in_front(const OrganStep& step, const SharpEdge& sharp, const EdgePair& pair,
-              const Edges& edges, const geometry::SegmentPair& at) {
+/// Unit, from the organ's edge to the probe's; of edges that touch their perpendicular.
+Vec3 direction_between(const Edges& edges, const geometry::SegmentPair& at) {
   const Vec3 apart = at.on_first - at.on_second;
-  if (apart.norm() < kDirectionless || apart.dot(edges.outward) <= 0) return false;
+  const double distance = apart.norm();
+  return distance < kDirectionless ? edges.perpendicular() : Vec3(apart / distance);
+}
+
+/// @param apart  direction_between() them
+bool in_front(const OrganStep& step, const SharpEdge& sharp, const EdgePair& pair,
+              const Edges& edges, const Vec3& apart) {
+  if (apart.dot(edges.outward) <= 0) return false;
   for (const Vec3& into : sharp.into_face) {
-    if (-apart.dot(into) > kConeSlack * apart.norm()) return false;
+    if (-apart.dot(into) > kConeSlack) return false;
   }
   return is_ridge(step, pair, edges, apart);
 }
@@ -169,9 +176,10 @@ void EdgeContacts::find_pair(const OrganStep& step, const SharpMesh& probe, cons
     }
     return;
   }
-  if (distance > step.margin || !is_inside(at) || !in_front(step, sharp, pair, end, at)) return;
+  if (distance > step.margin || !is_inside(at)) return;
+  contact.normal_P = direction_between(end, at);
+  if (!in_front(step, sharp, pair, end, contact.normal_P)) return;
   contact.point_P = at.on_first;
-  contact.normal_P = (at.on_first - at.on_second) / distance;
   contact.gap = distance;
   append_edge_contact(step, pair.second, at.t, contact, found);
 }

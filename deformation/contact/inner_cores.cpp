@@ -12,7 +12,7 @@ using geometry::RoundedSegment;
 /// From a sharp place to the core [m]: much more than contacts are off by.
 constexpr double kInset = 1e-3;
 /// Of the least extent, at most.
-constexpr double kMostOfExtent = 0.25;
+constexpr double kMostOfExtent = 0.1;
 
 std::vector<RoundedSegment> axis_of(const scene::ConeShape& cone) {
   const double inset = std::min(kInset, kMostOfExtent * cone.length);

@@ -12,6 +12,10 @@
 namespace palpate::deformation {
 namespace {
 
+/// A sharp tool's contacts are those of a search, earlier than the step: what they find deep is
+/// undone no faster than this, else it swings, is found deep again and never comes to rest [m/s].
+constexpr double kSharpSeparationSpeed = 0.1;
+
 /// A probe whose way in a period is shorter rests [m].
 constexpr double kResting = 1e-6;
 
@@ -51,6 +55,7 @@ ProbeContacts::ProbeContacts(const scene::Probe& probe)
     : friction_(probe.friction), inner_cores_(inner_cores(probe.shape)) {
   const geometry::ProbeForm form = scene::form_of(probe.shape);
   if (const auto* core = std::get_if<geometry::RoundedSegment>(&form)) core_ = *core;
+  is_sharp_ = !core_ && !std::holds_alternative<geometry::HalfSpace>(form);
   if (const auto* box = std::get_if<geometry::Box>(&form)) half_extents_ = box->size / 2;
 }
 
@@ -347,6 +352,11 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   }
   if (!gentle_.empty() || !begun_.empty()) {
     be_gentle(organ, state, h, std::span(rows).subspan(first));
+  }
+  if (is_sharp_) {
+    for (ContactRow& row : std::span(rows).subspan(first)) {
+      row.gap = std::max(row.gap, -h * kSharpSeparationSpeed);
+    }
   }
 }
 

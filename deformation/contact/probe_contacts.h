@@ -226,6 +226,7 @@ class ProbeContacts {
 
   double friction_;
   std::optional<geometry::RoundedSegment> core_;
+  bool is_sharp_ = false;                              ///< a box, a mesh, a cone or a grasper
   std::vector<geometry::RoundedSegment> inner_cores_;  ///< of a sharp tool
   std::optional<Vec3> half_extents_;                   ///< of a box [m]
   bool placed_ = false;

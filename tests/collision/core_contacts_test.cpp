@@ -181,6 +181,39 @@ TEST_CASE("core contacts: the point of a sharp probe has no radius") {
   CHECK((pierced[0].normal_P - Vec3::UnitZ()).norm() < 1e-12);
 }
 
+/// A block with a step in its top: a steep wall from (0, 4) to (0.1, 2.1) in x and z, then a floor.
+/// At the ends, y = ±2, the wall stands back by 1: it is folded. `at` comes to the origin.
+geometry::TriangleSurface stepped(const Vec3& at) {
+  auto block = geometry::make_box({4, 4, 8}, 4);
+  for (Vec3& x : block.nodes) {
+    const bool on_wall = x.z() == 4 && (x.x() == 0 || x.x() == 1);
+    const bool on_floor = x.z() == 4 && x.x() >= 1;
+    if (on_floor) x = {x.x() == 1 ? 0.1 : x.x(), x.y(), 2.1};
+    if (on_wall && std::abs(x.y()) == 2) x.x() -= 1;
+    x -= at;
+  }
+  return block;
+}
+
+TEST_CASE("core contacts: in the corner of a dent, out of one side is behind the other") {
+  // Oracle: analytic. Through the wall, down, and out of it below the floor by 1 mm: behind the
+  // plane of the wall's far part, too.
+  const Core corner{0, Vec3::Zero(), Vec3::Zero(), 0};
+  CoreContacts cores;
+  Vec3 last(0.3, 0.3, 3.05);
+  std::vector<FoundContact> found;
+  for (const Vec3& at : {Vec3(0, 0.3, 3.05), Vec3(0.05, 0.3, 2.05), Vec3(0.1002, 0.3, 2.099)}) {
+    found = find(cores, StepScene(stepped(at), last - at), corner);
+    last = at;
+  }
+  REQUIRE_FALSE(found.empty());
+  for (const FoundContact& c : found) {
+    CHECK((c.normal_P - Vec3::UnitZ()).norm() < 1e-9);
+    CHECK(c.gap == Approx(-1e-3).margin(1e-9));
+  }
+  CHECK(is_behind(cores));
+}
+
 TEST_CASE("core contacts: the nearest wall pushes straight out") {
   // Oracle: analytic; 0.2 below the middle of the box's top.
   const StepScene scene(box_at({0.1, 0.2, -0.3}, {1, 1, 1}), Vec3::Zero());

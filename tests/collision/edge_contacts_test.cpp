@@ -49,6 +49,19 @@ TEST_CASE("edge contacts: two crossed edges have one contact, where they are clo
   CHECK(find(edges, StepScene(ridge(-0.15), Vec3::Zero()), probe).empty());
 }
 
+TEST_CASE("edge contacts: edges that touch are in contact, whatever rounding makes of it") {
+  // Oracle: analytic; resting edges came and went from search to search.
+  const SharpMesh probe(blade());
+  for (const double gap : {0.0, 1e-15, 1e-12, 1e-10}) {
+    INFO(gap);
+    EdgeContacts edges;
+    const auto found = find(edges, StepScene(ridge(-gap), Vec3::Zero()), probe);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].gap == Approx(gap).margin(1e-14));
+    CHECK((found[0].normal_P - Vec3::UnitZ()).norm() < 1e-9);
+  }
+}
+
 TEST_CASE("edge contacts: edges that passed through each other keep their sides") {
   // Oracle: analytic.
   const SharpMesh probe(blade());

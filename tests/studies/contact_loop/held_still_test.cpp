@@ -1,0 +1,45 @@
+// Sharp tools that nobody moves.
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "modules/core/data_folder.h"
+#include "modules/scene/scene_reader.h"
+#include "palpate/session/in_process.h"
+#include "studies/rigs/pressed_organ.h"
+
+namespace palpate::contact_loop {
+namespace {
+
+TEST_CASE("contact loop: a box that is held still in a spring shell feels a steady force") {
+  // Oracle: definition of rest. 5 % of the force, in the second that begins a second and a half
+  // after the box stopped: before, it swung by a third to nine tenths for good.
+  struct Press {
+    double size, depth;
+  };
+  for (const auto& [size, depth] : {Press{0.02, 0.01}, Press{0.01, 0.02}}) {
+    INFO("a box of " << size << " m, " << depth << " m deep");
+    scene::Scene scene = scene::load_scene(data_file("scenes/liver_probe.yaml"));
+    scene.rates.deformation = 250;
+    scene.probes[0].shape = scene::BoxShape{Vec3::Constant(size)};
+    const session::Assets assets = session::load_assets(scene);
+    const auto at = [&](double deep) {
+      return Pose{Vec3(-0.02, -0.0645 - size / 2 + deep, 0.013), Quat::Identity()};
+    };
+    rigs::PressedOrgan organ(scene, assets.organs.at(0), {at(-0.01)});
+    double least = 1e9, most = 0;
+    for (int period = 1; period <= 1000; ++period) {
+      const double way = std::min(period * organ.period() / 1.5, 1.0);
+      organ.advance({at(-0.01 + way * (depth + 0.01))});
+      if (period <= 750) continue;
+      const double force = organ.force(0).norm();
+      least = std::min(least, force);
+      most = std::max(most, force);
+    }
+    INFO("force from " << least << " to " << most << " N");
+    CHECK(least > 0.5);
+    CHECK(most - least < 0.05 * most);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::contact_loop
