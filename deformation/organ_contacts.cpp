@@ -30,6 +30,33 @@ std::span<const Vec3> surface_of(const SimulatedOrgan& organ) {
   return std::span(organ.state().positions).first(organ.model().surface_node_count);
 }
 
+using Surfaces = std::vector<std::span<const Vec3>>;
+
+Surfaces spans_of(const std::vector<std::vector<Vec3>>& surfaces) {
+  return {surfaces.begin(), surfaces.end()};
+}
+
+/// How far all surfaces have come together, node for node.
+Vec3 mean_way(const Surfaces& from, const Surfaces& to) {
+  Vec3 sum = Vec3::Zero();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    for (std::size_t k = 0; k < from[i].size(); ++k) sum += to[i][k] - from[i][k];
+    count += from[i].size();
+  }
+  return sum / static_cast<double>(std::max<std::size_t>(count, 1));
+}
+
+/// How far the farthest node goes beside that.
+double farthest_way(const Surfaces& from, const Surfaces& to) {
+  const Vec3 together = mean_way(from, to);
+  double farthest = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    farthest = std::max(farthest, farthest_travel(from[i], to[i], together));
+  }
+  return farthest;
+}
+
 }  // namespace
 
 OrganContacts::OrganContacts(const scene::Scene& scene, std::vector<SimulatedOrgan*> organs)
@@ -105,8 +132,7 @@ void OrganContacts::begin_step() {
 }
 
 void OrganContacts::search(double reach) {
-  std::vector<std::span<const Vec3>> positions(start_.begin(), start_.end());
-  features_.search(positions, reach);
+  features_.search(spans_of(start_), reach);
   reach_ = reach;
 }
 
@@ -117,15 +143,19 @@ bool OrganContacts::are_crossed() {
   return features_.first_crossing().has_value();
 }
 
-/// How far the surfaces are, at either end of the step, from where pairs were looked for, and
-/// `spare` more. @returns whether no pair that may meet is missing
+/// How far the surfaces are, at either end of the step, from where pairs were looked for and what
+/// they have come together since, and `spare` more: no pair comes nearer by that.
+/// @returns whether no pair that may meet is missing
 bool OrganContacts::measure_travel(double spare) {
+  if (reach_ == 0) return false;
+  Surfaces searched;
+  for (std::size_t i = 0; i < organs_.size(); ++i) searched.push_back(features_.positions(i));
+  const Vec3 to_start = mean_way(searched, spans_of(start_));
+  together_ = mean_way(searched, spans_of(asked_));
   double farthest = 0;
   for (std::size_t i = 0; i < organs_.size(); ++i) {
-    const auto& searched = features_.positions(i);
-    if (reach_ == 0 || searched.empty()) return false;
-    travel_[i] = spare + std::max(farthest_travel(searched, start_[i]),
-                                  farthest_travel(searched, asked_[i]));
+    travel_[i] = spare + std::max(farthest_travel(searched[i], start_[i], to_start),
+                                  farthest_travel(searched[i], asked_[i], together_));
     farthest = std::max(farthest, travel_[i]);
   }
   return 2 * (farthest + kRestGap) <= reach_;
@@ -221,11 +251,8 @@ OrganContactReport OrganContacts::solve(double h) {
   return report;
 }
 
-Confinement OrganContacts::try_step(double h, double spare, OrganContactReport& solved) {
-  double step = 0;
-  for (std::size_t i = 0; i < organs_.size(); ++i) {
-    step = std::max(step, farthest_travel(start_[i], asked_[i]));
-  }
+Confinement OrganContacts::try_step(double h, double step, double spare,
+                                    OrganContactReport& solved) {
   const double wanted = std::max(least_reach_, 4 * (step + spare + kRestGap));
   // What was looked for in a hurry may be all there is: organs at rest would never look anew.
   if (!measure_travel(spare) || reach_ > kMostReach * wanted) {
@@ -236,7 +263,8 @@ Confinement OrganContacts::try_step(double h, double spare, OrganContactReport& 
   solved = solve(h);
   std::vector<MovingSurface> surfaces;
   for (std::size_t i = 0; i < organs_.size(); ++i) {
-    surfaces.push_back({touched_[i].body, features_.positions(i), start_[i], end_[i], travel_[i]});
+    surfaces.push_back(
+        {touched_[i].body, features_.positions(i), start_[i], end_[i], together_, travel_[i]});
   }
   return confine_motion(pairs_, surfaces);
 }
@@ -244,18 +272,17 @@ Confinement OrganContacts::try_step(double h, double spare, OrganContactReport& 
 void OrganContacts::end_step(double h, std::span<const std::span<ContactRow>> probe_rows,
                              AdvanceReport& report) {
   probe_rows_ = probe_rows;
-  double step = 0;
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     const auto surface = surface_of(*organs_[i]);
     asked_[i].assign(surface.begin(), surface.end());
-    step = std::max(step, farthest_travel(start_[i], asked_[i]));
   }
+  const double step = farthest_way(spans_of(start_), spans_of(asked_));
   if (!std::isfinite(step)) return reset();  // the organ's own guard replaces its state
   OrganContactReport solved;
   Confinement confined = Confinement::kIncomplete;
   double spare = kRestGap + step / 2;
   for (int k = 0; k < kMostTries && confined == Confinement::kIncomplete; ++k, spare *= 4) {
-    confined = try_step(h, spare, solved);
+    confined = try_step(h, step, spare, solved);
   }
   if (confined == Confinement::kIncomplete) {
     end_ = start_;

@@ -62,7 +62,8 @@ class OrganContacts {
   double rest_gap(const StepPair& step) const;
   void start_from_last();
   OrganContactReport solve(double h);
-  Confinement try_step(double h, double spare, OrganContactReport& solved);
+  /// @param step  how far the farthest node goes in it, beside what all do [m]
+  Confinement try_step(double h, double step, double spare, OrganContactReport& solved);
   void remember();
   void hand_over(double h);
   void append_halves(std::uint32_t organ);
@@ -75,7 +76,8 @@ class OrganContacts {
   std::vector<Remembered> last_;  ///< impulses of the last step, sorted by key
   // Of one step:
   std::vector<std::vector<Vec3>> start_, asked_, end_;  ///< by organ [m]
-  std::vector<double> travel_;                          ///< by organ [m]
+  Vec3 together_ = Vec3::Zero();  ///< how far all have come since the last search [m]
+  std::vector<double> travel_;    ///< by organ, beside that [m]
   std::vector<StepPair> pairs_;
   std::span<const std::span<ContactRow>> probe_rows_;
   std::vector<OrganContactRow> rows_;  ///< of organs, then of probes

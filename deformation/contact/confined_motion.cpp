@@ -83,7 +83,7 @@ class Zones {
 
 bool is_complete(std::span<const MovingSurface> surfaces) {
   return std::all_of(surfaces.begin(), surfaces.end(), [](const MovingSurface& surface) {
-    return farthest_travel(surface.searched, surface.end) <= surface.travel;
+    return farthest_travel(surface.searched, surface.end, surface.together) <= surface.travel;
   });
 }
 
@@ -105,11 +105,12 @@ std::vector<const StepPair*> meeting(std::span<const StepPair> pairs,
 
 }  // namespace
 
-double farthest_travel(std::span<const Vec3> origins, std::span<const Vec3> positions) {
+double farthest_travel(std::span<const Vec3> origins, std::span<const Vec3> positions,
+                       const Vec3& together) {
   double squared = 0;
   bool finite = true;
   for (std::size_t i = 0; i < origins.size(); ++i) {
-    const double way = (positions[i] - origins[i]).squaredNorm();
+    const double way = (positions[i] - origins[i] - together).squaredNorm();
     finite &= std::isfinite(way);
     squared = std::max(squared, way);
   }

@@ -33,7 +33,9 @@ struct MovingSurface {
   std::span<const Vec3> searched;  ///< where pairs were looked for [m]  (surface_node_count)
   std::span<const Vec3> start;     ///< [m]  (surface_node_count)
   std::span<Vec3> end;             ///< is shortened [m]  (at least surface_node_count)
-  double travel = 0;  ///< pairs are complete while no node is further from `searched` [m]
+  Vec3 together = Vec3::Zero();    ///< how far all surfaces have come since then [m]
+  /// Pairs are complete while no node is further from where it was then and came so far [m].
+  double travel = 0;
 };
 
 enum class Confinement : std::uint8_t {
@@ -43,8 +45,10 @@ enum class Confinement : std::uint8_t {
   kIncomplete  ///< a node went beyond `travel`: the ends mean nothing
 };
 
-/// How far the farthest node is from `origins` [m]; infinite where one is no number.
-double farthest_travel(std::span<const Vec3> origins, std::span<const Vec3> positions);
+/// How far the farthest node is from `origins`, moved by `together` [m]; infinite where one is no
+/// number.
+double farthest_travel(std::span<const Vec3> origins, std::span<const Vec3> positions,
+                       const Vec3& together = Vec3::Zero());
 
 /// @param pairs  all that may meet while every surface keeps to its `travel`
 Confinement confine_motion(std::span<const StepPair> pairs,

@@ -155,7 +155,8 @@ void describe(V& v, Organ& organ) {
   v.field("integrator", organ.integrator,
           plain("of implicit_volume and mass_spring; automatic = what costs less here"));
   v.field("filling", organ.filling, plain("the volume asked for, over the rest volume"));
-  v.field("fixed", organ.fixed, plain("regions of W whose nodes do not move; a probe feels a block of tissue there"));
+  v.field("fixed", organ.fixed,
+          plain("regions of W whose nodes do not move; a probe feels a block of tissue there"));
   v.field("process", organ.process,
           ranged("", 1, kMaxProcesses, "deformation process that simulates it, counted from 1"));
   v.fits("a key that the model does not read must be left out, see the table of models",

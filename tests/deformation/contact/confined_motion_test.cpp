@@ -47,7 +47,8 @@ struct Motion {
       pairs.push_back(step);
     }
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      surfaces.push_back({&bodies[i], shapes[i].nodes, shapes[i].nodes, ends[i], travel});
+      surfaces.push_back(
+          {&bodies[i], shapes[i].nodes, shapes[i].nodes, ends[i], Vec3::Zero(), travel});
     }
     return confine_motion(pairs, surfaces);
   }
