@@ -110,12 +110,12 @@ void mark_wall(const OrganSurface& organ, std::vector<CoreCandidate>& candidates
 /// side of that, and is behind the other, which does not face like it. Far triangles of the first
 /// that it is behind, too, are folded away from it.
 /// @returns the nearest; null: it is behind the wall that is marked
-CoreCandidate* behind_beside(std::vector<CoreCandidate>& candidates) {
-  CoreCandidate *of_wall = nullptr, *behind = nullptr;
+const CoreCandidate* behind_beside(std::span<const CoreCandidate> candidates) {
+  const CoreCandidate *of_wall = nullptr, *behind = nullptr;
   const auto nearer = [](const CoreCandidate& c, const CoreCandidate* than) {
     return than == nullptr || c.pair.distance < than->pair.distance;
   };
-  for (CoreCandidate& c : candidates) {
+  for (const CoreCandidate& c : candidates) {
     if (c.on_wall && nearer(c, of_wall)) of_wall = &c;
     if (c.side <= 0 && nearer(c, behind)) behind = &c;
   }
@@ -194,7 +194,7 @@ void append_wall(const OrganStep& step, const Core& core, double depth_limit,
                  std::vector<const CoreCandidate*>& behind, std::vector<FoundContact>& found) {
   mark_wall(step.organ, candidates, buffers);
   if (depth_limit == kInside && core.is_point()) {
-    if (CoreCandidate* const beside = behind_beside(candidates)) {
+    if (const CoreCandidate* const beside = behind_beside(candidates)) {
       for (CoreCandidate& c : candidates) {
         c.on_wall = false;
         c.remembered = &c == beside;
