@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "deformation/contact/gauss_seidel.h"
 #include "deformation/contact/inner_cores.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
@@ -23,33 +22,11 @@ constexpr double kResting = 1e-6;
 /// two.
 constexpr double kSamePlace = 0.99;
 
-/// What fixed tissue is given in a step of h: along the normal by a spring, across it by one from
-/// where it sticks, within the cone.
-/// @param row  of the contact, as if the tissue could move
-CarriedContact::OnFixed press_fixed(const CarriedContact& contact, const Body& body, double h,
-                                    ContactRow row) {
-  const double stiffness = fixed_stiffness(body, contact.triangle);
-  const double closing = -row.normal.dot(row.probe_velocity);
-  row.normal_impulse = h * stiffness * std::max(0.0, h * closing - row.gap);
-  if (!(row.normal_impulse > 0)) return {};
-  row.tangential_impulse += h * h * stiffness * row.probe_velocity;
-  take_guess(row);
-  return {-row.normal_impulse * row.normal, row.tangential_impulse};
-}
-
 double apart(const CarriedContact& a, const CarriedContact& b) {
   return (a.barycentric - b.barycentric).lpNorm<Eigen::Infinity>();
 }
 
 }  // namespace
-
-bool is_on_fixed_nodes(const CarriedContact& contact, const Body& body) {
-  for (int k = 0; k < 3; ++k) {
-    const std::uint32_t node = body.triangles[contact.triangle][static_cast<std::size_t>(k)];
-    if (contact.barycentric[k] != 0 && body.inverse_masses[node] != 0) return false;
-  }
-  return true;
-}
 
 ProbeContacts::ProbeContacts(const scene::Probe& probe)
     : friction_(probe.friction), inner_cores_(inner_cores(probe.shape)) {

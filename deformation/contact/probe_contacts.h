@@ -52,6 +52,12 @@ struct CarriedContact : Contact {
 /// Whether nothing but fixed nodes carries its place.
 bool is_on_fixed_nodes(const CarriedContact& contact, const Body& body);
 
+/// What fixed tissue is given in a step of h: along the normal by a spring, across it by one from
+/// where it sticks, within the cone.
+/// @param row  of the contact, as if the tissue could move
+CarriedContact::OnFixed press_fixed(const CarriedContact& contact, const Body& body, double h,
+                                    ContactRow row);
+
 /// Contacts are sorted by it.
 inline std::pair<std::uint32_t, std::uint32_t> triangle_of(const CarriedContact& contact) {
   return {contact.organ, contact.triangle};
