@@ -91,14 +91,14 @@ void OrganContacts::refuse_crossed_rest(const scene::Scene& scene) {
   if (!touching) return;
   const auto& [a, b] = *touching;
   std::ostringstream message;
+  message << "scene: key 'contacts." << (a == b ? "self" : "organs") << "': ";
   if (a == b) {
     message << "organ '" << scene.organs[a].name << "' passes through itself or touches itself";
   } else {
     message << "organs '" << scene.organs[a].name << "' and '" << scene.organs[b].name
             << "' cross or touch";
   }
-  message << " at rest; with contacts: " << (a == b ? "self" : "organs") << " they must be "
-          << kLeastRestDistance << " m apart at least";
+  message << " at rest, where they must be " << kLeastRestDistance << " m apart at least";
   throw InputError(message.str());
 }
 

@@ -38,6 +38,11 @@ void doubt_springs(const scene::Organ& organ, std::vector<std::string>& doubts) 
       organ.name, ratio, fitted, kFittedSolid));
 }
 
+void doubt_contacts(const scene::Scene& scene, std::vector<std::string>& doubts) {
+  if (!scene.contacts.organs || scene.organs.size() > 1) return;
+  doubts.push_back("contacts: organs: true changes nothing: there is one organ");
+}
+
 OrganCheck check_of(const scene::Organ& organ, const geometry::OrganShape& shape,
                     const deformation::DeformationWorld& world, std::size_t index, double period) {
   const SurfaceTopology& topology = deformation::surface_message(world, index);
@@ -201,6 +206,7 @@ SceneCheck check_scene(const scene::Scene& scene, double measure_for,
     check.probes.push_back({probe.name, scene::word_of_option(probe.shape),
                             scene::word_of_option(probe.device), doubts.motions[i]});
   }
+  doubt_contacts(scene, check.doubts);
   runtime::WorkerTeam team(scene.deformation_threads);
   TimedSession session(scene::in_one_process(scene), shapes, team);
   for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -40,8 +40,12 @@ SceneValue value_of(const YAML::Node& node, int depth = 0) {
   }
   if (node.IsMap()) {
     SceneValue::Map map;
-    for (const auto& entry : node)
-      map.emplace_back(entry.first.Scalar(), value_of(entry.second, depth + 1));
+    for (const auto& entry : node) {
+      const std::string key = entry.first.Scalar();
+      if (std::ranges::find(map, key, [](const auto& known) { return known.first; }) != map.end())
+        throw InputError("setting: key '" + key + "' is given twice");
+      map.emplace_back(key, value_of(entry.second, depth + 1));
+    }
     return {map};
   }
   if (!node.IsScalar()) return {};

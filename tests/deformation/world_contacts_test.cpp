@@ -221,7 +221,8 @@ TEST_CASE("world contacts: organs that cross or touch at rest are refused by nam
     return "";
   };
   const std::string refused =
-      "organs 'upper' and 'lower' cross or touch at rest; with contacts: organs they must be "
+      "scene: key 'contacts.organs': organs 'upper' and 'lower' cross or touch at rest, where they "
+      "must be "
       "1e-05 m apart at least";
   CHECK(said(0.08) == refused);
   CHECK(said(0.1) == refused);

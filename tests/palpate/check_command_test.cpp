@@ -122,6 +122,13 @@ TEST_CASE("check: springs that are not the fitted ones are named") {
   CHECK_THAT(check(scene), !Contains("calibrated"));
 }
 
+TEST_CASE("check: contacts of organs that a scene has not two of are named") {
+  // Oracle: what the switch is for.
+  const BallScene scene;
+  std::ofstream(scene.file(), std::ios::app) << "\ncontacts: {organs: true}\n";
+  CHECK_THAT(check(scene), Contains("warning: contacts: organs: true changes nothing"));
+}
+
 TEST_CASE("check: tells Poisson's ratio computed with, where it is not the one asked for") {
   // Oracle: analytic, κ = 100 μ is 298/602; asked for are the default 0.499, and 0.45.
   if (geometry::testing::without_gmsh()) return;

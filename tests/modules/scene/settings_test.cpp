@@ -78,7 +78,7 @@ TEST_CASE("settings: what is not a setting is refused in one line") {
        {"", "=", "rates", "=3", "rates.=3", "organs[7].model=mass_spring", "organs[x].model=a",
         "organs[0.model=a", "organs[].model=a", "organs[-1].model=a", "duration_s.deep=1", "..=1",
         "[0]=1", "gravity_m_per_s2=[0", "organs[0].name.a.b=1", "name=&a [*a]",
-        "organs=&a [{b: *a}]", "duration_s=1\n--- \n2"}) {
+        "organs=&a [{b: *a}]", "duration_s=1\n--- \n2", "contacts={self: true, self: true}"}) {
     INFO(setting);
     const std::string said = refusal(folder, {setting});
     CHECK(said != "");
