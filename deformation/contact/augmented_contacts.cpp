@@ -25,12 +25,22 @@ Vec3 across(const Vec3& vector, const Vec3& direction) {
 
 }  // namespace
 
+AugmentedContacts::Impulse AugmentedContacts::normal_at(const ContactRow& row, const Spring& spring,
+                                                        const Vec3& relative) {
+  const double approach = row.normal.dot(relative) - spring.allowed_approach;
+  Impulse impulse{spring.last_pressing + spring.stiffness * approach, spring.stiffness};
+  if (const double yields = spring.stiffness * spring.yielding.inverse_mass; yields > 0) {
+    const double more = spring.stiffness * spring.yielding.withheld;
+    const Impulse yielding{(impulse.normal + more) / (1 + yields), spring.stiffness / (1 + yields)};
+    if (yielding.normal < impulse.normal) impulse = yielding;
+  }
+  return impulse.normal > 0 ? impulse : Impulse{};
+}
+
 AugmentedContacts::Impulse AugmentedContacts::impulse_at(const ContactRow& row,
                                                          const Spring& spring,
                                                          const Vec3& relative) {
-  Impulse impulse;
-  const double approach = row.normal.dot(relative) - spring.allowed_approach;
-  impulse.normal = std::max(0.0, spring.last_pressing + spring.stiffness * approach);
+  Impulse impulse = normal_at(row, spring, relative);
   if (!(spring.bound > 0)) return impulse;
   const Vec3 wanted = spring.last_friction - spring.stiffness * across(relative, row.normal);
   const double norm = wanted.norm();
@@ -41,12 +51,11 @@ AugmentedContacts::Impulse AugmentedContacts::impulse_at(const ContactRow& row,
 }
 
 void AugmentedContacts::press(ContactRow& row, Spring& spring) {
-  const double approach = row.normal.dot(spring.relative) - spring.allowed_approach;
-  spring.bound = row.friction * std::max(0.0, spring.last_pressing + spring.stiffness * approach);
+  spring.bound = row.friction * normal_at(row, spring, spring.relative).normal;
   const Impulse now = impulse_at(row, spring, spring.relative);
   row.normal_impulse = now.normal;
   row.tangential_impulse = now.friction;
-  spring.presses = now.normal > 0;
+  spring.pressing = now.pressing;
   spring.friction = now.sliding;
 }
 
@@ -64,6 +73,7 @@ void AugmentedContacts::begin(std::span<const Mat3> inverse_mass_blocks, std::sp
       spring.relative += row.weights[k] * velocities[row.nodes[k]];
     }
     spring.allowed_approach = palpate::deformation::allowed_approach(row, h);
+    spring.yielding = yielding_of(row, h);
     if (inverse_mass > 0) {
       spring.stiffness = kStiffness / inverse_mass;
       spring.last_pressing = row.normal_impulse;
@@ -106,7 +116,7 @@ double AugmentedContacts::step_length(std::span<const ContactRow> rows, double d
       const double along = n.dot(p);
       slope += (at.normal - rows[c].normal_impulse) * along -
                (at.friction - rows[c].tangential_impulse).dot(p);
-      if (at.normal > 0) rise += spring.stiffness * along * along;
+      rise += at.pressing * along * along;
       rise += at.sliding * across(p, n).squaredNorm();
     }
     if (std::abs(slope) <= kLevel * descent) break;
@@ -123,14 +133,14 @@ bool AugmentedContacts::advance(std::span<ContactRow> rows, double length,
   for (std::size_t c = 0; c < rows.size(); ++c) {
     ContactRow& row = rows[c];
     Spring& spring = springs_[c];
-    const bool pressed = spring.presses;
+    const double pressing = spring.pressing;
     const double friction = spring.friction;
     const Vec3 before = row.tangential_impulse - row.normal_impulse * row.normal;
     spring.relative += length * spring.direction;
     press(row, spring);
-    changed |= spring.presses != pressed ||
+    changed |= spring.pressing != pressing ||
                std::abs(spring.friction - friction) > kFrictionTolerance * spring.stiffness;
-    if (!pressed && !spring.presses) continue;
+    if (pressing == 0 && spring.pressing == 0) continue;
     const Vec3 lost = before - row.tangential_impulse + row.normal_impulse * row.normal;
     for (int k = 0; k < 3; ++k) product[row.nodes[k]] += wide(row.weights[k] / length * lost);
   }
@@ -148,10 +158,10 @@ void AugmentedContacts::add_impulses(std::span<const ContactRow> rows,
 void AugmentedContacts::add_to_diagonal(std::span<const ContactRow> rows,
                                         std::vector<Mat3>& diagonal) const {
   for (std::size_t c = 0; c < rows.size(); ++c) {
-    if (!springs_[c].presses) continue;
+    if (springs_[c].pressing == 0) continue;
     const ContactRow& row = rows[c];
     const Mat3 answer =
-        (springs_[c].stiffness - springs_[c].friction) * row.normal * row.normal.transpose() +
+        (springs_[c].pressing - springs_[c].friction) * row.normal * row.normal.transpose() +
         springs_[c].friction * Mat3::Identity();
     for (int k = 0; k < 3; ++k) diagonal[row.nodes[k]] += row.weights[k] * row.weights[k] * answer;
   }

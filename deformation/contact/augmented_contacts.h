@@ -48,23 +48,26 @@ class AugmentedContacts {
 
  private:
   struct Spring {
-    double stiffness = 0;               ///< ρ [kg]; 0: all nodes fixed
-    double allowed_approach = 0;        ///< [m/s]
+    double stiffness = 0;         ///< ρ [kg]; 0: all nodes fixed
+    double allowed_approach = 0;  ///< [m/s]
+    Yielding yielding;
     double last_pressing = 0;           ///< j₀ [N·s]
     Vec3 last_friction = Vec3::Zero();  ///< t₀ [N·s]
     double bound = 0;                   ///< of t [N·s]
     Vec3 relative = Vec3::Zero();       ///< velocity of the tissue, seen from the probe [m/s]
     Vec3 direction = Vec3::Zero();      ///< the same of p
     double friction = 0;                ///< σ = ρ |t|/|t₀ − ρ s| there [kg]
-    bool presses = false;
+    double pressing = 0;                ///< as of an Impulse [kg]; 0: does not press
   };
   /// Of a row at a relative velocity.
   struct Impulse {
     double normal = 0;             ///< j [N·s]
+    double pressing = 0;           ///< by how much it falls with the approach [kg]
     Vec3 friction = Vec3::Zero();  ///< t [N·s]
     double sliding = 0;            ///< σ [kg]
   };
 
+  static Impulse normal_at(const ContactRow& row, const Spring& spring, const Vec3& relative);
   static Impulse impulse_at(const ContactRow& row, const Spring& spring, const Vec3& relative);
   /// Sets the row's impulses at where it is, and the bound for what comes next.
   static void press(ContactRow& row, Spring& spring);

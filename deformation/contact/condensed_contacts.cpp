@@ -54,9 +54,7 @@ void for_each_weight(const CarriedContact& contact, const Body& body, const F& f
 
 SingleContact single_of(const CarriedContact& contact, const ProbeContacts& probe, const Body& body,
                         const OrganState& state, double period) {
-  SingleContact one{&contact, {}};
-  if (is_on_fixed_nodes(contact, body))
-    one.fixed_yielding = 1 / fixed_stiffness(body, contact.triangle);
+  SingleContact one{&contact, {}, 0, fixed_yielding(body, contact.triangle, contact.barycentric)};
   one.row.radius = turning_radius(contact, probe.radius());
   Vec3 tissue = Vec3::Zero();
   for_each_weight(contact, body, [&](std::uint32_t node, double weight) {

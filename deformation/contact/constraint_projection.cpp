@@ -52,7 +52,8 @@ void ConstraintProjection::collect_rows(std::span<const Mat3> inverse_mass_block
   rows_.clear();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactRow& contact = contacts[c];
-    if (contact.normal_impulse <= 0 || is_held(inverse_mass_blocks, contact)) continue;
+    if (contact.normal_impulse <= 0 || contact.yielding > 0) continue;
+    if (is_held(inverse_mass_blocks, contact)) continue;
     rows_.push_back({c, contact.nodes, contact.weights, contact.normal});
   }
 }

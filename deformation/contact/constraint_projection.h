@@ -34,7 +34,7 @@ class ConstraintProjection {
   /// @param runner  outlives this; none: the calling thread alone. The bits are the same
   explicit ConstraintProjection(ChunkRunner* runner = nullptr) : ranges_(runner) {}
 
-  /// Takes as active the contacts with a normal impulse.
+  /// Takes as active the contacts with a normal impulse, but those that yield: their impulse stays.
   /// @param inverse_mass_blocks  W, zero for fixed nodes [1/kg]  (node_count)
   /// @param gradient    g [m²]  (surface_node_count); empty: no volume row
   void prepare(std::span<const Mat3> inverse_mass_blocks, std::span<const Vec3> gradient,

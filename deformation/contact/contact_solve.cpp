@@ -24,8 +24,9 @@ struct PreparedRow {
   double normal_coupling = 0;           ///< n·Σ b W g
   double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
   double allowed_approach = 0;          ///< n·v_c + gap/h, or less the separation speed [m/s]
-  int first_node = 0, last_node = 2;    ///< of the row's three, those it acts on
-  bool friction_is_kept = false;        ///< but for what leaves the cone
+  Yielding yielding;
+  int first_node = 0, last_node = 2;  ///< of the row's three, those it acts on
+  bool friction_is_kept = false;      ///< but for what leaves the cone
 };
 
 template <class InverseMass>
@@ -91,6 +92,7 @@ class Solver {
           std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
     }
     prepared.tangential_inverse_mass = across;
+    prepared.yielding = yielding_of(row, h);
     prepared.allowed_approach = allowed_approach(row, h) + row.normal.dot(row.probe_velocity);
   }
 
@@ -136,7 +138,7 @@ class Solver {
     const PreparedRow& prepared = prepared_[r];
     const double separation = prepared.allowed_approach + sigma_ * prepared.normal_coupling -
                               row.normal.dot(tissue_velocity(r));
-    const double change = press(row, separation, prepared.normal_inverse_mass);
+    const double change = press(row, separation, prepared.normal_inverse_mass, prepared.yielding);
     if (change == 0) return 0;
     add_impulse(r, -change * row.normal, -change * prepared.normal_coupling);
     return std::abs(change) * prepared.normal_inverse_mass;
@@ -236,7 +238,10 @@ double excess_depth(const Body& body, const ContactRow& row, double h,
     velocity += row.weights[k] * velocities[row.nodes[k]];
   }
   if (!moves) return 0;
-  return h * (row.normal.dot(velocity) - allowed_approach(row, h));
+  const double excess = h * (row.normal.dot(velocity) - allowed_approach(row, h));
+  if (!(row.yielding > 0)) return excess;
+  const double yielded = row.yielding * row.normal_impulse / h;
+  return std::min(excess, h * row.normal.dot(velocity) - row.full_gap - yielded);
 }
 
 ContactSolveReport solve_contacts_and_volume(const Body& body, const VolumeRow* volume, double h,

@@ -31,6 +31,9 @@ struct ContactRow {
   Vec3 probe_velocity = Vec3::Zero();  ///< v_c of the probe's surface there [m/s]
   double friction = 0;                 ///< Coulomb coefficient
   double radius = 0;                   ///< of a round probe; 0: flat [m]
+  /// How far the fixed nodes that carry its place, too, give way to 1 N; 0: none does [m/N]
+  double yielding = 0;
+  double full_gap = 0;  ///< of one that yields: the gap, however slowly it may be closed [m]
   // In: impulses to start from (those of the last step). Out: the solution.
   double normal_impulse = 0;               ///< j ≥ 0, on the tissue along −n [N·s]
   Vec3 tangential_impulse = Vec3::Zero();  ///< on the tissue, ⟂ n, norm ≤ friction·j [N·s]
@@ -72,6 +75,18 @@ inline constexpr double kUnsolvedDepth = 5e-5;
 /// How fast tissue may come nearer to the probe in a step of h [s] [m/s].
 inline double allowed_approach(const ContactRow& row, double h) {
   return std::max(row.gap / h, -kMaxSeparationSpeed);
+}
+
+/// What a row yields by where fixed nodes carry its place, too: what it needs of tissue that can
+/// move is less by that.
+struct Yielding {
+  double inverse_mass = 0;  ///< of what is fixed, as a step sees it [1/kg]; 0: it does not yield
+  double withheld = 0;      ///< speed by which its gap is closed more slowly than it might be [m/s]
+};
+
+inline Yielding yielding_of(const ContactRow& row, double h) {
+  if (!(row.yielding > 0)) return {};
+  return {row.yielding / (h * h), allowed_approach(row, h) - row.full_gap / h};
 }
 
 /// How much deeper in its probe a row's tissue ends a step of h [s] than it may [m]; 0 where it is

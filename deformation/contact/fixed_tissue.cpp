@@ -16,7 +16,7 @@ bool is_on_fixed_nodes(const CarriedContact& contact, const Body& body) {
 
 CarriedContact::OnFixed press_fixed(const CarriedContact& contact, const Body& body, double h,
                                     ContactRow row) {
-  const double stiffness = fixed_stiffness(body, contact.triangle);
+  const double stiffness = 1 / fixed_yielding(body, contact.triangle, contact.barycentric);
   const double closing = -row.normal.dot(row.probe_velocity);
   row.normal_impulse = h * stiffness * std::max(0.0, h * closing - row.gap);
   if (!(row.normal_impulse > 0)) return {};

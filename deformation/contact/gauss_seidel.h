@@ -36,6 +36,19 @@ double press(Row& row, double separation, double inverse_mass) {
   return change;
 }
 
+/// The same where what is fixed yields, too: the less of the two impulses.
+/// @param yielding  a Yielding
+template <class Row, class Yielding>
+double press(Row& row, double separation, double inverse_mass, const Yielding& yielding) {
+  if (!(yielding.inverse_mass > 0)) return press(row, separation, inverse_mass);
+  const double before = row.normal_impulse;
+  const double parting = separation - yielding.withheld + yielding.inverse_mass * before;
+  const double wanted = std::min(before - separation / inverse_mass,
+                                 before - parting / (inverse_mass + yielding.inverse_mass));
+  row.normal_impulse = std::max(0.0, wanted);
+  return row.normal_impulse - before;
+}
+
 /// Stops what slides, within the cone.
 /// @param velocity      of one side to the other; what is along the normal does not matter [m/s]
 /// @param inverse_mass  across the normal [1/kg] > 0

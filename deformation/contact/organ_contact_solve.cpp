@@ -141,7 +141,7 @@ class OrganSolver {
     OrganContactRow& row = rows_[r];
     const PreparedOrganRow& prepared = prepared_[r];
     const double parting = row.normal.dot(velocity(r)) + row.approach;
-    const double change = press(row, parting, prepared.normal_inverse_mass);
+    const double change = press(row, parting, prepared.normal_inverse_mass, row.yielding);
     if (change == 0) return 0;
     add_impulse(r, change * row.normal);
     return std::abs(change) * prepared.normal_inverse_mass;
@@ -175,6 +175,7 @@ OrganContactRow row_of_probe(std::uint32_t organ, const ContactRow& contact, dou
   row.places[1].organ = organ;
   row.normal = contact.normal;
   row.approach = allowed_approach(contact, h);
+  row.yielding = yielding_of(contact, h);
   row.friction = contact.friction;
   row.probe_velocity = contact.probe_velocity;
   row.applied = true;

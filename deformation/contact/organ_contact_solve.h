@@ -35,6 +35,7 @@ struct OrganContactRow {
   double approach = 0;                 ///< how fast they may come nearer [m/s]
   double friction = 0;                 ///< Coulomb coefficient
   Vec3 probe_velocity = Vec3::Zero();  ///< of the second place, where it is a probe's [m/s]
+  Yielding yielding;                   ///< of a probe's
   bool applied = false;                ///< the impulses it starts from are in u
   // In: impulses to start from. Out: the solution, on the second place [N·s].
   double normal_impulse = 0;               ///< j ≥ 0

@@ -173,6 +173,7 @@ class ProbeContacts {
     /// pass: where a wall is folded through itself the nearest triangle tells nothing.
     bool inside = true;
     bool crossed = false;                  ///< in the sub-step as it was last taken
+    bool went_through = false;             ///< … what is fixed, all or in part, and yields
     bool watched = false;                  ///< nearer than kWatched and the way of the advance
     std::vector<std::uint32_t> triangles;  ///< the nearest among them
     void exchange(StateArchive& archive) { archive(organ, inside, crossed, watched, triangles); }
@@ -200,7 +201,7 @@ class ProbeContacts {
                      const Pose& pose, CarriedContact& contact);
   void find_crossings(SurfaceWalk& surface, std::span<const Vec3> start, std::span<const Vec3> end,
                       const CoreWay& core);
-  void hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
+  bool hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
                std::span<const Vec3> start, const Pose& before, const Pose& after, double h,
                std::vector<ContactRow>& rows);
   /// Puts a contact that the search did not tell among the others, and its row at the end.
@@ -213,6 +214,8 @@ class ProbeContacts {
                        std::span<const Vec3> end, const Pose& before, const Pose& after) const;
   bool is_held(std::uint32_t organ, const Vec3& place, std::span<const Vec3> end,
                std::span<const ContactRow> rows) const;
+  bool is_yielding_held(std::uint32_t organ, std::uint32_t triangle,
+                        std::span<const ContactRow> rows) const;
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
   /// @returns false if it is seen from behind by a core outside: the wall is not touched there
   bool measure_again(const SurfaceWalk& surface, const OrganState& state, const Pose& pose,

@@ -86,22 +86,24 @@ void ProbeContacts::put_at(const WallCrossing& crossing, const geometry::Rounded
 }
 
 /// A row where the core went through, or in the place of that triangle's.
-void ProbeContacts::hold_at(const WallCrossing& crossing, std::uint32_t organ,
+/// @returns false if that holds no more than what is: a wall that is fixed, all or in part, yields
+bool ProbeContacts::hold_at(const WallCrossing& crossing, std::uint32_t organ,
                             const SurfaceWalk& surface, std::span<const Vec3> start,
                             const Pose& before, const Pose& after, double h,
                             std::vector<ContactRow>& rows) {
   CarriedContact& contact = contact_on(organ, crossing.triangle);
   put_at(crossing, *core_, after, contact);
-  if (is_on_fixed_nodes(contact, surface.body())) return;
+  if (is_on_fixed_nodes(contact, surface.body())) return false;
   ContactRow row = row_of(contact, surface.body(), start, before, after, h);
   if (contact.row == CarriedContact::kNoRow) {
     contact.row = rows.size();
     rows.push_back(row);
-    return;
+    return true;
   }
   row.normal_impulse = rows[contact.row].normal_impulse;
   row.tangential_impulse = rows[contact.row].tangential_impulse;
   rows[contact.row] = row;
+  return row.yielding == 0;
 }
 
 Missed ProbeContacts::hold_missed(std::span<ProbeContacts> probes, std::uint32_t organ,
@@ -127,14 +129,20 @@ bool ProbeContacts::hold_crossed(std::uint32_t organ, SurfaceWalk& surface,
   const Pose before = pose_at(fraction - h / period_), after = pose_at(fraction);
   take_seeds(near_of(organ));
   find_crossings(surface, start, end, way_of(*core_, before, after));
-  near_of(organ).crossed = !crossings_.empty();
+  Near& near = near_of(organ);
+  near.crossed = near.went_through = false;
+  for (const WallCrossing& crossing : crossings_) {
+    (fixed_yielding(surface.body(), crossing.triangle, crossing.weights) > 0 ? near.went_through
+                                                                             : near.crossed) = true;
+  }
   // A core on its gentle way out may swing back in; it is not kept from it at a blow.
   const auto out = std::ranges::find(gentle_, organ, &GentlePush::organ);
   if (out != gentle_.end() && out->core_was_inside()) return false;
+  bool holds = false;
   for (const WallCrossing& crossing : crossings_) {
-    hold_at(crossing, organ, surface, start, before, after, h, rows);
+    holds |= hold_at(crossing, organ, surface, start, before, after, h, rows);
   }
-  return !crossings_.empty();
+  return holds;
 }
 
 }  // namespace palpate::deformation

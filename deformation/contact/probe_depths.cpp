@@ -61,6 +61,7 @@ bool ProbeContacts::hold_swallowed(std::uint32_t organ, SurfaceWalk& surface,
   for (const NearTriangle& found : found_) {
     if (!is_seen_within(found, core_->radius)) continue;
     if (is_held(organ, found.pair.on_triangle.point, end, rows)) continue;
+    if (is_yielding_held(organ, found.index, rows)) continue;
     CarriedContact contact;
     contact.organ = organ;
     contact.triangle = found.index;

@@ -45,6 +45,15 @@ void ProbeContacts::hold_nodes_in_box(std::uint32_t organ, std::span<const std::
   }
 }
 
+/// A triangle that yields, and has a row, is held as well as it can be.
+bool ProbeContacts::is_yielding_held(std::uint32_t organ, std::uint32_t triangle,
+                                     std::span<const ContactRow> rows) const {
+  return std::ranges::any_of(contacts_, [&](const CarriedContact& contact) {
+    return contact.organ == organ && contact.triangle == triangle &&
+           contact.row != CarriedContact::kNoRow && rows[contact.row].yielding > 0;
+  });
+}
+
 bool ProbeContacts::hold_pierced(std::uint32_t organ, SurfaceWalk& surface,
                                  std::span<const Vec3> start, std::span<const Vec3> end, double h,
                                  double fraction, std::vector<ContactRow>& rows) {
@@ -74,6 +83,7 @@ bool ProbeContacts::hold_pierced(std::uint32_t organ, SurfaceWalk& surface,
       contact.triangle = crossing.triangle;
       put_at(crossing, core, after, contact);
       if (is_on_fixed_nodes(contact, surface.body())) continue;
+      if (is_yielding_held(organ, crossing.triangle, rows)) continue;
       add_row(contact, row_of(contact, surface.body(), start, before, after, h), rows);
     }
   }

@@ -184,7 +184,9 @@ bool SurfaceWalk::is_cut(const Vec3& a, const Vec3& b, std::span<const Vec3> pos
   flood(seeds, [&](std::uint32_t t) {
     const auto corners = corners_of(body_.triangles[t], positions);
     if (cut || !may_touch(a, b, corners, reach)) return false;
-    cut = may_touch(a, b, corners, 0) && closest(a, b, corners).distance == 0;
+    if (!may_touch(a, b, corners, 0)) return true;
+    const auto pair = closest(a, b, corners);
+    cut = pair.distance == 0 && fixed_yielding(body_, t, pair.on_triangle.weights) == 0;
     return !cut;
   });
   return cut;

@@ -76,10 +76,21 @@ void TaylorHoodContact::take(std::span<const ContactRow> rows, double h,
 void TaylorHoodContact::begin_part(double time, double part, const std::vector<Vec3>& positions) {
   for (Row& row : rows_) {
     const ContactRow& given = row.given;
-    row.limit = row.start + std::max(given.gap, -kMaxSeparationSpeed * time) +
-                time * given.normal.dot(given.probe_velocity);
+    const double start = row.start + time * given.normal.dot(given.probe_velocity);
+    row.limit = start + std::max(given.gap, -kMaxSeparationSpeed * time);
+    row.full_limit = start + given.full_gap;
     row.stuck = point(row, positions) + part * given.probe_velocity;
   }
+}
+
+/// Where that is less, as much as fixed nodes give with those that can move.
+void TaylorHoodContact::yield(const Row& row, double full_gap, Force& force) {
+  const double share = 1 / (1 + row.penalty * row.given.yielding);
+  const double normal = share * (row.multiplier - row.penalty * full_gap);
+  if (normal >= force.normal) return;
+  force.normal = normal;
+  force.stiffness = share * row.penalty;
+  force.gap = full_gap + row.given.yielding * std::max(0.0, normal);
 }
 
 TaylorHoodContact::Force TaylorHoodContact::force(const Row& row,
@@ -87,7 +98,10 @@ TaylorHoodContact::Force TaylorHoodContact::force(const Row& row,
   const Vec3 &y = point(row, positions), &n = row.given.normal;
   Force force;
   force.gap = row.limit - n.dot(y);
-  force.normal = std::max(0.0, row.multiplier - row.penalty * force.gap);
+  force.normal = row.multiplier - row.penalty * force.gap;
+  force.stiffness = row.penalty;
+  if (row.given.yielding > 0) yield(row, row.full_limit - n.dot(y), force);
+  if (force.normal <= 0) force.normal = force.stiffness = 0;
   if (row.bound > 0) {
     const Vec3 sliding = y - row.stuck;
     force.trial =
@@ -127,8 +141,7 @@ void TaylorHoodContact::add_tangent(std::size_t element, const SolidState& state
     const Row& row = rows_[r];
     const Force on = force(row, state.positions);
     const Mat3 along = row.given.normal * row.given.normal.transpose();
-    Mat3 stiffness = Mat3::Zero();
-    if (on.normal > 0) stiffness += row.penalty * along;
+    Mat3 stiffness = on.stiffness * along;
     const double trial = on.trial.norm();
     if (row.bound > 0 && trial <= row.bound) {
       stiffness += kSlidingPenalty * row.penalty * (Mat3::Identity() - along);

@@ -56,18 +56,21 @@ class TaylorHoodContact : public ElementContact {
     double penalty = 0;                   ///< ε [N/m]
     double start = 0;                     ///< n·y at the step's start [m]
     double limit = 0;                     ///< n·y at most [m]
-    Vec3 stuck = Vec3::Zero();            ///< y if nothing slides [m]
-    double multiplier = 0;                ///< λ [N]
-    double bound = 0;                     ///< of t [N]
+    double full_limit = 0;      ///< … of one that yields, however slowly it may open [m]
+    Vec3 stuck = Vec3::Zero();  ///< y if nothing slides [m]
+    double multiplier = 0;      ///< λ [N]
+    double bound = 0;           ///< of t [N]
     Vec3 friction_multiplier = Vec3::Zero();
   };
   struct Force {
     double gap = 0, normal = 0;  ///< g [m], f [N]
+    double stiffness = 0;        ///< −df/dg; 0: it does not press [N/m]
     Vec3 trial = Vec3::Zero();   ///< λ_t + ε s [N]
   };
 
   void locate(Row& row) const;
   Vec3 point(const Row& row, const std::vector<Vec3>& positions) const;
+  static void yield(const Row& row, double full_gap, Force& force);
   Force force(const Row& row, const std::vector<Vec3>& positions) const;
 
   const Body& body_;

@@ -19,6 +19,15 @@ double fixed_stiffness(const Body& body, std::uint32_t triangle) {
   return body.youngs_modulus * std::sqrt(area.norm());
 }
 
+double fixed_yielding(const Body& body, std::uint32_t triangle, const Vec3& barycentric) {
+  double share = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t node = body.triangles[triangle][static_cast<std::size_t>(k)];
+    if (body.inverse_masses[node] == 0) share += barycentric[k];
+  }
+  return share > 0 ? share * share / fixed_stiffness(body, triangle) : 0;
+}
+
 void fix_nodes(const scene::Organ& organ, std::size_t count, Body& body) {
   body.youngs_modulus = organ.tissue.youngs_modulus;
   std::size_t held = 0;  // of the surface

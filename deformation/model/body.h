@@ -36,6 +36,10 @@ bool is_fixed(const scene::Organ& organ, const Vec3& rest_position);
 /// way as a block of it would that is as thick as the triangle is wide, E √A [N/m].
 double fixed_stiffness(const Body& body, std::uint32_t triangle);
 
+/// How far the fixed nodes that carry a place of a triangle, alone or with others, give way to 1 N
+/// there [m/N]; 0: none does.
+double fixed_yielding(const Body& body, std::uint32_t triangle, const Vec3& barycentric);
+
 /// Fixes the first `count` nodes where their rest positions lie in the organ's regions.
 /// @throws InputError naming the organ if no node of the surface is left free
 void fix_nodes(const scene::Organ& organ, std::size_t count, Body& body);

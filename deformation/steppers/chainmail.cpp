@@ -49,7 +49,8 @@ void ChainMail::push(double h, ContactRow& row, std::vector<Vec3>& positions) {
   for (int k = 0; k < 3; ++k) {
     const std::uint32_t node = row.nodes[k];
     gap -= row.weights[k] * row.normal.dot(positions[node] - old_positions_[node]);
-    if (model_.inverse_masses[node] > 0) squared_weights += row.weights[k] * row.weights[k];
+    if (model_.inverse_masses[node] > 0 || row.yielding > 0)
+      squared_weights += row.weights[k] * row.weights[k];
   }
   if (gap >= 0 || squared_weights == 0) return;
   for (int k = 0; k < 3; ++k) {

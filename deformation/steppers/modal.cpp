@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/contact/gauss_seidel.h"
 #include "deformation/steppers/modal_analysis.h"
 #include "deformation/steppers/newton_backward_euler.h"
 
@@ -113,7 +114,8 @@ void Modal::prepare(double h, std::span<const ContactRow> contacts) {
       const auto at = 3 * static_cast<Eigen::Index>(contact.nodes[static_cast<std::size_t>(k)]);
       if (contact.weights[k] != 0) row.motion += contact.weights[k] * modes_.middleRows<3>(at);
     }
-    row.allowed = std::max(contact.gap / h, -kMaxSeparationSpeed);
+    row.allowed = allowed_approach(contact, h);
+    row.yielding = yielding_of(contact, h);
     const Eigen::VectorXd along = row.motion.transpose() * contact.normal;
     row.along = along.cwiseAbs2().dot(inverse_mass_);
     row.across = row.motion.colwise().squaredNorm().transpose().dot(inverse_mass_) - row.along;
@@ -171,9 +173,7 @@ void Modal::add_impulse(const Row& row, const Vec3& impulse, Eigen::VectorXd& ra
 /// @returns the change of the contact's velocity [m/s]
 double Modal::relax(std::size_t r, ContactRow& contact, Eigen::VectorXd& rates) const {
   const Row& row = rows_[r];
-  const double before = contact.normal_impulse;
-  contact.normal_impulse = std::max(0.0, before - separation(r, contact, rates) / row.along);
-  const double pressed = contact.normal_impulse - before;
+  const double pressed = press(contact, separation(r, contact, rates), row.along, row.yielding);
   if (pressed != 0) add_impulse(row, -pressed * contact.normal, rates);
   double change = std::abs(pressed) * row.along;
   if (contact.friction == 0 || row.across <= 0) return change;

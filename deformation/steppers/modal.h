@@ -51,6 +51,7 @@ class Modal : public OrganDynamics {
     double allowed = 0;       ///< gap/h [m/s]
     double along = 0;         ///< inverse effective mass along n [1/kg]
     double across = 0;        ///< at least the most across n [1/kg]
+    Yielding yielding;
   };
 
   void find_modes(std::size_t count);

@@ -1,5 +1,7 @@
 #include "deformation/contact/gauss_seidel.h"
 
+#include "deformation/contact/contact_solve.h"
+
 #include <catch2/catch.hpp>
 #include <vector>
 
@@ -20,6 +22,17 @@ TEST_CASE("gauss seidel: a contact presses until it parts no more, and never pul
   CHECK(press(row, 0.1, 2) == Approx(-0.05));
   CHECK(press(row, 1, 2) == Approx(-0.15));
   CHECK(row.normal_impulse == 0);
+}
+
+TEST_CASE("gauss seidel: where what is fixed yields, too, a contact presses less") {
+  // Oracle: by hand, 2/kg and 2/kg: 0.4 m/s of approach take 0.1 N·s, those of 1 m/s more, which
+  // are withheld, would take 0.35 N·s together, the 0.4 m/s alone 0.2 N·s, which is less.
+  Row row;
+  CHECK(press(row, -0.4, 2, Yielding{2, 0}) == Approx(0.1));
+  CHECK(press(row, -0.2, 2, Yielding{2, 0}) == Approx(0).margin(1e-15));
+  CHECK(press(row, 1, 2, Yielding{2, 0}) == Approx(-0.1));
+  CHECK(press(row, -0.4, 2, Yielding{2, 1}) == Approx(0.2));
+  CHECK(press(row, 0.1, 2, Yielding{}) == Approx(-0.05));
 }
 
 TEST_CASE("gauss seidel: rubbing stops what slides, up to the cone") {

@@ -14,10 +14,11 @@ struct Pressed {
   deformation::SolidState state = solid.rest_state();
   std::vector<ContactRow> rows = {ContactRow{.nodes = model.triangles[0]}};
 
-  Pressed(double friction, double gap, const Vec3& slide) {
+  Pressed(double friction, double gap, const Vec3& slide, double yielding = 0) {
     rows[0].weights = Vec3(0.2, 0.3, 0.5);
     rows[0].normal = Vec3(1, 2, -2) / 3;
-    rows[0].gap = gap;
+    rows[0].gap = rows[0].full_gap = gap;
+    rows[0].yielding = yielding;
     rows[0].friction = friction;
     rows[0].normal_impulse = 0.01;  // 1 N: the bound is the friction coefficient in N
     const double h = 0.01;
@@ -37,9 +38,10 @@ struct Pressed {
 };
 
 TEST_CASE("Taylor–Hood contact: the tangent is the residual's derivative") {
-  // Oracle: central differences; the law is linear pressed without friction or sticking.
-  for (const double friction : {0.0, 100.0}) {
-    Pressed pressed(friction, -2e-3, Vec3(1e-4, 0, 2e-4));
+  // Oracle: central differences; the law is linear pressed without friction or sticking, and where
+  // what is fixed yields, too.
+  for (const auto& [friction, yielding] : {std::pair(0.0, 0.0), {100.0, 0.0}, {0.0, 0.02}}) {
+    Pressed pressed(friction, -2e-3, Vec3(1e-4, 0, 2e-4), yielding);
     Eigen::VectorXd direction(static_cast<Eigen::Index>(pressed.solid.dof_count()));
     for (Eigen::Index i = 0; i < direction.size(); ++i) direction[i] = std::sin(3.0 * i);
     Eigen::VectorXd change = Eigen::VectorXd::Zero(direction.size());

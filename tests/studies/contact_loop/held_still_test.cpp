@@ -1,4 +1,4 @@
-// Sharp tools that nobody moves.
+// Tools that nobody moves, or that slide onto what is fixed.
 #include <algorithm>
 #include <catch2/catch.hpp>
 
@@ -39,6 +39,32 @@ TEST_CASE("contact loop: a box that is held still in a spring shell feels a stea
     CHECK(least > 0.5);
     CHECK(most - least < 0.05 * most);
   }
+}
+
+TEST_CASE(
+    "contact loop: a ball that slides from free onto fixed tissue is not wedged between them") {
+  // Oracle: what it feels where all of it lies on fixed tissue, which is most: nothing on the way
+  // is a tenth more. Before, up to 80 kN.
+  scene::Scene scene = scene::load_scene(data_file("scenes/liver_probe.yaml"));
+  scene.rates.deformation = 250;
+  const double radius = 0.008, depth = 0.002, skin = 0.0331;
+  scene.probes[0].shape = scene::SphereShape{radius};
+  const session::Assets assets = session::load_assets(scene);
+  const auto at = [&](double deep, double way) {
+    return Pose{Vec3(0.012 - way, skin + radius - deep, 0.03), Quat::Identity()};
+  };
+  rigs::PressedOrgan organ(scene, assets.organs.at(0), {at(-0.02, 0)});
+  double most = 0;
+  for (int period = 1; period <= 500; ++period) {
+    const double pressed = std::min(period / 200.0, 1.0);
+    const double slid = std::clamp((period - 200) / 250.0, 0.0, 1.0);
+    organ.advance({at(-0.02 + pressed * (depth + 0.02), 0.04 * slid)});
+    most = std::max(most, organ.force(0).norm());
+  }
+  const double end = organ.force(0).norm();
+  INFO("at most " << most << " N, at the end " << end);
+  CHECK(end > 1);
+  CHECK(most < 1.1 * end);
 }
 
 }  // namespace
