@@ -203,9 +203,7 @@ std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
 }
 
 std::vector<geometry::ProbeForm> load_probes(const scene::Scene& scene) {
-  std::vector<geometry::TriangleSurface> meshes;
-  for (const auto& probe : scene.probes) meshes.push_back(scene::load_probe_mesh(probe));
-  return probes_of(scene, std::move(meshes));
+  return probes_of(scene, scene::load_probe_meshes(scene));
 }
 
 CollisionStage::CollisionStage(const scene::Scene& scene, std::vector<geometry::ProbeForm> probes,

@@ -3,6 +3,7 @@
 #include "modules/runtime/run_stage.h"
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
+#include "modules/scene/assets.h"
 #include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
@@ -24,11 +25,16 @@ int main(int argc, char** argv) {
     }
     // Before real-time priority is asked for: helpers must not keep others from a core.
     runtime::WorkerTeam team(scene.deformation_threads);
-    auto shapes = deformation::load_organs(scene, process);
+    std::vector<geometry::OrganShape> shapes;
+    for (const std::size_t organ : scene::organs_of(scene, process)) {
+      shapes.push_back(scene::load_organ(scene.organs[organ]));
+    }
+    const auto meshes = scene::load_probe_meshes(scene);
     runtime::run_stage(options, scene, runtime::name_of({"deformation", process}),
                        runtime::Priority::kPreferred, [&](bus::Bus& bus) {
                          return std::make_unique<deformation::DeformationStage>(
-                             scene, std::move(shapes), bus, process, &team);
+                             scene, std::move(shapes), bus, process, &team,
+                             deformation::Guarding::kOn, meshes);
                        });
   });
 }

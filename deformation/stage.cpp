@@ -287,10 +287,9 @@ class Outputs {
 }  // namespace
 
 struct DeformationStage::Impl {
-  Impl(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
-       std::size_t process, ChunkRunner* runner, Guarding guarding)
+  Impl(const scene::Scene& scene, DeformationWorld own, bus::Bus& bus, std::size_t process)
       : organs(scene, process),
-        world(scene::part_of(scene, process), std::move(shapes), runner, guarding),
+        world(std::move(own)),
         inputs(bus, world.probe_count(), organs, scene),
         outputs(bus, organs, world.probe_count(), process),
         period(1 / scene.rates.deformation),
@@ -344,18 +343,15 @@ struct DeformationStage::Impl {
   std::int64_t waits_until_ns = 0;  ///< at the latest; 0: it does not
 };
 
-std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene, std::size_t process) {
-  std::vector<geometry::OrganShape> shapes;
-  for (const std::size_t organ : scene::organs_of(scene, process)) {
-    shapes.push_back(scene::load_organ(scene.organs[organ]));
-  }
-  return shapes;
-}
-
 DeformationStage::DeformationStage(const scene::Scene& scene,
                                    std::vector<geometry::OrganShape> shapes, bus::Bus& bus,
-                                   std::size_t process, ChunkRunner* runner, Guarding guarding)
-    : impl_(std::make_unique<Impl>(scene, std::move(shapes), bus, process, runner, guarding)) {}
+                                   std::size_t process, ChunkRunner* runner, Guarding guarding,
+                                   const std::vector<geometry::TriangleSurface>& probe_meshes)
+    : impl_(
+          std::make_unique<Impl>(scene,
+                                 DeformationWorld(scene::part_of(scene, process), std::move(shapes),
+                                                  runner, guarding, probe_meshes),
+                                 bus, process)) {}
 
 DeformationStage::~DeformationStage() = default;
 

@@ -8,10 +8,6 @@
 
 namespace palpate::deformation {
 
-/// The rest shapes of the organs of a process.
-/// @throws InputError for a mesh that cannot be used
-std::vector<geometry::OrganShape> load_organs(const scene::Scene& scene, std::size_t process);
-
 /// Says the organs' surfaces when built and after a reset. Each cycle: take the newest probes and
 /// contacts, advance its organs by what the cycle may take on, publish them and, per probe, the
 /// local law of the touched tissue. Of a probe or contacts not heard of for
@@ -26,10 +22,12 @@ class DeformationStage : public runtime::Stage {
   /// @param shapes   one per organ of the process
   /// @param process  whose organs these are, from 1
   /// @param runner  outlives the stage; none: the calling thread alone. The bits are the same
+  /// @param probe_meshes  see scene::load_probe_meshes()
   /// @throws InputError as DeformationWorld does
   DeformationStage(const scene::Scene& scene, std::vector<geometry::OrganShape> shapes,
                    bus::Bus& bus, std::size_t process = 1, ChunkRunner* runner = nullptr,
-                   Guarding guarding = Guarding::kOn);
+                   Guarding guarding = Guarding::kOn,
+                   const std::vector<geometry::TriangleSurface>& probe_meshes = {});
   ~DeformationStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
   void exchange(StateArchive& archive) override;

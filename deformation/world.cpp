@@ -210,18 +210,12 @@ struct DeformationWorld::Impl {
       organ.replaced = true;
     }
   }
-
-  /// Impulses that a state not believed gave are no force on anybody.
-  void drop_contacts(std::uint32_t organ) {
-    for (auto& probe : probes) {
-      if (probe.has_contacts(organ)) probe.reset();
-    }
-  }
 };
 
 DeformationWorld::DeformationWorld(const scene::Scene& scene,
                                    std::vector<geometry::OrganShape> rest_shapes,
-                                   ChunkRunner* runner, Guarding guarding)
+                                   ChunkRunner* runner, Guarding guarding,
+                                   const std::vector<geometry::TriangleSurface>& probe_meshes)
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
@@ -234,8 +228,12 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     for (WorldOrgan& organ : impl_->organs) simulated.push_back(&organ.simulated);
     impl_->organ_contacts.emplace(scene, std::move(simulated));
   }
-  for (const auto& probe : scene.probes) impl_->probes.emplace_back(probe);
-  impl_->forces.assign(impl_->probes.size(), {});
+  PALPATE_DEMAND(probe_meshes.empty() || probe_meshes.size() == scene.probes.size());
+  const geometry::TriangleSurface none{};
+  for (std::size_t i = 0; i < scene.probes.size(); ++i) {
+    impl_->probes.emplace_back(scene.probes[i], probe_meshes.empty() ? none : probe_meshes[i]);
+  }
+  impl_->forces.resize(impl_->probes.size());
 }
 
 DeformationWorld::~DeformationWorld() = default;
@@ -307,7 +305,10 @@ AdvanceReport DeformationWorld::advance(double period) {
   impl_->look_ahead();
   for (auto& probe : impl_->probes) probe.end();
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
-    if (impl_->organs[i].replaced) impl_->drop_contacts(i);
+    // Impulses that a state not believed gave are no force on anybody.
+    for (auto& probe : impl_->probes) {
+      if (impl_->organs[i].replaced && probe.has_contacts(i)) probe.reset();
+    }
     if (impl_->organs[i].copy) impl_->organs[i].copy->note_advance();
   }
   for (std::size_t i = 0; i < impl_->probes.size(); ++i) {

@@ -37,8 +37,10 @@ class DeformationWorld {
   /// @throws InputError naming the organ if it cannot be simulated (all nodes fixed, stable step
   ///         below 1 µs, …)
   /// @param runner  outlives the world; none: the calling thread alone. The bits are the same
+  /// @param probe_meshes  one per probe, in its frame, empty but for a MeshShape [m]; or none
   DeformationWorld(const scene::Scene& scene, std::vector<geometry::OrganShape> rest_shapes,
-                   ChunkRunner* runner = nullptr, Guarding guarding = Guarding::kOn);
+                   ChunkRunner* runner = nullptr, Guarding guarding = Guarding::kOn,
+                   const std::vector<geometry::TriangleSurface>& probe_meshes = {});
   ~DeformationWorld();
   DeformationWorld(DeformationWorld&&) noexcept;
 

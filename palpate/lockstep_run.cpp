@@ -331,13 +331,16 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   while (session.time() < duration && !stop.requested()) {
     save_if_due();
     session.tick();
+    for (const auto& [module, health] : session.healths()) {
+      if (*health.guard != '\0') tally.note_degraded(module, health.guard);
+    }
     progress.tell(session.time(), "");
   }
   save_if_due();
   const double reached = std::min(duration, session.time());
   session.finish(reached);
   tally.receive(session.contact_troubles());
-  for (const runtime::Health& health : session.healths()) {
+  for (const auto& [module, health] : session.healths()) {
     tally.receive(health.organs);
     tally.receive(health.probes);
   }

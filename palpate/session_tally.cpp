@@ -47,8 +47,12 @@ void SessionTally::receive(const ModuleStatus& status) {
   receive(status.organs);
   receive(status.probes);
   if (!started_ || standing_) return;
-  if (status.state != ModuleState::kDegraded || status.last_error.empty()) return;
-  const std::string text = status.module + ": " + printable(status.last_error);
+  if (status.state == ModuleState::kDegraded) note_degraded(status.module, status.last_error);
+}
+
+void SessionTally::note_degraded(const std::string& module, const std::string& said) {
+  if (said.empty()) return;
+  const std::string text = module + ": " + printable(said);
   const auto same = std::find_if(troubles_.begin(), troubles_.end(), [&](const auto& known) {
     return without_count(known) == without_count(text);
   });

@@ -51,6 +51,8 @@ class SessionTally {
   ContactTroubles contact_troubles() const;
   void receive(const ContactTroubles& of_session) { of_session_ = of_session; }
 
+  /// That a module said this while it was degraded; nothing: it was not.
+  void note_degraded(const std::string& module, const std::string& said);
   /// "module: what its status said while degraded", each once, in the order of its first time.
   const std::vector<std::string>& troubles() const { return troubles_; }
   /// nullptr if nothing was heard of it.

@@ -9,8 +9,10 @@
 namespace palpate::deformation {
 
 /// Thin capsules within the tool, close to its surface: of a cone its axis from near the tip on, of
-/// a box its edges and the middle lines of its faces. None of round tools, planes, graspers and
-/// meshes. In P [m].
-std::vector<geometry::RoundedSegment> inner_cores(const scene::ProbeShape& shape);
+/// a box its edges and the middle lines of its faces, of graspers and meshes lines between places
+/// near nodes that are far from each other. None of round tools and planes. In P [m].
+/// @param mesh  of a MeshShape; empty: none of it
+std::vector<geometry::RoundedSegment> inner_cores(const scene::ProbeShape& shape,
+                                                  const geometry::TriangleSurface& mesh = {});
 
 }  // namespace palpate::deformation

@@ -24,8 +24,8 @@ double apart(const CarriedContact& a, const CarriedContact& b) {
 
 }  // namespace
 
-ProbeContacts::ProbeContacts(const scene::Probe& probe)
-    : friction_(probe.friction), inner_cores_(inner_cores(probe.shape)) {
+ProbeContacts::ProbeContacts(const scene::Probe& probe, const geometry::TriangleSurface& mesh)
+    : friction_(probe.friction), inner_cores_(inner_cores(probe.shape, mesh)) {
   const geometry::ProbeForm form = scene::form_of(probe.shape);
   if (const auto* core = std::get_if<geometry::RoundedSegment>(&form)) core_ = *core;
   is_sharp_ = !core_ && !std::holds_alternative<geometry::HalfSpace>(form);

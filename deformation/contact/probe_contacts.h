@@ -71,7 +71,8 @@ class ProbeContacts {
   /// earlier, found it out of reach [m].
   static constexpr double kWatched = 0.03;
 
-  explicit ProbeContacts(const scene::Probe& probe);
+  /// @param mesh  of a MeshShape; empty: nothing is known of what it has inside
+  explicit ProbeContacts(const scene::Probe& probe, const geometry::TriangleSurface& mesh = {});
 
   void reset();
   /// Nobody knows where it touches: contacts are dropped, and nothing is watched.

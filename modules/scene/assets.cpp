@@ -141,4 +141,10 @@ geometry::TriangleSurface load_probe_mesh(const Probe& probe) {
   return load(*mesh, "probe '" + probe.name + "'");
 }
 
+std::vector<geometry::TriangleSurface> load_probe_meshes(const Scene& scene) {
+  std::vector<geometry::TriangleSurface> meshes;
+  for (const Probe& probe : scene.probes) meshes.push_back(load_probe_mesh(probe));
+  return meshes;
+}
+
 }  // namespace palpate::scene

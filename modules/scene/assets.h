@@ -28,5 +28,7 @@ geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ);
 /// Surface of a probe whose shape names a mesh, in its own frame [m]; empty for every other.
 /// @throws InputError naming probe, file and problem
 geometry::TriangleSurface load_probe_mesh(const Probe& probe);
+/// Of all probes. @throws InputError as load_probe_mesh() does
+std::vector<geometry::TriangleSurface> load_probe_meshes(const Scene& scene);
 
 }  // namespace palpate::scene

@@ -67,9 +67,7 @@ struct Member {
 Assets load_assets(const scene::Scene& scene) {
   Assets assets;
   for (const auto& organ : scene.organs) assets.organs.push_back(scene::load_organ(organ));
-  for (const auto& probe : scene.probes) {
-    assets.probe_meshes.push_back(scene::load_probe_mesh(probe));
-  }
+  assets.probe_meshes = scene::load_probe_meshes(scene);
   return assets;
 }
 
@@ -97,7 +95,7 @@ struct InProcess::Impl {
     });
     add("collision", options, [&](bus::Bus& bus) {
       return std::make_unique<collision::CollisionStage>(
-          scene, collision::probes_of(scene, std::move(assets.probe_meshes)), bus);
+          scene, collision::probes_of(scene, assets.probe_meshes), bus);
     });
     for (std::size_t process = 1; process <= scene::process_count(scene); ++process) {
       const std::string name = runtime::name_of({"deformation", process});
@@ -114,7 +112,8 @@ struct InProcess::Impl {
     std::vector<geometry::OrganShape> shapes;
     for (const std::size_t organ : own) shapes.push_back(std::move(assets.organs.at(organ)));
     auto stage = std::make_unique<deformation::DeformationStage>(
-        scene, std::move(shapes), bus, process, options.runner, options.guarding);
+        scene, std::move(shapes), bus, process, options.runner, options.guarding,
+        assets.probe_meshes);
     deformation.resize(std::max(deformation.size(), process));
     deformation[process - 1] = stage.get();
     for (std::size_t k = 0; k < own.size(); ++k) {
@@ -275,9 +274,9 @@ void InProcess::ask_for_volume(std::size_t organ, double ratio) {
   stage->ask_for_volume(own, ratio);
 }
 
-std::vector<runtime::Health> InProcess::healths() const {
-  std::vector<runtime::Health> all;
-  for (const Member& member : impl_->members) all.push_back(member.health);
+std::vector<std::pair<std::string, runtime::Health>> InProcess::healths() const {
+  std::vector<std::pair<std::string, runtime::Health>> all;
+  for (const Member& member : impl_->members) all.emplace_back(member.module, member.health);
   return all;
 }
 

@@ -79,8 +79,9 @@ class InProcess {
   /// As TargetVolume::ask() of that organ.
   void ask_for_volume(std::size_t organ, double ratio);
   const runtime::Health& health(const std::string& module) const;  ///< after its last cycle
-  std::vector<runtime::Health> healths() const;                    ///< the same of all stages
-  ContactTroubles contact_troubles() const;                        ///< of all stages so far
+  /// The same of all stages, each with its module's name.
+  std::vector<std::pair<std::string, runtime::Health>> healths() const;
+  ContactTroubles contact_troubles() const;  ///< of all stages so far
 
   // The newest of what the stages said; before the first of its kind a default one, of organs the
   // rest shape.

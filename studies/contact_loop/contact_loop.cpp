@@ -315,7 +315,21 @@ Tool pebble() {
     tool.reach = std::max(tool.reach, tool.mesh.nodes[i].y());
   }
   tool.inside = tool.mesh.nodes;
+  for (const Vec3& node : tool.mesh.nodes) tool.within.emplace_back(kWithin * node);
   return tool;
+}
+
+/// Along the middle of each jaw, from hinge to tip.
+void append_within(const scene::GrasperShape& jaws, Tool& tool) {
+  const double c = std::cos(jaws.opening / 2), s = std::sin(jaws.opening / 2);
+  for (const double side : {1.0, -1.0}) {
+    const Vec3 down(0, side * s, -c), out(0, side * c, s);
+    for (int i = 0; i <= 8; ++i) {
+      const double along = (1 + kWithin * (i / 4.0 - 1)) / 2 * jaws.length;
+      tool.within.emplace_back(Vec3(0, 0, jaws.length * c) + along * down +
+                               jaws.thickness / 2 * out);
+    }
+  }
 }
 
 /// Along −z of the probe, which is turned into +y of the world.
@@ -327,6 +341,7 @@ Tool tips_first(const std::string& name, const scene::ProbeShape& shape) {
       tool.within.emplace_back(0, 0, (1 + kWithin * (i / 4.0 - 1)) / 2 * cone->length);
     }
   }
+  if (const auto* jaws = std::get_if<scene::GrasperShape>(&shape)) append_within(*jaws, tool);
   return tool;
 }
 

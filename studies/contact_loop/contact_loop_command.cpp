@@ -144,7 +144,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
   }
   out << fmt::format(
              "{} runs: {} searches inside an organ, {} of them without contact\n"
-             "{} presses of round tools, boxes and cones: {} times the organ was left with a point "
+             "{} presses: {} times the organ was left with a point "
              "within the tool inside, {} of them while a guard acted\n"
              "{} advances under round tools: {} left tissue deeper in one than {:g} mm and did not "
              "say so\n",

@@ -25,12 +25,7 @@ scene::Scene at_one_rate(scene::Scene scene) {
 }
 
 session::Assets assets_of(const scene::Scene& scene, const geometry::OrganShape& shape) {
-  session::Assets assets;
-  assets.organs.push_back(shape);
-  for (const auto& probe : scene.probes) {
-    assets.probe_meshes.push_back(scene::load_probe_mesh(probe));
-  }
-  return assets;
+  return {{shape}, scene::load_probe_meshes(scene)};
 }
 
 }  // namespace

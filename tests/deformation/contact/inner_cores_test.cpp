@@ -3,6 +3,10 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "modules/geometry/closest_points.h"
+#include "modules/geometry/primitives.h"
+#include "modules/geometry/winding_number.h"
+
 namespace palpate::deformation {
 namespace {
 
@@ -28,6 +32,24 @@ void check_within(const Shape& shape, std::size_t count) {
   }
 }
 
+/// Of graspers and meshes: some, none nearer to the surface than its radius.
+void check_within_surface(const scene::ProbeShape& shape, const geometry::TriangleSurface& mesh,
+                          const geometry::TriangleSurface& surface) {
+  const auto cores = inner_cores(shape, mesh);
+  CHECK_FALSE(cores.empty());
+  for (const auto& core : cores) {
+    for (int i = 0; i <= 20; ++i) {
+      const Vec3 p = core.a + i / 20.0 * (core.b - core.a);
+      CHECK(geometry::winding_number(p, surface.nodes, surface.triangles) > 0.5);
+      for (const auto& [a, b, c] : surface.triangles) {
+        const auto at = geometry::closest_on_triangle(
+            p, {surface.nodes[a], surface.nodes[b], surface.nodes[c]});
+        REQUIRE((at.point - p).norm() > core.radius * (1 - 1e-9));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 TEST_CASE("inner cores: all of them are within their tool, whatever its size") {
@@ -38,6 +60,17 @@ TEST_CASE("inner cores: all of them are within their tool, whatever its size") {
     check_within(scene::BoxShape{Vec3(size, size, size)}, 24);
     check_within(scene::BoxShape{Vec3(size, size / 20, 3 * size)}, 24);
   }
+  for (const double opening : {0.02, 0.5, 1.5}) {
+    const scene::GrasperShape jaws{.opening = opening};
+    check_within_surface(jaws, {}, std::get<geometry::TriangleSurface>(scene::form_of(jaws)));
+  }
+  for (const double size : {1e-3, 0.3}) {
+    const auto ball = geometry::make_ball(size, 2),
+               block = geometry::make_box({size, size, 3 * size});
+    check_within_surface(scene::MeshShape{}, ball, ball);
+    check_within_surface(scene::MeshShape{}, block, block);
+  }
+  CHECK(inner_cores(scene::MeshShape{}).empty());
   CHECK(inner_cores(scene::SphereShape{}).empty());
   CHECK(inner_cores(scene::PlaneShape{}).empty());
 }
