@@ -21,7 +21,7 @@ constexpr double kInset = 1e-3;
 constexpr double kMostOfExtent = 0.1;
 
 /// Of a mesh, lines lie between so many places, each and so many next to it.
-constexpr std::size_t kMostPlaces = 32, kNeighbours = 4;
+constexpr std::size_t kMostPlaces = 48, kNeighbours = 4;
 
 std::vector<RoundedSegment> axis_of(const scene::ConeShape& cone) {
   const double inset = std::min(kInset, kMostOfExtent * cone.length);

@@ -270,8 +270,8 @@ bool ProbeContacts::measure_again(const SurfaceWalk& surface, const OrganState& 
                                   const Pose& pose, bool inside, CarriedContact& contact) const {
   const NearTriangle near = surface.triangle_near(contact.triangle, pose.to_world(core_->a),
                                                   pose.to_world(core_->b), state.positions);
-  // A core that touches the triangle has no direction to it: the last one stays.
-  if (!(near.pair.distance > 1e-3 * core_->radius)) return true;
+  // A core that touches the triangle has no direction to it: the last one stays, if there was one.
+  if (!(near.pair.distance > 1e-3 * core_->radius)) return !contact.barycentric.isZero(0);
   const bool came_through = inside && near.away.dot(pose.rotation * contact.normal_P) < 0;
   if (near.facing <= 0 && !came_through) return false;
   const Vec3 normal = near.facing > 0 ? near.away : -near.away;

@@ -48,16 +48,22 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
     contact.row = CarriedContact::kNoRow;
     contact.on_fixed.reset();
     if (core_ && !measure_again(surface, state, before, inside, contact)) continue;
-    const ContactRow row = row_of(contact, surface.body(), state.positions, before, after, h);
     if (is_on_fixed_nodes(contact, surface.body())) {
-      contact.on_fixed = press_fixed(contact, surface.body(), h, row);
+      contact.on_fixed.emplace();
     } else {
       contact.row = rows.size();
-      rows.push_back(row);
+      rows.push_back(row_of(contact, surface.body(), state.positions, before, after, h));
     }
   }
   if (!gentle_.empty() || !begun_.empty()) {
     be_gentle(organ, state, h, std::span(rows).subspan(first));
+  }
+  for (CarriedContact& contact : contacts_) {
+    if (contact.organ != organ || !contact.on_fixed) continue;
+    ContactRow row = row_of(contact, surface.body(), state.positions, before, after, h);
+    // From inside the wall on the other side is as deep as an organ is thick.
+    if (is_gentle(organ)) row.gap = std::max(row.gap, -h * kGentleSpeed);
+    contact.on_fixed = press_fixed(contact, surface.body(), h, row);
   }
   if (is_sharp_) {
     for (ContactRow& row : std::span(rows).subspan(first)) {

@@ -124,6 +124,22 @@ TEST_CASE("probe contacts: fixed tissue has no row, and drags as far as its cone
   }
 }
 
+TEST_CASE("probe contacts: a core that touches a triangle as it first sees it has no place there") {
+  // Oracle: a place on a triangle, whose weights sum to one. A micrometre above a node, where a
+  // direction would be rounding, all triangles but one are new.
+  Tip tip;
+  tip.organ.model.youngs_modulus = 5e3;
+  for (const bool fixed : {false, true}) {
+    if (fixed) tip.organ.model.inverse_masses.assign(tip.organ.model.node_count(), 0);
+    tip.go(1e-6, 1e-6);
+    CHECK(tip.probe.contacts().size() > 3);
+    for (const CarriedContact& contact : tip.probe.contacts()) {
+      if (contact.row == CarriedContact::kNoRow && !contact.on_fixed) continue;
+      CHECK(contact.barycentric.sum() == Approx(1));
+    }
+  }
+}
+
 TEST_CASE("probe contacts: of several on a triangle each starts from what was at its own node") {
   // Oracle: definition; of three nodes of triangle 4 the first is gone, two come in other order.
   TouchedBall ball;
