@@ -54,6 +54,16 @@ bool may_touch(const Vec3& a, const Vec3& b, const geometry::TriangleCorners& x,
          (low.array() <= wall_high.array() + reach).all();
 }
 
+/// Is a triangle's box further than `reach` from the core's? Much less than closest() costs; most
+/// triangles that a walk meets are.
+bool is_beyond(const Vec3& a, const Vec3& b, const geometry::TriangleCorners& x, double reach) {
+  constexpr double kAbove = 1 + 1e-9;  // closest() rounds
+  const Vec3 wall_low = x[0].cwiseMin(x[1]).cwiseMin(x[2]);
+  const Vec3 wall_high = x[0].cwiseMax(x[1]).cwiseMax(x[2]);
+  const Vec3 apart = (wall_low - a.cwiseMax(b)).cwiseMax(a.cwiseMin(b) - wall_high).cwiseMax(0);
+  return apart.squaredNorm() > kAbove * reach * reach + kDirectionless * kDirectionless;
+}
+
 double farthest_corner(const geometry::TriangleCorners& from, const geometry::TriangleCorners& to) {
   double moved = 0;
   for (int k = 0; k < 3; ++k) moved = std::max(moved, (to[k] - from[k]).norm());
@@ -119,7 +129,9 @@ std::uint32_t SurfaceWalk::nearest_from(const Vec3& a, const Vec3& b,
   bool nearer = false;
   const auto visit = [&](std::uint32_t t) {
     if (std::exchange(visited_[t], walk_) == walk_) return;
-    const double d = closest(a, b, corners_of(body_.triangles[t], positions)).distance;
+    const auto corners = corners_of(body_.triangles[t], positions);
+    if (is_beyond(a, b, corners, distance)) return;
+    const double d = closest(a, b, corners).distance;
     if (!(d < distance)) return;
     distance = d;
     nearest = t;
@@ -161,6 +173,9 @@ void SurfaceWalk::find(const Vec3& a, const Vec3& b, std::span<const Vec3> posit
   first_.assign(seeds.begin(), seeds.end());
   first_.push_back(nearest);
   flood(first_, [&](std::uint32_t t) {
+    const bool may_be_near =
+        t == nearest || !is_beyond(a, b, corners_of(body_.triangles[t], positions), reach);
+    if (!may_be_near) return false;
     const NearTriangle found = triangle_near(t, a, b, positions);
     if (t != nearest && !(found.pair.distance <= reach)) return false;
     near.push_back(found);
@@ -206,6 +221,7 @@ std::optional<WallCrossing> SurfaceWalk::first_crossing(const Vec3& p0, const Ve
       from[k] -= p0;
       to[k] -= p1;
     }
+    if (is_beyond(Vec3::Zero(), Vec3::Zero(), from, way + moved)) return false;
     const double distance = geometry::closest_on_triangle(Vec3::Zero(), from).point.norm();
     if (distance > way + moved) return false;
     if (!may_meet(from, to)) return true;
@@ -242,6 +258,7 @@ void SurfaceWalk::find_side_crossings(const CoreWay& core, std::span<const Vec3>
     const geometry::Triangle nodes = body_.triangles[t];
     const auto from = corners_of(nodes, start), to = corners_of(nodes, end);
     const double reach = way + farthest_corner(from, to);
+    if (is_beyond(core.a0, core.b0, from, reach)) return false;
     if (closest(core.a0, core.b0, from).distance > reach) return false;
     if (!may_meet(core, from, to)) return true;
     std::optional<WallCrossing> first;
