@@ -146,7 +146,7 @@ struct CollisionStage::Impl {
   /// A process that was stopped goes on as one that begins anew: it says nothing before it has
   /// heard where probes and organs are. What waits to be heard is of its stop's beginning.
   void take(const runtime::Cycle& now) {
-    if (pauses.was_stopped(now.now_ns)) {
+    if (pauses.was_stopped(now.now_ns, now.computed_ns)) {
       organs.hear_anew(now.now_ns);
       probes.hear_anew(now.now_ns);
     }

@@ -308,7 +308,7 @@ struct DeformationStage::Impl {
   /// not heard yet, for at most kHeardWithin, what holds them there.
   bool waits(const runtime::Cycle& now) {
     if (now.goes_on) time = {}, troubles = {};  // its predecessor has told them
-    if (pauses.was_stopped(now.now_ns) || now.goes_on) {
+    if (pauses.was_stopped(now.now_ns, now.computed_ns) || now.goes_on) {
       waits_until_ns = now.now_ns + ns_from_seconds(kHeardWithin);
     }
     if (now.reset || !inputs.any_silent(now.now_ns)) waits_until_ns = 0;

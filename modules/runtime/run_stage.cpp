@@ -19,6 +19,7 @@ Cycle cycle_of(Module& module) {
   Cycle now;
   now.sim_time_ns = ns_from_seconds(module.time());
   now.now_ns = module.now_ns();
+  now.computed_ns = thread_time_ns();
   now.running = module.running();
   now.reset = module.take_reset();
   now.advance = module.period();

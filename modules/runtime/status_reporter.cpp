@@ -58,14 +58,18 @@ void StatusReporter::publish(std::int64_t now_ns, double session_time, const Loo
 }
 
 void StatusReporter::count_cycles(std::int64_t now_ns, const LoopStatistics& loop) {
-  const double elapsed = seconds_from_ns(now_ns - published_ns_);
-  if (published_ns_ != 0 && elapsed > 0) {
-    const auto cycles = static_cast<double>(loop.cycles - cycles_then_);
-    status_.rate_hz = cycles / elapsed;
-    status_.busy_fraction = seconds_from_ns(loop.busy_ns - busy_then_ns_) / elapsed;
+  // Changes of state are said at once: within a cycle, and after too few, this would be noise.
+  if (measured_ns_ == 0 || now_ns - measured_ns_ >= kStatusPeriodNs) {
+    const double elapsed = seconds_from_ns(now_ns - measured_ns_);
+    if (measured_ns_ != 0) {
+      const auto cycles = static_cast<double>(loop.cycles - cycles_then_);
+      status_.rate_hz = cycles / elapsed;
+      status_.busy_fraction = seconds_from_ns(loop.busy_ns - busy_then_ns_) / elapsed;
+    }
+    measured_ns_ = now_ns;
+    cycles_then_ = loop.cycles;
+    busy_then_ns_ = loop.busy_ns;
   }
-  cycles_then_ = loop.cycles;
-  busy_then_ns_ = loop.busy_ns;
   status_.cycles = loop.cycles;
   status_.overruns = loop.overruns;
   status_.worst_lateness = seconds_from_ns(loop.worst_lateness_ns);

@@ -51,6 +51,7 @@ class StatusReporter {
   const bus::Bus& bus_;
   bool changed_ = true;
   std::int64_t published_ns_ = 0;
+  std::int64_t measured_ns_ = 0;  ///< since when cycles are counted for rate and busy fraction
   std::uint64_t cycles_then_ = 0;
   std::int64_t busy_then_ns_ = 0;
 };

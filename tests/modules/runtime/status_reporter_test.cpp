@@ -71,6 +71,10 @@ TEST_CASE("status: rate and load are those since the last status") {
   CHECK(status.overruns == 3);
   CHECK(status.worst_lateness == Approx(0.002));
   CHECK(status.header.sim_time_ns == kSecond * 3 / 2);
+  // What is said soon after, as where a state changes, tells the same: too little is known since.
+  r.reporter.publish(t0 + kSecond / 2 + kSecond / 100, 1.5, r.loop);
+  CHECK(status.rate_hz == Approx(100));
+  CHECK(status.busy_fraction == Approx(0.2));
 }
 
 TEST_CASE("status: tells the age and the losses of each input") {
