@@ -129,9 +129,10 @@ class Doubts {
     const scene::Probe& probe = scene_.probes[index];
     const std::string owner = "probe '" + probe.name + "'";
     if (const scene::Mesh* mesh = scene::mesh_of(probe.shape)) {
-      const double size =
-          geometry::bounding_box(scene::load_probe_mesh(probe).nodes).sizes().maxCoeff();
+      const auto surface = scene::load_probe_mesh(probe);
+      const double size = geometry::bounding_box(surface.nodes).sizes().maxCoeff();
       check_size(owner, *mesh, size, kSmallestTool, kLargestTool);
+      fineness(owner, surface.nodes.size());
     }
     constexpr double kThickestInstrument = 0.1;
     if (radius_of(probe.shape) > kThickestInstrument) {
@@ -145,6 +146,18 @@ class Doubts {
       say("{} begins inside an organ: the nearest wall will push it out; begin outside", owner);
     }
     motion(owner, probe, approach);
+  }
+
+  /// What a search costs where a tool of a mesh touches goes with both (docs/contact.md).
+  void fineness(const std::string& owner, std::size_t nodes) {
+    constexpr std::size_t kMostInTime = 1'000'000;
+    for (std::size_t i = 0; i < skins_.size(); ++i) {
+      if (nodes * skins_[i].nodes.size() <= kMostInTime) continue;
+      say("{} has a mesh of {} nodes, organ '{}' of {}: where they touch, searches take longer "
+          "than "
+          "real time allows; give it fewer (palpate mesh --nodes) or run in lockstep",
+          owner, nodes, scene_.organs[i].name, skins_[i].nodes.size());
+    }
   }
 
   void motion(const std::string& owner, const scene::Probe& probe,

@@ -95,6 +95,18 @@ TEST_CASE("doubts: a probe that a following mesh does not follow is named") {
   CHECK(said({"probes[0].shape={plane: {}}"}) == 1);
 }
 
+TEST_CASE("doubts: a tool of so fine a mesh that searches take longer than real time is named") {
+  // Oracle: the number of nodes of both, 642 of the ball and 642 or 2,562 of the tool.
+  const BallScene scene(kDownOnBall, "duration_s: 4\n");
+  const auto with_tool = [&](int halvings) {
+    geometry::write_surface(geometry::make_ball(0.01, halvings), scene.folder() / "tool.ply");
+    return std::vector<std::string>{
+        "probes[0].shape={mesh: {file: " + (scene.folder() / "tool.ply").string() + "}}"};
+  };
+  CHECK(doubts(scene, with_tool(3)).empty());
+  CHECK_THAT(doubt(scene, with_tool(4)), Contains("probe 'finger' has a mesh of 2562 nodes"));
+}
+
 TEST_CASE("doubts: a probe that begins inside, or never touches, is named") {
   // Oracle: where the ball and the moves are.
   CHECK_THAT(doubt(BallScene(scripted("[0, 0, 0]", "{wait_s: 1}"), "duration_s: 1\n")),
