@@ -53,7 +53,7 @@ void check_pyramid(const TriangleSurface& surface) {
   CHECK(surface.triangles == std::vector<Triangle>{{3, 2, 1}, {3, 1, 0}, {0, 1, 4}});
 }
 
-std::string refusal(const std::string& bytes) {
+std::string refusal_of(const std::string& bytes) {
   return test::refusal_by(parse_ply, bytes, "a.ply");
 }
 
@@ -86,31 +86,32 @@ TEST_CASE("ply file: what is wrong is named with its line or its element") {
   // Oracle: the messages promised.
   using Catch::Contains;
   const std::string head = "ply\nformat ascii 1.0\n";
-  CHECK(refusal("play\n") == "a.ply:1: must be 'ply'");
-  CHECK(refusal("ply\nformat ascii 1.0\nelement vertex 3\n") ==
+  CHECK(refusal_of("play\n") == "a.ply:1: must be 'ply'");
+  CHECK(refusal_of("ply\nformat ascii 1.0\nelement vertex 3\n") ==
         "a.ply: its header has no end ('end_header')");
-  CHECK(refusal("ply\nend_header\n") == "a.ply:2: comes before any 'format'");
-  CHECK(refusal("ply\nformat base64 1.0\n") ==
+  CHECK(refusal_of("ply\nend_header\n") == "a.ply:2: comes before any 'format'");
+  CHECK(refusal_of("ply\nformat base64 1.0\n") ==
         "a.ply:2: 'format base64 1.0' must name ascii, binary_little_endian or binary_big_endian");
-  CHECK(refusal(head + "vertex 3\n") == "a.ply:3: 'vertex 3' is no line of a PLY header");
-  CHECK(refusal(head + "element vertex many\n") ==
+  CHECK(refusal_of(head + "vertex 3\n") == "a.ply:3: 'vertex 3' is no line of a PLY header");
+  CHECK(refusal_of(head + "element vertex many\n") ==
         "a.ply:3: 'element vertex many' must end in a number");
   for (const char* property : {"property floatB x", "property float", "property list float int x",
                                "property list uchar x"}) {
-    CHECK_THAT(refusal(head + "element vertex 3\n" + property + "\n"),
+    CHECK_THAT(refusal_of(head + "element vertex 3\n" + property + "\n"),
                Contains("a.ply:4: '") && Contains("must be"));
   }
-  CHECK_THAT(refusal(head + "element vertex 1\nproperty float x\nend_header\n1\n"),
+  CHECK_THAT(refusal_of(head + "element vertex 1\nproperty float x\nend_header\n1\n"),
              Contains("must hold an element"));
-  CHECK_THAT(refusal(head + kPyramid + "0 0 0 9\n1 0 zero 9\n"),
+  CHECK_THAT(refusal_of(head + kPyramid + "0 0 0 9\n1 0 zero 9\n"),
              Contains("vertex 1 of 5 holds 'zero', which is no number"));
-  CHECK_THAT(refusal(head + kPyramid + "0 0 0 9\n1 0 0"), Contains("vertex 1 of 5 is not there"));
+  CHECK_THAT(refusal_of(head + kPyramid + "0 0 0 9\n1 0 0"),
+             Contains("vertex 1 of 5 is not there"));
   const std::string nodes = "0 0 0 9 0 0 0 9 0 0 0 9 0 0 0 9 0 0 0 9 0\n";
-  CHECK_THAT(refusal(head + kPyramid + nodes + "3 0 1 5 0"),
+  CHECK_THAT(refusal_of(head + kPyramid + nodes + "3 0 1 5 0"),
              Contains("face 0 of 2 names vertex 5; allowed: 0 to 4"));
-  CHECK_THAT(refusal(head + kPyramid + nodes + "3 0 -1 2 0"), Contains("names vertex -1"));
-  CHECK_THAT(refusal(head + kPyramid + nodes + "3 0 nan 2 0"), Contains("names vertex nan"));
-  CHECK_THAT(refusal(head + kPyramid + nodes + "1e12 0"),
+  CHECK_THAT(refusal_of(head + kPyramid + nodes + "3 0 -1 2 0"), Contains("names vertex -1"));
+  CHECK_THAT(refusal_of(head + kPyramid + nodes + "3 0 nan 2 0"), Contains("names vertex nan"));
+  CHECK_THAT(refusal_of(head + kPyramid + nodes + "1e12 0"),
              Contains("a list of 1000000000000 entries"));
 }
 
