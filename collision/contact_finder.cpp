@@ -14,6 +14,7 @@
 #include "modules/core/error.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
+#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::collision {
 namespace {
@@ -45,8 +46,10 @@ class ProbeSearch {
 
   SearchReport find(const ProbeMotion& motion, double margin, std::vector<OrganSurface>& organs,
                     const ContactLimits& limits, ContactSet& result) {
-    SearchReport report;
+    report_ = {};
     const RelativeMotion relative(motion, model_.reach, model_.is_round);
+    limits_ = limits;
+    reach_ = {relative.direction_at_end(motion.ahead_W), margin};
     cores_.begin_step();
     nodes_.begin_step();
     edges_.begin_step();
@@ -59,33 +62,47 @@ class ProbeSearch {
                      relative, seen_versions_[i],
                      margin,   model_.max_tracked_penetration + relative.travel()};
       const bool first = seen_versions_[i] == 0;
-      if (first) report.begun_inside |= hold_inside(step, 1);
+      if (first) {
+        hold_inside(step, 1);
+        hold_lines_inside(step);
+        report_.begun_inside |= !held_.empty();
+      }
       const std::size_t others = found_.size();
       find_on(step);
-      if (!first && !pushes(others)) report.was_lost |= find_lost(step);
+      if (!first && !pushes(others)) report_.was_lost |= find_lost(step);
+      if (!first && !pushes(others)) find_within(step);
       seen_versions_[i] = organ.version();
       organ.mark_found();
     }
-    report.wall_was_cut = cores_.wall_was_cut();
-    reduce_contacts(found_, !model_.cores.empty(), limits, result,
-                    {relative.direction_at_end(motion.ahead_W), margin});
-    return report;
+    report_.wall_was_cut = cores_.wall_was_cut();
+    reduce_contacts(found_, !model_.cores.empty(), limits, result, reach_);
+    result.truncated |= report_.was_cut;
+    return report_;
   }
 
  private:
-  /// Puts cores that are inside, and of which nothing is remembered, behind the nearest wall:
+  /// Puts a core that is inside, and of which nothing is remembered, behind the nearest wall:
   /// held_.
+  void hold(const OrganStep& step, const Core& core) {
+    if (cores_.hold_if_inside(step, core)) held_.push_back(core.index);
+  }
+
+  /// The same of all cores and corners: held_.
   /// @param every  the corners of a sharp probe that are looked at
   /// @returns whether there are any
   bool hold_inside(const OrganStep& step, std::size_t every) {
     held_.clear();
-    const auto hold = [&](const Core& core) {
-      if (cores_.hold_if_inside(step, core)) held_.push_back(core.index);
-    };
-    for (const Core& core : model_.cores) hold(core);
+    for (const Core& core : model_.cores) hold(step, core);
     const std::size_t corners = model_.sharp ? model_.sharp->vertices().size() : 0;
-    for (std::size_t i = 0; i < corners; i += every) hold(core_of(static_cast<std::uint32_t>(i)));
+    for (std::size_t i = 0; i < corners; i += every) {
+      hold(step, core_of(static_cast<std::uint32_t>(i)));
+    }
     return !held_.empty();
+  }
+
+  /// The same of lines within a sharp probe.
+  void hold_lines_inside(const OrganStep& step) {
+    for (const Core& line : model_.lines) hold(step, line);
   }
 
   /// Is any contact from found_[first] on one of a probe that is deeper than the surface?
@@ -94,11 +111,23 @@ class ProbeSearch {
                        [](const FoundContact& c) { return c.gap < 0; });
   }
 
+  /// Contacts for what lies between a sharp probe's corners, where nothing else tells of tissue.
+  void find_within(const OrganStep& step) {
+    held_.clear();
+    hold_lines_inside(step);
+    find_held(step);
+  }
+
   /// The guard: contacts for a probe that is inside though no contact pushes it.
   bool find_lost(const OrganStep& step) {
     constexpr std::size_t kMostCorners = 16;
     const std::size_t corners = model_.sharp ? model_.sharp->vertices().size() : 0;
     if (!hold_inside(step, corners / kMostCorners + 1)) return false;
+    find_held(step);
+    return true;
+  }
+
+  void find_held(const OrganStep& step) {
     for (const std::uint32_t core : held_) {
       triangle_list_.clear();
       cores_.append_near_wall(step, core_of(core), triangle_list_);
@@ -106,11 +135,12 @@ class ProbeSearch {
       near_.add(step, triangle_list_);
       cores_.find(step, core_of(core), near_.triangles(), found_);
     }
-    return true;
   }
 
   Core core_of(std::uint32_t index) const {
     if (!model_.sharp) return model_.cores[index];
+    const std::size_t corners = model_.sharp->vertices().size();
+    if (index >= corners) return model_.lines[index - corners];
     const Vec3& x = model_.sharp->vertices()[index];
     return {index, x, x, 0};
   }
@@ -170,27 +200,61 @@ class ProbeSearch {
     near_.append_nodes(node_list_);
     nodes_.find(step, *model_.solid, node_list_, found_);
 
+    first_choice_ = found_.size();
+    choice_left_ = kManyFound;
     gather_pairs(step);
     find_vertices(step);
-    edges_.find(step, *model_.sharp, edge_pairs_, found_);
+    edge_list_.clear();
+    for (const SweptTriangle& t : near_.triangles()) {
+      const auto& edges = step.organ.edges_of_triangle(t.index);
+      edge_list_.insert(edge_list_.end(), edges.begin(), edges.end());
+    }
+    edges_.append_remembered(step.organ_index, edge_list_);
+    sort_unique(edge_list_);
+    const auto searched = edges_.find(step, *model_.sharp, edge_list_, found_);
+    report_.looked_less_ahead |= searched != EdgeContacts::Searched::kAll;
+    report_.was_cut |= searched == EdgeContacts::Searched::kPart;
   }
 
-  /// Vertices and edges of the probe with the organ's triangles and edges near them.
+  /// Vertices of the probe with the organ's triangles near them. Where those are very many, with
+  /// each triangle those that it may go past in the step, and of the others the nearest.
   void gather_pairs(const OrganStep& step) {
     const std::vector<SweptTriangle>& triangles = near_.triangles();
+    const std::size_t many = std::max(kManyPairs, kFewestOfEach * triangles.size());
     vertex_pairs_.clear();
-    edge_pairs_.clear();
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-      Bounds box = triangles[i].bounds();
-      box.inflate(step.margin + step.motion.chord_error());
-      model_.sharp->features_near(box, near_vertices_, near_edges_);
-      for (const std::uint32_t vertex : near_vertices_) vertex_pairs_.push_back({vertex, i});
-      for (const std::uint32_t edge : near_edges_) {
-        for (const std::uint32_t organ_edge : step.organ.edges_of_triangle(triangles[i].index)) {
-          edge_pairs_.push_back({edge, organ_edge});
-        }
-      }
+      pair_vertices_in(step, triangles[i].bounds(), step.margin, i);
+      if (vertex_pairs_.size() > many) return gather_nearest_pairs(step, many / triangles.size());
     }
+    add_wall_pairs();
+  }
+
+  void pair_vertices_in(const OrganStep& step, Bounds box, double beside, std::uint32_t triangle) {
+    box.inflate(beside + step.motion.chord_error());
+    near_vertices_.clear();
+    model_.sharp->append_vertices(box, near_vertices_);
+    for (const std::uint32_t vertex : near_vertices_) vertex_pairs_.push_back({vertex, triangle});
+  }
+
+  void gather_nearest_pairs(const OrganStep& step, std::size_t of_each) {
+    const std::vector<SweptTriangle>& triangles = near_.triangles();
+    vertex_pairs_.clear();
+    std::size_t passed = 0;
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+      if (passed <= kMostPassed) {
+        pair_vertices_in(step, triangles[i].bounds(), geometry::kImpactTolerance, i);
+        passed += near_vertices_.size();
+      }
+      near_vertices_.clear();
+      model_.sharp->append_nearest_vertices(triangles[i].end, step.margin, of_each, near_vertices_);
+      for (const std::uint32_t vertex : near_vertices_) vertex_pairs_.push_back({vertex, i});
+    }
+    report_.was_cut |= passed > kMostPassed;
+    add_wall_pairs();
+  }
+
+  void add_wall_pairs() {
+    const std::vector<SweptTriangle>& triangles = near_.triangles();
     for (const auto& [vertex, t] : wall_pairs_) {
       const auto at =
           std::lower_bound(triangles.begin(), triangles.end(), t,
@@ -199,9 +263,7 @@ class ProbeSearch {
         vertex_pairs_.push_back({vertex, static_cast<std::uint32_t>(at - triangles.begin())});
       }
     }
-    edges_.append_remembered(step.organ_index, edge_pairs_);
-    sorter_.sort_unique(vertex_pairs_, model_.sharp->vertices().size());
-    sorter_.sort_unique(edge_pairs_, model_.sharp->edges().size());
+    sorter_.sort_unique(vertex_pairs_, model_.sharp->vertices().size() + model_.lines.size());
   }
 
   void find_vertices(const OrganStep& step) {
@@ -212,8 +274,21 @@ class ProbeSearch {
         near_triangles_.push_back(near_.triangles()[first->second]);
       }
       cores_.find(step, core_of(vertex), near_triangles_, found_);
+      leave_choice_of_many();
     }
   }
+
+  void leave_choice_of_many() {
+    if (found_.size() - first_choice_ < choice_left_) return;
+    leave_choice(found_, first_choice_, limits_, reach_);
+    choice_left_ = found_.size() - first_choice_ + kManyFound;
+  }
+
+  /// More pairs of a vertex and a triangle, and more than so many with each triangle, are not all
+  /// looked at; of those that may have gone past each other so many.
+  static constexpr std::size_t kManyPairs = 65536, kFewestOfEach = 16, kMostPassed = 262144;
+  /// As many contacts at once are found before it is asked which are needed.
+  static constexpr std::size_t kManyFound = 8192;
 
   ProbeModel model_;
   CoreContacts cores_;
@@ -221,15 +296,19 @@ class ProbeSearch {
   EdgeContacts edges_;
   std::vector<std::uint64_t> seen_versions_;  ///< per organ, in the last step
 
+  // Of a call.
+  SearchReport report_;
+  ContactLimits limits_;
+  ProbeReach reach_;
+  std::size_t first_choice_ = 0, choice_left_ = 0;  ///< of found_: contacts of corners and edges
   // Kept between calls for their memory only.
   std::vector<FoundContact> found_;
   NearSurface near_;
   FrontContacts front_;
   std::vector<SweptTriangle> near_triangles_;
-  std::vector<std::uint32_t> triangle_list_, node_list_, near_vertices_, near_edges_, held_;
+  std::vector<std::uint32_t> triangle_list_, node_list_, edge_list_, near_vertices_, held_;
   std::vector<VertexPair> vertex_pairs_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> wall_pairs_;  ///< held vertex, triangle
-  std::vector<EdgePair> edge_pairs_;
   PairSorter sorter_;
 };
 

@@ -30,6 +30,8 @@ struct SearchReport {
   bool begun_inside = false;  ///< first heard of inside an organ: the nearest wall pushes it out
   bool was_lost = false;      ///< inside an organ and touching nothing: likewise
   bool wall_was_cut = false;  ///< of a wall it is behind only the nearest part was looked at
+  bool looked_less_ahead = false;  ///< of very many edges that it may come to
+  bool was_cut = false;  ///< there was too much that it went past to look at all: truncated
 };
 
 /// Finds, for each probe, the places where it touches or may touch an organ before the next

@@ -218,13 +218,9 @@ void take_faces(std::vector<FoundContact>& found, const ContactLimits& limits, C
   found.erase(kept, found.end());
 }
 
-/// Of what a message must hold, what touches and of each place on the tissue the nearest that the
-/// probe may come to are first, then the nearest of the others.
-/// @returns whether it must hold more than it can
-bool keep_nearest(std::vector<FoundContact>& found, const ContactLimits& limits,
-                  const ProbeReach& reach) {
-  if (found.size() <= limits.contacts) return false;
-  const std::size_t most = std::max(limits.contacts, limits.needed);
+/// Takes out of contacts all but what touches and of each place on the tissue the nearest that the
+/// probe may come to.
+std::vector<FoundContact> take_others(std::vector<FoundContact>& found, const ProbeReach& reach) {
   std::sort(found.begin(), found.end(), [](const FoundContact& a, const FoundContact& b) {
     return std::tuple_cat(std::tie(a.organ, a.feature), deepest_first(a)) <
            std::tuple_cat(std::tie(b.organ, b.feature), deepest_first(b));
@@ -241,19 +237,34 @@ bool keep_nearest(std::vector<FoundContact>& found, const ContactLimits& limits,
     }
   }
   found.resize(needed);
-  const auto cut = [&](std::vector<FoundContact>& from, std::size_t size, const auto& before) {
-    if (from.size() <= size) return;
-    std::nth_element(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(size), from.end(),
-                     before);
-    from.resize(size);
-  };
+  return others;
+}
+
+/// Leaves the first `size`, in no useful order.
+template <class Before>
+void cut(std::vector<FoundContact>& found, std::size_t size, const Before& before) {
+  if (found.size() <= size) return;
+  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(size), found.end(),
+                   before);
+  found.resize(size);
+}
+
+/// Of what a message must hold, what touches and of each place on the tissue the nearest that the
+/// probe may come to are first, then the nearest of the others.
+/// @returns whether it must hold more than it can
+bool keep_nearest(std::vector<FoundContact>& found, const ContactLimits& limits,
+                  const ProbeReach& reach) {
+  if (found.size() <= limits.contacts) return false;
+  const std::size_t most = std::max(limits.contacts, limits.needed);
+  std::vector<FoundContact> others = take_others(found, reach);
+  const bool holds_all = found.size() <= most;
   cut(found, most, [&](const FoundContact& a, const FoundContact& b) {
     const double gap_a = reach.least_gap(a), gap_b = reach.least_gap(b);
     return gap_a != gap_b ? gap_a < gap_b : deeper(a, b);
   });
   cut(others, limits.contacts - std::min(limits.contacts, found.size()), deeper);
   found.insert(found.end(), others.begin(), others.end());
-  return needed > most;
+  return !holds_all;
 }
 
 }  // namespace
@@ -274,6 +285,18 @@ void append_node_contact(const OrganStep& step, std::uint32_t node, FoundContact
   contact.barycentric = Vec3::Unit(corner);
   contact.feature = {node, kNoNode, kNoNode};
   found.push_back(contact);
+}
+
+void leave_choice(std::vector<FoundContact>& found, std::size_t first, const ContactLimits& limits,
+                  const ProbeReach& reach) {
+  const auto begin = found.begin() + static_cast<std::ptrdiff_t>(first);
+  std::vector<FoundContact> choice(begin, found.end());
+  merge_duplicates(choice);
+  std::vector<FoundContact> others = take_others(choice, reach);
+  cut(others, limits.contacts, deeper);
+  found.erase(begin, found.end());
+  found.insert(found.end(), choice.begin(), choice.end());
+  found.insert(found.end(), others.begin(), others.end());
 }
 
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,

@@ -67,6 +67,11 @@ inline constexpr std::size_t kUsualContacts = 1024;
 /// They say where tissue is; deformation finds its own rows around them (deformation/contact).
 inline constexpr std::size_t kMostOfRound = 64;
 
+/// Of contacts of a sharp probe from `first` on, which may be millions before the search ends,
+/// leaves all that reduce_contacts() would choose from.
+void leave_choice(std::vector<FoundContact>& found, std::size_t first, const ContactLimits& limits,
+                  const ProbeReach& reach);
+
 /// The same place and normal found twice (over triangles that share it) becomes one contact, of the
 /// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others
 /// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more

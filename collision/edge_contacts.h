@@ -27,11 +27,18 @@ class EdgeContacts {
   /// What is remembered of an organ is found again on other triangles.
   void change_surface(const SurfaceChange& change);
   void begin_step();
-  void append_remembered(std::uint32_t organ, std::vector<EdgePair>& pairs) const;
+  /// Adds the organ's edges that are remembered.
+  void append_remembered(std::uint32_t organ, std::vector<std::uint32_t>& edges) const;
 
-  /// @param pairs  each once: all that may touch in the step and all remembered ones
-  void find(const OrganStep& step, const SharpMesh& probe, std::span<const EdgePair> pairs,
-            std::vector<FoundContact>& found);
+  enum class Searched { kAll, kLessAhead, kPart };
+  /// More pairs are not looked at: of very many those first that the edges may go through in the
+  /// step, then what is near.
+  static constexpr std::size_t kMostPairs = 262144;
+
+  /// @param edges  of the organ, ascending, each once: all that may touch in the step and all
+  /// remembered ones
+  Searched find(const OrganStep& step, const SharpMesh& probe, std::span<const std::uint32_t> edges,
+                std::vector<FoundContact>& found);
 
   /// Between two steps.
   void exchange(StateArchive& archive) { archive(now_); }
@@ -43,12 +50,24 @@ class EdgeContacts {
     double depth_limit = 0;  ///< OrganStep::depth_limit of the step that crossed it
     void exchange(StateArchive& archive) { archive(organ, pair, depth_limit); }
   };
-  void find_pair(const OrganStep& step, const SharpMesh& probe, const EdgePair& pair,
+  /// One edge of the organ with all of the probe's that it may touch.
+  class OrganEdge;
+  Searched list_pairs(const OrganStep& step, const SharpMesh& probe,
+                      std::span<const std::uint32_t> edges);
+  std::size_t list_pairs_within(const OrganStep& step, const SharpMesh& probe,
+                                std::span<const std::uint32_t> edges, double ahead);
+  void list_near(const OrganEdge& edge, const SharpMesh& probe, double ahead);
+  void find_pair(const OrganEdge& edge, const SharpMesh& probe, std::uint32_t of_probe,
                  std::vector<FoundContact>& found);
 
-  const Crossed* remembered(std::uint32_t organ, const EdgePair& pair) const;
+  /// Of before_: those of an organ's edge.
+  std::span<const Crossed> remembered(std::uint32_t organ, std::uint32_t edge) const;
 
-  std::vector<Crossed> before_, now_;
+  std::vector<Crossed> before_;  ///< by organ, the organ's edge and the probe's
+  std::vector<Crossed> now_;
+  // Kept for their memory only.
+  std::vector<std::uint32_t> near_;                             ///< the probe's
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  ///< the organ's edge, the probe's
 };
 
 }  // namespace palpate::collision

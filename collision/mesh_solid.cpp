@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "modules/core/sort_unique.h"
@@ -13,7 +14,6 @@
 namespace palpate::collision {
 namespace {
 
-constexpr std::uint32_t kFlatEdge = 0xffffffff;
 constexpr double kFlat = 0.9999;  // cosine between faces: below 0.8°
 
 geometry::TriangleCorners corners_of(const geometry::TriangleSurface& mesh,
@@ -32,28 +32,48 @@ Vec3 into_face(const Vec3& a, const Vec3& b, const Vec3& inner, const Vec3& norm
   return across.dot(inner - a) < 0 ? Vec3(-across) : across;
 }
 
+/// One that holds those of all these edges.
+NormalCone cone_of(std::span<const std::uint32_t> edges, const std::vector<NormalCone>& cones) {
+  Vec3 axis = Vec3::Zero();
+  for (const std::uint32_t edge : edges) {
+    if (!cones[edge].is_empty()) axis += cones[edge].axis();
+  }
+  if (axis.norm() < 1e-6) axis = Vec3::UnitZ();
+  axis.normalize();
+  double angle = -1;
+  for (const std::uint32_t edge : edges) {
+    if (cones[edge].is_empty()) continue;
+    angle = std::max(angle, angle_between(axis, cones[edge].axis()) + cones[edge].angle() + 1e-9);
+  }
+  return {axis, std::min(angle, std::numbers::pi)};
+}
+
 class MeshSolid final : public ProbeSolid {
  public:
   explicit MeshSolid(const SharpMesh& mesh) : mesh_(mesh), bounds_(mesh.bounds()) {}
 
   std::optional<SolidPoint> nearest(const Vec3& x, double within) const override {
-    Bounds box{x, x};
-    box.inflate(within);
-    std::vector<std::uint32_t> near;
-    mesh_.triangles_near(box, near);
-    std::optional<SolidPoint> best;
-    for (const std::uint32_t t : near) {
-      if (mesh_.face_normal(t) == Vec3::Zero()) continue;
-      const geometry::PointOnTriangle closest = geometry::closest_on_triangle(x, corners(t));
-      const double distance = (x - closest.point).norm();
-      if (distance > (best ? std::abs(best->distance) : within)) continue;
-      if (best && distance == std::abs(best->distance)) continue;
-      const Vec3 normal = mesh_.pseudonormal(t, closest.weights);
-      const double sign = normal.dot(x - closest.point) < 0 ? -1 : 1;
-      best = SolidPoint{closest.point, mesh_.face_normal(t), sign * distance, false};
-      if (distance > kDirectionless) best->outward = sign * (x - closest.point) / distance;
-    }
-    return best;
+    constexpr double kAbove = 1 + 1e-12;  // its square is not below another's for rounding
+    double least = within;
+    std::uint32_t nearest = 0;
+    std::optional<geometry::PointOnTriangle> closest;
+    mesh_.visit_near(
+        x, [&] { return kAbove * least * least; },
+        [&](std::uint32_t t) {
+          if (mesh_.face_normal(t) == Vec3::Zero()) return;
+          const geometry::PointOnTriangle at = geometry::closest_on_triangle(x, corners(t));
+          const double distance = (x - at.point).norm();
+          if (distance > least || (closest && distance == least && t > nearest)) return;
+          least = distance;
+          nearest = t;
+          closest = at;
+        });
+    if (!closest) return {};
+    const Vec3 apart = x - closest->point;
+    const double sign = mesh_.pseudonormal(nearest, closest->weights).dot(apart) < 0 ? -1 : 1;
+    SolidPoint found{closest->point, mesh_.face_normal(nearest), sign * least, false};
+    if (least > kDirectionless) found.outward = sign * apart / least;
+    return found;
   }
 
   std::optional<SolidEntry> entry(const Vec3& start, const Vec3& end,
@@ -102,9 +122,11 @@ class MeshSolid final : public ProbeSolid {
 
 }  // namespace
 
-SharpMesh::SharpMesh(geometry::TriangleSurface mesh) : mesh_(std::move(mesh)), tree_(mesh_) {
+SharpMesh::SharpMesh(geometry::TriangleSurface mesh)
+    : mesh_(std::move(mesh)), tree_(mesh_), vertex_tree_({}), edge_tree_({}) {
   build_normals();
   build_edges();
+  build_trees();
 }
 
 void SharpMesh::build_normals() {
@@ -132,7 +154,6 @@ void SharpMesh::build_edges() {
     }
   }
   edge_normals_.resize(mesh_.triangles.size());
-  edges_of_triangle_.assign(mesh_.triangles.size(), {kFlatEdge, kFlatEdge, kFlatEdge});
   for (const auto& [vertices, around] : sides) {
     const Side &one = around.front(), &other = around.back();
     SharpEdge edge{vertices, {face_normals_[one.triangle], face_normals_[other.triangle]}, {}};
@@ -140,8 +161,6 @@ void SharpMesh::build_edges() {
         around.size() == 2 && edge.face_normals[0].dot(edge.face_normals[1]) > kFlat;
     for (const Side& side : around) {
       edge_normals_[side.triangle][side.corner] = edge.face_normals[0] + edge.face_normals[1];
-      if (!is_flat)
-        edges_of_triangle_[side.triangle][side.corner] = static_cast<std::uint32_t>(edges_.size());
     }
     if (is_flat) continue;
     const Vec3 &a = mesh_.nodes[vertices[0]], &b = mesh_.nodes[vertices[1]];
@@ -151,7 +170,27 @@ void SharpMesh::build_edges() {
       edge.into_face[k] = into_face(a, b, inner, edge.face_normals[k]);
     }
     edges_.push_back(edge);
-    edge_bounds_.push_back({a.cwiseMin(b), a.cwiseMax(b)});
+    edge_cones_.push_back(around.size() == 2 ? cone_of_edge(edge.face_normals[0],
+                                                            edge.face_normals[1], edge.into_face[1])
+                                             : NormalCone{});
+  }
+}
+
+void SharpMesh::build_trees() {
+  for (const geometry::Triangle& t : mesh_.triangles) {
+    vertices_.insert(vertices_.end(), t.begin(), t.end());
+  }
+  sort_unique(vertices_);
+  std::vector<geometry::BoxTree::Box> of_vertices, of_edges;
+  for (const std::uint32_t vertex : vertices_) of_vertices.emplace_back(mesh_.nodes[vertex]);
+  for (const SharpEdge& edge : edges_) {
+    of_edges.emplace_back(mesh_.nodes[edge.vertices[0]]);
+    of_edges.back().extend(mesh_.nodes[edge.vertices[1]]);
+  }
+  vertex_tree_ = geometry::BoxTree(std::move(of_vertices));
+  edge_tree_ = geometry::BoxTree(std::move(of_edges));
+  for (const auto& branch : edge_tree_.branches()) {
+    branch_cones_.push_back(cone_of(edge_tree_.items_of(branch), edge_cones_));
   }
 }
 
@@ -161,24 +200,48 @@ Bounds SharpMesh::bounds() const {
   return box;
 }
 
-void SharpMesh::features_near(const Bounds& box, std::vector<std::uint32_t>& vertices,
-                              std::vector<std::uint32_t>& edges) const {
-  std::vector<std::uint32_t> near;
-  tree_.append_overlapping({box.lower, box.upper}, near);
-  vertices.clear();
-  edges.clear();
-  for (const std::uint32_t t : near) {
-    const auto& nodes = mesh_.triangles[t];
-    for (const std::uint32_t vertex : nodes) {
-      const Vec3& x = mesh_.nodes[vertex];
-      if (box.overlaps({x, x})) vertices.push_back(vertex);
-    }
-    for (const std::uint32_t edge : edges_of_triangle_[t]) {
-      if (edge != kFlatEdge && box.overlaps(edge_bounds_[edge])) edges.push_back(edge);
-    }
-  }
-  sort_unique(vertices);
-  sort_unique(edges);
+void SharpMesh::append_vertices(const Bounds& box, std::vector<std::uint32_t>& vertices) const {
+  const std::size_t first = vertices.size();
+  vertex_tree_.append_overlapping({box.lower, box.upper}, vertices);
+  for (std::size_t i = first; i < vertices.size(); ++i) vertices[i] = vertices_[vertices[i]];
+}
+
+void SharpMesh::append_nearest_vertices(const geometry::TriangleCorners& to, double within,
+                                        std::size_t count,
+                                        std::vector<std::uint32_t>& vertices) const {
+  geometry::BoxTree::Box box(to[0]);
+  box.extend(to[1]).extend(to[2]);
+  std::vector<std::pair<double, std::uint32_t>> nearest;  // a heap, the furthest on top
+  vertex_tree_.visit_near(
+      [&](const geometry::BoxTree::Box& of) { return box.squaredExteriorDistance(of); },
+      [&] { return nearest.size() < count ? within * within : nearest.front().first; },
+      [&](std::uint32_t item) {
+        const std::uint32_t vertex = vertices_[item];
+        const Vec3& x = mesh_.nodes[vertex];
+        const double squared = (x - geometry::closest_on_triangle(x, to).point).squaredNorm();
+        if (squared > within * within) return;
+        nearest.push_back({squared, vertex});
+        std::ranges::push_heap(nearest);
+        if (nearest.size() <= count) return;
+        std::ranges::pop_heap(nearest);
+        nearest.pop_back();
+      });
+  for (const auto& [squared, vertex] : nearest) vertices.push_back(vertex);
+}
+
+void SharpMesh::append_edges(const Bounds& box, const Bounds& wider, const NormalCone& from,
+                             std::vector<std::uint32_t>& edges) const {
+  const geometry::BoxTree::Box near(box.lower, box.upper), far(wider.lower, wider.upper);
+  const auto may_touch = [&](const geometry::BoxTree::Box& of, const NormalCone& cone) {
+    return of.intersects(near) || (of.intersects(far) && cone.may_oppose(from));
+  };
+  edge_tree_.visit(
+      [&](std::uint32_t branch) {
+        return may_touch(edge_tree_.branches()[branch].box, branch_cones_[branch]);
+      },
+      [&](std::uint32_t edge) {
+        if (may_touch(edge_tree_.boxes()[edge], edge_cones_[edge])) edges.push_back(edge);
+      });
 }
 
 void SharpMesh::triangles_near(const Bounds& box, std::vector<std::uint32_t>& triangles) const {

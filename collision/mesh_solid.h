@@ -5,8 +5,10 @@
 #include <span>
 
 #include "collision/bounds.h"
+#include "collision/normal_cone.h"
 #include "collision/probe_solid.h"
 #include "modules/geometry/aabb_tree.h"
+#include "modules/geometry/closest_points.h"
 
 namespace palpate::collision {
 
@@ -28,10 +30,26 @@ class SharpMesh {
   const std::vector<SharpEdge>& edges() const { return edges_; }
   Bounds bounds() const;
 
-  /// Vertices in a box and sharp edges whose bounds overlap it, ascending.
-  void features_near(const Bounds& box, std::vector<std::uint32_t>& vertices,
-                     std::vector<std::uint32_t>& edges) const;
+  /// Appends the vertices of triangles that are in a box, in no useful order.
+  void append_vertices(const Bounds& box, std::vector<std::uint32_t>& vertices) const;
+  /// Appends the sharp edges whose bounds overlap a box; and of those that overlap a wider one the
+  /// edges that may be touched from the directions of a cone. In no useful order.
+  void append_edges(const Bounds& box, const Bounds& wider, const NormalCone& from,
+                    std::vector<std::uint32_t>& edges) const;
   void triangles_near(const Bounds& box, std::vector<std::uint32_t>& triangles) const;
+
+  /// Appends so many vertices of triangles, the nearest to a triangle of those within a distance,
+  /// in no useful order.
+  void append_nearest_vertices(const geometry::TriangleCorners& to, double within,
+                               std::size_t count, std::vector<std::uint32_t>& vertices) const;
+  /// Calls visit(triangle) for all that may be within a distance of a point
+  /// (BoxTree::visit_near()).
+  template <class Limit, class Visit>
+  void visit_near(const Vec3& point, const Limit& squared_limit, const Visit& visit) const {
+    tree_.boxes().visit_near(
+        [&](const geometry::BoxTree::Box& box) { return box.squaredExteriorDistance(point); },
+        squared_limit, visit);
+  }
 
   /// Unit normal of a face; zero if degenerate.
   const Vec3& face_normal(std::uint32_t triangle) const { return face_normals_[triangle]; }
@@ -42,14 +60,16 @@ class SharpMesh {
  private:
   void build_normals();
   void build_edges();
+  void build_trees();
 
   geometry::TriangleSurface mesh_;
   std::vector<Vec3> face_normals_, vertex_normals_;
   std::vector<std::array<Vec3, 3>> edge_normals_;  ///< per triangle, of edge k → k+1
   std::vector<SharpEdge> edges_;
-  std::vector<Bounds> edge_bounds_;
-  std::vector<std::array<std::uint32_t, 3>> edges_of_triangle_;  ///< index or kFlatEdge
   geometry::AabbTree tree_;
+  std::vector<std::uint32_t> vertices_;                ///< of triangles
+  std::vector<NormalCone> edge_cones_, branch_cones_;  ///< by edge, by branch of edge_tree_
+  geometry::BoxTree vertex_tree_, edge_tree_;          ///< of vertices_ and edges_
 };
 
 /// @param mesh  outlives the solid

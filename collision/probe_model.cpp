@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "modules/geometry/inner_lines.h"
 #include "modules/geometry/primitives.h"
 
 namespace palpate::collision {
@@ -52,6 +53,13 @@ struct Builder {
 
 }  // namespace
 
-ProbeModel::ProbeModel(geometry::ProbeForm form) { std::visit(Builder{*this}, form); }
+ProbeModel::ProbeModel(geometry::ProbeForm form) {
+  const std::vector<geometry::RoundedSegment> within = geometry::inner_lines(form);
+  std::visit(Builder{*this}, form);
+  for (const geometry::RoundedSegment& line : within) {
+    const auto index = static_cast<std::uint32_t>(sharp->vertices().size() + lines.size());
+    lines.push_back({index, line.a, line.b, line.radius});
+  }
+}
 
 }  // namespace palpate::collision

@@ -16,6 +16,7 @@ struct ProbeModel {
 
   std::vector<Core> cores;            ///< ball; rounded segment: it and both its ends
   std::unique_ptr<SharpMesh> sharp;   ///< box, surface: corners and edges
+  std::vector<Core> lines;            ///< of those: within, numbered on from the corners
   std::unique_ptr<ProbeSolid> solid;  ///< all that are not round
   bool is_bounded = true;             ///< all but the half-space
   bool is_round = false;              ///< a ball about P's origin: rotation changes nothing

@@ -119,6 +119,9 @@ const char* acting_guard(const Acted& acted) {
   if (acted.found.was_lost) {
     return "a probe was inside an organ without contact: the nearest wall pushes it out";
   }
+  if (acted.found.was_cut) {
+    return "a probe's mesh is too fine for its speed: not all that it went past was searched";
+  }
   if (acted.truncated)
     return "more contacts than a message holds: the deepest are kept, the others pass";
   if (acted.found.begun_inside) {
@@ -126,6 +129,9 @@ const char* acting_guard(const Acted& acted) {
   }
   if (acted.found.wall_was_cut) {
     return "a probe is behind finely meshed skin: only what is nearest to it was searched";
+  }
+  if (acted.found.looked_less_ahead) {
+    return "a probe's mesh is too fine for its speed: its edges were searched less far ahead";
   }
   if (acted.boxes_misfit) {
     return "node_positions tells boxes of other blocks than surface: they are made here";
@@ -178,6 +184,8 @@ struct CollisionStage::Impl {
     acted.found.begun_inside |= found.begun_inside;
     acted.found.was_lost |= found.was_lost;
     acted.found.wall_was_cut |= found.wall_was_cut;
+    acted.found.looked_less_ahead |= found.looked_less_ahead;
+    acted.found.was_cut |= found.was_cut;
     acted.truncated |= contacts.truncated;
     troubles.truncated += contacts.truncated;
     troubles.lost += found.was_lost;

@@ -1,65 +1,31 @@
 #include "modules/geometry/aabb_tree.h"
 
-#include <algorithm>
-#include <array>
 #include <limits>
-#include <numeric>
 
 #include "modules/core/error.h"
 
 namespace palpate::geometry {
 namespace {
 
-constexpr std::uint32_t kLeafSize = 4;
+std::vector<BoxTree::Box> boxes_of(const TriangleSurface& surface) {
+  std::vector<BoxTree::Box> boxes;
+  for (const auto& [a, b, c] : surface.triangles) {
+    BoxTree::Box box(surface.nodes[a]);
+    boxes.push_back(box.extend(surface.nodes[b]).extend(surface.nodes[c]));
+  }
+  return boxes;
+}
 
 }  // namespace
 
-AabbTree::AabbTree(const TriangleSurface& surface) {
+AabbTree::AabbTree(const TriangleSurface& surface) : tree_(boxes_of(surface)) {
   for (const auto& [a, b, c] : surface.triangles) {
     corners_.push_back({surface.nodes[a], surface.nodes[b], surface.nodes[c]});
-    Box box(surface.nodes[a]);
-    box.extend(surface.nodes[b]).extend(surface.nodes[c]);
-    boxes_.push_back(box);
   }
-  order_.resize(boxes_.size());
-  std::iota(order_.begin(), order_.end(), 0u);
-  build();
-}
-
-void AabbTree::build() {
-  branches_.push_back({Box(), 0, static_cast<std::uint32_t>(order_.size()), 0});
-  for (std::uint32_t i = 0; i < branches_.size(); ++i) split(i);
-}
-
-void AabbTree::split(std::uint32_t branch) {
-  const std::uint32_t begin = branches_[branch].begin, end = branches_[branch].end;
-  Box box, centres;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    box.extend(boxes_[order_[i]]);
-    centres.extend(boxes_[order_[i]].center());
-  }
-  branches_[branch].box = box;
-  if (end - begin <= kLeafSize) return;
-  Eigen::Index axis = 0;
-  centres.sizes().maxCoeff(&axis);
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](std::uint32_t a, std::uint32_t b) {
-                     const double at_a = boxes_[a].center()[axis], at_b = boxes_[b].center()[axis];
-                     return at_a != at_b ? at_a < at_b : a < b;
-                   });
-  branches_[branch].left = static_cast<std::uint32_t>(branches_.size());
-  branches_.push_back({Box(), begin, middle, 0});
-  branches_.push_back({Box(), middle, end, 0});
-}
-
-Vec3 AabbTree::nearest_on(std::uint32_t triangle, const Vec3& point) const {
-  const auto& [a, b, c] = corners_[triangle];
-  return nearest_point_on_triangle(point, a, b, c);
 }
 
 AabbTree::Nearest AabbTree::nearest(const Vec3& point) const {
-  PALPATE_DEMAND(!order_.empty());
+  PALPATE_DEMAND(!corners_.empty());
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   return nearest_within(point, kAnywhere).value_or(Nearest{0, Vec3::Zero(), kAnywhere});
 }
@@ -68,55 +34,26 @@ std::optional<AabbTree::Nearest> AabbTree::nearest_within(const Vec3& point,
                                                           double squared_limit) const {
   Nearest best;
   best.squared_distance = squared_limit;
-  std::vector<std::uint32_t> open{0};
-  while (!open.empty()) {
-    const Branch& branch = branches_[open.back()];
-    open.pop_back();
-    if (branch.box.squaredExteriorDistance(point) >= best.squared_distance) continue;
-    if (branch.left == 0) {
-      for (std::uint32_t i = branch.begin; i < branch.end; ++i) {
-        const Vec3 on_triangle = nearest_on(order_[i], point);
-        const double squared_distance = (on_triangle - point).squaredNorm();
-        if (squared_distance < best.squared_distance) {
-          best = {order_[i], on_triangle, squared_distance};
-        }
-      }
-      continue;
-    }
-    const std::uint32_t left = branch.left, right = branch.left + 1;
-    const bool left_first = branches_[left].box.squaredExteriorDistance(point) <=
-                            branches_[right].box.squaredExteriorDistance(point);
-    open.push_back(left_first ? right : left);
-    open.push_back(left_first ? left : right);
-  }
+  tree_.visit_near([&](const Box& box) { return box.squaredExteriorDistance(point); },
+                   [&] { return best.squared_distance; },
+                   [&](std::uint32_t triangle) {
+                     const auto& [a, b, c] = corners_[triangle];
+                     const Vec3 on_triangle = nearest_point_on_triangle(point, a, b, c);
+                     const double squared_distance = (on_triangle - point).squaredNorm();
+                     if (squared_distance < best.squared_distance) {
+                       best = {triangle, on_triangle, squared_distance};
+                     }
+                   });
   if (best.squared_distance < squared_limit) return best;
   return std::nullopt;
-}
-
-void AabbTree::append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const {
-  std::array<std::uint32_t, 64> open;  // depth first: at most one waiting branch per halving
-  std::size_t waiting = 1;
-  open[0] = 0;
-  while (waiting > 0) {
-    const Branch& branch = branches_[open[--waiting]];
-    if (!branch.box.intersects(box)) continue;
-    if (branch.left != 0) {
-      open[waiting++] = branch.left + 1;
-      open[waiting++] = branch.left;
-      continue;
-    }
-    for (std::uint32_t i = branch.begin; i < branch.end; ++i) {
-      if (boxes_[order_[i]].intersects(box)) triangles.push_back(order_[i]);
-    }
-  }
 }
 
 void AabbTree::for_each_touching_pair(
     const std::function<void(std::uint32_t, std::uint32_t)>& visit) const {
   std::vector<std::uint32_t> near;
-  for (std::uint32_t a = 0; a < boxes_.size(); ++a) {
+  for (std::uint32_t a = 0; a < corners_.size(); ++a) {
     near.clear();
-    append_overlapping(boxes_[a], near);
+    append_overlapping(tree_.boxes()[a], near);
     for (const std::uint32_t b : near) {
       if (b > a) visit(a, b);
     }

@@ -1,17 +1,17 @@
 // A tree of axis-aligned boxes over the triangles of a surface that does not change.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <functional>
 #include <optional>
 
+#include "modules/geometry/box_tree.h"
 #include "modules/geometry/triangle_surface.h"
 
 namespace palpate::geometry {
 
 class AabbTree {
  public:
-  using Box = Eigen::AlignedBox3d;
+  using Box = BoxTree::Box;
 
   /// Copies what it needs.
   explicit AabbTree(const TriangleSurface& surface);
@@ -29,26 +29,17 @@ class AabbTree {
   std::optional<Nearest> nearest_within(const Vec3& point, double squared_limit) const;
 
   /// Appends the triangles whose own boxes touch `box`, in no useful order.
-  void append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const;
+  void append_overlapping(const Box& box, std::vector<std::uint32_t>& triangles) const {
+    tree_.append_overlapping(box, triangles);
+  }
+  const BoxTree& boxes() const { return tree_; }
 
   /// Calls `visit(a, b)`, a < b, once for every pair of triangles whose boxes touch.
   void for_each_touching_pair(const std::function<void(std::uint32_t, std::uint32_t)>& visit) const;
 
  private:
-  struct Branch {
-    Box box;
-    std::uint32_t begin = 0, end = 0;  ///< range of order_, used by leaves
-    std::uint32_t left = 0;            ///< children at left and left + 1; 0: a leaf
-  };
-
-  void build();
-  void split(std::uint32_t branch);
-  Vec3 nearest_on(std::uint32_t triangle, const Vec3& point) const;
-
   std::vector<std::array<Vec3, 3>> corners_;  // of each triangle
-  std::vector<Box> boxes_;                    // of each triangle
-  std::vector<std::uint32_t> order_;          // triangles, each leaf's side by side
-  std::vector<Branch> branches_;
+  BoxTree tree_;
 };
 
 /// The point of the triangle (a, b, c) nearest to p. Ericson, Real-Time Collision Detection,

@@ -135,26 +135,6 @@ TEST_CASE("contact finder: a plane on a ball holds each near node once, with its
   }
 }
 
-TEST_CASE("contact finder: a mesh probe agrees with the box it is made like") {
-  // Oracle: the same shape by another path.
-  const Vec3 size(0.02, 0.03, 0.01);
-  RandomShapes random(12);
-  for (int trial = 0; trial < 20; ++trial) {
-    const auto ball = random.deformed_ball(0.05, 3);
-    const Quat rotation = random.rotation();
-    const Vec3 position = random.direction() * random.number(0.058, 0.066);
-    FinderScene as_box(ball, scene::BoxShape{size});
-    FinderScene as_mesh({ball}, {scene::form_of(scene::MeshShape{}, geometry::make_box(size))});
-    const ContactSet one = as_box.find(resting(position, rotation), 0.002);
-    const ContactSet other = as_mesh.find(resting(position, rotation), 0.002);
-    REQUIRE(one.contacts.size() == other.contacts.size());
-    for (std::size_t i = 0; i < one.contacts.size(); ++i) {
-      CHECK(one.contacts[i].triangle == other.contacts[i].triangle);
-      CHECK(one.contacts[i].gap == Approx(other.contacts[i].gap).margin(1e-12));
-    }
-  }
-}
-
 TEST_CASE("contact finder: a far wall seen from inside is not in contact") {
   // Oracle: invariant; all contacts lie on the near wall. The organ is thinner than the probe.
   for (const scene::ProbeShape& shape :

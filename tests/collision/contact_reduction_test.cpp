@@ -338,4 +338,34 @@ TEST_CASE("contact reduction: a node is named by its lowest triangle") {
   }
 }
 
+TEST_CASE("contact reduction: what is left of very many holds all that is chosen from them") {
+  // Oracle: the same reduction of all.
+  RandomShapes random(83);
+  for (const double ahead : {0.0, 0.004}) {
+    const ProbeReach reach{{0, 0, -ahead}, 3 * ahead + 0.002};
+    const ContactLimits limits{200, 10, 500, 900};
+    std::vector<FoundContact> found;
+    for (int i = 0; i < 6000; ++i) {
+      FoundContact c = contact(0, static_cast<std::uint32_t>(random.number(0, 700)), {1, 0, 0},
+                               random.number(-0.001, 0.02));
+      c.point_P = random.point(0.01);
+      c.normal_P = random.direction();
+      append_contact(c, {c.triangle, 1000, 1001}, found);
+      if (random.number(0, 1) < 0.1) found.push_back(found[found.size() / 2]);  // found twice
+    }
+    std::vector<FoundContact> left = found;
+    constexpr std::size_t kFirst = 500;
+    leave_choice(left, kFirst, limits, reach);
+    CHECK(left.size() < found.size() / 2);
+    ContactSet of_all, of_left;
+    reduce_contacts(found, false, limits, of_all, reach);
+    reduce_contacts(left, false, limits, of_left, reach);
+    CHECK(of_all.truncated == of_left.truncated);
+    REQUIRE(of_all.contacts.size() == of_left.contacts.size());
+    for (std::size_t i = 0; i < of_all.contacts.size(); ++i) {
+      CHECK(of_all.contacts[i].point_P == of_left.contacts[i].point_P);
+    }
+  }
+}
+
 }  // namespace palpate::collision

@@ -1,6 +1,8 @@
 #include "collision/edge_contacts.h"
 
 #include <catch2/catch.hpp>
+#include <numeric>
+#include <set>
 
 #include "tests/collision/step_scene.h"
 
@@ -25,13 +27,11 @@ geometry::TriangleSurface blade() {
 
 std::vector<FoundContact> find(EdgeContacts& edges, const StepScene& scene,
                                const SharpMesh& probe) {
-  std::vector<EdgePair> pairs;
-  for (std::uint32_t i = 0; i < probe.edges().size(); ++i) {
-    for (std::uint32_t k = 0; k < scene.organ.edges().size(); ++k) pairs.push_back({i, k});
-  }
+  std::vector<std::uint32_t> all(scene.organ.edges().size());
+  std::iota(all.begin(), all.end(), 0u);
   std::vector<FoundContact> found;
   edges.begin_step();
-  edges.find(scene.step, probe, pairs, found);
+  edges.find(scene.step, probe, all, found);
   return found;
 }
 
@@ -101,6 +101,53 @@ TEST_CASE("edge contacts: a flat diagonal is no ridge, a far edge seen from insi
   }
   CHECK(
       find(edges, StepScene(box_at({0, 0, 2 - 0.05}, {8, 8, 4}, 2), Vec3::Zero()), probe).empty());
+}
+
+TEST_CASE("edge contacts: of rough surfaces every pair that faces each other is found") {
+  // Oracle: brute force over all pairs, for tissue and a probe that nearly touch.
+  RandomShapes random(41);
+  std::size_t all = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const double margin = random.number(0.3, 1.5);
+    auto tissue = random.deformed_ball(1, 2);
+    for (Vec3& x : tissue.nodes) x += Vec3(0, 0, -2.15) + random.point(0.06);
+    auto form = random.deformed_ball(1, 2);
+    for (Vec3& x : form.nodes) x += random.point(0.06);
+    const StepScene scene(tissue, Vec3::Zero(), margin);
+    const SharpMesh probe(form);
+    EdgeContacts edges;
+    std::set<std::pair<double, double>> found, brute;
+    for (const FoundContact& c : find(edges, scene, probe)) found.insert({c.gap, c.point_P.x()});
+    for (const SharpEdge& sharp : probe.edges()) {
+      const Vec3 &a = form.nodes[sharp.vertices[0]], &b = form.nodes[sharp.vertices[1]];
+      for (const SurfaceEdge& edge : scene.organ.edges()) {
+        const Vec3 c = scene.step.node_end(edge.nodes[0]), d = scene.step.node_end(edge.nodes[1]);
+        const auto at = geometry::closest_of_segments(a, b, c, d);
+        const Vec3 apart = at.on_first - at.on_second;
+        if (apart.norm() > margin || std::min({at.s, at.t, 1 - at.s, 1 - at.t}) <= 1e-9) continue;
+        // Nearest to each other of all of both their triangles, and seen from outside.
+        bool faces = true;
+        for (int k = 0; k < 2; ++k) {
+          faces = faces && -apart.normalized().dot(sharp.into_face[k]) <= kConeSlack;
+          faces = faces && -apart.dot(sharp.face_normals[k]) > 0;
+          const geometry::Triangle& t = scene.organ.triangles()[edge.triangles[k]];
+          const geometry::TriangleCorners x{scene.step.node_end(t[0]), scene.step.node_end(t[1]),
+                                            scene.step.node_end(t[2])};
+          faces = faces && apart.dot(geometry::unit_normal(x)) > 0;
+          for (const Vec3& corner : x) {
+            if (corner == c || corner == d) continue;
+            const Vec3 along = (d - c).normalized(), in = corner - c;
+            const Vec3 into = (in - along * along.dot(in)).normalized();
+            faces = faces && apart.normalized().dot(into) <= kConeSlack;
+          }
+        }
+        if (faces) brute.insert({apart.norm(), at.on_first.x()});
+      }
+    }
+    CHECK(found == brute);
+    all += brute.size();
+  }
+  CHECK(all > 30);
 }
 
 }  // namespace palpate::collision

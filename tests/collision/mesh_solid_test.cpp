@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "tests/collision/random_shapes.h"
+#include "tests/collision/finder_scene.h"
 
 namespace palpate::collision {
 
@@ -119,13 +119,45 @@ TEST_CASE("sharp mesh: features near a box are those in it") {
   std::vector<std::uint32_t> vertices, edges;
   Bounds corner{Vec3(1, 1, 1), Vec3(1, 1, 1)};
   corner.inflate(0.1);
-  mesh.features_near(corner, vertices, edges);
+  mesh.append_vertices(corner, vertices);
   REQUIRE(vertices.size() == 1);
   CHECK(mesh.vertices()[vertices[0]] == Vec3(1, 1, 1));
+  mesh.append_edges(corner, corner, {}, edges);
   CHECK(edges.size() == 3);
-  mesh.features_near({Vec3(-0.1, -0.1, 0.9), Vec3(0.1, 0.1, 1.1)}, vertices, edges);
+  vertices.clear();
+  edges.clear();
+  const Bounds on_face{Vec3(-0.1, -0.1, 0.9), Vec3(0.1, 0.1, 1.1)};
+  mesh.append_vertices(on_face, vertices);
+  mesh.append_edges(on_face, on_face, {}, edges);
   CHECK(vertices.empty());
   CHECK(edges.empty());
+}
+
+TEST_CASE("sharp mesh: the vertices nearest to a triangle are those that brute force finds") {
+  // Oracle: brute force over all vertices.
+  RandomShapes random(23);
+  const SharpMesh mesh(random.deformed_ball(1, 3));
+  for (int trial = 0; trial < 60; ++trial) {
+    const geometry::TriangleCorners to = random.triangle(1.5);
+    const auto count = static_cast<std::size_t>(random.number(1, 40));
+    const double within = random.number(0.05, 1);
+    std::vector<std::uint32_t> found{7};  // what is there stays
+    mesh.append_nearest_vertices(to, within, count, found);
+    REQUIRE(found.front() == 7);
+    found.erase(found.begin());
+    std::vector<double> distances, brute;
+    const auto distance = [&](const Vec3& x) {
+      return (x - geometry::closest_on_triangle(x, to).point).norm();
+    };
+    for (const std::uint32_t vertex : found) distances.push_back(distance(mesh.vertices()[vertex]));
+    for (const Vec3& x : mesh.vertices()) {
+      if (distance(x) <= within) brute.push_back(distance(x));
+    }
+    std::ranges::sort(distances);
+    std::ranges::sort(brute);
+    brute.resize(std::min(brute.size(), count));
+    CHECK(distances == brute);
+  }
 }
 
 TEST_CASE("sharp mesh: degenerate triangles take no part") {
@@ -139,6 +171,29 @@ TEST_CASE("sharp mesh: degenerate triangles take no part") {
   REQUIRE(near);
   CHECK(near->distance == Approx(0.5));
   CHECK(near->outward.allFinite());
+}
+
+TEST_CASE("contact finder: a mesh probe agrees with the box it is made like") {
+  // Oracle: the same shape by another path.
+  const Vec3 size(0.02, 0.03, 0.01);
+  RandomShapes random(12);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto ball = random.deformed_ball(0.05, 3);
+    const Quat rotation = random.rotation();
+    const Vec3 position = random.direction() * random.number(0.058, 0.066);
+    FinderScene as_box(ball, scene::BoxShape{size});
+    FinderScene as_mesh({ball}, {scene::form_of(scene::MeshShape{}, geometry::make_box(size))});
+    // Both come from outside: of what begins inside, lines within are held, which differ.
+    as_box.find(resting(2 * position, rotation), 0.002);
+    as_mesh.find(resting(2 * position, rotation), 0.002);
+    const ProbeMotion in{at(2 * position, rotation), at(position, rotation)};
+    const ContactSet one = as_box.find(in, 0.002), other = as_mesh.find(in, 0.002);
+    REQUIRE(one.contacts.size() == other.contacts.size());
+    for (std::size_t i = 0; i < one.contacts.size(); ++i) {
+      CHECK(one.contacts[i].triangle == other.contacts[i].triangle);
+      CHECK(one.contacts[i].gap == Approx(other.contacts[i].gap).margin(1e-12));
+    }
+  }
 }
 
 }  // namespace palpate::collision

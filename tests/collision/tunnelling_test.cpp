@@ -219,6 +219,24 @@ TEST_CASE("tunnelling: inside without contact is noticed and healed in the same 
   }
 }
 
+TEST_CASE("tunnelling: a tool that begins inside with nothing but its middle is pushed out") {
+  // Oracle: by construction; no corner of the tool is in the organ, and none of the organ's in it.
+  const Vec3 rod(0.3, 0.01, 0.012);
+  for (const bool is_mesh : {false, true}) {
+    geometry::ProbeForm form = geometry::Box{rod};
+    if (is_mesh) form = geometry::make_box(rod, 6);
+    FinderScene scene({geometry::make_box({0.1, 0.1, 0.1})}, {form});
+    const ContactSet found = scene.find(resting({0.004, 0.003, 0.02}), 0.002);
+    CHECK(scene.report.begun_inside);
+    CHECK(deepest_gap(found) < -0.02);  // the top is 30 mm above its middle
+    CHECK_FALSE(scene.report.was_lost);
+    scene.find(resting({0.004, 0.003, 0.02}), 0.002);
+    CHECK_FALSE(scene.report.begun_inside);
+    scene.find({at({0.004, 0.003, 0.02}), at({0.004, 0.003, 0.07})}, 0.002);
+    CHECK(scene.find(resting({0.004, 0.003, 0.07}), 0.002).contacts.empty());  // out, and let go
+  }
+}
+
 TEST_CASE("tunnelling: no part of a probe in a hurry is inside without a contact that pushes") {
   // Oracle: winding number of points all over the probe, on the surface of each search. The organ
   // is told of now and then, the probe goes in and out by up to its size between two searches.
