@@ -1,6 +1,7 @@
 """Oracle: real processes of `palpate run` on this host, and the tissue they press."""
 
 import os
+import socket
 import subprocess
 import tempfile
 import time
@@ -12,7 +13,22 @@ import palpate
 
 PALPATE = Path(os.environ["PALPATE_BIN"]) / "palpate"
 SESSION = f"python-{os.getpid()}"
-DOMAIN = 100 + os.getpid() % 90
+
+
+def own_domain(first=100, count=90):
+    """Held by a socket of that name, as by tests/modules/own_domain.h."""
+    for k in range(count):
+        domain = first + (os.getpid() + k) % count
+        held = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            held.bind(f"\0palpate-test-domain-{domain}")
+            return domain, held
+        except OSError:
+            held.close()
+    return first + os.getpid() % count, None
+
+
+DOMAIN, HELD = own_domain()
 SCENE = """palpate_scene: 1
 organs:
   - name: ball

@@ -15,6 +15,7 @@
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/primitives.h"
 #include "modules/runtime/clock.h"
+#include "tests/modules/own_domain.h"
 #include "tests/visualizer/display_or_skip.h"
 #include "tests/visualizer/fake_mouse.h"
 #include "tests/visualizer/fake_session.h"
@@ -45,7 +46,7 @@ class Session {
   explicit Session(const std::vector<std::string>& options)
       : folder(std::filesystem::temp_directory_path() /
                ("palpate_visualizer_test_" + std::to_string(getpid()))),
-        bus_({1 + getpid() % 90, "visualizer_test", "test"}),
+        bus_({palpate::testing::own_domain(1), "visualizer_test", "test"}),
         surfaces(bus_.writer(bus::kSurface)),
         positions(bus_.writer(bus::kNodePositions)),
         probes(bus_.writer(bus::kProbeState)),
@@ -129,7 +130,7 @@ class Session {
     const std::string program = std::string(PALPATE_BIN_DIR) + "/palpate-visualizer";
     std::vector<std::string> words{program,     "scene.yaml",
                                    "--session", "visualizer_test",
-                                   "--domain",  std::to_string(1 + getppid() % 90)};
+                                   "--domain",  std::to_string(palpate::testing::own_domain(1))};
     words.insert(words.end(), options.begin(), options.end());
     std::vector<char*> arguments;
     for (auto& word : words) arguments.push_back(word.data());

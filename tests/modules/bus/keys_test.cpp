@@ -92,6 +92,7 @@ void check_shut_out(Felt& felt, DdsBus& listener, DdsBus& speaker) {
   }
   CHECK(says.matched_readers() == 0);
   CHECK(felt.heard.matched_writers() == 1);
+  INFO("refused last: " << felt.viewer->packets_refused().last);
   CHECK(felt.viewer->packets_refused().count == refused);  // it does not even send
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "modules/bus/dds_bus.h"
+#include "tests/modules/own_domain.h"
 #include "tests/modules/waiting.h"
 
 namespace palpate::bus::testing {
@@ -15,7 +16,7 @@ namespace palpate::bus::testing {
 using palpate::testing::kDeadline;
 using palpate::testing::wait_until;
 
-/// Options that no other test shares: domain from the process, session from a count. Samples
+/// Options that no other test shares: a domain of the process, session from a count. Samples
 /// between buses of one process then travel by UDP, as between processes.
 inline BusOptions own_options() {
   static std::atomic<int> count{0};
@@ -24,7 +25,7 @@ inline BusOptions own_options() {
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
 
   BusOptions options;
-  options.domain = 1 + static_cast<int>(getpid() % 90);  // below the ephemeral ports
+  options.domain = palpate::testing::own_domain(1);  // below the ephemeral ports
   options.session = std::to_string(getpid()).append("_").append(std::to_string(++count));
   return options;
 }

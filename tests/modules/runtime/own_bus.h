@@ -6,6 +6,7 @@
 #include <string>
 
 #include "modules/bus/bus.h"
+#include "tests/modules/own_domain.h"
 #include "tests/modules/waiting.h"
 
 namespace palpate::testing {
@@ -14,7 +15,7 @@ namespace palpate::testing {
 inline bus::BusOptions own_bus_options() {
   static int count = 0;
   bus::BusOptions options;
-  options.domain = 100 + static_cast<int>(getpid() % 90);
+  options.domain = own_domain(100);
   options.session = std::to_string(getpid()) + "_" + std::to_string(++count);
   return options;
 }
