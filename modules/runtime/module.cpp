@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kRealtimeFifo = 80;
 constexpr int kPreferredFifo = 20;
+/// Below its bus' threads, which would hear nothing while a loop on each core is busy.
+constexpr int kPreferredLoopFifo = kPreferredFifo - 1;
 /// A loop that works more than this part of its periods would keep everybody else, and by the
 /// kernel's throttling even the haptic loop, from running.
 constexpr double kBusyAllTheTime = 0.9;
@@ -97,7 +99,7 @@ void Module::run_with_priority() {
   if (std::exchange(ran_, true)) return;
   if (cores_) cores_->keep();
   if (!realtime_.priority) return;
-  resume_realtime(priority_ == Priority::kRealtime ? kRealtimeFifo : kPreferredFifo);
+  resume_realtime(priority_ == Priority::kRealtime ? kRealtimeFifo : kPreferredLoopFifo);
   judged_since_ns_ = now_ns();
   busy_then_ns_ = loop_.statistics().busy_ns;
 }

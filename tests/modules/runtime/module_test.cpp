@@ -1,11 +1,15 @@
 #include "modules/runtime/module.h"
 
 #include <sched.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
+#include <string>
 #include <thread>
 
 #include "modules/runtime/clock.h"
@@ -45,6 +49,19 @@ struct Played {
         std::chrono::microseconds(4900));
   }
   bool hogging = false;
+
+  /// Of the process' other threads with real-time priority, the lowest; 0: there are none.
+  static int lowest_of_others() {
+    int lowest = 0;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+      const pid_t thread = std::stoi(task.path().filename());
+      sched_param of_thread{};
+      if (thread == gettid() || sched_getscheduler(thread) != SCHED_FIFO) continue;
+      sched_getparam(thread, &of_thread);
+      lowest = lowest == 0 ? of_thread.sched_priority : std::min(lowest, of_thread.sched_priority);
+    }
+    return lowest;
+  }
 
   void command(SessionCommand wanted) {
     session.poll();
@@ -112,6 +129,11 @@ TEST_CASE("module: real-time priority is that of who runs, not of who loads or w
   played.command(SessionCommand::kStart);
   REQUIRE(played.cycle_until(ModuleState::kRunning));
   CHECK(sched_getscheduler(0) == (granted ? SCHED_FIFO : SCHED_OTHER));
+  if (granted) {  // a busy loop keeps nobody from hearing
+    sched_param own{};
+    sched_getparam(0, &own);
+    CHECK(Played::lowest_of_others() > own.sched_priority);
+  }
   give_up_realtime();
 }
 
