@@ -48,6 +48,28 @@ NormalCone cone_of(std::span<const std::uint32_t> edges, const std::vector<Norma
   return {axis, std::min(angle, std::numbers::pi)};
 }
 
+/// A segment and what is beside it, against boxes. Ericson, Real-Time Collision Detection, §5.3.3.
+class WideSegment {
+ public:
+  WideSegment(const Vec3& a, const Vec3& b, double beside)
+      : middle_((a + b) / 2), half_((b - a) / 2), beside_(beside + kDirectionless) {}
+
+  /// False only if nothing of the box is so near.
+  bool meets(const geometry::BoxTree::Box& box) const {
+    const Vec3 apart = box.center() - middle_;
+    const Vec3 size = box.sizes() / 2 + Vec3::Constant(beside_), along = half_.cwiseAbs();
+    if ((apart.cwiseAbs() - size - along).maxCoeff() > 0) return false;
+    const Vec3 across = half_.cross(apart).cwiseAbs();
+    return across[0] <= size[1] * along[2] + size[2] * along[1] &&
+           across[1] <= size[0] * along[2] + size[2] * along[0] &&
+           across[2] <= size[0] * along[1] + size[1] * along[0];
+  }
+
+ private:
+  Vec3 middle_, half_;
+  double beside_;
+};
+
 class MeshSolid final : public ProbeSolid {
  public:
   explicit MeshSolid(const SharpMesh& mesh) : mesh_(mesh), bounds_(mesh.bounds()) {}
@@ -78,11 +100,9 @@ class MeshSolid final : public ProbeSolid {
 
   std::optional<SolidEntry> entry(const Vec3& start, const Vec3& end,
                                   double separation) const override {
-    Bounds box{start, start};
-    box.add(end);
-    box.inflate(separation + geometry::kImpactTolerance);
     std::vector<std::uint32_t> near;
-    mesh_.triangles_near(box, near);
+    mesh_.append_triangles_along(start, end, separation + geometry::kImpactTolerance, near);
+    std::sort(near.begin(), near.end());
     std::optional<SolidEntry> first;
     for (const std::uint32_t t : near) {
       const Vec3& normal = mesh_.face_normal(t);
@@ -99,10 +119,8 @@ class MeshSolid final : public ProbeSolid {
   bool shadows(const Vec3& x, const Vec3& direction) const override {
     const double length = (bounds_.upper - bounds_.lower).norm() + bounds_.lower.norm() + x.norm();
     const Vec3 end = x + length * direction;
-    Bounds box{x, x};
-    box.add(end);
     std::vector<std::uint32_t> near;
-    mesh_.triangles_near(box, near);
+    mesh_.append_triangles_along(x, end, geometry::kImpactTolerance, near);
     return std::any_of(near.begin(), near.end(), [&](std::uint32_t t) {
       return mesh_.face_normal(t) != Vec3::Zero() &&
              geometry::closest_of_segment_and_triangle(x, end, corners(t)).distance <
@@ -244,9 +262,14 @@ void SharpMesh::append_edges(const Bounds& box, const Bounds& wider, const Norma
       });
 }
 
-void SharpMesh::triangles_near(const Bounds& box, std::vector<std::uint32_t>& triangles) const {
-  tree_.append_overlapping({box.lower, box.upper}, triangles);
-  std::sort(triangles.begin(), triangles.end());
+void SharpMesh::append_triangles_along(const Vec3& a, const Vec3& b, double within,
+                                       std::vector<std::uint32_t>& triangles) const {
+  const WideSegment way(a, b, within);
+  const geometry::BoxTree& tree = tree_.boxes();
+  tree.visit([&](std::uint32_t branch) { return way.meets(tree.branches()[branch].box); },
+             [&](std::uint32_t triangle) {
+               if (way.meets(tree.boxes()[triangle])) triangles.push_back(triangle);
+             });
 }
 
 Vec3 SharpMesh::pseudonormal(std::uint32_t triangle, const Vec3& weights) const {

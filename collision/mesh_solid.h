@@ -36,7 +36,9 @@ class SharpMesh {
   /// edges that may be touched from the directions of a cone. In no useful order.
   void append_edges(const Bounds& box, const Bounds& wider, const NormalCone& from,
                     std::vector<std::uint32_t>& edges) const;
-  void triangles_near(const Bounds& box, std::vector<std::uint32_t>& triangles) const;
+  /// Appends the triangles whose boxes come within a distance of a segment, in no useful order.
+  void append_triangles_along(const Vec3& a, const Vec3& b, double within,
+                              std::vector<std::uint32_t>& triangles) const;
 
   /// Appends so many vertices of triangles, the nearest to a triangle of those within a distance,
   /// in no useful order.

@@ -47,21 +47,6 @@ bool has_node(const geometry::Triangle& triangle, std::uint32_t node) {
   return std::find(triangle.begin(), triangle.end(), node) != triangle.end();
 }
 
-/// How far the second side is beyond the first along a direction [m].
-double gap_along(const Vec3& direction, std::size_t first_count, const FourPoints& x) {
-  double first = -std::numeric_limits<double>::infinity(), second = -first;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    // About a node of the pair, so that pairs far from the origin keep their digits.
-    const double height = direction.dot(x[k] - x[0]);
-    if (k < first_count) {
-      first = std::max(first, height);
-    } else {
-      second = std::min(second, height);
-    }
-  }
-  return second - first;
-}
-
 }  // namespace
 
 Separation separation_of(bool is_edges, const FourPoints& x) {
@@ -79,8 +64,8 @@ Separation separation_of(bool is_edges, const FourPoints& x) {
 bool stays_apart(bool is_edges, const FourPoints& start, const FourPoints& end,
                  const Separation& at_start, double least) {
   const std::size_t first_count = is_edges ? 2 : 1;
-  const double before = gap_along(at_start.direction, first_count, start);
-  const double after = gap_along(at_start.direction, first_count, end);
+  const double before = geometry::gap_along(at_start.direction, first_count, start);
+  const double after = geometry::gap_along(at_start.direction, first_count, end);
   if (before > 0 && after >= std::min(before, least)) return true;
   const auto impact = is_edges ? geometry::edge_edge_impact(start, end, least)
                                : geometry::point_triangle_impact(start, end, least);

@@ -202,4 +202,18 @@ std::optional<Impact> edge_edge_impact(const FourPoints& start, const FourPoints
   return RootSearch<EdgeEdge>(start, end, separation).run();
 }
 
+double gap_along(const Vec3& direction, std::size_t first_count, const FourPoints& x) {
+  double first = -std::numeric_limits<double>::infinity(), second = -first;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    // About a node of the pair, so that pairs far from the origin keep their digits.
+    const double height = direction.dot(x[k] - x[0]);
+    if (k < first_count) {
+      first = std::max(first, height);
+    } else {
+      second = std::min(second, height);
+    }
+  }
+  return second - first;
+}
+
 }  // namespace palpate::geometry

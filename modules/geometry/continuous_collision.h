@@ -41,4 +41,9 @@ std::optional<Impact> point_triangle_impact(const FourPoints& start, const FourP
 std::optional<Impact> edge_edge_impact(const FourPoints& start, const FourPoints& end,
                                        double separation = 0);
 
+/// How far the second side, the points from `first_count` on, is beyond the first along a direction
+/// [m]. Of points that move linearly it is a concave function of time: sides that are apart by it
+/// at both ends of a step are apart all the time.
+double gap_along(const Vec3& direction, std::size_t first_count, const FourPoints& points);
+
 }  // namespace palpate::geometry

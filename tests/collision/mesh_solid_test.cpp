@@ -160,6 +160,32 @@ TEST_CASE("sharp mesh: the vertices nearest to a triangle are those that brute f
   }
 }
 
+TEST_CASE("sharp mesh: triangles along a segment are all that come near it, and few others") {
+  // Oracle: brute force over all triangles.
+  RandomShapes random(29);
+  const SharpMesh mesh(random.deformed_ball(1, 4));
+  std::size_t near = 0, listed = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const Vec3 a = random.triangle(2)[0], b = trial % 5 == 0 ? a : random.triangle(2)[0];
+    const double within = random.number(0, 0.1);
+    std::vector<std::uint32_t> found;
+    mesh.append_triangles_along(a, b, within, found);
+    std::ranges::sort(found);
+    for (std::uint32_t t = 0; t < mesh.triangles().size(); ++t) {
+      const auto [i, j, k] = mesh.triangles()[t];
+      const geometry::TriangleCorners corners{mesh.vertices()[i], mesh.vertices()[j],
+                                              mesh.vertices()[k]};
+      const bool is_near =
+          geometry::closest_of_segment_and_triangle(a, b, corners).distance <= within;
+      near += is_near;
+      if (is_near) CHECK(std::ranges::binary_search(found, t));
+    }
+    listed += found.size();
+  }
+  CHECK(near > 100);
+  CHECK(listed < 4 * near);
+}
+
 TEST_CASE("sharp mesh: degenerate triangles take no part") {
   // Oracle: invariant; the same answers without them.
   auto surface = geometry::make_box({2, 2, 2});

@@ -215,4 +215,38 @@ TEST_CASE("continuous collision: features that do not move meet exactly if they 
   CHECK_FALSE(point_triangle_impact(apart, apart));
 }
 
+TEST_CASE("continuous collision: sides apart along a direction at both ends never meet") {
+  // Oracle: the distance of the sides' hulls along it, sampled over the step; and the search
+  // itself.
+  RandomShapes random(37);
+  std::size_t apart = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    FourPoints start, end;
+    for (int k = 0; k < 4; ++k) {
+      start[k] = random.triangle(1)[0];
+      end[k] = start[k] + 0.5 * random.direction();
+    }
+    const Vec3 direction = random.direction();
+    const std::size_t first_count = trial % 2 == 0 ? 1 : 2;
+    const double least =
+        std::min(gap_along(direction, first_count, start), gap_along(direction, first_count, end));
+    for (double time = 0; time <= 1; time += 0.125) {
+      double gap = 1e300;
+      for (std::size_t i = 0; i < first_count; ++i) {
+        for (std::size_t k = first_count; k < 4; ++k) {
+          const Vec3 from = start[i] + time * (end[i] - start[i]);
+          gap = std::min(gap, direction.dot(start[k] + time * (end[k] - start[k]) - from));
+        }
+      }
+      CHECK(gap >= least - 1e-12);
+    }
+    if (least <= kImpactTolerance) continue;
+    ++apart;
+    const auto impact =
+        first_count == 1 ? point_triangle_impact(start, end) : edge_edge_impact(start, end);
+    CHECK_FALSE(impact);
+  }
+  CHECK(apart > 100);
+}
+
 }  // namespace palpate::geometry
