@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "collision/core_contacts.h"
+#include "collision/corner_pairs.h"
 #include "collision/edge_contacts.h"
 #include "collision/front_contacts.h"
 #include "collision/near_surface.h"
@@ -18,9 +19,6 @@
 
 namespace palpate::collision {
 namespace {
-
-/// A vertex of the probe and a candidate triangle near it.
-using VertexPair = PairSorter::Pair;
 
 /// One probe and what it remembers of its last step.
 class ProbeSearch {
@@ -95,7 +93,7 @@ class ProbeSearch {
     for (const Core& core : model_.cores) hold(step, core);
     const std::size_t corners = model_.sharp ? model_.sharp->vertices().size() : 0;
     for (std::size_t i = 0; i < corners; i += every) {
-      hold(step, core_of(static_cast<std::uint32_t>(i)));
+      hold(step, model_.core(static_cast<std::uint32_t>(i)));
     }
     return !held_.empty();
   }
@@ -130,19 +128,11 @@ class ProbeSearch {
   void find_held(const OrganStep& step) {
     for (const std::uint32_t core : held_) {
       triangle_list_.clear();
-      cores_.append_near_wall(step, core_of(core), triangle_list_);
+      cores_.append_near_wall(step, model_.core(core), CornerPairs::kManyWallPairs, triangle_list_);
       near_.clear();
       near_.add(step, triangle_list_);
-      cores_.find(step, core_of(core), near_.triangles(), found_);
+      cores_.find(step, model_.core(core), near_.triangles(), found_);
     }
-  }
-
-  Core core_of(std::uint32_t index) const {
-    if (!model_.sharp) return model_.cores[index];
-    const std::size_t corners = model_.sharp->vertices().size();
-    if (index >= corners) return model_.lines[index - corners];
-    const Vec3& x = model_.sharp->vertices()[index];
-    return {index, x, x, 0};
   }
 
   void find_on(OrganStep& step) {
@@ -179,22 +169,18 @@ class ProbeSearch {
       near_.sweep_candidates(step);
     }
     if (!in_front) near_.gather(step, model_.hull, reach);
-    held_.clear();
-    if (model_.sharp) cores_.append_held(step.organ_index, held_);
-    wall_pairs_.clear();
-    for (const std::uint32_t vertex : held_) {
-      const std::size_t first = triangle_list_.size();
-      cores_.append_near_wall(step, core_of(vertex), triangle_list_);
-      for (std::size_t i = first; i < triangle_list_.size(); ++i) {
-        wall_pairs_.push_back({vertex, triangle_list_[i]});
-      }
-    }
+    if (model_.sharp) corners_.hold(step, model_, cores_, triangle_list_);
     near_.add(step, triangle_list_);
     step.depth_limit += near_.travel();
     return false;
   }
 
   void find_sharp(const OrganStep& step) {
+    if (corners_.list(step, model_, near_.triangles())) {
+      look_straight_ahead(step);
+      corners_.list(step, model_, near_.triangles());
+    }
+    report_.was_cut |= corners_.was_cut();
     node_list_.clear();
     nodes_.append_remembered(step.organ_index, node_list_);
     near_.append_nodes(node_list_);
@@ -202,7 +188,6 @@ class ProbeSearch {
 
     first_choice_ = found_.size();
     choice_left_ = kManyFound;
-    gather_pairs(step);
     find_vertices(step);
     edge_list_.clear();
     for (const SweptTriangle& t : near_.triangles()) {
@@ -211,69 +196,30 @@ class ProbeSearch {
     }
     edges_.append_remembered(step.organ_index, edge_list_);
     sort_unique(edge_list_);
-    const auto searched = edges_.find(step, *model_.sharp, edge_list_, found_);
+    const auto searched = edges_.find(step, *model_.sharp, reach_, edge_list_, found_);
     report_.looked_less_ahead |= searched != EdgeContacts::Searched::kAll;
     report_.was_cut |= searched == EdgeContacts::Searched::kPart;
   }
 
-  /// Vertices of the probe with the organ's triangles near them. Where those are very many, with
-  /// each triangle those that it may go past in the step, and of the others the nearest.
-  void gather_pairs(const OrganStep& step) {
-    const std::vector<SweptTriangle>& triangles = near_.triangles();
-    const std::size_t many = std::max(kManyPairs, kFewestOfEach * triangles.size());
-    vertex_pairs_.clear();
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-      pair_vertices_in(step, triangles[i].bounds(), step.margin, i);
-      if (vertex_pairs_.size() > many) return gather_nearest_pairs(step, many / triangles.size());
-    }
-    add_wall_pairs();
-  }
-
-  void pair_vertices_in(const OrganStep& step, Bounds box, double beside, std::uint32_t triangle) {
-    box.inflate(beside + step.motion.chord_error());
-    near_vertices_.clear();
-    model_.sharp->append_vertices(box, near_vertices_);
-    for (const std::uint32_t vertex : near_vertices_) vertex_pairs_.push_back({vertex, triangle});
-  }
-
-  void gather_nearest_pairs(const OrganStep& step, std::size_t of_each) {
-    const std::vector<SweptTriangle>& triangles = near_.triangles();
-    vertex_pairs_.clear();
-    std::size_t passed = 0;
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-      if (passed <= kMostPassed) {
-        pair_vertices_in(step, triangles[i].bounds(), geometry::kImpactTolerance, i);
-        passed += near_vertices_.size();
-      }
-      near_vertices_.clear();
-      model_.sharp->append_nearest_vertices(triangles[i].end, step.margin, of_each, near_vertices_);
-      for (const std::uint32_t vertex : near_vertices_) vertex_pairs_.push_back({vertex, i});
-    }
-    report_.was_cut |= passed > kMostPassed;
-    add_wall_pairs();
-  }
-
-  void add_wall_pairs() {
-    const std::vector<SweptTriangle>& triangles = near_.triangles();
-    for (const auto& [vertex, t] : wall_pairs_) {
-      const auto at =
-          std::lower_bound(triangles.begin(), triangles.end(), t,
-                           [](const SweptTriangle& s, std::uint32_t k) { return s.index < k; });
-      if (at != triangles.end() && at->index == t) {
-        vertex_pairs_.push_back({vertex, static_cast<std::uint32_t>(at - triangles.begin())});
-      }
-    }
-    sorter_.sort_unique(vertex_pairs_, model_.sharp->vertices().size() + model_.lines.size());
+  /// Of very many triangles those alone that it comes to as it goes on.
+  void look_straight_ahead(const OrganStep& step) {
+    Bounds way = model_.hull;
+    way.add(way.lower + reach_.ahead_P);
+    way.add(way.upper + reach_.ahead_P);
+    near_.gather(step, way, model_.hull_radius + reach_.sideways());
+    near_.add(step, triangle_list_);
+    report_.looked_less_ahead = true;
   }
 
   void find_vertices(const OrganStep& step) {
-    for (auto first = vertex_pairs_.begin(); first != vertex_pairs_.end();) {
+    const auto pairs = corners_.pairs();
+    for (auto first = pairs.begin(); first != pairs.end();) {
       const std::uint32_t vertex = first->first;
       near_triangles_.clear();
-      for (; first != vertex_pairs_.end() && first->first == vertex; ++first) {
+      for (; first != pairs.end() && first->first == vertex; ++first) {
         near_triangles_.push_back(near_.triangles()[first->second]);
       }
-      cores_.find(step, core_of(vertex), near_triangles_, found_);
+      cores_.find(step, model_.core(vertex), near_triangles_, found_);
       leave_choice_of_many();
     }
   }
@@ -284,9 +230,6 @@ class ProbeSearch {
     choice_left_ = found_.size() - first_choice_ + kManyFound;
   }
 
-  /// More pairs of a vertex and a triangle, and more than so many with each triangle, are not all
-  /// looked at; of those that may have gone past each other so many.
-  static constexpr std::size_t kManyPairs = 65536, kFewestOfEach = 16, kMostPassed = 262144;
   /// As many contacts at once are found before it is asked which are needed.
   static constexpr std::size_t kManyFound = 8192;
 
@@ -305,11 +248,9 @@ class ProbeSearch {
   std::vector<FoundContact> found_;
   NearSurface near_;
   FrontContacts front_;
+  CornerPairs corners_;
   std::vector<SweptTriangle> near_triangles_;
-  std::vector<std::uint32_t> triangle_list_, node_list_, edge_list_, near_vertices_, held_;
-  std::vector<VertexPair> vertex_pairs_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> wall_pairs_;  ///< held vertex, triangle
-  PairSorter sorter_;
+  std::vector<std::uint32_t> triangle_list_, node_list_, edge_list_, held_;
 };
 
 }  // namespace

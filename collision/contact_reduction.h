@@ -24,6 +24,8 @@ struct ProbeReach {
   double least_gap(const Contact& c) const {
     return c.gap + std::min(0.0, c.normal_P.dot(ahead_P));
   }
+  /// Beside a way that goes on nearly straight, by the tangent of 14° [m].
+  double sideways() const { return margin - (2 - 0.25) * ahead_P.norm(); }
   bool may_touch(const Contact& c) const {
     return c.gap <= 0 || c.gap + c.normal_P.dot(ahead_P) + ahead_P.norm() <= margin;
   }

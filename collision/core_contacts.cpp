@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -118,27 +119,39 @@ void CoreContacts::append_remembered(const OrganStep& step, const Core& core,
   for (const Behind& b : before) triangles.push_back(b.triangle);
 }
 
-void CoreContacts::append_near_wall(const OrganStep& step, const Core& core,
+void CoreContacts::append_near_wall(const OrganStep& step, const Core& core, std::size_t most,
                                     std::vector<std::uint32_t>& triangles) {
   const auto before = remembered(step.organ_index, core.index);
   if (before.empty()) return;
   const double reach = wall_reach(step, core);
+  const std::size_t first = triangles.size();
   marks_.begin();
+  by_distance_.clear();
+  const auto add = [&](std::uint32_t triangle, double distance) {
+    by_distance_.push_back({distance, triangle});
+    std::ranges::push_heap(by_distance_, std::greater());
+  };
   waiting_.clear();
   append_remembered(step, core, waiting_);
-  for (const std::uint32_t triangle : waiting_) marks_.set(triangle, 0);
-  while (!waiting_.empty()) {
-    const std::uint32_t triangle = waiting_.back();
-    waiting_.pop_back();
+  for (const std::uint32_t triangle : waiting_) {
+    if (marks_.add(triangle, 0) == IndexMarks::kNone) {
+      add(triangle, distance_to(step, core, triangle));
+    }
+  }
+  while (!by_distance_.empty() && triangles.size() - first < most) {
+    const std::uint32_t triangle = by_distance_.front().second;
+    std::ranges::pop_heap(by_distance_, std::greater());
+    by_distance_.pop_back();
     triangles.push_back(triangle);
     for (const std::uint32_t node : step.organ.triangles()[triangle]) {
       for (const std::uint32_t t : step.organ.triangles_of_node(node)) {
-        if (marks_.at(t) != IndexMarks::kNone) continue;
-        marks_.set(t, 0);
-        if (distance_to(step, core, t) <= reach) waiting_.push_back(t);
+        if (marks_.add(t, 0) != IndexMarks::kNone) continue;
+        const double distance = distance_to(step, core, t);
+        if (distance <= reach) add(t, distance);
       }
     }
   }
+  wall_was_cut_ |= !by_distance_.empty();
 }
 
 /// Whether a core that was behind a wall and is outside has come out where it may stay: not through

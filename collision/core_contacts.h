@@ -17,6 +17,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "collision/closed_surface.h"
@@ -50,8 +51,9 @@ class CoreContacts {
   /// The triangles of it that are remembered; the nearest alone if it was cut.
   void append_remembered(const OrganStep& step, const Core& core,
                          std::vector<std::uint32_t>& triangles) const;
-  /// Triangles of the wall that a core is behind, within wall_reach().
-  void append_near_wall(const OrganStep& step, const Core& core,
+  /// Triangles of the wall that a core is behind, within wall_reach(), and of more than `most` the
+  /// nearest.
+  void append_near_wall(const OrganStep& step, const Core& core, std::size_t most,
                         std::vector<std::uint32_t>& triangles);
 
   /// @param candidates  every triangle the core may touch in the step, and those of
@@ -88,6 +90,7 @@ class CoreContacts {
   ClosedSurface surface_;
   // Kept between calls for their memory only.
   std::vector<std::uint32_t> waiting_;
+  std::vector<std::pair<double, std::uint32_t>> by_distance_;  ///< a heap [m], triangles
   WallBuffers wall_buffers_;
   IndexMarks marks_, places_;
   std::vector<CoreCandidate> near_;

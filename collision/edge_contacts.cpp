@@ -71,9 +71,17 @@ bool in_front(const OrganStep& step, const SharpEdge& sharp, const SurfaceEdge& 
   return is_ridge(step, edge, edges, apart);
 }
 
-std::optional<geometry::Impact> impact_of(const Edges& start, const Edges& end, double separation) {
-  return geometry::edge_edge_impact({start.a0, start.a1, start.b0, start.b1},
-                                    {end.a0, end.a1, end.b0, end.b1}, separation);
+/// Most that are near are apart, all the time, along the direction between them at the end.
+std::optional<geometry::Impact> impact_of(const Edges& start, const Edges& end,
+                                          const geometry::SegmentPair& at_end, double separation) {
+  const geometry::FourPoints from{start.a0, start.a1, start.b0, start.b1};
+  const geometry::FourPoints to{end.a0, end.a1, end.b0, end.b1};
+  const Vec3 apart = (at_end.on_second - at_end.on_first).normalized();
+  const double least = 2 * separation + geometry::kImpactTolerance;
+  if (geometry::gap_along(apart, 2, to) > least && geometry::gap_along(apart, 2, from) > least) {
+    return {};
+  }
+  return geometry::edge_edge_impact(from, to, separation);
 }
 
 /// Contact with the organ's edge at fraction t.
@@ -187,11 +195,13 @@ void EdgeContacts::append_remembered(std::uint32_t organ, std::vector<std::uint3
 
 /// near_ of an edge, each once: what it may pass through, what is ahead and it may touch from the
 /// front, and what is remembered.
-void EdgeContacts::list_near(const OrganEdge& edge, const SharpMesh& probe, double ahead) {
+void EdgeContacts::list_near(const OrganEdge& edge, const SharpMesh& probe, const Ahead& ahead) {
   const OrganStep& step = edge.step;
   Bounds passed = edge.way(), near = edge.at_end();
   passed.inflate(step.motion.chord_error() + geometry::kImpactTolerance + kDirectionless);
-  near.inflate(ahead);
+  near.add(near.lower - ahead.way_P);
+  near.add(near.upper - ahead.way_P);
+  near.inflate(ahead.beside);
   near_.clear();
   probe.append_edges(passed, near, edge.cone_at_end(), near_);
   const auto before = remembered(step.organ_index, edge.index);
@@ -202,7 +212,8 @@ void EdgeContacts::list_near(const OrganEdge& edge, const SharpMesh& probe, doub
 
 /// @returns of how many edges: where pairs are too many not of all
 std::size_t EdgeContacts::list_pairs_within(const OrganStep& step, const SharpMesh& probe,
-                                            std::span<const std::uint32_t> edges, double ahead) {
+                                            std::span<const std::uint32_t> edges,
+                                            const Ahead& ahead) {
   pairs_.clear();
   for (std::size_t i = 0; i < edges.size(); ++i) {
     list_near(OrganEdge(step, edges[i]), probe, ahead);
@@ -213,11 +224,15 @@ std::size_t EdgeContacts::list_pairs_within(const OrganStep& step, const SharpMe
 }
 
 EdgeContacts::Searched EdgeContacts::list_pairs(const OrganStep& step, const SharpMesh& probe,
+                                                const ProbeReach& reach,
                                                 std::span<const std::uint32_t> edges) {
-  std::size_t listed = list_pairs_within(step, probe, edges, step.margin);
-  if (listed == edges.size()) return Searched::kAll;
-  for (const double part : {0.25, 0.0625, 0.0}) {
-    listed = list_pairs_within(step, probe, edges, part * step.margin);
+  const Ahead all{Vec3::Zero(), step.margin};
+  const Ahead straight_on{reach.ahead_P, reach.sideways()};
+  const Ahead close{Vec3::Zero(), reach.sideways() / 4};
+  if (list_pairs_within(step, probe, edges, all) == edges.size()) return Searched::kAll;
+  std::size_t listed = 0;
+  for (const Ahead& less : {straight_on, close, Ahead{}}) {
+    listed = list_pairs_within(step, probe, edges, less);
     if (listed == edges.size()) return Searched::kLessAhead;
   }
   for (const Crossed& crossed : before_) {
@@ -228,9 +243,10 @@ EdgeContacts::Searched EdgeContacts::list_pairs(const OrganStep& step, const Sha
 }
 
 EdgeContacts::Searched EdgeContacts::find(const OrganStep& step, const SharpMesh& probe,
+                                          const ProbeReach& reach,
                                           std::span<const std::uint32_t> edges,
                                           std::vector<FoundContact>& found) {
-  const Searched searched = list_pairs(step, probe, edges);
+  const Searched searched = list_pairs(step, probe, reach, edges);
   for (auto first = pairs_.begin(); first != pairs_.end();) {
     const OrganEdge edge(step, first->first);
     for (; first != pairs_.end() && first->first == edge.index; ++first) {
@@ -255,7 +271,7 @@ void EdgeContacts::find_pair(const OrganEdge& edge, const SharpMesh& probe, std:
   const bool was_crossed = crossed != before.end();
   if (distance > step.margin && !may_cross && !was_crossed) return;
   const Edges start = edge.with_start(probe, sharp);
-  const auto impact = may_cross ? impact_of(start, end, separation) : std::nullopt;
+  const auto impact = may_cross ? impact_of(start, end, at, separation) : std::nullopt;
   FoundContact contact;
   contact.normal_P = end.perpendicular();
   const bool is_behind = end.height() <= 0 && opposes(sharp, contact.normal_P);

@@ -31,14 +31,15 @@ class EdgeContacts {
   void append_remembered(std::uint32_t organ, std::vector<std::uint32_t>& edges) const;
 
   enum class Searched { kAll, kLessAhead, kPart };
-  /// More pairs are not looked at: of very many those first that the edges may go through in the
-  /// step, then what is near.
+  /// Where edges may come to more pairs, those that come near as the probe goes on, or what is
+  /// close, are looked at; of more that they may go through in the step the others are not.
   static constexpr std::size_t kMostPairs = 262144;
 
+  /// @param reach  where the probe may go
   /// @param edges  of the organ, ascending, each once: all that may touch in the step and all
   /// remembered ones
-  Searched find(const OrganStep& step, const SharpMesh& probe, std::span<const std::uint32_t> edges,
-                std::vector<FoundContact>& found);
+  Searched find(const OrganStep& step, const SharpMesh& probe, const ProbeReach& reach,
+                std::span<const std::uint32_t> edges, std::vector<FoundContact>& found);
 
   /// Between two steps.
   void exchange(StateArchive& archive) { archive(now_); }
@@ -52,11 +53,16 @@ class EdgeContacts {
   };
   /// One edge of the organ with all of the probe's that it may touch.
   class OrganEdge;
-  Searched list_pairs(const OrganStep& step, const SharpMesh& probe,
+  /// Where an edge is looked for.
+  struct Ahead {
+    Vec3 way_P = Vec3::Zero();  ///< the probe's
+    double beside = 0;          ///< [m]
+  };
+  Searched list_pairs(const OrganStep& step, const SharpMesh& probe, const ProbeReach& reach,
                       std::span<const std::uint32_t> edges);
   std::size_t list_pairs_within(const OrganStep& step, const SharpMesh& probe,
-                                std::span<const std::uint32_t> edges, double ahead);
-  void list_near(const OrganEdge& edge, const SharpMesh& probe, double ahead);
+                                std::span<const std::uint32_t> edges, const Ahead& ahead);
+  void list_near(const OrganEdge& edge, const SharpMesh& probe, const Ahead& ahead);
   void find_pair(const OrganEdge& edge, const SharpMesh& probe, std::uint32_t of_probe,
                  std::vector<FoundContact>& found);
 

@@ -62,4 +62,12 @@ ProbeModel::ProbeModel(geometry::ProbeForm form) {
   }
 }
 
+Core ProbeModel::core(std::uint32_t index) const {
+  if (!sharp) return cores[index];
+  const std::size_t corners = sharp->vertices().size();
+  if (index >= corners) return lines[index - corners];
+  const Vec3& x = sharp->vertices()[index];
+  return {index, x, x, 0};
+}
+
 }  // namespace palpate::collision

@@ -14,6 +14,9 @@ namespace palpate::collision {
 struct ProbeModel {
   explicit ProbeModel(geometry::ProbeForm form);
 
+  /// A core; of a sharp probe a corner or a line within, as a core.
+  Core core(std::uint32_t index) const;
+
   std::vector<Core> cores;            ///< ball; rounded segment: it and both its ends
   std::unique_ptr<SharpMesh> sharp;   ///< box, surface: corners and edges
   std::vector<Core> lines;            ///< of those: within, numbered on from the corners

@@ -53,7 +53,7 @@ TEST_CASE(
   CHECK(cores.hold_if_inside(scene.step, kSphere));
   CHECK_FALSE(cores.hold_if_inside(scene.step, kSphere));  // it is held already
   std::vector<std::uint32_t> wall;
-  cores.append_near_wall(scene.step, kSphere, wall);
+  cores.append_near_wall(scene.step, kSphere, 8192, wall);
   CHECK_FALSE(wall.empty());
   std::vector<FoundContact> found;
   cores.find(scene.step, kSphere, scene.triangles(), found);
@@ -67,6 +67,29 @@ TEST_CASE(
   CoreContacts others;
   others.begin_step();
   CHECK_FALSE(others.hold_if_inside(away.step, kSphere));
+}
+
+TEST_CASE("core contacts: of a wall the nearest triangles are taken where few are asked for") {
+  // Oracle: brute force over the whole wall.
+  const StepScene scene(box_at({0.02, 0.03, 0.6}, {1, 1, 2}, 16), Vec3::Zero());
+  const Core corner{0, Vec3::Zero(), Vec3::Zero(), 0};
+  CoreContacts cores;
+  cores.begin_step();
+  REQUIRE(cores.hold_if_inside(scene.step, corner));
+  std::vector<std::uint32_t> wall;
+  cores.append_near_wall(scene.step, corner, 12, wall);
+  CHECK(cores.wall_was_cut());
+  REQUIRE(wall.size() == 12);
+  std::vector<double> taken, all;
+  for (const SweptTriangle& t : scene.triangles()) {
+    const double distance = closest(corner, t.end).distance;
+    all.push_back(distance);
+    if (std::ranges::find(wall, t.index) != wall.end()) taken.push_back(distance);
+  }
+  std::ranges::sort(all);
+  std::ranges::sort(taken);
+  all.resize(taken.size());
+  CHECK(taken == all);
 }
 
 TEST_CASE("core contacts: a segment is behind a wall between its ends as well") {

@@ -31,7 +31,7 @@ std::vector<FoundContact> find(EdgeContacts& edges, const StepScene& scene,
   std::iota(all.begin(), all.end(), 0u);
   std::vector<FoundContact> found;
   edges.begin_step();
-  edges.find(scene.step, probe, all, found);
+  edges.find(scene.step, probe, {Vec3::Zero(), scene.step.margin}, all, found);
   return found;
 }
 

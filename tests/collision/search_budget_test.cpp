@@ -54,7 +54,7 @@ TEST_CASE("search budget: of very many edges those that went through each other 
     std::vector<FoundContact> found;
     EdgeContacts edges;
     edges.begin_step();
-    CHECK(edges.find(scene.step, probe, all, found) == expected);
+    CHECK(edges.find(scene.step, probe, {Vec3::Zero(), margin}, all, found) == expected);
     std::erase_if(found, [](const FoundContact& c) { return c.gap > 0; });
     return found;
   };
@@ -63,6 +63,51 @@ TEST_CASE("search budget: of very many edges those that went through each other 
   CHECK(few.size() > 10);
   REQUIRE(few.size() == many.size());
   for (std::size_t i = 0; i < few.size(); ++i) CHECK(few[i].point_P == many[i].point_P);
+}
+
+TEST_CASE("search budget: of very many triangles those that it comes to as it goes on are found") {
+  // Oracle: analytic, the distance of two balls where it goes; and a search that need not be cut.
+  constexpr double kOrgan = 0.05, kTool = 0.006, kMargin = 0.1, kWay = 0.045, kFacets = 1e-4;
+  FinderScene scene({geometry::make_ball(kOrgan, 6)}, {ball_of_triangles(kTool, 4)});
+  const Vec3 along = Vec3(0.3, -0.5, 1).normalized(), at = 0.1 * along;
+  ProbeMotion motion = resting(at);
+  motion.ahead_W = -kWay * along;
+  const ContactSet found = scene.find(motion, kMargin);
+  CHECK(scene.report.looked_less_ahead);
+  CHECK_FALSE(scene.report.was_cut);
+  CHECK(deepest_gap(found) == Approx(0.1 - kOrgan - kTool).margin(kFacets));
+  FinderScene coarse({geometry::make_ball(kOrgan, 3)}, {ball_of_triangles(kTool, 1)});
+  coarse.find(motion, kMargin);
+  CHECK_FALSE(coarse.report.looked_less_ahead);
+}
+
+TEST_CASE(
+    "search budget: a fine tool deep inside is pushed out by what is nearest to each corner") {
+  // Oracle: analytic, balls about one point: every corner is as deep as the organ is thick there.
+  constexpr double kOrgan = 0.05, kTool = 0.02;
+  FinderScene scene({geometry::make_ball(kOrgan, 5)}, {ball_of_triangles(kTool, 4)});
+  const Vec3 at(0, 0, 0.02);
+  std::size_t before = 0;
+  for (int search = 0; search < 4; ++search) {
+    const ContactSet found = scene.find(resting(at), 0.002);
+    CHECK(scene.report.begun_inside == (search == 0));
+    CHECK(scene.report.wall_was_cut);
+    CHECK_FALSE(scene.report.was_lost);
+    REQUIRE(found.contacts.size() > 100);
+    Vec3 push = Vec3::Zero();
+    for (const Contact& c : found.contacts) {
+      CHECK(c.gap < 0);
+      push += normal_W(found, c);
+    }
+    // Out the near side; held contacts are the same in the next search.
+    CHECK(push.normalized().z() > 0.9);
+    if (search > 1) CHECK(found.contacts.size() == before);
+    before = found.contacts.size();
+  }
+  scene.find({palpate::collision::at(at), palpate::collision::at({0, 0, 0.08})}, 0.002);
+  scene.find(resting({0, 0, 0.08}), 0.002);
+  const ContactSet out = scene.find(resting({0, 0, 0.071}), 0.002);
+  CHECK(deepest_gap(out) == Approx(0.001).margin(1e-4));
 }
 
 TEST_CASE("search budget: what is past it is said") {

@@ -1,0 +1,60 @@
+// Which corners of a sharp probe are looked at with which triangles of an organ in a step.
+//
+// Each with all that it may come to. What is past that, of finely meshed tools, is left out from
+// the least needed on: of the walls that corners are behind what is far, with each triangle the
+// corners that are not nearest to it, and triangles beside the way ahead. What a corner outside may
+// go past in the step is left out last, and said.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/core_contacts.h"
+#include "collision/probe_model.h"
+#include "modules/core/sort_unique.h"
+
+namespace palpate::collision {
+
+class CornerPairs {
+ public:
+  /// More pairs, and more than so many with each triangle, are not all looked at.
+  static constexpr std::size_t kManyPairs = 65536, kFewestOfEach = 16;
+  /// A tool of so few corners is looked at with all triangles however many they are.
+  static constexpr std::size_t kFewCorners = 128;
+  /// Of corners that may have gone past a triangle so many pairs.
+  static constexpr std::size_t kMostPassed = 262144;
+  /// Of corners behind walls so many pairs with their walls' triangles, and kLeastWall of each.
+  static constexpr std::size_t kManyWallPairs = 8192, kLeastWall = 16;
+
+  using Pair = PairSorter::Pair;  ///< a corner, or a line behind a wall, and a triangle
+
+  /// Begins with the corners and lines that are behind walls, whose triangles are appended.
+  void hold(const OrganStep& step, const ProbeModel& probe, CoreContacts& cores,
+            std::vector<std::uint32_t>& triangles);
+
+  /// All pairs, by corner, with places in a list of triangles.
+  /// @param triangles  near the probe, and those of hold(); ascending
+  /// @returns whether the tool has many corners, and kFewestOfEach with each triangle are more than
+  ///          kManyPairs, and listed though
+  bool list(const OrganStep& step, const ProbeModel& probe,
+            std::span<const SweptTriangle> triangles);
+  std::span<const Pair> pairs() const { return pairs_; }
+  /// More corners than kMostPassed may have gone past triangles.
+  bool was_cut() const { return was_cut_; }
+
+ private:
+  std::size_t add_near(const OrganStep& step, const SharpMesh& probe, const SweptTriangle& triangle,
+                       double beside, std::uint32_t place);
+  void list_nearest(const OrganStep& step, const SharpMesh& probe,
+                    std::span<const SweptTriangle> triangles);
+  void add_walls(std::span<const SweptTriangle> triangles);
+
+  std::vector<Pair> pairs_;
+  bool was_cut_ = false;
+  // Kept between calls for their memory only.
+  std::vector<std::uint32_t> held_, near_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> wall_pairs_;  ///< corner, triangle
+  PairSorter sorter_;
+};
+
+}  // namespace palpate::collision
