@@ -176,10 +176,8 @@ class ProbeSearch {
   }
 
   void find_sharp(const OrganStep& step) {
-    if (corners_.list(step, model_, near_.triangles())) {
-      look_straight_ahead(step);
-      corners_.list(step, model_, near_.triangles());
-    }
+    if (corners_.are_too_many(step, model_, near_.triangles())) look_straight_ahead(step);
+    corners_.list(step, model_, near_.triangles());
     report_.was_cut |= corners_.was_cut();
     node_list_.clear();
     nodes_.append_remembered(step.organ_index, node_list_);

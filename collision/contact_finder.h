@@ -30,7 +30,7 @@ struct SearchReport {
   bool begun_inside = false;  ///< first heard of inside an organ: the nearest wall pushes it out
   bool was_lost = false;      ///< inside an organ and touching nothing: likewise
   bool wall_was_cut = false;  ///< of a wall it is behind only the nearest part was looked at
-  bool looked_less_ahead = false;  ///< of very many edges that it may come to
+  bool looked_less_ahead = false;  ///< of very much that it may come to, what is straight on
   bool was_cut = false;  ///< there was too much that it went past to look at all: truncated
 };
 

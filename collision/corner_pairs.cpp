@@ -22,20 +22,29 @@ void CornerPairs::hold(const OrganStep& step, const ProbeModel& probe, CoreConta
   }
 }
 
-bool CornerPairs::list(const OrganStep& step, const ProbeModel& probe,
+bool CornerPairs::are_too_many(const OrganStep& step, const ProbeModel& probe,
+                               std::span<const SweptTriangle> triangles) {
+  return probe.sharp->vertices().size() > kFewCorners &&
+         kFewestOfEach * triangles.size() > kManyPairs && !list_near(step, *probe.sharp, triangles);
+}
+
+void CornerPairs::list(const OrganStep& step, const ProbeModel& probe,
                        std::span<const SweptTriangle> triangles) {
-  pairs_.clear();
   was_cut_ = false;
-  bool are_many = false;
-  for (std::uint32_t i = 0; i < triangles.size() && !are_many; ++i) {
-    add_near(step, *probe.sharp, triangles[i], step.margin, i);
-    are_many = pairs_.size() > kManyPairs;
-  }
-  if (are_many) list_nearest(step, *probe.sharp, triangles);
+  if (!list_near(step, *probe.sharp, triangles)) list_nearest(step, *probe.sharp, triangles);
   add_walls(triangles);
   sorter_.sort_unique(pairs_, probe.sharp->vertices().size() + probe.lines.size());
-  return are_many && probe.sharp->vertices().size() > kFewCorners &&
-         kFewestOfEach * triangles.size() > kManyPairs;
+}
+
+/// @returns whether they are no more than kManyPairs, and listed
+bool CornerPairs::list_near(const OrganStep& step, const SharpMesh& probe,
+                            std::span<const SweptTriangle> triangles) {
+  pairs_.clear();
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    add_near(step, probe, triangles[i], step.margin, i);
+    if (pairs_.size() > kManyPairs) return false;
+  }
+  return true;
 }
 
 /// @returns of how many corners

@@ -32,17 +32,21 @@ class CornerPairs {
   void hold(const OrganStep& step, const ProbeModel& probe, CoreContacts& cores,
             std::vector<std::uint32_t>& triangles);
 
+  /// Whether a tool of many corners comes to more than kManyPairs, and kFewestOfEach with each
+  /// triangle are more, too: fewer triangles are to be near.
+  bool are_too_many(const OrganStep& step, const ProbeModel& probe,
+                    std::span<const SweptTriangle> triangles);
   /// All pairs, by corner, with places in a list of triangles.
   /// @param triangles  near the probe, and those of hold(); ascending
-  /// @returns whether the tool has many corners, and kFewestOfEach with each triangle are more than
-  ///          kManyPairs, and listed though
-  bool list(const OrganStep& step, const ProbeModel& probe,
+  void list(const OrganStep& step, const ProbeModel& probe,
             std::span<const SweptTriangle> triangles);
   std::span<const Pair> pairs() const { return pairs_; }
   /// More corners than kMostPassed may have gone past triangles.
   bool was_cut() const { return was_cut_; }
 
  private:
+  bool list_near(const OrganStep& step, const SharpMesh& probe,
+                 std::span<const SweptTriangle> triangles);
   std::size_t add_near(const OrganStep& step, const SharpMesh& probe, const SweptTriangle& triangle,
                        double beside, std::uint32_t place);
   void list_nearest(const OrganStep& step, const SharpMesh& probe,

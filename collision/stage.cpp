@@ -131,7 +131,7 @@ const char* acting_guard(const Acted& acted) {
     return "a probe is behind finely meshed skin: only what is nearest to it was searched";
   }
   if (acted.found.looked_less_ahead) {
-    return "a probe's mesh is too fine for its speed: its edges were searched less far ahead";
+    return "a probe's mesh is too fine for its speed: it was searched less far ahead";
   }
   if (acted.boxes_misfit) {
     return "node_positions tells boxes of other blocks than surface: they are made here";
