@@ -109,8 +109,8 @@ bool SimulatedOrgan::step(double time, double h, std::vector<ContactRow>& rows,
   for (int revision = 0;; ++revision) {
     const Missed missed = revise(start_, state_);
     if (missed == Missed::kNothing) break;
-    is_held = revision < kMostRevisions;
-    if (!is_held && (last_resort || missed == Missed::kDepth)) break;
+    is_held = revision < kMostRevisions && missed != Missed::kDeeper;
+    if (!is_held && (last_resort || missed != Missed::kCrossing)) break;
     aim += missed_volume(target, stepped);
     state_ = start_;
     started_.give(rows);

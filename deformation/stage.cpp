@@ -23,14 +23,15 @@
 namespace palpate::deformation {
 namespace {
 
-/// A round probe that rests: without its poses [s], and how far off it then is [m].
+/// A probe that rests: without its poses [s], and how far off it then is [m].
 constexpr double kHeldUnheard = 1.0, kWhereItWas = 1e-3;
 constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 /// What joins late is heard by then: discovery takes half a second [s].
 constexpr double kHeardWithin = 1.0;
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true. What holds
-/// tissue off a round probe goes on without searches: the steps look around its core themselves.
+/// tissue off a round probe goes on without searches: the steps look around its core themselves;
+/// off others while they rest, by the contacts that were found last.
 /// Tissue let go meanwhile would be around the probe when searches return, and the hand get a blow.
 /// Nor is it let go where poses are missed for kHeldUnheard and the probe then is where it was.
 /// Laws have no rows meanwhile: the hand lets go.
@@ -67,8 +68,8 @@ class ProbeInputs {
   void drop_stale(std::int64_t now_ns, DeformationWorld& world) {
     brought_ns_ = now_ns;
     for (std::uint32_t probe = 0; probe < world.probe_count(); ++probe) {
-      const bool held =
-          world.is_round(probe) ? !held_.silent(probe, now_ns) : !silent(probe, now_ns);
+      const bool held = !silent(probe, now_ns) ||
+                        (!held_.silent(probe, now_ns) && world.holds_on(probe, kWhereItWas));
       if (!held) world.forget_contacts(probe);
     }
   }

@@ -11,12 +11,12 @@ namespace palpate::deformation {
 /// Says the organs' surfaces when built and after a reset. Each cycle: take the newest probes and
 /// contacts, advance its organs by what the cycle may take on, publish them and, per probe, the
 /// local law of the touched tissue. Of a probe or contacts not heard of for
-/// runtime::input_stale_after() the hand feels nothing; a round probe holds
-/// tissue without contacts, and for a second without poses, others touch nothing. While the session
-/// does not run, the organs stand still and give no law: a force that nobody computed anew must
-/// grow stale. They stand still, too, for at most a second where they go on from what another
-/// process kept (runtime::KeptState), or after the process was stopped, until what touches them is
-/// heard of.
+/// runtime::input_stale_after() the hand feels nothing; a round probe holds tissue without
+/// contacts, others while they are within a millimetre of where these were found, and both for a
+/// second without poses. What does not hold touches nothing. While the session does not run, the
+/// organs stand still and give no law: a force that nobody computed anew must grow stale. They
+/// stand still, too, for at most a second where they go on from what another process kept
+/// (runtime::KeptState), or after the process was stopped, until what touches them is heard of.
 class DeformationStage : public runtime::Stage {
  public:
   /// @param shapes   one per organ of the process

@@ -169,14 +169,14 @@ struct DeformationWorld::Impl {
       if (!organ.following) continue;
       if (organ.following->next() != nullptr) {
         cores.clear();
-        for (const auto& probe : probes) {
-          probe.append_kept_outside(i, organ.surface->body(), organ.simulated.state().positions,
-                                    cores);
+        for (auto& probe : probes) {
+          probe.begin_change(i, *organ.surface, organ.simulated.state().positions, cores);
         }
         organ.change_mesh(cores);
         for (auto& probe : probes) {
-          probe.change_surface(i, organ.following->last_transfer(), *organ.surface,
-                               organ.simulated.state().positions);
+          report.contacts_unsolved +=
+              probe.change_surface(i, organ.following->last_transfer(), *organ.surface,
+                                   organ.simulated.state().positions);
         }
       }
       report.mesh_coarser |= organ.is_coarser;
@@ -241,8 +241,9 @@ DeformationWorld::DeformationWorld(DeformationWorld&&) noexcept = default;
 
 std::size_t DeformationWorld::organ_count() const { return impl_->organs.size(); }
 std::size_t DeformationWorld::probe_count() const { return impl_->probes.size(); }
-
-bool DeformationWorld::is_round(std::size_t p) const { return impl_->probes.at(p).radius() > 0; }
+bool DeformationWorld::holds_on(std::size_t probe, double within) const {
+  return impl_->probes.at(probe).holds_on(within);
+}
 
 const std::string& DeformationWorld::name(std::size_t organ) const {
   return impl_->organs.at(organ).name;

@@ -70,8 +70,10 @@ class DeformationWorld {
   /// faster than that.
   void ask_for_volume(std::size_t organ, double ratio);
 
-  /// Of a round probe contacts are held wherever it goes: each step looks around its core.
-  bool is_round(std::size_t probe) const;
+  /// Whether a probe holds tissue without new contacts: a round one does wherever it goes, for each
+  /// step looks around its core; others while no contact went further than `within` [m] from where
+  /// it was found.
+  bool holds_on(std::size_t probe, double within) const;
   /// Nobody knows where this probe touches any more: it touches nothing until set_contacts().
   void forget_contacts(std::size_t probe);
 

@@ -60,6 +60,7 @@ void ProbeContacts::set_contacts(std::span<const Contact> newest) {
   std::swap(previous_contacts_, contacts_);
   contacts_.clear();
   searched_ = true;
+  found_at_ = target_;
   for (const Contact& contact : newest) {
     CarriedContact& carried = contacts_.emplace_back(contact);
     carried.behind = core_ && is_behind(contact);
@@ -83,7 +84,7 @@ void ProbeContacts::take_forces_of_previous(CarriedContact& carried) {
   carried.tangential_force = std::exchange(nearest->tangential_force, Vec3::Zero());
 }
 
-void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer,
+bool ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer,
                                    const SurfaceWalk& surface, std::span<const Vec3> positions) {
   for (Near& near : near_) {
     if (near.organ != organ) continue;
@@ -105,6 +106,8 @@ void ProbeContacts::change_surface(std::uint32_t organ, const geometry::SurfaceT
   }
   std::ranges::stable_sort(contacts_, {}, triangle_of);
   if (core_) unite_contacts(organ);
+  return is_gentle(organ) &&
+         deepest_tissue(organ, surface, positions) > std::max(deepest_, kUnsolvedDepth);
 }
 
 /// Of a round probe there is one to a triangle; what several did is its.
@@ -285,6 +288,13 @@ Vec3 ProbeContacts::impulse() const {
   Vec3 sum = Vec3::Zero();
   for (const CarriedContact& contact : contacts_) sum += contact.pushed + contact.dragged;
   return sum;
+}
+
+bool ProbeContacts::holds_on(double within) const {
+  return core_ || std::ranges::all_of(contacts_, [&](const CarriedContact& contact) {
+           const Vec3& p = contact.point_P;
+           return (target_.to_world(p) - found_at_.to_world(p)).norm() <= within;
+         });
 }
 
 bool ProbeContacts::has_contacts(std::uint32_t organ) const {

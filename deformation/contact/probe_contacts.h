@@ -85,8 +85,14 @@ class ProbeContacts {
   /// its own way, it was not seen coming: until it is out, it is pushed gently (GentlePush).
   void set_contacts(std::span<const Contact> contacts);
 
-  /// An organ's surface has other triangles from now on: contacts stay where they are on it.
-  void change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer,
+  /// An organ's surface gets other triangles. Appends a round probe's core if it was kept outside,
+  /// and of a sharp tool that touches it the inner cores that are outside.
+  void begin_change(std::uint32_t organ, const SurfaceWalk& surface,
+                    std::span<const Vec3> positions, std::vector<CoreLine>& cores);
+  /// It has them: contacts stay where they are on it. @returns whether tissue that goes out gently
+  /// is deeper in a round probe than it was, and than kUnsolvedDepth: flat triangles lie in the
+  /// place of a dent, and the step to come does not hold them off
+  bool change_surface(std::uint32_t organ, const geometry::SurfaceTransfer& transfer,
                       const SurfaceWalk& surface, std::span<const Vec3> positions);
 
   /// Begins an advance of `period` [s], in which the probe moves from where it was to the newest
@@ -108,9 +114,9 @@ class ProbeContacts {
   /// The same where tissue that it sees ended deeper in a round probe than kUnsolvedDepth: all
   /// that is in it and that no row is of gets one. Then a triangle may have several contacts, until
   /// the sub-step is over.
-  bool hold_swallowed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
-                      std::span<const Vec3> end, double h, double fraction,
-                      std::vector<ContactRow>& rows);
+  Missed hold_swallowed(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
+                        std::span<const Vec3> end, double h, double fraction,
+                        std::vector<ContactRow>& rows);
   /// The same where the wall went over one of a sharp tool's inner cores, or a node ended deeper in
   /// a box than kUnsolvedDepth: its contacts come from the search alone, and what passes between
   /// two of them takes the tool through the wall.
@@ -132,6 +138,8 @@ class ProbeContacts {
   static bool put_back_outside(std::span<ProbeContacts> probes, std::uint32_t organ,
                                SurfaceWalk& surface, std::span<Vec3> positions, double fraction);
 
+  /// DeformationWorld::holds_on()
+  bool holds_on(double within) const;
   bool has_contacts(std::uint32_t organ) const;
   bool touches(std::uint32_t organ) const;
   /// Whether a round probe has contacts there, or had and is still near, so that it may cross the
@@ -144,10 +152,6 @@ class ProbeContacts {
   bool may_miss(std::uint32_t organ) const {
     return may_cross(organ) || (!inner_cores_.empty() && has_contacts(organ));
   }
-  /// Appends a round probe's core if it was kept outside an organ, and of a sharp tool that touches
-  /// it the inner cores that are outside.
-  void append_kept_outside(std::uint32_t organ, const Body& body, std::span<const Vec3> positions,
-                           std::vector<CoreLine>& cores) const;
   /// Whether penetration of an organ that was not seen coming is being undone.
   bool is_gentle(std::uint32_t organ) const;
   double friction() const { return friction_; }
@@ -161,8 +165,8 @@ class ProbeContacts {
 
   /// Between two advances.
   void exchange(StateArchive& archive) {
-    archive(placed_, searched_, start_, target_, went_, period_, contacts_, previous_contacts_,
-            near_, gentle_, begun_);
+    archive(placed_, searched_, start_, target_, found_at_, went_, period_, contacts_,
+            previous_contacts_, near_, gentle_, begun_);
   }
 
  private:
@@ -211,10 +215,14 @@ class ProbeContacts {
                          const SurfaceWalk& surface, std::span<const Vec3> start,
                          std::span<const Vec3> end, const Pose& before, const Pose& after, double h,
                          std::vector<ContactRow>& rows);
+  /// How deep tissue that a round probe's core sees from outside is in it, between two advances:
+  /// exact, a look at each triangle [m].
+  double deepest_tissue(std::uint32_t organ, const SurfaceWalk& surface,
+                        std::span<const Vec3> positions) const;
   double way_to_tissue(const SurfaceWalk& surface, std::span<const Vec3> start,
                        std::span<const Vec3> end, const Pose& before, const Pose& after) const;
-  bool is_held(std::uint32_t organ, const Vec3& place, std::span<const Vec3> end,
-               std::span<const ContactRow> rows) const;
+  const ContactRow* row_at(std::uint32_t organ, const Vec3& place, std::span<const Vec3> end,
+                           std::span<const ContactRow> rows) const;
   bool is_yielding_held(std::uint32_t organ, std::uint32_t triangle,
                         std::span<const ContactRow> rows) const;
   /// Weights, point and normal of a round probe's contact for tissue and probe as they are.
@@ -242,7 +250,9 @@ class ProbeContacts {
   bool placed_ = false;
   bool searched_ = false;  ///< a search has told of it since it was placed, jumped or fell silent
   Pose start_, target_;
+  Pose found_at_;  ///< where it was when a search's contacts came
   Vec3 went_ = Vec3::Zero();
+  double deepest_ = 0;  ///< tissue in a round probe as a change of surface began [m]
   double period_ = 0;
   std::vector<CarriedContact> contacts_, previous_contacts_;
   std::vector<Near> near_;               ///< by organ it is or was near

@@ -6,18 +6,18 @@
 
 namespace palpate::deformation {
 
-void ProbeContacts::append_kept_outside(std::uint32_t organ, const Body& body,
-                                        std::span<const Vec3> positions,
-                                        std::vector<CoreLine>& cores) const {
+void ProbeContacts::begin_change(std::uint32_t organ, const SurfaceWalk& surface,
+                                 std::span<const Vec3> positions, std::vector<CoreLine>& cores) {
   const auto line_of = [&](const geometry::RoundedSegment& core) {
     return CoreLine{start_.to_world(core.a), start_.to_world(core.b)};
   };
+  deepest_ = deepest_tissue(organ, surface, positions);
   const auto near = std::ranges::find(near_, organ, &Near::organ);
   if (core_ && near != near_.end() && !near->inside) cores.push_back(line_of(*core_));
   if (!has_contacts(organ) || is_gentle(organ)) return;
   for (const geometry::RoundedSegment& core : inner_cores_) {
     const CoreLine line = line_of(core);
-    if (are_outside({&line, 1}, body, positions)) cores.push_back(line);
+    if (are_outside({&line, 1}, surface.body(), positions)) cores.push_back(line);
   }
 }
 
@@ -115,8 +115,9 @@ Missed ProbeContacts::hold_missed(std::span<ProbeContacts> probes, std::uint32_t
     if (probe.hold_crossed(organ, surface, start, end, h, fraction, rows) ||
         probe.hold_pierced(organ, surface, start, end, h, fraction, rows)) {
       missed = Missed::kCrossing;
-    } else if (probe.hold_swallowed(organ, surface, start, end, h, fraction, rows)) {
-      missed = std::max(missed, Missed::kDepth);
+    } else {
+      missed =
+          std::max(missed, probe.hold_swallowed(organ, surface, start, end, h, fraction, rows));
     }
   }
   return missed;

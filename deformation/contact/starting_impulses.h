@@ -15,6 +15,8 @@ namespace palpate::deformation {
 /// What the rows of a step did not hold, from mild to harsh.
 enum class Missed : std::uint8_t {
   kNothing,
+  kDeeper,    ///< tissue came deeper into a probe than it was, and no row more can hold it: it has
+              ///< one and went round the core, or is on its gentle way out; it counts as not solved
   kDepth,     ///< tissue is in a probe; taken after all, the step counts as not solved
   kCrossing,  ///< a probe's core went through the wall; it is to be taken in halves
 };

@@ -121,7 +121,7 @@ TEST_CASE("probe contacts: a wall that a step left across a core is put back off
     CHECK(put_back());
     CHECK(is_outside());
     std::vector<CoreLine> kept;
-    tip.probe.append_kept_outside(0, tip.organ.model, x, kept);
+    tip.probe.begin_change(0, tip.organ.surface, x, kept);
     CHECK(kept.size() == 1);
   }
 }

@@ -92,13 +92,73 @@ TEST_CASE("probe contacts: what a ball comes over within a step gets rows that k
     CHECK(row.probe_velocity.z() == Approx(-(from + to) / kPeriod));
     CHECK(row.normal_impulse == 0);
   }
-  // Nothing more is found the second time, nor in tissue that went along.
+  // What stays deep though it has a row gets no other, and is told; tissue that went along is not
+  // in it.
   const std::size_t has = wide.rows.size();
-  CHECK(wide.missed(rest) == Missed::kNothing);
+  CHECK(wide.missed(rest) == Missed::kDeeper);
   auto gone = rest;
   for (Vec3& x : gone) x.z() -= from + to;
   CHECK(wide.missed(gone) == Missed::kNothing);
   CHECK(wide.rows.size() == has);
+}
+
+TEST_CASE("probe contacts: tissue that is flung into a resting ball from elsewhere gets rows") {
+  // Oracle: brute force over all triangles. The ball rests on top; a node of the bottom is flung
+  // beside its centre, in two steps, the second no longer than what is ordinary.
+  Wide wide;
+  wide.go(0, 1e-6);
+  auto& start = wide.organ.state.positions;
+  const auto bottom = std::ranges::min_element(start, {}, [](const Vec3& x) { return x.z(); });
+  auto end = start;
+  Vec3& flung = end[static_cast<std::size_t>(bottom - start.begin())];
+  const auto holds_all_in_it = [&] {
+    const auto deep = wide.swallowed(end);
+    REQUIRE(!deep.empty());
+    REQUIRE(wide.missed(end) == Missed::kDepth);
+    for (const NearTriangle& near : deep) {
+      CHECK(std::ranges::any_of(wide.rows, [&](const ContactRow& row) {
+        return (at_tissue(row, end) - near.pair.on_triangle.point).norm() < 1e-6;
+      }));
+    }
+  };
+  flung = wide.centre + Vec3(Wide::kRadius - 2e-4, 0, 0);
+  holds_all_in_it();
+  wide.probes[0].take_rows(0, kPeriod, wide.rows);
+  start = end;
+  wide.rows.clear();
+  wide.probes[0].append_rows(0, wide.organ.surface, wide.organ.state, kPeriod, 1.0, wide.rows);
+  flung.x() -= 3e-4;
+  holds_all_in_it();
+}
+
+TEST_CASE("probe contacts: tissue that goes out gently is told of where it comes deeper") {
+  // Oracle: the definition. A ball that was not seen coming is 3 mm deep; tissue that stays is not
+  // told of, tissue that comes up by 1 mm is, in a step and by a change of mesh; where the ball was
+  // seen coming the step after a change holds it.
+  for (const bool seen_coming : {false, true}) {
+    CAPTURE(seen_coming);
+    Wide wide;
+    seen_coming ? wide.go(0, 1e-6) : wide.go(-3e-3, 3e-3);
+    ProbeContacts& probe = wide.probes[0];
+    REQUIRE(probe.is_gentle(0) != seen_coming);
+    const auto& rest = wide.organ.state.positions;
+    CHECK(wide.missed(rest) == Missed::kNothing);
+    auto risen = rest;
+    for (Vec3& x : risen) x.z() += 1e-3;
+    Missed missed = Missed::kDepth;
+    for (int tries = 0; missed == Missed::kDepth && tries < 4; ++tries) missed = wide.missed(risen);
+    CHECK(missed == Missed::kDeeper);
+    const OrganModel& model = wide.organ.model;
+    const geometry::SurfaceTransfer same(model.rest_positions, model.triangles,
+                                         model.rest_positions, model.triangles);
+    std::vector<CoreLine> cores;
+    probe.end();
+    for (const auto& after : {rest, risen}) {
+      probe.begin_change(0, wide.organ.surface, rest, cores);
+      CHECK(probe.change_surface(0, same, wide.organ.surface, after) ==
+            (!seen_coming && after == risen));
+    }
+  }
 }
 
 TEST_CASE("probe contacts: a place that came deep beside a triangle's row has a row of its own") {
