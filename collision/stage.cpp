@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "collision/activation_distance.h"
 #include "collision/contact_reduction.h"
@@ -198,6 +199,7 @@ struct CollisionStage::Impl {
   Contacts contacts;
   ContactTroubles troubles;
   runtime::PauseWatch pauses;
+  bool begun_before = false;  ///< a probe inside, and the session does not run yet
 };
 
 std::vector<geometry::ProbeForm> probes_of(const scene::Scene& scene,
@@ -244,6 +246,9 @@ runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
     impl_->writer.write(impl_->contacts);
   }
   acted.boxes_misfit = impl_->organs.boxes_misfit();
+  // What begins while the session waits is told as that begins: until then nobody is degraded.
+  impl_->begun_before |= acted.found.begun_inside;
+  if (now.running) acted.found.begun_inside = std::exchange(impl_->begun_before, false);
   health.guard = acting_guard(acted);
   health.contacts = impl_->troubles;
   return health;

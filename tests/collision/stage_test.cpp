@@ -270,3 +270,22 @@ TEST_CASE(
   CHECK(guard_at(0.13, 1000 * kMs / 25).empty());
   CHECK(guard_at(0.04, 4 * kMs).find(kBegun) == 0);
 }
+
+TEST_CASE("collision stage: a probe that is inside as the session waits is told of as it begins") {
+  // Oracle: the definition. Nobody is degraded while a session waits: what a search tells then is
+  // lost, unless it is told again in the first cycle that runs, once.
+  Session session;
+  auto stage = session.stage();
+  session.publish_ball();
+  const auto guard_at = [&](std::int64_t now_ns, bool running) {
+    session.move_finger(0.04, now_ns);
+    runtime::Cycle now;
+    now.now_ns = now_ns;
+    now.running = running;
+    return std::string(stage.cycle(now).guard);
+  };
+  const std::string kBegun = "a probe was first heard of inside";
+  for (int i = 1; i < 10; ++i) guard_at(4 * i * kMs, false);
+  CHECK(guard_at(40 * kMs, true).find(kBegun) == 0);
+  CHECK(guard_at(44 * kMs, true).empty());
+}
