@@ -7,12 +7,14 @@ A search is judged on the positions that it had: those on which its contacts hav
 them: one whose cycle is held up at its beginning has positions that were told after it.) One without contacts is judged on all that
 it can have had: told before the next search, back to the newest told more than 2 ms before it.
 inside: the winding number of a point of the tool is 1 there. lost: of these, no contact pushes. silent: finds nothing, as is said,
-because the tool was not heard for 50 ms. unknown: the recorder, or whoever it hears, missed what it had.
+because the tool was not heard for 50 ms. unknown: the recorder, or whoever it hears, missed what it had. guarded, unsolved: by the
+session's own summary, searches that found a tool inside without contact and pushed it out, and steps whose contacts were not solved.
 Exit code 1 if one is lost or truncated. A machine that does other things at the time is late for real processes, which makes it harder.
 """
 import argparse
 import itertools
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -138,7 +140,7 @@ def motion(x, z, front, tool, speed):
 
 
 def run(scene, tool, speed, rate, folder):
-    """As Judge.sums(); and presses."""
+    """As Judge.sums(); presses; and of the summary guarded searches and steps not solved."""
     loaded = palpate.Scene.load(palpate.scene_path(scene))
     organ = loaded["organs[0].name"]
     if organ not in PLACES:
@@ -167,7 +169,10 @@ def run(scene, tool, speed, rate, folder):
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         sys.exit(done.stdout + done.stderr)
-    return (*Judge(palpate.recording.read(mcap), TOOLS[tool][3]).sums(), presses)
+    counted = re.search(r"contacts: \d+ searches truncated, (\d+) with a probe inside without contact, (\d+) steps not solved", done.stdout)
+    if not counted:
+        sys.exit("the summary has no line of contacts:\n" + done.stdout)
+    return (*Judge(palpate.recording.read(mcap), TOOLS[tool][3]).sums(), presses, int(counted[1]), int(counted[2]))
 
 
 class Judge:
@@ -254,15 +259,15 @@ def main():
     parser.add_argument("--speed", nargs="+", type=float, default=[0.1, 0.63, 2.5])
     parser.add_argument("--rate", nargs="+", type=float, default=[50, 100, 250])
     options = parser.parse_args()
-    sums = np.zeros(7, dtype=int)
-    print("scene            tool        v [m/s] [Hz] searches inside   lost silent unknown truncated presses")
+    sums = np.zeros(9, dtype=int)
+    print("scene            tool        v [m/s] [Hz] searches inside   lost silent unknown truncated presses guarded unsolved")
     with tempfile.TemporaryDirectory() as folder:
         for scene, tool, speed, rate in itertools.product(options.scene, options.tool, options.speed, options.rate):
             one = run(scene, tool, speed, rate, folder)
             sums += one
-            print(f"{scene:16} {tool:11} {speed:7g} {rate:4g} {one[0]:8} {one[1]:6} {one[2]:6} {one[3]:6} {one[4]:7} {one[5]:9} {one[6]:7}", flush=True)
+            print(f"{scene:16} {tool:11} {speed:7g} {rate:4g} {one[0]:8} {one[1]:6} {one[2]:6} {one[3]:6} {one[4]:7} {one[5]:9} {one[6]:7} {one[7]:7} {one[8]:8}", flush=True)
     print(f"{sums[0]} searches, {sums[1]} inside, {sums[2]} of them without a contact that pushes")
-    print(f"{sums[3]} silent, {sums[4]} of which is not known what they had, {sums[5]} truncated; {sums[6]} presses")
+    print(f"{sums[3]} silent, {sums[4]} of which is not known what they had, {sums[5]} truncated; {sums[6]} presses; {sums[7]} guarded, {sums[8]} steps not solved")
     return 1 if sums[2] or sums[5] else 0
 
 

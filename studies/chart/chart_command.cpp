@@ -108,6 +108,9 @@ int run_chart(const ChartOptions& options, std::ostream& out, std::ostream& log)
       out << report::text_of(result.share, *options.shard);
       return kExitDone;
     }
+    if (result.points.empty()) {
+      throw InputError("none of these cases runs any of these models: palpate list models");
+    }
     write_tables(result, options.out);
     print(result, out);
     print_noise(of, out);

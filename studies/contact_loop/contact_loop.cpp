@@ -133,7 +133,11 @@ class Judge {
     left_ = tissue_in(law_.anchor, *at);
     result.deepest_tissue = std::max(result.deepest_tissue, left_);
     const double allowed = std::max(before, deformation::kUnsolvedDepth) + kRounding;
-    result.swallowed += left_ > allowed && !said;
+    if (left_ <= deformation::kUnsolvedDepth + kRounding) known_within_ = false;
+    known_within_ |= left_ > allowed && said;
+    const bool swallowed = left_ > allowed && !said;
+    result.swallowed += swallowed;
+    result.swallowed_on += swallowed && known_within_;
   }
 
   /// How deep tissue that can move and that its core sees is in a round tool [m].
@@ -239,7 +243,8 @@ class Judge {
   ContactModel law_;
   bool was_inside_ = true;  ///< a tool that begins inside has crossed nothing
   double lost_since_ = -1;
-  long unsolved_ = 0;  ///< of the advances before
+  bool known_within_ = true;  ///< tissue that is not out yet: it began with it, or that was said
+  long unsolved_ = 0;         ///< of the advances before
   /// Tissue in a round tool, which goes out gently where it was not seen coming [m]
   double left_ = std::numeric_limits<double>::infinity();
 };

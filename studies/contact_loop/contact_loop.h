@@ -57,6 +57,8 @@ struct LoopResult {
   /// before and than a step may leave it (deformation::kUnsolvedDepth), and did not say that they
   /// were not solved.
   long swallowed = 0;
+  /// Of these: more of what it had begun with, or of what was said before, and was not yet out.
+  long swallowed_on = 0;
   double deepest_tissue = 0;  ///< in such a tool after an advance, said or not [m]
   long searches = 0;
   long inside = 0;           ///< a point of the tool was inside the surface

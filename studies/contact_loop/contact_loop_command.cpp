@@ -10,6 +10,7 @@
 #include "modules/core/data_folder.h"
 #include "modules/core/error.h"
 #include "modules/geometry/bounding_box.h"
+#include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/session/contact_line.h"
 #include "studies/contact_loop/contact_loop.h"
@@ -45,8 +46,8 @@ std::vector<Vec3> places_on(const geometry::TriangleSurface& surface, const Vec3
 
 struct Sum {
   long runs = 0, inside = 0, lost = 0;
-  long presses = 0, crossings = 0, put_back = 0;  ///< of tools with points within
-  long advances = 0, swallowed = 0;               ///< of round tools
+  long presses = 0, crossings = 0, put_back = 0;       ///< of tools with points within
+  long advances = 0, swallowed = 0, swallowed_on = 0;  ///< of round tools
   ContactTroubles troubles;
 
   void add(const Tool& tool, const LoopResult& result) {
@@ -59,6 +60,7 @@ struct Sum {
     put_back += result.put_back;
     advances += tool.is_round() ? result.advances : 0;
     swallowed += result.swallowed;
+    swallowed_on += result.swallowed_on;
   }
 };
 
@@ -98,7 +100,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
                      std::ostream& out) {
   const auto folder = data_file("scenes");
   using Files = std::vector<std::filesystem::path>;
-  const Files files =
+  Files files =
       or_else(options.scenes,
               options.quick ? Files{folder / "stomach_probe.yaml"}
                             : Files{folder / "stomach_probe.yaml", folder / "liver_solid.yaml",
@@ -124,6 +126,7 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
     }
   }
   const Numbers searches = or_else(options.collision_rates, Numbers{250});
+  for (auto& file : files) file = scene::scene_file(file);
   out << "scene                   x, z [mm]  tool   r [mm] v [m/s] [Hz] of searches  searches "
          "inside   lost longest [s] deepest [mm] presses advances crossings tissue [mm] swallowed "
          "truncated unsolved\n";
@@ -147,12 +150,13 @@ int run_contact_loop(const ContactLoopOptions& options, const std::function<void
              "{} presses: {} times the organ was left with a point "
              "within the tool inside, {} of them while a guard acted\n"
              "{} advances under round tools: {} left tissue deeper in one than {:g} mm and did not "
-             "say so\n",
+             "say so, {} of them in one that was known to have tissue in it\n",
              sum.runs, sum.inside, sum.lost, sum.presses, sum.crossings, sum.put_back, sum.advances,
-             sum.swallowed, 1e3 * deformation::kUnsolvedDepth)
+             sum.swallowed, 1e3 * deformation::kUnsolvedDepth, sum.swallowed_on)
       << session::contact_line(sum.troubles) << '\n';
-  return sum.lost == 0 && sum.crossings == 0 && sum.troubles.truncated == 0 ? kExitDone
-                                                                            : kExitFailed;
+  const bool none = sum.lost == 0 && sum.crossings == 0 && sum.swallowed == sum.swallowed_on &&
+                    sum.troubles.truncated == 0 && sum.troubles.lost == 0;
+  return none ? kExitDone : kExitFailed;
 }
 
 }  // namespace palpate::contact_loop

@@ -23,8 +23,9 @@ struct ContactLoopOptions {
 
 /// Runs every combination, prints a line for each with what its searches found, and their sum.
 /// @param keep_going  asked often; may throw
-/// @return kExitDone if no search inside an organ was without contact, none left contacts out, and
-/// no wall was crossed; else kExitFailed
+/// @return kExitDone if no search inside an organ was without contact, as judged and as the session
+/// counts them, none left contacts out, no wall was crossed and no advance left tissue in a round
+/// tool unsaid; else kExitFailed
 /// @throws InputError; what keep_going throws
 int run_contact_loop(const ContactLoopOptions& options, const std::function<void()>& keep_going,
                      std::ostream& out);

@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
       "contact.",
       "palpate contact-loop");
   contact_loop::ContactLoopOptions options;
-  program.add("--scene", options.scenes, "Only these scene files (YAML)");
+  program.add("--scene", options.scenes, "Only these scenes: files, or names as of `palpate run`");
   program.add("--tool", options.tools,
               "Only these: ball, needle, rod, wire, box, blade, mesh, cone, grasper");
   program.add("--radius", options.radii, "Of the ball [m]").range(1e-4, 0.05);
@@ -27,9 +27,9 @@ int main(int argc, char** argv) {
       .range(1, 1000);
   program.flag("--quick", options.quick, "A few balls: about a minute");
   program.footer(
-      "Exit code: 0 if no search inside an organ was without contact, none left contacts out and "
-      "no "
-      "wall was crossed, 1 if one was, 2 for bad input, 130 if it was stopped.");
+      "Exit code: 0 if no search found a tool inside an organ without contact, none left contacts "
+      "out, no wall was crossed and no step left tissue in a round tool and did not say so, 1 if "
+      "one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
     const StopSignal signal;
     return contact_loop::run_contact_loop(

@@ -41,6 +41,10 @@ TEST_CASE("chart command: unknown cases and models are refused with what there i
   options.only_models = {"jelly"};
   CHECK_THROWS_WITH(run_chart(options, out, log),
                     Catch::Contains("model 'jelly': must be one of mass_spring"));
+  options.extent = Extent::kQuick;
+  options.only_cases = {"squeeze"};  // of solids
+  options.only_models = {"implicit_volume"};
+  CHECK_THROWS_WITH(run_chart(options, out, log), Catch::Contains("none of these cases runs any"));
 }
 
 }  // namespace
