@@ -54,7 +54,8 @@ void for_each_weight(const CarriedContact& contact, const Body& body, const F& f
 
 SingleContact single_of(const CarriedContact& contact, const ProbeContacts& probe, const Body& body,
                         const OrganState& state, double period) {
-  SingleContact one{&contact, {}, 0, fixed_yielding(body, contact.triangle, contact.barycentric)};
+  const double yielding = fixed_yielding(body, contact.triangle, contact.barycentric);
+  SingleContact one{&contact, {}, 0, yielding / contact.fixed_share};
   one.row.radius = turning_radius(contact, probe.radius());
   Vec3 tissue = Vec3::Zero();
   for_each_weight(contact, body, [&](std::uint32_t node, double weight) {

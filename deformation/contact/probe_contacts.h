@@ -39,13 +39,16 @@ struct CarriedContact : Contact {
     void exchange(StateArchive& archive) { archive(normal, tangential); }
   };
   std::optional<OnFixed> on_fixed;
+  /// Of what its triangle's fixed tissue resists with, where several contacts of a sharp tool press
+  /// on it: (0, 1], by their depths (share_fixed).
+  double fixed_share = 1;
   // On the probe over the advance, in W [N·s]:
   Vec3 pushed = Vec3::Zero();   ///< along the normals
   Vec3 dragged = Vec3::Zero();  ///< by friction
 
   void exchange(StateArchive& archive) {
     exchange_state(archive, static_cast<Contact&>(*this));
-    archive(row, behind, normal_force, tangential_force, on_fixed, pushed, dragged);
+    archive(row, behind, normal_force, tangential_force, on_fixed, fixed_share, pushed, dragged);
   }
 };
 
@@ -209,6 +212,8 @@ class ProbeContacts {
   bool hold_at(const WallCrossing& crossing, std::uint32_t organ, const SurfaceWalk& surface,
                std::span<const Vec3> start, const Pose& before, const Pose& after, double h,
                std::vector<ContactRow>& rows);
+  void share_fixed(std::uint32_t organ, const Body& body, std::span<const Vec3> positions,
+                   const Pose& before, const Pose& after, double h);
   /// Puts a contact that the search did not tell among the others, and its row at the end.
   void add_row(CarriedContact contact, const ContactRow& row, std::vector<ContactRow>& rows);
   void hold_nodes_in_box(std::uint32_t organ, std::span<const std::uint32_t> triangles,

@@ -11,7 +11,7 @@ void ProbeContacts::begin_change(std::uint32_t organ, const SurfaceWalk& surface
   const auto line_of = [&](const geometry::RoundedSegment& core) {
     return CoreLine{start_.to_world(core.a), start_.to_world(core.b)};
   };
-  deepest_ = deepest_tissue(organ, surface, positions);
+  deepest_ = is_gentle(organ) ? deepest_tissue(organ, surface, positions) : 0;
   const auto near = std::ranges::find(near_, organ, &Near::organ);
   if (core_ && near != near_.end() && !near->inside) cores.push_back(line_of(*core_));
   if (!has_contacts(organ) || is_gentle(organ)) return;

@@ -24,7 +24,7 @@ ContactRow ProbeContacts::row_of(const CarriedContact& contact, const Body& body
   row.probe_velocity = (after.to_world(contact.point_P) - point) / h;
   row.friction = friction_;
   row.radius = radius();
-  row.yielding = fixed_yielding(body, contact.triangle, contact.barycentric);
+  row.yielding = fixed_yielding(body, contact.triangle, contact.barycentric) / contact.fixed_share;
   row.full_gap = row.gap;
   row.normal_impulse = h * contact.normal_force;
   row.tangential_impulse = h * contact.tangential_force;
@@ -42,6 +42,7 @@ void ProbeContacts::append_rows(std::uint32_t organ, SurfaceWalk& surface, const
   if (!has_contacts(organ) && !knows(organ)) return;
   if (core_) unite_contacts(organ);
   if (core_) look_around(organ, surface, state, before);
+  if (is_sharp_) share_fixed(organ, surface.body(), state.positions, before, after, h);
   const bool inside = core_ && near_of(organ).inside;
   for (CarriedContact& contact : contacts_) {
     if (contact.organ != organ) continue;

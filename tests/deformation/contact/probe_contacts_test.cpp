@@ -124,6 +124,69 @@ TEST_CASE("probe contacts: fixed tissue has no row, and drags as far as its cone
   }
 }
 
+TEST_CASE("probe contacts: several corners of a sharp tool press one fixed triangle as one does") {
+  // Oracle: by hand, shares d/Σd of the block's stiffness: equal depths give what one of them
+  // gives.
+  TouchedBall ball;
+  const geometry::Triangle& nodes = ball.model.triangles[2];
+  ball.model.youngs_modulus = 5e3;
+  for (const std::uint32_t node : nodes) ball.model.inverse_masses[node] = 0;
+  const auto& at = ball.state.positions;
+  const double stiffness = fixed_stiffness(ball.model, 2);
+  const auto force_of = [&](const std::vector<double>& depths) {
+    ProbeContacts box({"box", scene::BoxShape{Vec3::Constant(0.01)}, 0, scene::ScriptedDevice{}});
+    box.set_pose(pose_at(Vec3::Zero()));
+    std::vector<Contact> contacts;
+    for (std::size_t i = 0; i < depths.size(); ++i) {
+      const Vec3 weights = Vec3::Constant(0.1) + 0.7 * Vec3::Unit(static_cast<int>(i % 3));
+      Vec3 place = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) place += weights[k] * at[nodes[static_cast<std::size_t>(k)]];
+      contacts.push_back(
+          contacts_on({2}, place - depths[i] * Vec3::UnitZ(), Vec3::UnitZ()).front());
+      contacts.back().barycentric = weights;
+    }
+    box.set_contacts(contacts);
+    box.begin(kPeriod);
+    std::vector<ContactRow> rows;
+    box.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+    REQUIRE(rows.empty());
+    box.take_rows(0, kPeriod, rows);
+    return box.impulse().z() / kPeriod;
+  };
+  CHECK(force_of({1e-4}) == Approx(stiffness * 1e-4));
+  CHECK(force_of({1e-4, -1e-3}) == Approx(stiffness * 1e-4));
+  CHECK(force_of({1e-4, 1e-4, 1e-4}) == Approx(stiffness * 1e-4 * std::pow(3, 0.25)));
+  CHECK(force_of({1e-4, 1e-4, 2e-4}) ==
+        Approx(stiffness * 1e-4 * std::pow(18, 0.25)).epsilon(1e-3));
+  double before = 0;
+  for (double depth = 5e-5; depth < 2e-3; depth *= 1.3) {
+    const double force = force_of({1e-3, depth, 2e-4});
+    CHECK(force > before);
+    before = force;
+  }
+
+  // Where a node can move what is fixed gives way so much more in each row, but no more than as an
+  // equal part of it.
+  ball.model.inverse_masses[nodes[2]] = 1;
+  ProbeContacts box({"box", scene::BoxShape{Vec3::Constant(0.01)}, 0, scene::ScriptedDevice{}});
+  box.set_pose(pose_at(Vec3::Zero()));
+  const Vec3 weights = Vec3::Constant(1.0 / 3);
+  const Vec3 place = (at[nodes[0]] + at[nodes[1]] + at[nodes[2]]) / 3;
+  std::vector<Contact> contacts;
+  for (const double depth : {1e-4, 3e-4}) {
+    contacts.push_back(contacts_on({2}, place - depth * Vec3::UnitZ(), Vec3::UnitZ()).front());
+    contacts.back().barycentric = weights;
+  }
+  box.set_contacts(contacts);
+  box.begin(kPeriod);
+  std::vector<ContactRow> rows;
+  box.append_rows(0, ball.surface, ball.state, kPeriod, 1.0, rows);
+  REQUIRE(rows.size() == 2);
+  const double yielding = fixed_yielding(ball.model, 2, weights);
+  CHECK(rows[0].yielding == Approx(yielding / 0.5));
+  CHECK(rows[1].yielding == Approx(yielding / std::pow(81.0 / 82, 0.75)));
+}
+
 TEST_CASE("probe contacts: a core that touches a triangle as it first sees it has no place there") {
   // Oracle: a place on a triangle, whose weights sum to one. A micrometre above a node, where a
   // direction would be rounding, all triangles but one are new.
