@@ -281,6 +281,10 @@ TEST_CASE("probe contacts: a fold that swings nearer than the wall beside it is 
   for (const auto& [a, b, c] : one.model.triangles) {
     two.triangles.push_back({a + count, b + count, c + count});
   }
+  two.rest_positions.insert(two.rest_positions.end(), one.model.rest_positions.begin(),
+                            one.model.rest_positions.end());
+  two.inverse_masses.insert(two.inverse_masses.end(), one.model.inverse_masses.begin(),
+                            one.model.inverse_masses.end());
   two.surface_node_count = 2 * count;
   SurfaceWalk surface(two);
   OrganState state = one.state;
