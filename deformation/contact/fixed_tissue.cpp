@@ -44,6 +44,8 @@ void ProbeContacts::share_fixed(std::uint32_t organ, const Body& body,
     }
     const std::span<CarriedContact> on_one(contacts_.data() + first, end - first);
     if (contacts_[first].organ != organ || on_one.size() < 2) continue;
+    const auto is_fixed = [&](std::uint32_t node) { return body.inverse_masses[node] == 0; };
+    if (std::ranges::none_of(body.triangles[contacts_[first].triangle], is_fixed)) continue;
     double sum = 0;
     depths.clear();
     for (const CarriedContact& contact : on_one) {
