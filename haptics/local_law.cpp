@@ -22,20 +22,17 @@ bool is_usable(const LawRow& row) {
          row.velocity.allFinite();
 }
 
-double diagonal(const std::vector<double>& lower, std::size_t i) {
-  return lower[i * (i + 1) / 2 + i];
-}
-
 /// |W_ij|² ≤ W_ii W_jj, W_ii > 0
 bool is_usable(const std::vector<double>& lower, std::size_t directions) {
   constexpr double kRounding = 1 + 1e-9;
   if (lower.size() != directions * (directions + 1) / 2) return false;
+  std::array<double, 3 * kMaxLawRows> roots;  // of the diagonal
   for (std::size_t i = 0, at = 0; i < directions; ++i) {
-    const double own = diagonal(lower, i);
+    const double own = lower[at + i];
     if (!(own > 0) || !std::isfinite(own)) return false;
+    roots[i] = std::sqrt(own);
     for (std::size_t j = 0; j <= i; ++j, ++at) {
-      const double bound = kRounding * std::sqrt(own) * std::sqrt(diagonal(lower, j));
-      if (!(std::abs(lower[at]) <= bound)) return false;
+      if (!(std::abs(lower[at]) <= kRounding * roots[i] * roots[j])) return false;
     }
   }
   return true;
@@ -77,8 +74,18 @@ void LawSolver::take(const LocalLaw& law, double softening) {
   }
   for (std::size_t i = 0, at = 0; i < static_cast<std::size_t>(directions_); ++i) {
     for (std::size_t j = 0; j <= i; ++j, ++at) {
-      compliance_[i][j] = compliance_[j][i] =
-          law.compliance[at] + softening * axis(static_cast<int>(i)).dot(axis(static_cast<int>(j)));
+      compliance_[i][j] = compliance_[j][i] = law.compliance[at];
+    }
+  }
+  if (softening > 0) soften(softening);
+}
+
+void LawSolver::soften(double by) {
+  for (int i = 0; i < directions_; ++i) {
+    const Vec3 own = axis(i);
+    for (int j = 0; j < directions_; ++j) {
+      compliance_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] +=
+          by * own.dot(axis(j));
     }
   }
 }
@@ -92,12 +99,16 @@ LawForce LawSolver::evaluate(const Pose& pose, double since_anchor) {
   place_rows(pose, std::clamp(since_anchor, 0.0, longest_), result.beyond_validity);
   while (result.sweeps++ < kMaxSweeps && sweep() > kForceTolerance) {
   }
-  for (int i = 0; i < directions_; ++i) {
+  for (int i = 0; i < directions_; i += per_row_) {
+    const double* const forces = &forces_[static_cast<std::size_t>(i)];
+    if (std::all_of(forces, forces + per_row_, [](double force) { return force == 0; })) continue;
     const Row& row = rows_[static_cast<std::size_t>(i / per_row_)];
-    const Vec3 force = forces_[static_cast<std::size_t>(i)] * axis(i);
     const Vec3 surface = pose.rotation * row.point_P - row.radius * row.basis.col(0);
-    result.wrench.force += force;
-    result.wrench.torque += surface.cross(force);
+    for (int k = 0; k < per_row_; ++k) {
+      const Vec3 force = forces[k] * row.basis.col(k);
+      result.wrench.force += force;
+      result.wrench.torque += surface.cross(force);
+    }
   }
   // Numbers too large for doubles must not outlive the pose or law that brought them.
   if (!result.wrench.is_finite()) forces_ = anchor_forces_;
@@ -126,6 +137,7 @@ void LawSolver::place_rows(const Pose& pose, double time, bool& beyond_validity)
   const auto count = static_cast<std::size_t>(directions_);
   for (std::size_t j = 0; j < count; ++j) {
     const double by = forces_[j] - grown * anchor_forces_[j];
+    if (by == 0) continue;  // a row that is open, and was
     for (std::size_t k = 0; k < count; ++k) distances_[k] += compliance_[j][k] * by;
   }
 }
@@ -187,7 +199,7 @@ double LawSolver::stored_energy() const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(directions_); ++i) {
     if (forces_[i] == 0) continue;
     for (std::size_t j = 0; j < static_cast<std::size_t>(directions_); ++j) {
-      sum += forces_[i] * compliance_[i][j] * forces_[j];
+      if (forces_[j] != 0) sum += forces_[i] * compliance_[i][j] * forces_[j];
     }
   }
   return sum / 2;

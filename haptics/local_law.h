@@ -57,6 +57,7 @@ class LawSolver {
     void exchange(StateArchive& archive) { archive(point_P, tissue, velocity, radius, basis); }
   };
 
+  void soften(double by);
   void place_rows(const Pose& pose, double time, bool& beyond_validity);
   Vec3 axis(int direction) const;
   double sweep();
