@@ -87,18 +87,19 @@ inline Felt felt_of(const std::filesystem::path& recording) {
   return felt;
 }
 
-/// Haptics and collision on the first host, deformation on the second: every stream but the
-/// statuses' crosses the link, two of them in many packets.
+/// Haptics and collision on the first host, deformation on the second unless told otherwise: every
+/// stream but the statuses' crosses the link, two of them in many packets.
 class TwoHosts {
  public:
   explicit TwoHosts(const BallScene& scene, const LinkFaults& faults = {}, long clock_ahead = 0,
-                    const std::string& first_modules = "haptics, collision")
+                    const std::string& first_modules = "haptics, collision",
+                    const std::string& second_modules = "deformation")
       : network_(faults, clock_ahead), scene_(scene) {
     std::ofstream(hosts_file()) << "palpate_hosts: 1\nhosts:\n"
                                 << "  - {name: first, address: " << MadeNetwork::address(0)
                                 << ", modules: [" << first_modules << "]}\n"
                                 << "  - {name: second, address: " << MadeNetwork::address(1)
-                                << ", modules: [deformation]}\n";
+                                << ", modules: [" << second_modules << "]}\n";
   }
 
   void start(std::size_t host, std::vector<std::string> more) {

@@ -2,6 +2,8 @@
 // program may move.
 #pragma once
 
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "modules/geometry/mesh_io.h"
@@ -39,6 +41,14 @@ class BallScene {
                             "    device: {"
                          << device << "}\n"
                          << more;
+  }
+  /// @param text  an item of the list of organs, indented by two
+  void add_organ(const std::string& text) {
+    std::stringstream all;
+    all << std::ifstream(file_).rdbuf();
+    std::string with_it = all.str();
+    with_it.insert(with_it.find("probes:"), text);
+    std::ofstream(file_) << with_it;
   }
   const std::filesystem::path& file() const { return file_; }
   const std::filesystem::path& folder() const { return files_.folder(); }
