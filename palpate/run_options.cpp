@@ -212,8 +212,13 @@ void check_keys_of(const std::vector<ModuleCommand>& commands) {
 }
 
 ModuleCommand again(ModuleCommand command, int earlier) {
-  if (command.module != "recorder" || earlier == 0) return command;
-  command.arguments.front() = recording::part_of(command.arguments.front(), earlier + 1).string();
+  if (earlier == 0) return command;
+  if (command.module == "recorder") {
+    command.arguments.front() = recording::part_of(command.arguments.front(), earlier + 1).string();
+  } else if (command.module == "haptics") {
+    // Its devices would tell where they are at the session's beginning.
+    command.arguments.push_back("--joins");
+  }
   return command;
 }
 

@@ -77,7 +77,7 @@ std::vector<std::string> participants_of(const RunOptions& options,
                                          const std::vector<std::string>& modules);
 
 /// The command of a module that was started before, `earlier` times; a recorder's names another
-/// file, FILE.partN.mcap, and replaces nothing.
+/// file, FILE.partN.mcap, and replaces nothing; haptics joins a session that runs.
 ModuleCommand again(ModuleCommand command, int earlier);
 
 /// A window of this run that stays when the run has ended.

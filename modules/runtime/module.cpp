@@ -22,6 +22,8 @@ constexpr double kBusyAllTheTime = 0.9;
 /// What is judged at once: a single cycle that others kept from running says nothing.
 constexpr std::int64_t kBusyJudgedNs = kNanosecondsPerSecond / 4;
 constexpr int kBackgroundSteps = 10;
+/// Who joins a session that nobody conducts takes part all the same.
+constexpr std::int64_t kTimeHeardWithinNs = kNanosecondsPerSecond;
 /// A guard that acted for a moment stays visible for this long.
 constexpr std::int64_t kGuardShownNs = kNanosecondsPerSecond;
 
@@ -53,12 +55,14 @@ Module::Module(const ModuleOptions& options, const scene::Scene& scene, std::str
                double rate_hz, Priority priority)
     : name_(std::move(name)),
       priority_(priority),
+      joins_(options.joins),
       realtime_(take_priority(priority, options.realtime)),
       cores_(cores_for(priority, options.realtime)),
       bus_(named(options.bus, name_)),
       session_(bus_, scene::scene_digest(scene)),
       loop_(rate_hz),
-      status_(bus_, name_, rate_hz, realtime_.priority) {
+      status_(bus_, name_, rate_hz, realtime_.priority),
+      began_ns_(monotonic_now_ns()) {
   if (realtime_.priority) give_up_realtime();
 }
 
@@ -83,14 +87,21 @@ Module::~Module() {
 void Module::ready() { ready_ = true; }
 
 bool Module::next_cycle() {
-  while (!loop_.wait_for_period() && !stop_.requested()) {
-  }
-  session_.poll();
+  do {
+    while (!loop_.wait_for_period() && !stop_.requested()) {
+    }
+    session_.poll();
+  } while (!knows_time() && !stop_.requested());
   if (session_.running()) run_with_priority();
   report_state();
   give_way_if_busy();
   status_.poll(now_ns(), time(), loop_.statistics());
   return !stop_.requested() && session_.phase() != SessionPhase::kStopped;
+}
+
+bool Module::knows_time() const {
+  return !joins_ || session_.state().last_command().header.source_time_ns != 0 ||
+         now_ns() - began_ns_ > kTimeHeardWithinNs;
 }
 
 /// The bus' threads have had it since they were made; who loads or waits would keep other sessions

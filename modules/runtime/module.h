@@ -37,7 +37,8 @@ class Module {
 
   /// Waits for the next period, follows the session and publishes the status. False when a signal
   /// or the session says stop. Never throws; allocates and logs nothing but what StatusReporter
-  /// says and, once, that a priority is given back.
+  /// says and, once, that a priority is given back. Who joins a session that runs
+  /// (ModuleOptions::joins) gets its first one when a command was heard, or a second has passed.
   bool next_cycle();
 
   std::int64_t now_ns() const { return loop_.woke_ns(); }  ///< when this cycle began
@@ -62,12 +63,14 @@ class Module {
   Header header() const;
 
  private:
+  bool knows_time() const;
   void report_state();
   void give_way_if_busy();
   void run_with_priority();
 
   std::string name_;
   Priority priority_;
+  bool joins_;
   StopSignal stop_;
   Realtime realtime_;
   std::unique_ptr<AwakeCores> cores_;  ///< none: it does not ask
@@ -75,6 +78,7 @@ class Module {
   Session session_;
   PeriodicLoop loop_;
   StatusReporter status_;
+  std::int64_t began_ns_;
   const char* guard_ = "";
   std::int64_t guard_since_ns_ = 0;
   bool ready_ = false;

@@ -63,6 +63,9 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
            "Open descriptor of where it keeps what it remembers for a successor, and goes on from "
            "what is kept there (palpate run gives it)")
       .range(0, 1e6);
+  command.flag("--joins", options.joins,
+               "The session runs already: its time is waited for before the first cycle, for a "
+               "second at most (palpate run says so of whom it starts again)");
   add_lockstep_options(command, options);
   command.footer(kModuleExitCodes);
   if (program.add_options) program.add_options(command);

@@ -158,6 +158,13 @@ TEST_CASE("run options: a recorder that comes back writes another part") {
   CHECK(again(recorder, 0).arguments[0] == "out/run.mcap");
   CHECK(again(recorder, 1).arguments[0] == "out/run.part2.mcap");
   CHECK(again(recorder, 2).arguments[0] == "out/run.part3.mcap");
-  const ModuleCommand other{"haptics", "palpate-haptics", {"scene.yaml"}};
+  const ModuleCommand other{"collision", "palpate-collision", {"scene.yaml"}};
   CHECK(again(other, 3).arguments == other.arguments);
+}
+
+TEST_CASE("run options: haptics that comes back joins a session that runs") {
+  // Oracle: its devices read the session's time, which it does not know before it hears of it.
+  const ModuleCommand haptics{"haptics", "p", {"scene.yaml"}};
+  CHECK(again(haptics, 0).arguments == Names{"scene.yaml"});
+  CHECK(again(haptics, 1).arguments == Names{"scene.yaml", "--joins"});
 }

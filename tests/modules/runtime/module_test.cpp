@@ -25,13 +25,15 @@ namespace {
 
 /// A module of a scene that nobody loads meshes for, with someone who gives it commands.
 struct Played {
-  explicit Played(bool with_priority = false) : realtime(with_priority) {}
+  explicit Played(bool with_priority = false, bool joining = false)
+      : realtime(with_priority), joins(joining) {}
 
-  bool realtime;
+  bool realtime, joins;
   ModuleOptions options = [this] {
     ModuleOptions made;
     made.bus = own_bus_options();
     made.realtime = realtime;
+    made.joins = joins;
     return made;
   }();
   scene::Scene scene;
@@ -180,6 +182,24 @@ TEST_CASE("module: says goodbye") {
   }
   CHECK(palpate::testing::wait_until(
       [&] { return statuses.take(newest) && newest.state == ModuleState::kStopped; }));
+}
+
+TEST_CASE("module: who joins a session that runs knows its time in the first cycle") {
+  // Oracle: definition. The command waits for whoever comes to hear it, as in a session.
+  Played played(false, true);
+  SECTION("of a session that runs") {
+    played.command(SessionCommand::kStart);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    REQUIRE(played.module.next_cycle());
+    CHECK(played.module.running());
+    CHECK(played.module.time() >= 0.05);
+  }
+  SECTION("of one that nobody conducts, a second later") {
+    const auto began_ns = monotonic_now_ns();
+    REQUIRE(played.module.next_cycle());
+    CHECK_FALSE(played.module.running());
+    CHECK(monotonic_now_ns() - began_ns > 500'000'000);
+  }
 }
 
 TEST_CASE("module: messages carry the cycle's time") {
