@@ -92,7 +92,7 @@ def main():
     parser.add_argument("--model", default="implicit_volume")
     parser.add_argument("--rate", type=float, default=100, help="of deformation [Hz]")
     parser.add_argument("--pairs", type=int, default=5)
-    parser.add_argument("--duration", type=float, default=4, help="of each run [simulated s]")
+    parser.add_argument("--duration", type=float, default=12, help="of each run [simulated s]; probes press after 1.2 s, and rest after 3.2")
     parser.add_argument("--palpate", default=ROOT / "build/release/bin/palpate", type=pathlib.Path)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
