@@ -157,13 +157,23 @@ class LockstepRun {
     return !stop_.requested() && failures_.empty();
   }
 
+  /// Over hosts as long as it takes: each is started by somebody.
   bool wait_until_ready() {
-    const std::int64_t deadline_ns =
-        runtime::monotonic_now_ns() + ns_from_seconds(options_.ready_deadline);
+    const std::int64_t begin_ns = runtime::monotonic_now_ns();
+    const std::int64_t deadline_ns = begin_ns + ns_from_seconds(options_.ready_deadline);
+    std::int64_t line_ns = begin_ns + kWaitingLineEveryNs;
     while (next_cycle()) {
       const auto missing = monitor_.not_ready(names_);
       if (missing.empty()) return true;
-      if (runtime::monotonic_now_ns() < deadline_ns) continue;
+      const std::int64_t now_ns = runtime::monotonic_now_ns();
+      if (now_ns >= line_ns) {
+        line_ns += kWaitingLineEveryNs;
+        log_ << "palpate: "
+             << waiting_line(monitor_.waited_for(names_), !options_.secure.empty(),
+                             bus_.packets_refused())
+             << std::endl;
+      }
+      if (!options_.everywhere.empty() || now_ns < deadline_ns) continue;
       log_ << fmt::format("palpate: not ready after {:g} s: {}\n", options_.ready_deadline,
                           fmt::join(monitor_.waited_for(names_), ", "));
       exit_code_ = kExitFailed;
@@ -265,8 +275,12 @@ class LockstepRun {
 /// This host's part of a lockstep that another one conducts.
 int follow_lockstep(const RunOptions& options, std::ostream& log) {
   const StopSignal stop;
-  const std::size_t processes = scene::process_count(scene::load_scene(options.scene));
+  const scene::Scene scene = scene::load_scene(options.scene);
+  const std::size_t processes = scene::process_count(scene);
   ModuleGroup modules(module_commands(options, program_folder(), processes), log);
+  log << fmt::format("palpate: session {} of scene {}, in lockstep that another host conducts\n",
+                     options.bus.session, scene.name)
+      << std::flush;
   runtime::PeriodicLoop loop(1 / kLongestWait);
   int exit_code = kExitDone;
   while (modules.any_running() && !stop.requested()) {

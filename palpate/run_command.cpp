@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <ostream>
 #include <stdexcept>
+#include <utility>
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/data_folder.h"
@@ -41,7 +42,6 @@ constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
 /// With keys each pair has to prove who it is first.
 constexpr std::int64_t kSecureDiscoveryNs = 3 * kNanosecondsPerSecond;
-constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
 /// After a pause, and after the start, all have heard each other by then, and statuses say so.
 constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
 
@@ -81,6 +81,7 @@ class Run {
   bool next_cycle() {
     loop_.wait_for_period();
     session_.poll();
+    repeat_new_command();
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
     monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
     monitor_.poll();
@@ -92,6 +93,13 @@ class Run {
     if (options_.restart && !ended_) end_hung();
     for (const auto& end : modules_.poll()) note(end);
     return !stop_.requested() && modules_.any_running();
+  }
+
+  /// Somebody else's, who may leave before all have heard it: whoever comes hears the launcher's.
+  void repeat_new_command() {
+    const std::int64_t said_ns = session_.state().last_command().header.source_time_ns;
+    if (std::exchange(repeated_ns_, said_ns) == said_ns || !goes_on() || joined_) return;
+    conductor_.repeat(session_.state());
   }
 
   void tell_scene() {
@@ -118,7 +126,9 @@ class Run {
     auto expected = modules_.reporting_modules();
     if (options_.conducts && !options_.everywhere.empty()) expected = options_.everywhere;
     const bool records = std::ranges::find(expected, "recorder") != expected.end();
-    if (!records && modules_.running("recorder")) expected.emplace_back("recorder");
+    // Alone it waits for nobody, and says nothing.
+    if (!records && !expected.empty() && modules_.running("recorder"))
+      expected.emplace_back("recorder");
     const std::int64_t begin_ns = runtime::monotonic_now_ns();
     const std::int64_t heard_ns = options_.secure.empty() ? kDiscoveryNs : kSecureDiscoveryNs;
     const std::int64_t earliest_ns = begin_ns + (options_.only.empty() ? 0 : heard_ns);
@@ -167,7 +177,7 @@ class Run {
     if (loop_.woke_ns() - line_ns_ < kLineEveryNs) return;
     line_ns_ += kLineEveryNs;
     if (!joined_) conductor_.repeat(session_.state());
-    std::vector<std::string> away;
+    std::vector<std::string> away = monitor_.silent();
     for (const auto& name : modules_.modules()) {
       if (!modules_.running(name)) away.push_back(name);
     }
@@ -284,7 +294,8 @@ class Run {
   SessionMonitor monitor_;
   runtime::PeriodicLoop loop_;
   std::int64_t began_ns_ = 0, line_ns_ = 0;
-  std::int64_t stood_ns_ = 0;  ///< when it was last paused or had not begun; 0: never
+  std::int64_t repeated_ns_ = 0;  ///< when the command was given that was repeated last
+  std::int64_t stood_ns_ = 0;     ///< when it was last paused or had not begun; 0: never
   bool scene_told_ = false;
   bool joined_ = false;         ///< another launcher conducts the session
   bool ended_ = false;          ///< the run; its window may stay

@@ -45,6 +45,11 @@ void check_names(const std::vector<std::string>& only, const std::vector<std::st
 
 /// Of a hosts file, all hosts together; who looks on may be missing.
 void check_everywhere(const RunOptions& options, const std::vector<std::string>& modules) {
+  for (const auto& name : options.everywhere) {
+    if (name == "recorder" || std::ranges::find(modules, name) != modules.end()) continue;
+    throw InputError(fmt::format("{}: the scene has no module '{}'; it has {}",
+                                 options.hosts.string(), name, fmt::join(modules, ", ")));
+  }
   for (const auto& name : modules) {
     const auto& everywhere = options.everywhere;
     if (name == "visualizer" || everywhere.empty()) continue;
@@ -53,6 +58,9 @@ void check_everywhere(const RunOptions& options, const std::vector<std::string>&
                                  options.hosts.string(), name));
   }
 }
+
+/// To haptics, whose devices would else tell where they are at the session's beginning.
+constexpr const char* kJoins = "--joins";
 
 std::vector<std::string> session_arguments(const bus::BusOptions& bus) {
   return {"--session", bus.session, "--domain", std::to_string(bus.domain)};
@@ -99,6 +107,10 @@ ModuleCommand module_command(const RunOptions& options, const std::vector<std::s
   for (auto& argument : session_arguments(options.bus)) command.arguments.push_back(argument);
   if (!options.realtime) command.arguments.push_back("--no-realtime");
   add_lockstep(options, modules, command);
+  // Of a part of a session the rest may run already.
+  if (module == "haptics" && !options.only.empty() && !options.lockstep) {
+    command.arguments.emplace_back(kJoins);
+  }
   if (name.process > 1) {
     command.arguments.insert(command.arguments.end(), {"--process", std::to_string(name.process)});
   }
@@ -166,8 +178,8 @@ std::vector<ModuleCommand> module_commands(const RunOptions& options,
                                            const std::filesystem::path& program_folder,
                                            std::size_t processes) {
   const std::vector<std::string> modules = modules_of(processes);
-  check_names(options.only, modules);
   check_everywhere(options, modules);
+  check_names(options.only, modules);
   static_cast<void>(recording::TopicSelection(options.record_topics));  // throws what is wrong
   std::vector<ModuleCommand> commands;
   if (!options.record.empty()) {
@@ -215,9 +227,9 @@ ModuleCommand again(ModuleCommand command, int earlier) {
   if (earlier == 0) return command;
   if (command.module == "recorder") {
     command.arguments.front() = recording::part_of(command.arguments.front(), earlier + 1).string();
-  } else if (command.module == "haptics") {
-    // Its devices would tell where they are at the session's beginning.
-    command.arguments.push_back("--joins");
+  } else if (command.module == "haptics" &&
+             std::ranges::find(command.arguments, kJoins) == command.arguments.end()) {
+    command.arguments.emplace_back(kJoins);
   }
   return command;
 }

@@ -14,10 +14,12 @@ class SessionMonitor {
   /// Until a status arrives, at most `longest` [s].
   void wait(double longest) { statuses_.wait(longest); }
 
-  /// Names of modules whose state is not yet kReady or beyond (nothing heard, starting).
+  /// Names of modules that could not take part now: not heard of, starting, at fault, ended.
   std::vector<std::string> not_ready(const std::vector<std::string>& modules) const;
-  /// Whom these wait for: who has not been heard; the others may wait for them. If all were heard,
-  /// those that are not ready.
+  /// Those that were heard of, but not for two seconds.
+  std::vector<std::string> silent() const;
+  /// Whom these wait for, for a person: who has not been heard, or said why it takes no part; the
+  /// others may wait for them. If there are none, those that are not ready.
   std::vector<std::string> waited_for(const std::vector<std::string>& modules) const;
 
   SessionTally& tally() { return tally_; }
@@ -27,6 +29,7 @@ class SessionMonitor {
   bus::Reader<ModuleStatus> statuses_;
   ModuleStatus status_;
   SessionTally tally_;
+  std::map<std::string, std::int64_t> heard_ns_;  ///< of each module, by the monotonic clock
 };
 
 }  // namespace palpate::launcher

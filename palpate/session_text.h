@@ -6,15 +6,20 @@
 #include <vector>
 
 #include "modules/bus/bus.h"
+#include "modules/core/units.h"
 #include "palpate/session_tally.h"
 
 namespace palpate::launcher {
 
 /// "  12.0 s  real time 1.00  V/V0 stomach 1.000000  force probe 0.53 N  haptics 1000 Hz …"
 /// @param time  of the session [s]
-/// @param away  modules whose processes do not run: what they said last is no news
+/// @param away  modules whose processes do not run, or are not heard: what they said last is no
+/// news
 std::string status_line(const SessionTally& tally, double time,
                         const std::vector<std::string>& away = {});
+
+/// How often a launcher says whom it waits for [ns].
+inline constexpr std::int64_t kWaitingLineEveryNs = 5 * kNanosecondsPerSecond;
 
 /// "waiting for deformation; …": and what may be why.
 /// @param secured  only who has keys is heard  @param refused  by the launcher

@@ -71,7 +71,10 @@ class LockstepModule {
  private:
   bool goes_on() {
     session_.poll();
-    if (!session_.fault().empty()) say(ModuleState::kFault, cursor_->next_ns(), session_.fault());
+    if (!session_.fault().empty()) {
+      say(ModuleState::kFault, cursor_->next_ns(), session_.fault());
+      throw InputError(session_.fault());
+    }
     return !stop_.requested() && !finished_ && session_.phase() != SessionPhase::kStopped;
   }
 

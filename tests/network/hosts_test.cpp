@@ -271,3 +271,29 @@ TEST_CASE("two hosts: so does one with two deformation processes on the host tha
   CHECK(of_other > 0);
   CHECK(of_ball > 0);
 }
+
+TEST_CASE("two hosts: another scene on the second is refused there, and the first waits") {
+  // Oracle: exit code 2 and the words; nothing is played.
+  if (!network_or_skip()) return;
+  const bool lockstep = GENERATE(false, true);
+  const BallScene scene(kHeldPress);
+  TwoHosts hosts(scene);
+  const auto of_both = [&](std::vector<std::string> words) {
+    words.insert(words.end(), {"--duration", "1"});
+    if (lockstep) words.emplace_back("--lockstep");
+    return words;
+  };
+  hosts.start(0, of_both({}));
+  REQUIRE(hosts.running(0).wait_for_text("palpate: session"));
+  hosts.start(1, of_both({"--set", "organs[0].tissue.youngs_modulus_pa=30e3"}));
+  CHECK(hosts.running(1).wait_for_end() == 2);
+  CHECK_THAT(hosts.running(1).said(), Catch::Contains("this module loaded another (digest "));
+  // In real time the second's launcher may end its processes before they have said why.
+  const bool told = hosts.running(0).wait_for_text(
+      lockstep ? "deformation (the session plays scene 'press'" : "waiting for deformation");
+  INFO(hosts.running(0).said() << hosts.running(1).said());
+  CHECK(told);
+  hosts.running(0).child().signal(SIGTERM);
+  hosts.running(0).wait_for_end();
+  CHECK_THAT(hosts.running(0).said(), !Catch::Contains("simulated in"));
+}

@@ -149,7 +149,12 @@ TEST_CASE("command line: options that leave nothing to do, or leave another out,
   std::ofstream(folder + "/hosts.yaml")
       << "palpate_hosts: 1\nhosts: [{name: a, address: 127.0.0.1, modules: [haptics, "
          "deformation]}]\n";
+  std::ofstream(folder + "/more.yaml")
+      << "palpate_hosts: 1\nhosts: [{name: a, address: 127.0.0.1, modules: [haptics, collision, "
+         "deformation, deformation_2]}]\n";
   for (const auto& [typed, named] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"run", file, "--headless", "--hosts", folder + "/more.yaml", "--host", "a"},
+            "more.yaml: the scene has no module 'deformation_2'; it has deformation, collision, "},
            {{"run", file, "--only", "visualizer", "--no-visualizer"}, "leaves nothing to start"},
            {{"run", file, "--headless", "--hosts", folder + "/hosts.yaml", "--host", "a"},
             "no host has the module 'collision'"},

@@ -167,4 +167,5 @@ TEST_CASE("run options: haptics that comes back joins a session that runs") {
   const ModuleCommand haptics{"haptics", "p", {"scene.yaml"}};
   CHECK(again(haptics, 0).arguments == Names{"scene.yaml"});
   CHECK(again(haptics, 1).arguments == Names{"scene.yaml", "--joins"});
+  CHECK(again(again(haptics, 1), 2).arguments == Names{"scene.yaml", "--joins"});
 }

@@ -48,6 +48,22 @@ TEST_CASE("session monitor: knows who is ready, and hears no physics") {
     return monitor.not_ready(both).empty();
   }));
 
+  // Who plays another scene takes no part, nor does who has ended.
+  for (const ModuleState state : {ModuleState::kFault, ModuleState::kStopped}) {
+    status.state = state;
+    status.last_error = "another scene";
+    statuses.write(status);
+    CHECK(palpate::testing::wait_until([&] {
+      monitor.poll();
+      return monitor.not_ready(both) == std::vector<std::string>{"collision"};
+    }));
+    CHECK(monitor.waited_for(three) ==
+          std::vector<std::string>{"collision (another scene)", "deformation"});
+  }
+  CHECK(palpate::testing::wait_until([&] {
+    return monitor.silent() == std::vector<std::string>{"collision", "haptics"};
+  }));
+
   // The haptic loop sends nothing more for it.
   CHECK(forces.matched_readers() + positions.matched_readers() == 0);
 }
