@@ -1,6 +1,7 @@
 #include "haptics/stage.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -77,7 +78,9 @@ std::vector<RenderedProbe> make_probes(const scene::Scene& scene,
   return probes;
 }
 
-void tick(const runtime::Cycle& now, RenderedProbe& probe) {
+/// @returns whether it is known where the probe is: in a session that ran before, a driver that has
+/// not said a word yet moved it all the same
+bool tick(const runtime::Cycle& now, RenderedProbe& probe) {
   const double source_time = seconds_from_ns(now.now_ns);
   const bool by_source = probe.device->clock() == Device::Clock::kSource;
   const DeviceSample sample = probe.device->read(by_source ? source_time : now.time());
@@ -87,6 +90,7 @@ void tick(const runtime::Cycle& now, RenderedProbe& probe) {
   probe.state.pose = sample.pose;
   probe.state.twist = sample.twist;
   probe.state.buttons = sample.buttons;
+  return !now.joined || std::isfinite(sample.silence);
 }
 
 const char* acting_guard(const RenderedProbe& probe) {
@@ -184,8 +188,7 @@ runtime::Health HapticsStage::cycle(const runtime::Cycle& now) {
       probe.renderer.reset();
       probe.device->reset();
     }
-    tick(now, probe);
-    impl_->states.write(probe.state);
+    if (tick(now, probe)) impl_->states.write(probe.state);
     impl_->forces.write(probe.force);
     if (*health.guard == '\0') health.guard = acting_guard(probe);
   }

@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{2};
 constexpr double kLongestWait = 1e6;           ///< [s]
+constexpr double kRepeatedWithin = 1;          ///< a command, by the launcher [s]
 constexpr std::size_t kMostUntaken = 100'000;  ///< messages of a topic that nobody takes
 constexpr const char* kWhat = "the connection";
 
@@ -144,8 +145,23 @@ bool Live::control(SessionCommand command, double timeout) {
     poll_controls();
     return state_.last_command().header.source_time_ns != 0;
   });
-  if (heard) conductor_->command(state_, command);
-  return heard;
+  if (!heard) return false;
+  const std::int64_t before_ns = state_.last_command().header.source_time_ns;
+  conductor_->command(state_, command);
+  // What a writer said that leaves at once, some may never hear: the launcher says it again.
+  std::optional<bus::WriterId> first;
+  wait_until(kRepeatedWithin, [&] {
+    SessionControl control;
+    bool repeated = false;
+    while (controls_->take(control)) {
+      state_.apply(control);
+      if (control.header.source_time_ns <= before_ns) continue;
+      repeated = repeated || (first && *first != controls_->writer());
+      first = controls_->writer();
+    }
+    return repeated;
+  });
+  return true;
 }
 
 std::string Live::phase() {

@@ -33,7 +33,7 @@ class Live {
   /// False if the bus refused it. @param source_time  by this host's monotonic clock
   bool write_probe_input(const ProbeState& state);
   /// Gives a command once the session's own commands have been heard; false if none came within
-  /// `timeout` [s].
+  /// `timeout` [s]. Waits until the launcher has said it again, a second at most.
   bool control(SessionCommand command, double timeout);
   /// running, paused, …
   std::string phase();

@@ -92,6 +92,7 @@ bool Module::next_cycle() {
     }
     session_.poll();
   } while (!knows_time() && !stop_.requested());
+  if (std::exchange(joins_, false)) joined_ = session_.phase() != SessionPhase::kWaiting;
   if (session_.running()) run_with_priority();
   report_state();
   give_way_if_busy();

@@ -47,6 +47,8 @@ class Module {
   double time() const { return session_.time(now_ns()); }
   bool running() const { return session_.running() && !session_.state().halted(now_ns()); }
   bool take_reset() { return session_.take_reset(); }
+  /// The session ran, or stood, before the first cycle; known of who joins (ModuleOptions::joins).
+  bool joined() const { return joined_; }
   const Session& session() const { return session_; }
 
   /// Guards that act in this cycle, for the status; empty if none. A pointer to a constant text.
@@ -70,7 +72,7 @@ class Module {
 
   std::string name_;
   Priority priority_;
-  bool joins_;
+  bool joins_, joined_ = false;
   StopSignal stop_;
   Realtime realtime_;
   std::unique_ptr<AwakeCores> cores_;  ///< none: it does not ask

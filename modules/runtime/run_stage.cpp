@@ -22,6 +22,7 @@ Cycle cycle_of(Module& module) {
   now.computed_ns = thread_time_ns();
   now.running = module.running();
   now.reset = module.take_reset();
+  now.joined = module.joined();
   now.advance = module.period();
   return now;
 }

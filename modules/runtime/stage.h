@@ -27,6 +27,8 @@ struct Cycle {
   double advance = 0;    ///< simulated time this cycle may take on [s]
   /// The first one of a stage that goes on where another process' was, which ended a while ago.
   bool goes_on = false;
+  /// The session ran, or stood, when the stage's process began.
+  bool joined = false;
   std::int64_t computed_ns = 0;  ///< what the stage's thread computed so far; 0 in lockstep
 
   double time() const { return seconds_from_ns(sim_time_ns); }

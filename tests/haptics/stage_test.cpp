@@ -178,6 +178,24 @@ TEST_CASE("haptics stage: a real device is where its driver said, at the same ti
   }
 }
 
+TEST_CASE("haptics stage: in a session that ran before, it waits for a driver's first word") {
+  // Oracle: the stated rule: a probe that nobody has told of is not where the scene begins.
+  Session session{scene::TopicDevice{}};
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  runtime::Cycle now;
+  now.running = now.joined = true;
+  for (std::int64_t t = 1; t <= 20; ++t) {
+    const Vec3 position(0, 0, 1e-3);
+    if (t == 11) session.drive(t * kMs, position);
+    now.sim_time_ns = now.now_ns = t * kMs;
+    stage.cycle(now);
+    CHECK(session.states.take(session.state) == (t >= 11));
+    REQUIRE(session.forces.take(session.force));
+    if (t >= 11) CHECK(session.state.pose.position == position);
+    if (t < 11) CHECK(session.force.force.isZero(0));
+  }
+}
+
 TEST_CASE("haptics stage: several drivers of one probe are named, a driver's successor is not") {
   // Oracle: the stated rule, whichever of them is heard last in a tick.
   Session session{scene::TopicDevice{}};

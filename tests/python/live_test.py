@@ -116,6 +116,14 @@ class LiveTest(unittest.TestCase):
         with self.assertRaises(ValueError):
             self.live.control("explode")
 
+    def test_commands_of_who_leaves_at_once(self):
+        # Oracle: what each module says of itself. Some never heard the command, and went on alone.
+        for word, state in (("pause", "paused"), ("start", "running")):
+            with palpate.connect(SESSION, DOMAIN) as brief:
+                brief.control(word)
+            for module in ("haptics", "collision", "deformation"):
+                until(lambda: self.live.latest("module_status", module)["state"] in (state, state.replace("running", "degraded")))
+
     def test_bad_input(self):
         for bad in ([1, 2], [np.nan, 0, 0], [[0, 0, 0]]):
             with self.assertRaises(ValueError):

@@ -193,12 +193,14 @@ TEST_CASE("module: who joins a session that runs knows its time in the first cyc
     REQUIRE(played.module.next_cycle());
     CHECK(played.module.running());
     CHECK(played.module.time() >= 0.05);
+    CHECK(played.module.joined());
   }
   SECTION("of one that nobody conducts, a second later") {
     const auto began_ns = monotonic_now_ns();
     REQUIRE(played.module.next_cycle());
     CHECK_FALSE(played.module.running());
     CHECK(monotonic_now_ns() - began_ns > 500'000'000);
+    CHECK_FALSE(played.module.joined());
   }
 }
 
