@@ -128,7 +128,11 @@ void ModuleGroup::stop(bool reporting, const std::string& but) {
   while (std::any_of(stopping.begin(), stopping.end(), still_running)) {
     for (auto* member : stopping) listen(*member);
     if (runtime::monotonic_now_ns() > deadline) {
-      for (auto* member : stopping) member->process->signal(SIGKILL);
+      for (auto* member : stopping) {
+        if (member->process->ended()) continue;
+        member->deaf = true;
+        member->process->signal(SIGKILL);
+      }
     }
     ::poll(nullptr, 0, kStopPollMs);
   }
@@ -152,6 +156,14 @@ std::optional<ModuleEnd> ModuleGroup::last_end(const std::string& module) {
     return end;
   }
   return std::nullopt;
+}
+
+std::vector<std::string> ModuleGroup::deaf() const {
+  std::vector<std::string> names;
+  for (const auto& member : members_) {
+    if (member.deaf) names.push_back(member.command.module);
+  }
+  return names;
 }
 
 bool ModuleGroup::any_running() {

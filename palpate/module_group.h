@@ -57,7 +57,8 @@ class ModuleGroup {
   /// that did not fail `last_error` is its last line, if that is no information.
   std::optional<ModuleEnd> last_end(const std::string& module);
 
-  bool any_running();  ///< or about to run again
+  std::vector<std::string> deaf() const;  ///< those that stop() had to kill
+  bool any_running();                     ///< or about to run again
   bool running(const std::string& module);
   pid_t process_id(const std::string& module) const;  ///< of its last process; -1: no such module
   double computed(const std::string& module) const;   ///< by that process, in all [s]
@@ -81,6 +82,7 @@ class ModuleGroup {
     RestartPolicy policy = {};
     std::optional<std::int64_t> due_ns = {};  ///< when it is started again
     int restarts = 0;
+    bool deaf = false;  ///< did not end when told to
   };
   void start(Member& member);
   void start_due();

@@ -243,6 +243,9 @@ class Run {
     }
     const bool recorder_lives = modules_.running("recorder");
     modules_.stop_all_but(window ? "visualizer" : "");
+    for (const auto& name : modules_.deaf()) {
+      log_ << "palpate: " << name << " did not end when told, and was killed" << std::endl;
+    }
     monitor_.poll();
     if (!begun()) return;
     judge_recording(recorder_lives);

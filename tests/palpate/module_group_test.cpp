@@ -155,5 +155,6 @@ TEST_CASE("module group: stop is polite first, then not, and the recorder hears 
   CHECK(took >= ModuleGroup::kPatience);
   CHECK(took < ModuleGroup::kPatience + 5);
   CHECK_FALSE(group.any_running());
+  CHECK(group.deaf() == std::vector<std::string>{"visualizer"});
   CHECK(group.poll().empty());  // asked to end: nothing to report
 }

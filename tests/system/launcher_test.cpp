@@ -115,6 +115,18 @@ TEST_CASE("launcher: a hanging module does not outlive a launcher that is killed
   CHECK(wait_until([&] { return run.processes().empty(); }));
 }
 
+TEST_CASE("launcher: a module that does not end when told is killed, and named") {
+  // Oracle: what it says, the process table. A stopped process hears no SIGTERM.
+  const BallScene scene;
+  Launched run(scene, {});
+  REQUIRE(run.wait_for_text(" s  real time"));
+  kill(run.processes().at("palpate-haptics"), SIGSTOP);
+  run.child().signal(SIGTERM);
+  CHECK(run.wait_for_end() == 0);
+  CHECK_THAT(run.said(), Contains("palpate: haptics did not end when told, and was killed"));
+  CHECK(run.processes().empty());
+}
+
 TEST_CASE("launcher: modules that die or hang are started again, and counted") {
   // Oracle: the process table, the summary; the exit code of a session that went on to its end.
   const BallScene scene(
