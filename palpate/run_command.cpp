@@ -155,6 +155,7 @@ class Run {
     began_ns_ = line_ns_ = stood_ns_ = loop_.woke_ns();
     joined_ = session_.phase() != runtime::SessionPhase::kWaiting;
     if (!joined_) {
+      if (!options_.only.empty()) log_ << "palpate: starts the session, and ends it\n";
       conductor_.command(session_.state(), SessionCommand::kStart);
     } else {
       log_ << "palpate: joining the session that already runs\n";

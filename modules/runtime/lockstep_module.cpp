@@ -58,7 +58,8 @@ class LockstepModule {
   }
 
   void run() {
-    while (goes_on() && !all_matched()) wait_for_command();
+    // Who is ready plays: the scene is heard first.
+    while (goes_on() && !(session_.knows_scene() && all_matched())) wait_for_command();
     say(ModuleState::kReady, start_ns_);
     while (goes_on()) work();
     if (session_.phase() == SessionPhase::kStopped) finish();

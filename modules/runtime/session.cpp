@@ -16,7 +16,10 @@ void Session::poll() {
     if (kind_ == Kind::kRealTime && !state_.believes(control_, monotonic_now_ns())) continue;
     state_.apply(control_);
   }
-  while (scenes_.take(scene_)) fault_ = scene_mismatch(scene_, scene_digest_);
+  while (scenes_.take(scene_)) {
+    fault_ = scene_mismatch(scene_, scene_digest_);
+    knows_scene_ = true;
+  }
 }
 
 SceneDescription scene_description(const scene::Scene& scene) {

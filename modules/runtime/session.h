@@ -29,6 +29,8 @@ class Session {
 
   /// Why this module cannot take part: another scene, another protocol version. Empty if it can.
   const std::string& fault() const { return fault_; }
+  /// The session's scene was heard: no fault then is none.
+  bool knows_scene() const { return knows_scene_; }
 
  private:
   bus::Reader<SessionControl> controls_;
@@ -39,6 +41,7 @@ class Session {
   SessionControl control_;
   SceneDescription scene_;
   std::string fault_;
+  bool knows_scene_ = false;
 };
 
 /// What the launcher tells of the scene: name, digest, resolved text.
