@@ -64,8 +64,8 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
            "what is kept there (palpate run gives it)")
       .range(0, 1e6);
   command.flag("--joins", options.joins,
-               "The session runs already: its time is waited for before the first cycle, for a "
-               "second at most (palpate run says so of whom it starts again)");
+               "The session may run already: its time is waited for before the first cycle, for a "
+               "second at most (palpate run says so of whom it starts again, and of parts)");
   add_lockstep_options(command, options);
   command.footer(kModuleExitCodes);
   if (program.add_options) program.add_options(command);

@@ -17,7 +17,7 @@ struct ModuleOptions {
   bus::BusOptions bus;            ///< --session, --domain (or PALPATE_DOMAIN)
   bool realtime = true;           ///< --no-realtime
   std::optional<int> kept_state;  ///< --kept-state: of a KeptMemory, inherited; none: keeps nothing
-  bool joins = false;             ///< --joins: the session runs already, in real time
+  bool joins = false;             ///< --joins: the session may run already, in real time
   /// --lockstep: the modules of a lockstep session, this one included; empty: real time.
   std::vector<std::string> lockstep;
   std::filesystem::path from_snapshot;  ///< --from-snapshot: lockstep goes on there; empty: from 0

@@ -50,6 +50,12 @@ TEST_CASE("session monitor: knows who is ready, and hears no physics") {
 
   // Who plays another scene takes no part, nor does who has ended.
   for (const ModuleState state : {ModuleState::kFault, ModuleState::kStopped}) {
+    status.state = ModuleState::kReady;
+    statuses.write(status);
+    CHECK(palpate::testing::wait_until([&] {
+      monitor.poll();
+      return monitor.not_ready(both).empty();
+    }));
     status.state = state;
     status.last_error = "another scene";
     statuses.write(status);
