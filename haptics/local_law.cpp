@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "modules/core/rotation_vector.h"
 #include "modules/core/tolerances.h"
 #include "modules/core/vector_checks.h"
 
@@ -127,7 +126,7 @@ void LawSolver::place_rows(const Pose& pose, double time, bool& beyond_validity)
     const double length = apart.norm();
     // A core at the tissue's very place has no direction from it: the last one stays.
     if (row.radius > 0 && length > kLeastDistance * row.radius) {
-      row.basis = rotation_between(row.basis.col(0), apart / length) * row.basis;
+      row.basis = turned_basis(row.basis, apart / length);
     }
     double* const distance = &distances_[static_cast<std::size_t>(i)];
     for (int k = 0; k < per_row_; ++k) distance[k] = row.basis.col(k).dot(apart);
@@ -162,7 +161,8 @@ double LawSolver::relax_friction(int first) {
   const double softest = std::max(compliance_[t][t], compliance_[s][s]);
   double along_t = forces_[t] - distances_[t] / softest;
   double along_s = forces_[s] - distances_[s] / softest;
-  const double cone = friction_ * forces_[n], length = std::hypot(along_t, along_s);
+  const double cone = friction_ * forces_[n],
+               length = std::sqrt(along_t * along_t + along_s * along_s);
   if (length > cone) {
     along_t *= cone / length;
     along_s *= cone / length;
@@ -170,7 +170,7 @@ double LawSolver::relax_friction(int first) {
   const double by_t = along_t - forces_[t], by_s = along_s - forces_[s];
   if (by_t != 0) change(first + 1, by_t);
   if (by_s != 0) change(first + 2, by_s);
-  return std::hypot(by_t, by_s);
+  return std::sqrt(by_t * by_t + by_s * by_s);
 }
 
 void LawSolver::change(int direction, double by) {

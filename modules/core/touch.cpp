@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "modules/core/tolerances.h"
+
 namespace palpate {
 
 double ContactSet::deepest_gap() const {
@@ -50,6 +52,25 @@ Mat3 contact_basis(const Vec3& normal) {
   basis.col(1) = normal.unitOrthogonal();
   basis.col(2) = normal.cross(basis.col(1));
   return basis;
+}
+
+/// Rodrigues' formula for what is perpendicular to n: R t = t − (t·m) / (1 + n·m) (n + m).
+Mat3 turned_basis(const Mat3& basis, const Vec3& normal) {
+  constexpr double kNearlyOpposite = -0.9;  // the formula divides by nothing there
+  const double cosine = basis.col(0).dot(normal);
+  if (cosine < kNearlyOpposite) {  // a quarter of a turn, and the rest
+    const Vec3 aside = normal - cosine * basis.col(0);
+    const double length = aside.norm();
+    const Vec3 between = length > kDirectionless ? aside / length : basis.col(0).unitOrthogonal();
+    return turned_basis(turned_basis(basis, between), normal);
+  }
+  const Vec3 across = (basis.col(0) + normal) / (1 + cosine);
+  Mat3 turned;
+  turned.col(0) = normal;
+  for (int k = 1; k < 3; ++k) {
+    turned.col(k) = basis.col(k) - basis.col(k).dot(normal) * across;
+  }
+  return turned;
 }
 
 }  // namespace palpate

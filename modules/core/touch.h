@@ -98,6 +98,8 @@ struct LocalLaw {
 
 /// n and two tangents, each a column; from the normal alone.
 Mat3 contact_basis(const Vec3& normal);
+/// The same after the shortest rotation that turns its n into `normal`, unit.
+Mat3 turned_basis(const Mat3& basis, const Vec3& normal);
 
 /// Why the rendered force differs from the law's. Bits.
 enum ForceLimit : std::uint32_t {
