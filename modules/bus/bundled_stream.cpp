@@ -10,10 +10,17 @@ bool BundleSender::add(messages::Payload sample, std::uint32_t writer) {
   return sent;
 }
 
+int BundleSender::matched_readers() {
+  const int readers = writer_->matched_readers();
+  read_ = readers > 0;
+  return readers;
+}
+
 bool BundleSender::send() {
-  if (bundle_.empty()) return true;
   // Streams are of the present: what nobody reads is nobody's.
-  const bool sent = writer_->matched_readers() == 0 || writer_->write(bundle_.finish());
+  const bool read = matched_readers() > 0;
+  if (bundle_.empty()) return true;
+  const bool sent = !read || writer_->write(bundle_.finish());
   bundle_.clear();
   return sent;
 }

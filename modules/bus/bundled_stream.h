@@ -18,6 +18,9 @@ class BundleSender {
   bool add(messages::Payload sample, std::uint32_t writer);
   bool send();
   RawWriter& raw() { return *writer_; }
+  int matched_readers();
+  /// Whether there was one when it was sent last, or they were asked for.
+  bool is_read() const { return read_; }
 
  private:
   /// With table and words of RTPS a bundle fits a datagram, unless one sample alone is larger.
@@ -26,6 +29,7 @@ class BundleSender {
   std::unique_ptr<RawWriter> writer_;
   SampleBundle bundle_;
   std::uint32_t writers_ = 0;
+  bool read_ = true;
 };
 
 class BundledWriter : public RawWriter {
@@ -34,7 +38,8 @@ class BundledWriter : public RawWriter {
       : sender_(std::move(sender)), number_(sender_->next_writer()) {}
 
   bool write(messages::Payload sample) override { return sender_->add(sample, number_); }
-  int matched_readers() const override { return sender_->raw().matched_readers(); }
+  int matched_readers() const override { return sender_->matched_readers(); }
+  bool is_read() const override { return sender_->is_read(); }
   /// Sends what waits first.
   bool wait_until_received(double longest) override {
     return sender_->send() && sender_->raw().wait_until_received(longest);

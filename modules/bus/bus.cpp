@@ -15,6 +15,10 @@ template <class Message>
 bool Writer<Message>::write(Message& message) {
   Header& header = message.header;
   header.sequence = output_->next_sequence();
+  if (!output_->raw().is_read()) {
+    output_->count();
+    return true;
+  }
   const std::int64_t given_ns = header.source_time_ns;
   if (given_ns == 0) header.source_time_ns = bus_->now_ns();
   const char* refused_field = messages::encode(message, payload_);

@@ -91,13 +91,16 @@ void Input::insert(std::list<Waiting>::iterator arrived) {
 
 void Input::note(const Waiting& waiting) {
   if (!waiting.key.readable) return;
-  const auto known = std::ranges::find(newest_, waiting.key, [](const auto& n) { return n.first; });
+  const auto is_its = [&](const auto& newest) { return newest.first == waiting.key; };
   const std::int64_t time_ns = waiting.header.source_time_ns;
-  if (known == newest_.end()) {
-    newest_.emplace_back(waiting.key, time_ns);
-  } else {
-    known->second = std::max(known->second, time_ns);
+  // Keys come in turns: it is the one after the last, or looked for.
+  noted_ = noted_ + 1 < newest_.size() ? noted_ + 1 : 0;
+  if (newest_.empty() || !is_its(newest_[noted_])) {
+    const auto known = std::ranges::find_if(newest_, is_its);
+    noted_ = static_cast<std::size_t>(known - newest_.begin());
+    if (known == newest_.end()) newest_.emplace_back(waiting.key, time_ns);
   }
+  newest_[noted_].second = std::max(newest_[noted_].second, time_ns);
 }
 
 void Input::accept(const RawSample& sample, const Header& header) {

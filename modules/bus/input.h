@@ -93,6 +93,7 @@ class Input {
   std::list<Waiting> pending_;  ///< in the order they will be handed out
   std::list<Waiting> spare_;    ///< memory for arrivals
   std::vector<std::pair<messages::KeyBytes, std::int64_t>> newest_;  ///< source time of each key
+  std::size_t noted_ = 0;                                            ///< of these, the last
 };
 
 }  // namespace palpate::bus

@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -49,7 +50,10 @@ struct KeyBytes {
   std::size_t size = 0;
   bool readable = true;  ///< false: the payload holds no key where it must be
 
-  bool operator==(const KeyBytes& other) const = default;
+  bool operator==(const KeyBytes& other) const {
+    return size == other.size && readable == other.readable &&
+           std::equal(bytes.begin(), bytes.begin() + size, other.bytes.begin());
+  }
   auto operator<=>(const KeyBytes& other) const = default;
 };
 KeyBytes key_of(const MessageType& type, Payload payload);

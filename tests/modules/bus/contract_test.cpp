@@ -252,6 +252,26 @@ TEMPLATE_TEST_CASE("bus contract: with every sample nothing is lost, and each ke
   CHECK(reader.statistics().dropped == 0);
 }
 
+TEMPLATE_TEST_CASE("bus contract: with every sample who is seen to read gets all from then on",
+                   "[bus]", PALPATE_BOTH_BUSES) {
+  // Oracle: the numbers; three samples that nobody reads are counted.
+  TestType session(true);
+  auto writer = session.writers().writer(kProbeState);
+  for (int i = 0; i < 3; ++i) {
+    ProbeState unread = state_at(1);
+    REQUIRE(writer.write(unread));
+    session.writers().flush();
+  }
+  auto reader = session.readers().reader(kProbeState);
+  match(writer, reader);
+  ProbeState sent = state_at(2);
+  REQUIRE(writer.write(sent));
+  session.writers().flush();
+  const auto taken = take_all(reader, 1);
+  REQUIRE(taken.size() == 1);
+  CHECK(taken[0].header.sequence == 4);
+}
+
 TEMPLATE_TEST_CASE("bus contract: with every sample large messages are not lost either", "[bus]",
                    PALPATE_BOTH_BUSES) {
   // Oracle: the numbers 1 to 50 of messages of 240 KB, each some fragments on a network.
