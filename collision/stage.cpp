@@ -226,6 +226,8 @@ void CollisionStage::exchange(StateArchive& archive) {
   archive(impl_->organs, impl_->probes, impl_->troubles);
 }
 
+void CollisionStage::prepare() { impl_->organs.take(); }
+
 runtime::Health CollisionStage::cycle(const runtime::Cycle& now) {
   impl_->take(now);
   ContactFinder* finder = impl_->organs.finder();

@@ -28,6 +28,7 @@ class CollisionStage : public runtime::Stage {
   CollisionStage(const scene::Scene& scene, std::vector<geometry::ProbeForm> probes, bus::Bus& bus);
   ~CollisionStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
+  void prepare() override;
   void exchange(StateArchive& archive) override;
 
  private:

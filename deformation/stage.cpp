@@ -31,10 +31,9 @@ constexpr double kHeardWithin = 1.0;
 
 /// Brings probes and contacts to the world, and takes away what is too old to be true. What holds
 /// tissue off a round probe goes on without searches: the steps look around its core themselves;
-/// off others while they rest, by the contacts that were found last.
-/// Tissue let go meanwhile would be around the probe when searches return, and the hand get a blow.
-/// Nor is it let go where poses are missed for kHeldUnheard and the probe then is where it was.
-/// Laws have no rows meanwhile: the hand lets go.
+/// off others while they rest, by the contacts that were found last. Tissue let go meanwhile would
+/// be around the probe when searches return, and the hand get a blow. Nor is it let go where poses
+/// are missed for kHeldUnheard and the probe then is where it was. Laws have no rows meanwhile.
 class ProbeInputs {
  public:
   ProbeInputs(bus::Bus& bus, std::size_t probes, const OwnOrgans& organs, const scene::Scene& scene)
@@ -48,7 +47,7 @@ class ProbeInputs {
         found_ns_(probes, 0),
         usual_ages_(probes, {runtime::input_stale_after(scene), 1 / scene.rates.collision}) {}
 
-  void bring(DeformationWorld& world) {
+  void bring_poses(DeformationWorld& world) {
     while (states_.take(state_)) {
       const std::int64_t sampled_ns = state_.header.source_time_ns;
       if (state_.probe >= sampled_ns_.size()) continue;
@@ -58,6 +57,8 @@ class ProbeInputs {
       sampled_ns_[state_.probe] = sampled_ns;
       world.set_probe(state_.probe, state_.pose, missed ? kWhereItWas : kAnywhere);
     }
+  }
+  void bring_contacts(DeformationWorld& world) {
     while (contacts_.take(newest_)) {
       contacts_heard_.heard(newest_.probe, newest_.header.source_time_ns);
       note_found(newest_.probe, newest_.header.source_time_ns);
@@ -356,9 +357,12 @@ DeformationStage::DeformationStage(const scene::Scene& scene,
 
 DeformationStage::~DeformationStage() = default;
 
+void DeformationStage::prepare() { impl_->inputs.bring_poses(impl_->world); }
+
 runtime::Health DeformationStage::cycle(const runtime::Cycle& now) {
   if (now.reset) impl_->reset();
-  impl_->inputs.bring(impl_->world);
+  prepare();
+  impl_->inputs.bring_contacts(impl_->world);
   const bool waits = impl_->waits(now), running = now.running && !waits;
   if (!waits) impl_->inputs.drop_stale(now.now_ns, impl_->world);
   runtime::Health health;

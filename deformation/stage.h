@@ -30,6 +30,7 @@ class DeformationStage : public runtime::Stage {
                    const std::vector<geometry::TriangleSurface>& probe_meshes = {});
   ~DeformationStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
+  void prepare() override;
   void exchange(StateArchive& archive) override;
 
   const DeformationWorld& world() const;                 ///< of its own organs

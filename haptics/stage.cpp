@@ -132,6 +132,10 @@ struct HapticsStage::Impl {
     }
     for (RenderedProbe& probe : probes) probe.several_drivers = probe.drivers.several(now_ns);
     note_rejected();
+    take_laws();
+  }
+
+  void take_laws() {
     while (laws.take(law)) {
       if (law.probe >= probes.size() || law.process == 0 || law.process > processes) continue;
       probes[law.probe].renderer.update_law(law, seconds_from_ns(law.header.source_time_ns),
@@ -179,6 +183,8 @@ HapticsStage::HapticsStage(const scene::Scene& scene, bus::Bus& bus,
     : impl_(std::make_unique<Impl>(scene, bus, warnings)) {}
 
 HapticsStage::~HapticsStage() = default;
+
+void HapticsStage::prepare() { impl_->take_laws(); }
 
 runtime::Health HapticsStage::cycle(const runtime::Cycle& now) {
   impl_->listen(now.now_ns);

@@ -21,6 +21,7 @@ class HapticsStage : public runtime::Stage {
   HapticsStage(const scene::Scene& scene, bus::Bus& bus, std::vector<std::string>& warnings);
   ~HapticsStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
+  void prepare() override;
   void exchange(StateArchive& archive) override;
 
   Device& device(std::size_t probe);

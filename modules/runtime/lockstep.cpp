@@ -43,6 +43,22 @@ void LockstepCursor::exchange(StateArchive& archive, Stage& stage,
   for (bus::Input* input : inputs_) input->exchange(archive, time_ns);
 }
 
+bus::Input* LockstepCursor::prepare(Stage& stage, const bus::Input& missing) {
+  const bool in_parts = InputRule::comes_in_parts(missing.topic().name);
+  const bool again = prepared_ns_ == next_ns_ && prepared_until_ == &missing;
+  prepared_ns_ = next_ns_;
+  prepared_until_ = &missing;
+  if (!again || in_parts) {
+    for (bus::Input* input : inputs_) {
+      if (input == &missing && !in_parts) break;
+      input->set_horizon(rule_.horizon(input->topic().name, next_ns_));
+      if (input == &missing) break;
+    }
+    stage.prepare();
+  }
+  return missing_at(next_ns_);
+}
+
 Health LockstepCursor::step(Stage& stage) {
   open_until(next_ns_);
   Cycle now;

@@ -25,6 +25,10 @@ class LockstepCursor {
   std::int64_t next_ns() const { return next_ns_; }
   /// An input that does not have yet what the next cycle needs; nullptr if none.
   bus::Input* missing() { return missing_at(next_ns_); }
+  /// While `missing` is: lets the stage take what it reads before that, and what has come of it
+  /// if it comes in parts.
+  /// @returns what is missing then: what came meanwhile ends no wait
+  bus::Input* prepare(Stage& stage, const bus::Input& missing);
   /// The next cycle of `stage`, with nothing missing.
   Health step(Stage& stage);
 
@@ -49,6 +53,8 @@ class LockstepCursor {
   CycleGrid grid_;
   std::vector<bus::Input*> inputs_;
   std::int64_t start_ns_ = 0, next_ns_ = 0;
+  std::int64_t prepared_ns_ = CycleGrid::kSetUp;  ///< for which cycle it was last, and
+  const bus::Input* prepared_until_ = nullptr;    ///< before which input
 };
 
 }  // namespace palpate::runtime

@@ -113,11 +113,10 @@ class LockstepModule {
       said_ns_ = until_ns;
       guard_ = "";
     }
-    if (missing != nullptr) {
-      wait_for(*missing);
-    } else {
-      wait_for_command();
-    }
+    if (missing == nullptr) return wait_for_command();
+    // A snapshot that is due holds the stage as it is before.
+    if (!save_at_ns_) missing = cursor_->prepare(*stage_, *missing);
+    if (missing != nullptr) wait_for(*missing);
   }
 
   /// Says every few seconds what it is that does not come.

@@ -53,6 +53,9 @@ class Stage {
  public:
   virtual ~Stage() = default;
   virtual Health cycle(const Cycle& now) = 0;
+  /// In lockstep, any number of times before a cycle, while something that it needs has not come:
+  /// may take what the cycle would take first, which is there as far as the inputs are open.
+  virtual void prepare() {}
   /// After the last cycle of a lockstep session, all samples of the session being there.
   virtual void finish(const Cycle&) {}
   /// All that its cycles depend on beside what is said on the bus; may say things that are states

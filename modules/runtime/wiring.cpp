@@ -125,6 +125,11 @@ std::size_t InputRule::keys(std::string_view topic) const {
   return 0;
 }
 
+bool InputRule::comes_in_parts(std::string_view topic) {
+  const Wire* wire = find_wire(topic);
+  return wire != nullptr && wire->keys == Keys::kProbesOfProcesses;
+}
+
 bool is_awaited(std::string_view module, std::int64_t time_ns, const scene::Scene& scene,
                 const std::vector<std::string>& participants) {
   const auto waits = [&](const Wire& wire, std::string_view reader) {

@@ -82,6 +82,8 @@ class InputRule {
   /// [ns]; nothing to wait for where it is kNever or the number of keys is 0.
   std::int64_t required(std::string_view topic, std::int64_t time_ns) const;
   std::size_t keys(std::string_view topic) const;
+  /// Whether what one process says of it means the same before and after what another says.
+  static bool comes_in_parts(std::string_view topic);
 
  private:
   bool writes_first(const Wire& wire) const;

@@ -38,6 +38,8 @@ def trace(scene, seconds, out):
                        PALPATE_TRACE_FOLDER=str(out))
     run(BIN / "palpate", "run", scene, "--lockstep", "--headless", "--no-realtime", "--duration", seconds,
         "--frames", out / "frames", "--frame-interval-s", 0.01, "--record", out / "recording.mcap", "--overwrite",
+        # While a snapshot is due nothing is taken before its cycle, which so shows all that it reads.
+        "--snapshot-at", seconds, "--snapshot", out / "snapshot",
         env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
