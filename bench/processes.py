@@ -6,7 +6,8 @@
       and of solids have, the other rates a scene's own. Simulated per wall time of both, run in turns, as the
       runs tell it, from where all are ready; what each process computes in a period of deformation, its start too,
       of the first pair; whether both said the same of nodes, probes and forces (palpate diff).
-      The ratio is the median of pairs; that of the fastest runs beside it, for other programs only ever slow one down.
+      The ratio is the median of pairs. Beside it what deformation says of the wall time between its cycles: that of
+      the median cycles, and of the fastest tenths, for whatever else runs on these cores only ever slows one down.
       Yardstick, in the same turns: two simulators of half of the organs, each all in one process, that share nothing,
       beside one alone. A machine whose cores are not its own gives them less than two.
 """
@@ -23,6 +24,7 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+PRESSED_S = 3.3  # from then on the probes rest in the tissue
 SAME = ("surface", "node_positions", "probe_state", "contacts", "haptic_force")
 
 
@@ -47,11 +49,11 @@ def factor_told(text):
     return float(re.search(r"real-time factor ([\d.]+)", text)[1])
 
 
-def run(palpate, scene, duration, record=None):
-    """@returns simulated per wall time, and the time that each child computed [s]."""
-    command = [palpate, "run", scene, "--lockstep", "--headless", "--duration", str(duration),
-               "--domain", str(random.Random(os.getpid()).randrange(1, 200))]
-    command += ["--record", record, "--overwrite"] if record else []
+def run(palpate, scene, duration, *options):
+    """@returns simulated per wall time, the median and fastest tenth of the times from one of deformation's cycles to the
+    next, as it tells them [ms], and the time that each child computed [s]."""
+    command = [palpate, "run", scene, "--lockstep", "--headless", "--duration", str(PRESSED_S + duration),
+               "--domain", str(random.Random(os.getpid()).randrange(1, 200)), *options]
     computed = {}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while process.poll() is None:
@@ -70,9 +72,11 @@ def run(palpate, scene, duration, record=None):
                 computed[module] = sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
         except (OSError, IndexError):
             pass
+    errors = process.stderr.read()
     if process.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{process.stderr.read()}")
-    return factor_told(process.stdout.read()), computed
+        sys.exit(f"{' '.join(map(str, command))}: exit code {process.returncode}\n{errors}")
+    told = re.search(r"\[deformation\].* ([\d.]+) ms in the median, ([\d.]+) ms in the fastest", errors)
+    return factor_told(process.stdout.read()), tuple(map(float, told.groups())), computed
 
 
 def speed_at_once(palpate, scene, duration, count):
@@ -93,28 +97,32 @@ def main():
     parser.add_argument("--model", default="implicit_volume")
     parser.add_argument("--rate", type=float, default=100, help="of deformation [Hz]")
     parser.add_argument("--pairs", type=int, default=5)
-    parser.add_argument("--duration", type=float, default=12, help="of each run [simulated s]; probes press after 1.2 s, and rest after 3.2")
+    parser.add_argument("--duration", type=float, default=8, help="of each run, from where the probes press [simulated s]")
     parser.add_argument("--palpate", default=ROOT / "build/release/bin/palpate", type=pathlib.Path)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        scenes, records = {}, {}
+        scenes, records, snapshots = {}, {}, {}
         for processes in (1, 2):
             scenes[processes] = pathlib.Path(folder) / f"{processes}.yaml"
             records[processes] = pathlib.Path(folder) / f"{processes}.mcap"
             scenes[processes].write_text(scene_text(arguments, processes))
-            run(arguments.palpate, scenes[processes], min(1, arguments.duration), records[processes])
+            snapshots[processes] = pathlib.Path(folder) / f"{processes}.snapshot"
+            run(arguments.palpate, scenes[processes], 0.1, "--record", records[processes],
+                "--snapshot-at", str(PRESSED_S), "--snapshot", snapshots[processes])
         told = subprocess.run([arguments.palpate, "diff", records[1], records[2]], capture_output=True, text=True)
         rows = dict(re.findall(r"^(\w+) +(\d+ +\d+ +\d+ +\d+)$", told.stdout, re.M))
         same = all(rows[topic].split()[1:] == ["0", "0", "0"] for topic in SAME)
 
         half = pathlib.Path(folder) / "half.yaml"
         half.write_text(scene_text(argparse.Namespace(**{**vars(arguments), "organs": arguments.organs // 2}), 1))
-        ratios, speeds, shares, unconnected = [], {1: [], 2: []}, {}, []
+        ratios, speeds, cycles, shares, unconnected = [], {1: [], 2: []}, {1: [], 2: []}, {}, []
         for pair in range(arguments.pairs):
             speed = {}
             for processes in ((1, 2), (2, 1))[pair % 2]:
-                speed[processes], computed = run(arguments.palpate, scenes[processes], arguments.duration)
+                speed[processes], times, computed = run(arguments.palpate, scenes[processes], arguments.duration,
+                                                        "--from-snapshot", snapshots[processes])
                 speeds[processes].append(speed[processes])
+                cycles[processes].append(times)
                 periods = arguments.rate * arguments.duration
                 shares.setdefault(processes, {m: 1e3 * t / periods for m, t in computed.items()})
             ratios.append(speed[2] / speed[1])
@@ -124,9 +132,11 @@ def main():
         print(f"{processes}: {statistics.median(speeds[processes]):.2f} times real time; computed per period: "
               + ", ".join(f"{module} {ms:.2f} ms" for module, ms in sorted(modules.items())))
     ratios.sort()
+    of_one, of_two = ([statistics.median(times) for times in zip(*cycles[processes])] for processes in (1, 2))
+    half, tenth = (one / two for one, two in zip(of_one, of_two))
     print(f"{arguments.organs} organs of {arguments.nodes} nodes, {arguments.model} at {arguments.rate:g} Hz: two "
           f"processes simulate {statistics.median(ratios):.2f} times what one does ({ratios[0]:.2f} to {ratios[-1]:.2f}, "
-          f"{arguments.pairs} pairs), the fastest runs {max(speeds[2]) / max(speeds[1]):.2f} times; "
+          f"{arguments.pairs} pairs); by the median cycle {half:.2f} times, by the fastest tenth {tenth:.2f}; "
           f"{'the same bits' if same else 'DIFFERENT BITS'}")
     unconnected.sort()
     print(f"two simulators of half of them that share nothing: {statistics.median(unconnected):.2f} times what one does alone "

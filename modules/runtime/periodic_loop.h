@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "modules/runtime/lateness_histogram.h"
+#include "modules/runtime/time_histogram.h"
 
 namespace palpate::runtime {
 
@@ -23,7 +23,7 @@ struct LoopStatistics {
   std::uint64_t overruns = 0;          ///< periods missed
   std::int64_t worst_lateness_ns = 0;  ///< of a wake-up
   std::int64_t busy_ns = 0;            ///< spent in cycles, in all
-  LatenessHistogram lateness;
+  TimeHistogram lateness;
 
   /// Periods that had their cycle, of all that passed; 1 before the first.
   double on_time_fraction() const;

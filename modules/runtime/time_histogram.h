@@ -1,4 +1,5 @@
-// How late a loop woke up, in logarithmic bins of fixed number.
+// Times, of how late a loop woke up or how long its cycles were, in logarithmic bins of fixed
+// number.
 #pragma once
 
 #include <array>
@@ -6,10 +7,10 @@
 
 namespace palpate::runtime {
 
-/// Eight bins per octave (9 % wide) from 1 µs to about 16 s. Never allocates.
-class LatenessHistogram {
+/// 64 bins per octave (1.1 % wide) from 1 µs to about 16 s. Never allocates.
+class TimeHistogram {
  public:
-  void add(std::int64_t lateness_ns);
+  void add(std::int64_t time_ns);
 
   /// Upper edge of the bin that holds the given part of all samples [s]; 0 while empty.
   /// @param part  0 … 1, e.g. 0.999
@@ -17,7 +18,7 @@ class LatenessHistogram {
   std::uint64_t count() const { return count_; }
 
  private:
-  static constexpr int kBinsPerOctave = 8;
+  static constexpr int kBinsPerOctave = 64;
   static constexpr int kBins = 24 * kBinsPerOctave;
   static double upper_edge(int bin);  ///< [s]
 

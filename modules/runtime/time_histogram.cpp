@@ -1,4 +1,4 @@
-#include "modules/runtime/lateness_histogram.h"
+#include "modules/runtime/time_histogram.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +8,18 @@ namespace {
 constexpr double kFirstEdgeNs = 1000;  // everything up to 1 µs is in bin 0
 }
 
-void LatenessHistogram::add(std::int64_t lateness_ns) {
-  const double octaves = std::log2(std::max(1.0, static_cast<double>(lateness_ns) / kFirstEdgeNs));
+void TimeHistogram::add(std::int64_t time_ns) {
+  const double octaves = std::log2(std::max(1.0, static_cast<double>(time_ns) / kFirstEdgeNs));
   const int bin = static_cast<int>(std::ceil(octaves * kBinsPerOctave));
   ++bins_[static_cast<std::size_t>(std::min(bin, kBins - 1))];
   ++count_;
 }
 
-double LatenessHistogram::upper_edge(int bin) {
+double TimeHistogram::upper_edge(int bin) {
   return 1e-9 * kFirstEdgeNs * std::exp2(static_cast<double>(bin) / kBinsPerOctave);
 }
 
-double LatenessHistogram::quantile(double part) const {
+double TimeHistogram::quantile(double part) const {
   if (count_ == 0) return 0;
   const auto wanted = static_cast<std::uint64_t>(std::ceil(part * static_cast<double>(count_)));
   std::uint64_t seen = 0;
