@@ -128,6 +128,7 @@ class LockstepRun {
     monitor_.tally().start();
     if (options_.realtime) cores_.emplace().keep();
     Progress progress(start_ns_, duration_, out_);
+    grant();
     while (next_cycle() && slowest_ns() < end_ns()) {
       grant();
       progress.tell(seconds_from_ns(slowest_ns()), waited_for());
@@ -334,10 +335,14 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   log << fmt::format("palpate: scene {} in one process\n", scene.name);
   Progress progress(start.time_ns, duration, out);
   bool save = options.snapshot_at.has_value();
-  const double save_at = options.snapshot_at.value_or(0);
+  const auto instant = [&](double time) {
+    return runtime::snapshot_time(scene, ns_from_seconds(time));
+  };
+  const std::int64_t save_at_ns = instant(options.snapshot_at.value_or(0));
   const auto save_if_due = [&] {
-    if (!save || ns_from_seconds(session.time()) < ns_from_seconds(save_at)) return;
-    const runtime::Snapshot snapshot = session.snapshot();
+    if (!save || instant(session.time()) < save_at_ns) return;
+    runtime::Snapshot snapshot = session.snapshot();
+    snapshot.time_ns = save_at_ns;
     runtime::write_snapshot(options.snapshot, scene, snapshot);
     tell_snapshot(options, snapshot.time_ns, log);
     save = false;

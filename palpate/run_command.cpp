@@ -158,6 +158,7 @@ class Run {
       if (!options_.only.empty()) log_ << "palpate: starts the session, and ends it\n";
       conductor_.command(session_.state(), SessionCommand::kStart);
     } else {
+      joined_at_ = session_.time(loop_.woke_ns());
       log_ << "palpate: joining the session that already runs\n";
     }
     monitor_.tally().start();
@@ -167,7 +168,8 @@ class Run {
     // A scene's is its session's: whoever conducts that ends it.
     double duration = options_.duration;
     if (duration <= 0 && !joined_) duration = scene_.duration;
-    const bool duration_reached = duration > 0 && session_.time(loop_.woke_ns()) >= duration;
+    const double run = session_.time(loop_.woke_ns()) - joined_at_;
+    const bool duration_reached = duration > 0 && run >= duration;
     return duration_reached || session_.phase() == runtime::SessionPhase::kStopped;
   }
 
@@ -302,6 +304,7 @@ class Run {
   std::int64_t stood_ns_ = 0;     ///< when it was last paused or had not begun; 0: never
   bool scene_told_ = false;
   bool joined_ = false;         ///< another launcher conducts the session
+  double joined_at_ = 0;        ///< the session's time then [s]; 0: it began with us
   bool ended_ = false;          ///< the run; its window may stay
   bool recorder_left_ = false;  ///< for good
   int exit_code_ = kExitDone;

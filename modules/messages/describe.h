@@ -291,7 +291,7 @@ void describe(V& v, I& input) {
 template <class V, Is<OrganExtremes> O>
 void describe(V& v, O& organ) {
   v.field("organs.organ", organ.organ, Rule::kPlain);
-  v.field("organs.volume_ratio", organ.volume_ratio, Rule::kAtLeastZero);
+  v.field("organs.volume_ratio", organ.volume_ratio, Rule::kPlain);
   v.field("organs.worst_volume_error", organ.worst_volume_error, Rule::kAtLeastZero);
   v.field("organs.lowest_pressure_pa", organ.lowest_pressure, Rule::kPlain);
   v.field("organs.highest_pressure_pa", organ.highest_pressure, Rule::kPlain);

@@ -128,9 +128,9 @@ struct ContactTroubles {
 
 /// What a deformation process has seen of one of its organs since it first ran the session.
 struct OrganExtremes {
-  std::uint32_t organ = 0;                           ///< in scene order
-  double volume_ratio = 0;                           ///< newest V/V*; 0 before the first
-  double worst_volume_error = 0;                     ///< largest |V−V*|/V*
+  std::uint32_t organ = 0;        ///< in scene order
+  double volume_ratio = 0;        ///< newest V/V*, < 0 turned inside out; 0 before the first
+  double worst_volume_error = 0;  ///< largest |V−V*|/V*
   double lowest_pressure = 0, highest_pressure = 0;  ///< [Pa]
   std::uint32_t most_contacts = 0;                   ///< with other organs and itself at a time
 };

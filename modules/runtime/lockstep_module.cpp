@@ -51,7 +51,9 @@ class LockstepModule {
     stage_ = make(bus_);
     const auto inputs = bus_.inputs().subspan(drivers_own);
     cursor_.emplace(scene, name, std::vector<bus::Input*>(inputs.begin(), inputs.end()));
-    if (options.snapshot_at) save_at_ns_ = ns_from_seconds(*options.snapshot_at);
+    if (options.snapshot_at) {
+      save_at_ns_ = snapshot_time(scene, ns_from_seconds(*options.snapshot_at));
+    }
     if (options.from_snapshot.empty()) return;
     const Snapshot from = read_snapshot(options.from_snapshot, scene);
     go_on_from(from, options.from_snapshot, name, *cursor_, *stage_, own_outputs());
@@ -147,7 +149,7 @@ class LockstepModule {
       if (stop_.requested()) return;
       missing->wait(kLongestWait);
     }
-    save_if_due(end_ns);
+    save_if_due(snapshot_time(scene_, end_ns));
     cursor_->finish(*stage_, end_ns);
     wait_until_heard();
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <string_view>
 
 #include "modules/core/crc32.h"
@@ -91,6 +92,16 @@ void check_snapshot_name(const std::filesystem::path& file, bool overwrite,
   if (is_there && !overwrite) {
     throw InputError(file.string() + ": is there already; give another name, or " + to_overwrite);
   }
+}
+
+std::int64_t snapshot_time(const scene::Scene& scene, std::int64_t time_ns) {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
+  for (const std::string_view module : kModules) {
+    if (!remembers(module)) continue;
+    const std::int64_t period_ns = CycleGrid(rate_of(module, scene)).period_ns();
+    first_ns = std::min(first_ns, (time_ns + period_ns - 1) / period_ns * period_ns);
+  }
+  return first_ns;
 }
 
 bool remembers(std::string_view module) {

@@ -22,6 +22,10 @@ struct Snapshot {
 /// Whether a module's cycles depend on earlier ones: the visualizer's and the recorder's do not.
 bool remembers(std::string_view module);
 
+/// The first instant from `time_ns` on at which a module that remembers begins a cycle [ns]: a
+/// session is the same at all times from there back to the cycle before.
+std::int64_t snapshot_time(const scene::Scene& scene, std::int64_t time_ns);
+
 /// A module's part; begins at its time, with what it remembers.
 /// @param file  for messages
 /// @throws InputError if the snapshot does not have it, or it is not this module's

@@ -1,9 +1,11 @@
 #include "modules/runtime/status_reporter.h"
 
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
@@ -52,7 +54,10 @@ void StatusReporter::publish(std::int64_t now_ns, double session_time, const Loo
   status_.packets_refused = bus_.packets_refused().count;
   status_.header.sim_time_ns = ns_from_seconds(session_time);
   status_.header.source_time_ns = now_ns;
-  writer_.write(status_);
+  if (!writer_.write(status_) && !std::exchange(told_refused_, true)) {
+    const char* const field = writer_.statistics().last_refused_field;
+    spdlog::error("its status cannot be told: {}", field == nullptr ? "the bus refused it" : field);
+  }
   published_ns_ = now_ns;
   changed_ = false;
 }

@@ -50,6 +50,7 @@ class StatusReporter {
   ModuleStatus status_;
   const bus::Bus& bus_;
   bool changed_ = true;
+  bool told_refused_ = false;  ///< that the bus takes no status
   std::int64_t published_ns_ = 0;
   std::int64_t measured_ns_ = 0;  ///< since when cycles are counted for rate and busy fraction
   std::uint64_t cycles_then_ = 0;

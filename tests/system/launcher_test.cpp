@@ -262,6 +262,12 @@ TEST_CASE("launcher: a second one with --only joins the session and leaves it ru
   CHECK(second.wait_for_end() == 0);
   REQUIRE(first.wait_for_text("3.0 s  real time"));
   CHECK(first.processes().size() == 3);
+  // Its duration counts from when it joined: the session's time is beyond it.
+  Launched third(scene, {"--only", "collision", "--duration", "1"}, first.options());
+  REQUIRE(third.wait_for_text("joining the session that already runs"));
+  const auto joined_at = std::chrono::steady_clock::now();
+  CHECK(third.wait_for_end() == 0);
+  CHECK(std::chrono::steady_clock::now() - joined_at > std::chrono::milliseconds(700));
   first.child().signal(SIGINT);
   CHECK(first.wait_for_end() == 0);
 }

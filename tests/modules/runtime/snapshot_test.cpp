@@ -34,6 +34,18 @@ std::string name_refusal(const std::filesystem::path& file, bool overwrite) {
   }
 }
 
+TEST_CASE("snapshot: its time is that of the next cycle of a module that remembers") {
+  // Oracle: by hand; periods of 3 ms, 5 ms and 7 ms, and pictures, which remember nothing.
+  scene::Scene scene;
+  scene.rates = {1e3 / 3, 200, 1e3 / 7, 1e3};
+  constexpr std::int64_t kMs = 1'000'000;
+  CHECK(snapshot_time(scene, 0) == 0);
+  CHECK(snapshot_time(scene, 1) == 3 * kMs);
+  CHECK(snapshot_time(scene, 3 * kMs + 1) == 5 * kMs);
+  CHECK(snapshot_time(scene, 6 * kMs + 1) == 7 * kMs);
+  CHECK(snapshot_time(scene, 7 * kMs + 1) == 9 * kMs);
+}
+
 TEST_CASE("snapshot: nothing but a snapshot is replaced by one, and that only if asked") {
   // Oracle: the definition.
   const scene::Scene scene = scene::load_scene(scene::scene_file("ball_squeeze"));
