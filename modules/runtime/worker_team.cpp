@@ -18,10 +18,10 @@ void relax() {
 
 }  // namespace
 
-WorkerTeam::WorkerTeam(std::size_t threads) {
+WorkerTeam::WorkerTeam(std::size_t threads) : shares_(threads) {
   PALPATE_DEMAND(threads >= 1);
   try {
-    for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this] { work(); });
+    for (std::size_t i = 1; i < threads; ++i) workers_.emplace_back([this, i] { work(i); });
   } catch (...) {  // no thread more: those that run are not left behind
     end();
     throw;
@@ -38,26 +38,38 @@ void WorkerTeam::end() {
 }
 
 void WorkerTeam::run(std::size_t count, ChunkBody body) {
-  // The ticket is closed while the run changes, or a worker late from the last one takes its end
+  if (workers_.empty()) {
+    for (std::size_t chunk = 0; chunk < count; ++chunk) body(chunk);
+    return;
+  }
+  // All tickets are closed while the run changes, or a worker late from the last one takes its end
   // for a chunk.
-  ticket_ = kClosed;
+  for (Share& share : shares_) share.ticket = kClosed;
   body_ = &body;  // cppcheck-suppress danglingLifetime; all chunks end before this returns
   count_ = count;
-  done_ = 0;
   const std::uint32_t run = run_ + 1;
-  ticket_ = std::uint64_t{run} << 32;
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    shares_[i].done = 0;
+    shares_[i].ticket = std::uint64_t{run} << 32 | first_chunk(i, count);
+  }
   run_ = run;
   if (count > 1) run_.notify_all();
-  take_chunks(run);
-  while (done_ < count) relax();  // at most one chunk per worker is still under way
+  take_chunks(run, 0);
+  while (done() < count) relax();  // at most one chunk per worker is still under way
 }
 
-void WorkerTeam::work() {
+std::size_t WorkerTeam::done() const {
+  std::size_t done = 0;
+  for (const Share& share : shares_) done += share.done;
+  return done;
+}
+
+void WorkerTeam::work(std::size_t own) {
   std::uint32_t run = 0;
   while (true) {
     run = await_run(run);
     if (stop_) return;
-    take_chunks(run);
+    take_chunks(run, own);
   }
 }
 
@@ -70,17 +82,24 @@ std::uint32_t WorkerTeam::await_run(std::uint32_t last_run) const {
   return run_.load();
 }
 
-void WorkerTeam::take_chunks(std::uint32_t run) {
-  std::uint64_t ticket = ticket_;
+void WorkerTeam::take_chunks(std::uint32_t run, std::size_t own) {
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    take_share(run, (own + i) % shares_.size(), shares_[own]);
+  }
+}
+
+void WorkerTeam::take_share(std::uint32_t run, std::size_t share, Share& own) {
+  std::atomic<std::uint64_t>& next = shares_[share].ticket;
+  std::uint64_t ticket = next;
   while (true) {
     // Read before the chunk is claimed: as long as one is left, the run cannot end and change them.
     const ChunkBody* const body = body_;
-    const std::size_t count = count_, chunk = ticket & 0xffffffffu;
-    if (ticket >> 32 != run || chunk >= count) return;
-    if (!ticket_.compare_exchange_weak(ticket, ticket + 1)) continue;
+    const std::size_t end = first_chunk(share + 1, count_), chunk = ticket & 0xffffffffu;
+    if (ticket >> 32 != run || chunk >= end) return;
+    if (!next.compare_exchange_weak(ticket, ticket + 1)) continue;
     (*body)(chunk);
-    ++done_;
-    ticket = ticket_;
+    ++own.done;
+    ticket = next;
   }
 }
 

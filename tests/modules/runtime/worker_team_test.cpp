@@ -64,7 +64,42 @@ TEST_CASE("worker team: more than one thread takes part where there is enough to
   CHECK(ids[0] != ids[1]);
 }
 
-#ifndef __SANITIZE_ADDRESS__  // which needs more than any limit
+TEST_CASE(
+    "worker team: each thread begins with its own part of the chunks, the same in every run") {
+  // Oracle: thread ids. The first chunks that are begun wait for each other, so that neither thread
+  // can take the other's part for want of him.
+  WorkerTeam team(2);
+  std::thread::id worker;
+  for (int run = 0; run < 50; ++run) {
+    std::atomic<int> begun{0};
+    std::vector<std::thread::id> ids(9);
+    team.run(ids.size(), [&](std::size_t chunk) {
+      ids[chunk] = std::this_thread::get_id();
+      ++begun;
+      while (begun < 2) std::this_thread::yield();
+    });
+    if (run == 0) worker = ids[4];
+    CHECK(ids[0] == std::this_thread::get_id());
+    CHECK(ids[4] == worker);
+    CHECK(worker != ids[0]);
+  }
+}
+
+TEST_CASE("worker team: who is done with his part takes from another's") {
+  // Oracle: one chunk ends only after all others have, whosesoever they are.
+  WorkerTeam team(3);
+  for (const std::size_t last : {0u, 5u, 11u}) {
+    std::atomic<int> done{0};
+    team.run(12, [&](std::size_t chunk) {
+      while (chunk == last && done < 11) std::this_thread::yield();
+      ++done;
+    });
+    CHECK(done == 12);
+  }
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // which need more than any limit
 TEST_CASE("worker team: threads that the system does not give are an error, not the end") {
   // Oracle: a limit on memory, in a process of its own, under which some of 200 stacks of 8 MiB
   // fit; what is thrown. The first threads ended the program: "terminate called".
