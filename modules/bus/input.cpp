@@ -21,11 +21,15 @@ void Input::set_horizon(std::int64_t source_time_ns) {
 }
 
 bool Input::heard_until(std::int64_t source_time_ns, std::size_t keys) {
+  const auto is_heard = [&] {
+    const auto heard = std::ranges::count_if(
+        newest_, [&](const auto& newest) { return newest.second >= source_time_ns; });
+    return static_cast<std::size_t>(heard) >= keys;
+  };
   gated_ = true;
+  if (is_heard()) return true;
   pull();
-  const auto heard = std::ranges::count_if(
-      newest_, [&](const auto& newest) { return newest.second >= source_time_ns; });
-  return static_cast<std::size_t>(heard) >= keys;
+  return is_heard();
 }
 
 const RawSample* Input::next() {
