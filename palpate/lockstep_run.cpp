@@ -58,8 +58,9 @@ runtime::Snapshot start_of(const RunOptions& options, const scene::Scene& scene)
 void check_times(const RunOptions& options, std::int64_t start_ns, double duration) {
   const double start = seconds_from_ns(start_ns);
   if (start >= duration) {
-    throw InputError(fmt::format("{}: is of {:g} s, the run ends at {:g} s: give --duration",
-                                 options.from_snapshot.string(), start, duration));
+    throw InputError(
+        fmt::format("{}: is of {:g} s, and the run ends at {:g} s: give a --duration beyond {:g}",
+                    options.from_snapshot.string(), start, duration, start));
   }
   if (!options.snapshot_at) return;
   const bool later = ns_from_seconds(*options.snapshot_at) > start_ns;

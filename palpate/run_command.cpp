@@ -375,8 +375,8 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
                                         scene::process_count(scene::load_scene(options.scene)));
   if (commands.empty()) {
     throw InputError(
-        "--only: leaves nothing to start; a visualizer needs a window, or --frames, and no "
-        "--no-visualizer");
+        "--only: leaves nothing to start; a recorder needs --record, a visualizer a window, or "
+        "--frames, and no --no-visualizer");
   }
   check_keys_of(commands);
   if (options.lockstep) return run_lockstep(options, out, log);
