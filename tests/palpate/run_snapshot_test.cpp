@@ -70,6 +70,16 @@ TEST_CASE(
   run.snapshot_at = 0.0502;
   run.snapshot = scene.folder() / "at.snapshot";
   CHECK_THAT(said_by(run), Contains("of 0.051 s, where the first cycle from 0.0502 s on begins"));
+
+  // Who goes on from there with the time that the run ended at has asked for nothing.
+  run.from_snapshot = run.snapshot;
+  run.duration = 0.05;
+  run.snapshot_at.reset();
+  run.snapshot.clear();
+  std::ostringstream out, log;
+  CHECK_THROWS_WITH(run_command(run, out, log), run.from_snapshot.string() +
+                                                    ": is of 0.051 s, and the run ends at 0.05 s: "
+                                                    "give a --duration beyond 0.051");
 }
 
 TEST_CASE("run snapshot: a run that is stopped before it says that there is none, and fails") {
