@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modules/core/rotation_vector.h"
+
 namespace palpate::visualizer {
 namespace {
 
@@ -29,7 +31,7 @@ SurfacePress::SurfacePress(std::size_t probe, const ProbeBody& body, const Pose&
       most_(kDeepest * view.radius()) {
   if (body.plane) {
     const Vec3 faces = from.rotation * Vec3::UnitZ();
-    rotation_ = (Quat::FromTwoVectors(faces, -at.normal) * from.rotation).normalized();
+    rotation_ = (rotation_between(faces, -at.normal) * from.rotation).normalized();
   }
   find_way(from, view, camera);
 }

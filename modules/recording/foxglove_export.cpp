@@ -7,6 +7,7 @@
 #include <map>
 
 #include "modules/core/error.h"
+#include "modules/core/rotation_vector.h"
 #include "modules/core/text.h"
 #include "modules/core/whole_file.h"
 #include "modules/recording/foxglove_messages.h"
@@ -74,7 +75,7 @@ foxglove::Entity entity_of(const HapticForce& force, const Vec3& origin) {
   const double length = kFoxgloveMetresPerNewton * force.force.norm();
   if (length < kShortestArrow) return entity;  // what was there goes
   const double head = std::min(2 * kShaft, length / 2);
-  const Quat along = Quat::FromTwoVectors(Vec3::UnitX(), force.force);
+  const Quat along = rotation_between(Vec3::UnitX(), force.force);
   entity.arrows.push_back({{origin, along}, length - head, kShaft, head, 2 * kShaft, kForceColor});
   return entity;
 }

@@ -31,13 +31,20 @@ TEST_CASE("rotation vector: logarithm inverts the exponential up to half a turn,
 }
 
 TEST_CASE("rotation between: turns one direction into the other the short way") {
-  // Oracle: invariants: b is met, and the angle is that between a and b, up to half a turn.
-  // Tolerance: a few roundings; half a turn's axis comes from a singular value decomposition.
-  const Vec3 a(1, -2, 3);
+  // Oracle: invariants: b is met, and the angle is that between a and b, up to half a turn; near to
+  // it the axis is known as well as rounding allows, b to 1.5e-8. Else a few roundings.
+  const Vec3 a(1, -2, 3), across = a.unitOrthogonal();
   for (const Vec3& b : {Vec3(2, 1, 0.5), Vec3(3, -6, 9), Vec3(-1, 2, -3), Vec3(0, 0, 1e-3)}) {
     const Quat turn = rotation_between(a, b);
     CHECK((turn * a.normalized() - b.normalized()).norm() < 1e-14);
     const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-    CHECK(vector_from_rotation(turn).norm() == Approx(angle).margin(1e-7));
+    CHECK(std::abs(vector_from_rotation(turn).norm() - angle) < 1e-14);
+  }
+  for (const double off : {1e-2, 1e-5, 1e-7, 4e-8, 1e-8, 1e-12}) {
+    INFO(off);
+    const Vec3 b = -a.normalized() + off * across;
+    const Quat turn = rotation_between(a, b);
+    CHECK(std::abs(turn.norm() - 1) < 1e-15);
+    CHECK((turn * a.normalized() - b.normalized()).norm() < (off > 1.5e-8 ? 2e-15 / off : 1.5e-8));
   }
 }
