@@ -36,6 +36,12 @@ SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const 
   reset();
 }
 
+double SimulatedOrgan::volume() const {
+  const VolumeGradient* const found = dynamics_->volume_at(state_.positions);
+  return found != nullptr ? found->volume
+                          : geometry::enclosed_volume(state_.positions, model_->triangles);
+}
+
 int SimulatedOrgan::substeps(double period) const {
   const int needed = std::max(1, static_cast<int>(std::ceil(period / dynamics_->largest_step())));
   return needed << halvings_;

@@ -55,6 +55,8 @@ class SimulatedOrgan {
   OrganDynamics& dynamics() const { return *dynamics_; }
   const OrganState& state() const { return state_; }
 
+  double volume() const;  ///< that its surface encloses [m³]
+
   int substeps(double period) const;
   bool contacts_suspended() const { return suspension_time_ > 0; }  ///< takes no contacts for now
 

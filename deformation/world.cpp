@@ -358,7 +358,7 @@ OrganReading DeformationWorld::read(std::size_t organ_index) const {
   const OrganState& state = organ.simulated.state();
   OrganReading reading;
   reading.positions = positions(organ_index);
-  reading.volume = geometry::enclosed_volume(state.positions, model.triangles);
+  reading.volume = organ.simulated.volume();
   reading.target_volume = std::max(state.target_volume, 0.0);
   reading.pressure = state.pressure;
   reading.kinetic_energy = kinetic_energy(model, state.velocities);

@@ -7,6 +7,7 @@
 #include "deformation/elements/quadratic_mesh_change.h"
 #include "deformation/model/mesh_change.h"
 #include "modules/core/error.h"
+#include "modules/core/ranges.h"
 #include "modules/scene/models.h"
 
 namespace palpate::deformation {
@@ -37,7 +38,7 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
   const bool moved = look_ahead(period * steps.displaced());
   std::span<const Vec3> gradient;
   if (keeps_volume) {
-    if (moved) evaluate_volume(simulated.model(), positions_ahead, volume);
+    if (moved) take_volume_ahead();
     gradient = volume.gradient;
   }
   return compliance->solve(
@@ -57,14 +58,28 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
 /// @returns false if they are where they were at the last look, which another probe's law took
 bool WorldOrgan::look_ahead(double time) {
   const OrganState& state = simulated.state();
-  bool moved = positions_ahead.size() != state.positions.size();
+  const bool is_first = positions_ahead.size() != state.positions.size();
   positions_ahead.resize(state.positions.size());
-  for (std::size_t i = 0; i < positions_ahead.size(); ++i) {
-    const Vec3 ahead = state.positions[i] + time * state.velocities[i];
-    moved |= ahead != positions_ahead[i];
-    positions_ahead[i] = ahead;
+  const auto moved =
+      Ranges(runner).sums(positions_ahead.size(), [&](std::size_t first, std::size_t last) {
+        double count = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          const Vec3 ahead = state.positions[i] + time * state.velocities[i];
+          if (ahead != positions_ahead[i]) ++count;
+          positions_ahead[i] = ahead;
+        }
+        return Ranges::Sums{count, 0};
+      });
+  return is_first || moved[0] > 0;
+}
+
+void WorldOrgan::take_volume_ahead() {
+  const VolumeGradient* const found = simulated.dynamics().volume_at(positions_ahead);
+  if (found != nullptr) {
+    volume = *found;
+  } else {
+    evaluate_volume(simulated.model(), positions_ahead, volume);
   }
-  return moved;
 }
 
 /// What is kept of the model beside it.
@@ -74,8 +89,9 @@ void WorldOrgan::know_model() {
   std::vector<geometry::Tetrahedron> tetrahedra;
   if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
   surface = std::make_unique<SurfaceWalk>(model);
-  compliance = std::make_unique<PatchCompliance>(
-      model, Neighbours(model, tetrahedra), model.is_solid() ? kPatchOfSolid : kPatchOfSprings);
+  compliance =
+      std::make_unique<PatchCompliance>(model, Neighbours(model, tetrahedra),
+                                        model.is_solid() ? kPatchOfSolid : kPatchOfSprings, runner);
   mean_edge = geometry::mean_edge_length(
       {{model.rest_positions.begin(),
         model.rest_positions.begin() + static_cast<std::ptrdiff_t>(model.surface_node_count)},
@@ -152,6 +168,7 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
       .name = organ.name,
       .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
       .integrator = integrator,
+      .runner = runner,
   };
   const OrganModel& kept = made.simulated.model();
   made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;

@@ -27,6 +27,7 @@ struct WorldOrgan {
   std::string name;
   SimulatedOrgan simulated;
   IntegratorChoice integrator;
+  ChunkRunner* runner = nullptr;  ///< none: the calling thread alone
   std::uint32_t generation = 1;
   std::vector<ContactRow> rows = {};
   SimulatedOrgan::Mark start = {};  ///< of a step with other organs that may be taken back
@@ -62,6 +63,7 @@ struct WorldOrgan {
   friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
                                ChunkRunner*, Guarding);
   bool look_ahead(double time);
+  void take_volume_ahead();
   void take(OrganMesh mesh, std::span<const CoreLine> outside);
   void know_model();
 };

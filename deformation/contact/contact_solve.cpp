@@ -20,6 +20,7 @@ constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly 
 struct PreparedRow {
   double normal_inverse_mass = 0;       ///< Σ b² W along n with σ held or eliminated [1/kg]
   double tangential_inverse_mass = 0;   ///< Σ b² W across n, the most of it [1/kg]
+  std::array<Vec3, 3> normal_answers;   ///< b W n of its nodes [1/kg]
   Vec3 volume_coupling = Vec3::Zero();  ///< Σ b W g [m²/kg]
   double normal_coupling = 0;           ///< n·Σ b W g
   double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
@@ -86,6 +87,10 @@ class Solver {
       prepared.normal_coupling = coupling;
       prepared.volume_share = along > 0 ? coupling * coupling / along : 0;
     }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 share = row.weights[static_cast<int>(k)] * row.normal;
+      prepared.normal_answers[k] = inverse_mass_.apply(row.nodes[k], share);
+    }
     prepared.normal_inverse_mass = along;
     if (volume_ != nullptr && !sigma_is_held_) {
       prepared.normal_inverse_mass *=
@@ -129,6 +134,20 @@ class Solver {
     for (int k = prepared_[r].first_node; k <= prepared_[r].last_node; ++k) {
       velocities_[row.nodes[k]] += inverse_mass_.apply(row.nodes[k], row.weights[k] * impulse);
     }
+    couple(coupling);
+  }
+
+  /// @param impulse  along the normal [N·s]
+  void add_normal_impulse(std::size_t r, double impulse) {
+    const PreparedRow& prepared = prepared_[r];
+    for (int k = prepared.first_node; k <= prepared.last_node; ++k) {
+      const auto of_row = static_cast<std::size_t>(k);
+      velocities_[rows_[r].nodes[of_row]] += impulse * prepared.normal_answers[of_row];
+    }
+    couple(impulse * prepared.normal_coupling);
+  }
+
+  void couple(double coupling) {
     volume_velocity_ += coupling;
     if (!sigma_is_held_) sigma_ = volume_impulse();
   }
@@ -140,7 +159,7 @@ class Solver {
                               row.normal.dot(tissue_velocity(r));
     const double change = press(row, separation, prepared.normal_inverse_mass, prepared.yielding);
     if (change == 0) return 0;
-    add_impulse(r, -change * row.normal, -change * prepared.normal_coupling);
+    add_normal_impulse(r, -change);
     return std::abs(change) * prepared.normal_inverse_mass;
   }
 
@@ -157,9 +176,8 @@ class Solver {
 
   double cut_friction(std::size_t r) {
     const Vec3 before = rows_[r].tangential_impulse;
-    clamp_to_cone(rows_[r]);
+    if (!clamp_to_cone(rows_[r])) return 0;
     const Vec3 change = rows_[r].tangential_impulse - before;
-    if (change.isZero(0)) return 0;
     add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
     return change.norm() * prepared_[r].tangential_inverse_mass;
   }

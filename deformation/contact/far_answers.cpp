@@ -12,8 +12,8 @@ constexpr double kEnough = 1e-3;
 
 }  // namespace
 
-FarAnswers::FarAnswers(const OrganModel& model)
-    : model_(model), springs_(model, model.network(), false), product_(springs_) {}
+FarAnswers::FarAnswers(const OrganModel& model, ChunkRunner* runner)
+    : model_(model), springs_(model, model.network(), false, runner), product_(springs_) {}
 
 void FarAnswers::find(const std::vector<Vec3>& positions, const Neighbours& neighbours,
                       std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t near,

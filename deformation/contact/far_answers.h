@@ -25,8 +25,9 @@ class FarAnswers {
   /// At most. What more of them find is less than a touch grows by within the period.
   static constexpr int kIterations = 8;
 
-  /// @param model  of springs, outlives this
-  explicit FarAnswers(const OrganModel& model);
+  /// @param model   of springs, outlives this
+  /// @param runner  outlives this; none: the calling thread alone. The bits are the same
+  explicit FarAnswers(const OrganModel& model, ChunkRunner* runner = nullptr);
 
   /// Finds X, and keeps its part beyond the first `near` nodes, the small patch.
   /// @param touched, centre  as the small patch was grown (patch.h)

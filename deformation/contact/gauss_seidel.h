@@ -4,16 +4,21 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "modules/core/types.h"
 
 namespace palpate::deformation {
 
 /// Coulomb: |tangential| ≤ friction · normal.
+/// @returns whether it was more
 template <class Row>
-void clamp_to_cone(Row& row) {
-  const double limit = row.friction * row.normal_impulse, norm = row.tangential_impulse.norm();
-  if (norm > limit) row.tangential_impulse *= norm > 0 ? limit / norm : 0;
+bool clamp_to_cone(Row& row) {
+  const double limit = row.friction * row.normal_impulse;
+  const double square = row.tangential_impulse.squaredNorm();
+  if (!(square > limit * limit)) return false;
+  row.tangential_impulse *= limit / std::sqrt(square);
+  return true;
 }
 
 /// Start values are only a guess, but must lie in the cone of this row.

@@ -15,8 +15,9 @@ SpringShares shares_of(const PeriodSteps& steps, double drag) {
 
 }  // namespace
 
-PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes)
-    : model_(model), neighbours_(std::move(neighbours)), nodes_(nodes) {}
+PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes,
+                                 ChunkRunner* runner)
+    : model_(model), neighbours_(std::move(neighbours)), nodes_(nodes), runner_(runner) {}
 
 void PatchCompliance::exchange(StateArchive& archive) {
   bool has_solid = solid_.has_value();
@@ -140,7 +141,7 @@ Eigen::Index PatchCompliance::extend(const std::vector<Vec3>& positions, const V
   const std::size_t reach =
       std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(stiffness)));
   if (model_.is_solid() || reach <= 2 * nodes_) return 0;
-  if (!far_) far_.emplace(model_);
+  if (!far_) far_.emplace(model_, runner_);
   far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
   return take(far_->near_block(), far_->own_block());
 }

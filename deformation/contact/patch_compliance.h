@@ -41,7 +41,9 @@ class PatchCompliance {
 
   /// @param model  outlives this
   /// @param nodes  of a patch; of a solid at most
-  PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes);
+  /// @param runner  outlives this; none: the calling thread alone. The bits are the same
+  PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes,
+                  ChunkRunner* runner = nullptr);
 
   /// C A⁻¹ Cᵀ [m/N], symmetric. In explicit steps of springs near by it is scaled so that the
   /// press of the rows' forces, or without any that of the first row, gives way as in those steps
@@ -96,6 +98,7 @@ class PatchCompliance {
   const OrganModel& model_;
   Neighbours neighbours_;
   std::size_t nodes_;
+  ChunkRunner* runner_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
   std::vector<Push> pushes_;  ///< buffer

@@ -67,9 +67,19 @@ kernel::Couplings SpringHessianProduct::couplings() {
           inner_across_.data()};
 }
 
-void SpringHessianProduct::run(ChunkBody body) {
+void SpringHessianProduct::run(std::size_t count, ChunkBody body) {
   SerialRunner serial;
-  (runner_ == nullptr ? serial : *runner_).run(layout_.view().chunk_count, body);
+  (runner_ == nullptr ? serial : *runner_).run(count, body);
+}
+
+std::size_t SpringHessianProduct::part_count(std::span<const std::uint32_t> slices) const {
+  return std::min(layout_.view().chunk_count, (slices.size() + kSlicesInPart - 1) / kSlicesInPart);
+}
+
+kernel::SliceList SpringHessianProduct::part_of(std::span<const std::uint32_t> slices,
+                                                std::size_t part) const {
+  const std::size_t parts = part_count(slices), first = part * slices.size() / parts;
+  return {slices.data() + first, (part + 1) * slices.size() / parts - first};
 }
 
 kernel::SliceList SpringHessianProduct::slices_of(std::size_t chunk) const {
@@ -104,9 +114,14 @@ void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, const S
   damping_ = static_cast<float>(shares.damping / h);
   take_positions(positions);
   contacts_.clear();
-  functions_.linearise(layout_.view(), couplings(), {slices.data(), slices.size()}, blocks_.data(),
-                       virtual_blocks_.data());
-  take_row_diagonals({slices.data(), slices.size()}, shares.mass);
+  const kernel::Layout layout = layout_.view();
+  const kernel::Couplings out = couplings();
+  const std::size_t stride = kBlockNumbers * kLanes * layout.virtual_node_count;
+  run(part_count(slices), [&](std::size_t part) {
+    functions_.linearise(layout, out, part_of(slices, part), blocks_.data(),
+                         virtual_blocks_.data() + stride * part);
+    take_row_diagonals(part_of(slices, part), shares.mass);
+  });
 }
 
 void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double h) {
@@ -117,7 +132,7 @@ void SpringHessianProduct::linearise(const std::vector<Vec3>& positions, double 
   const kernel::Layout layout = layout_.view();
   const kernel::Couplings out = couplings();
   const std::size_t stride = kBlockNumbers * kLanes * layout.virtual_node_count;
-  run([&](std::size_t chunk) {
+  run(layout.chunk_count, [&](std::size_t chunk) {
     functions_.linearise(layout, out, slices_of(chunk), blocks_.data(),
                          virtual_blocks_.data() + stride * chunk);
     take_row_diagonals(slices_of(chunk), 1 + h * body_.drag);
@@ -167,7 +182,7 @@ double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
   const kernel::Layout layout = layout_.view();
   const kernel::Couplings in = couplings();
   const std::size_t stride = 3 * kLanes * layout.virtual_node_count;
-  run([&](std::size_t chunk) {
+  run(layout.chunk_count, [&](std::size_t chunk) {
     functions_.apply(layout, in, slices_of(chunk), masses_.data(), out.data()->data(),
                      virtual_sums_.data() + stride * chunk, dots_.data() + kLanes * chunk);
   });
@@ -192,9 +207,15 @@ double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
 }
 
 double SpringHessianProduct::apply(std::span<const std::uint32_t> slices, std::vector<Vec4f>& out) {
-  functions_.apply(layout_.view(), couplings(), {slices.data(), slices.size()}, masses_.data(),
-                   out.data()->data(), virtual_sums_.data(), dots_.data());
-  return std::accumulate(dots_.begin(), dots_.begin() + kLanes, 0.0) + apply_contacts(out);
+  const kernel::Layout layout = layout_.view();
+  const kernel::Couplings in = couplings();
+  const std::size_t stride = 3 * kLanes * layout.virtual_node_count, parts = part_count(slices);
+  run(parts, [&](std::size_t part) {
+    functions_.apply(layout, in, part_of(slices, part), masses_.data(), out.data()->data(),
+                     virtual_sums_.data() + stride * part, dots_.data() + kLanes * part);
+  });
+  const auto dots = std::span(dots_).first(kLanes * parts);
+  return std::accumulate(dots.begin(), dots.end(), 0.0) + apply_contacts(out);
 }
 
 void SpringHessianProduct::couple(std::span<const ContactCoupling> couplings) {

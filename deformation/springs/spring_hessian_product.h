@@ -66,7 +66,12 @@ class SpringHessianProduct {
  private:
   kernel::Couplings couplings();
   double apply_contacts(std::vector<Vec4f>& out) const;
-  void run(ChunkBody body);
+  /// Of slices of a patch: enough that another thread is worth its waking.
+  static constexpr std::size_t kSlicesInPart = 16;
+
+  void run(std::size_t count, ChunkBody body);
+  std::size_t part_count(std::span<const std::uint32_t> slices) const;
+  kernel::SliceList part_of(std::span<const std::uint32_t> slices, std::size_t part) const;
   kernel::SliceList slices_of(std::size_t chunk) const;
   void take_positions(const std::vector<Vec3>& positions);
   void take_row_diagonal(std::size_t node, double mass_share);

@@ -78,7 +78,11 @@ void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState
 /// At trial_. The residual has the friction there, the matrix (from relax_…() on) how it changes,
 /// and so has W; what c is taken from has not.
 void BackwardEuler::linearise_friction(std::span<ContactRow> rows) {
-  for (const auto& [node, block] : without_friction_) inverse_mass_blocks_[node] = block;
+  std::vector<std::uint32_t> changed;
+  for (const auto& [node, block] : without_friction_) {
+    inverse_mass_blocks_[node] = block;
+    changed.push_back(node);
+  }
   without_friction_.clear();
   couplings_.resize(tilt_count_);
   springs_.couple(couplings_);
@@ -88,10 +92,11 @@ void BackwardEuler::linearise_friction(std::span<ContactRow> rows) {
   for (const ContactCoupling& coupling : added) {
     for (const std::uint32_t node : coupling.nodes) {
       without_friction_.emplace_back(node, inverse_mass_blocks_[node]);
+      changed.push_back(node);
     }
   }
   for (const ContactCoupling& coupling : added) take_coupling(coupling, inverse_mass_blocks_);
-  take_volume_answers();
+  for (const std::uint32_t node : changed) take_volume_answer(node);
 }
 
 /// Solves with a given impulse of the contents, which is one more outside force.
@@ -170,6 +175,15 @@ void BackwardEuler::take_volume_answers() {
     volume_answers_[i] = inverse_mass_blocks_[i] * volume.gradient[i];
     return volume.gradient[i].dot(volume_answers_[i]);
   });
+}
+
+/// The same where only this node's block has changed.
+void BackwardEuler::take_volume_answer(std::size_t node) {
+  if (!volume_row_ || node >= volume_answers_.size()) return;
+  const Vec3& gradient = free_.volume.gradient[node];
+  const Vec3 before = volume_answers_[node];
+  volume_answers_[node] = inverse_mass_blocks_[node] * gradient;
+  free_.volume.denominator += gradient.dot(volume_answers_[node] - before);
 }
 
 void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,

@@ -65,6 +65,10 @@ class BackwardEuler : public OrganDynamics {
     return kernel_.elastic_energy(state.positions);
   }
 
+  const VolumeGradient* volume_at(const std::vector<Vec3>& positions) override {
+    return volume_.is_kept ? &kernel_.volume_at(positions, free_) : nullptr;
+  }
+
   /// Of the last step.
   int iterations_used() const { return iterations_used_; }
 
@@ -97,6 +101,7 @@ class BackwardEuler : public OrganDynamics {
   /// @returns false if g vanished
   bool linearise_volume(double h, double target_volume, const std::vector<Vec3>& velocities);
   void take_volume_answers();
+  void take_volume_answer(std::size_t node);
   /// Δv ← Δv + W r and impulses on top of it.
   void solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
                       WarmStart start);

@@ -52,6 +52,12 @@ class OrganDynamics {
     return {};
   }
 
+  /// V, g and gᵀM⁻¹g at these positions, as evaluate_volume() finds them (volume_gradient.h), of
+  /// a stepper that has faster means; null: it has none. Valid until the next step.
+  virtual const VolumeGradient* volume_at(const std::vector<Vec3>& /*positions*/) {
+    return nullptr;
+  }
+
   /// Stored in springs or tissue [J].
   virtual double elastic_energy(const OrganState& state) = 0;
 

@@ -52,6 +52,9 @@ class SymplecticEuler : public OrganDynamics {
   double stored_energy(const OrganState& state) const override {
     return rule_->stored_energy(state);
   }
+  const VolumeGradient* volume_at(const std::vector<Vec3>& positions) override {
+    return rule_->reads_gradient() ? &kernel_.volume_at(positions, free_) : nullptr;
+  }
 
  private:
   void push_with(double volume_impulse, double h, std::span<ContactRow> rows, OrganState& state);

@@ -39,6 +39,13 @@ class SpringKernel {
   /// `out`  (node_count), all in double. Zeros unless with_volume.
   void evaluate_volume(const std::vector<Vec3>& positions, FreeStep& out);
 
+  /// The same where no step was made yet, too. @returns them, of `out`
+  const VolumeGradient& volume_at(const std::vector<Vec3>& positions, FreeStep& out) {
+    out.velocities.resize(positions.size(), Vec3::Zero());
+    evaluate_volume(positions, out);
+    return out.volume;
+  }
+
   /// v⁺ = v̂ − M⁻¹g σ and x⁺ = x + h v⁺, taking v̂ out of `step`.
   /// @param volume_impulse  σ [Pa·s]
   void finish_step(double h, double volume_impulse, FreeStep& step, OrganState& state);

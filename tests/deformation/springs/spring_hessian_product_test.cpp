@@ -165,5 +165,40 @@ TEST_CASE("spring product: the same bits for any number of threads") {
   }
 }
 
+TEST_CASE(
+    "spring product: of a patch's slices it is the whole one's part, on any number of threads") {
+  // Oracle: the product of all nodes, to the bit; its dot product's share of theirs, of float sums.
+  const auto model = ball_model(4);
+  const auto p = directions(model);
+  std::vector<Vec4f> whole(p.size());
+  SpringHessianProduct serial(model, model.network(), true);
+  serial.linearise(disturbed_positions(model, 3e-3), kProductStep);
+  apply(serial, p, whole);
+  std::vector<std::uint32_t> nodes, slices;
+  for (std::uint32_t i = 0; i < 1000; ++i) nodes.push_back(2 * i);
+  serial.find_slices(nodes, slices);
+  std::vector<Vec4f> part(p.size(), Vec4f::Zero());
+  const double dot_alone = serial.apply(slices, part);
+  double share = 0;
+  for (std::size_t i = 0; i < 2000; ++i) share += static_cast<double>(p[i].dot(whole[i]));
+  CHECK(dot_alone == Approx(share).epsilon(1e-5));
+  for (std::size_t i = 0; i < 2000; ++i) REQUIRE(part[i] == whole[i]);
+  for (const std::size_t threads : {2u, 3u}) {
+    ChunkThreads runner(threads);
+    SpringHessianProduct product(model, model.network(), true, &runner);
+    product.linearise(disturbed_positions(model, 3e-3), kProductStep);
+    for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
+    std::vector<Vec4f> found(p.size(), Vec4f::Zero());
+    CHECK(product.apply(slices, found) == dot_alone);
+    CHECK(found == part);
+    // Linearised there alone: blocks of the same slices.
+    const SpringShares shares{.mass = 1, .damping = kProductStep, .stiffness = 1e-4};
+    product.linearise(disturbed_positions(model, 3e-3), shares, slices);
+    serial.linearise(disturbed_positions(model, 3e-3), shares, slices);
+    for (const std::uint32_t i : nodes) REQUIRE(product.diagonal()[i] == serial.diagonal()[i]);
+    serial.linearise(disturbed_positions(model, 3e-3), kProductStep);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::deformation

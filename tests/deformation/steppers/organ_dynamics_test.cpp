@@ -129,5 +129,34 @@ TEST_CASE("organ dynamics: the same bits on any number of threads, of springs an
   }
 }
 
+TEST_CASE("organ dynamics: springs that keep a volume tell it as the plain code finds it") {
+  // Oracle: evaluate_volume(), in double as this is; before the first step and between two.
+  auto organ = testing::ball_organ();
+  organ.integrator =
+      GENERATE(scene::Integrator::kSymplecticEuler, scene::Integrator::kBackwardEuler);
+  const auto model = testing::ball_model(3, organ);
+  const auto dynamics = make_dynamics(organ, model, kPeriod);
+  OrganState state = rest_state(model);
+  for (std::size_t i = 0; i < model.node_count(); ++i) {
+    state.velocities[i] = Vec3(state.positions[i].y(), 0, 0);
+  }
+  for (int step = 0; step < 2; ++step) {
+    const VolumeGradient* const found = dynamics->volume_at(state.positions);
+    REQUIRE(found != nullptr);
+    VolumeGradient plain;
+    evaluate_volume(model, state.positions, plain);
+    CHECK(found->volume == Approx(plain.volume).epsilon(1e-13));
+    CHECK(found->denominator == Approx(plain.denominator).epsilon(1e-12));
+    REQUIRE(found->gradient.size() == plain.gradient.size());
+    for (std::size_t i = 0; i < plain.gradient.size(); ++i) {
+      REQUIRE((found->gradient[i] - plain.gradient[i]).norm() < 1e-12 * plain.gradient[i].norm());
+    }
+    dynamics->step(dynamics->largest_step(), {}, state);
+  }
+  organ.model = "mass_spring";
+  const auto leaky = testing::ball_model(3, organ);
+  CHECK(make_dynamics(organ, leaky, kPeriod)->volume_at(leaky.rest_positions) == nullptr);
+}
+
 }  // namespace
 }  // namespace palpate::deformation
