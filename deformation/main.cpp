@@ -32,9 +32,12 @@ int main(int argc, char** argv) {
     const auto meshes = scene::load_probe_meshes(scene);
     runtime::run_stage(options, scene, runtime::name_of({"deformation", process}),
                        runtime::Priority::kPreferred, [&](bus::Bus& bus) {
-                         return std::make_unique<deformation::DeformationStage>(
+                         auto stage = std::make_unique<deformation::DeformationStage>(
                              scene, std::move(shapes), bus, process, &team,
                              deformation::Guarding::kOn, meshes);
+                         // Last: threads that are started later would keep to that core, too.
+                         if (options.lockstep.empty()) team.keep_to_own_cores();
+                         return stage;
                        });
   });
 }

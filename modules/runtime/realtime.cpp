@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <span>
+#include <vector>
 
 namespace palpate::runtime {
 namespace {
@@ -27,6 +29,17 @@ bool may_lock_everything() {
   rlimit limit{};
   return has_capability(CAP_IPC_LOCK) ||
          (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
+}
+
+/// Which the thread may run on; none where the system does not say.
+std::vector<int> cores_for(pthread_t thread) {
+  std::vector<int> cores;
+  cpu_set_t allowed;
+  if (pthread_getaffinity_np(thread, sizeof allowed, &allowed) != 0) return cores;
+  for (int core = 0; core < CPU_SETSIZE; ++core) {
+    if (CPU_ISSET(core, &allowed)) cores.push_back(core);
+  }
+  return cores;
 }
 
 }  // namespace
@@ -84,16 +97,22 @@ void wait_for_turn() {
   if (sched_getscheduler(0) == SCHED_OTHER) sched_setscheduler(0, SCHED_BATCH, &none);
 }
 
-bool keep_to_own_core(std::size_t place, std::size_t count) {
-  cpu_set_t allowed, own;
+bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread) {
+  const auto cores = cores_for(thread);
+  if (cores.size() != count || place >= count) return false;
+  cpu_set_t own;
   CPU_ZERO(&own);
-  if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return false;
-  if (static_cast<std::size_t>(CPU_COUNT(&allowed)) != count) return false;
-  std::size_t seen = 0;
-  for (int core = 0; core < CPU_SETSIZE; ++core) {
-    if (CPU_ISSET(core, &allowed) && seen++ == place) CPU_SET(core, &own);
-  }
-  return CPU_COUNT(&own) == 1 && sched_setaffinity(0, sizeof own, &own) == 0;
+  CPU_SET(cores[place], &own);
+  return pthread_setaffinity_np(thread, sizeof own, &own) == 0;
+}
+
+bool leave_first_core(std::size_t count) {
+  const auto cores = cores_for(pthread_self());
+  if (cores.size() != count || count < 2) return false;
+  cpu_set_t others;
+  CPU_ZERO(&others);
+  for (const int core : std::span(cores).subspan(1)) CPU_SET(core, &others);
+  return pthread_setaffinity_np(pthread_self(), sizeof others, &others) == 0;
 }
 
 void lower_priority(int steps) {

@@ -1,6 +1,8 @@
 // Privileges the system may grant a module: real-time priority, locked memory, niceness.
 #pragma once
 
+#include <pthread.h>
+
 #include <cstddef>
 #include <string>
 
@@ -53,7 +55,12 @@ void wait_for_turn();
 /// that it was on, it would wait for them while another core idles. @param place  of `count`, from
 /// 0
 /// @return whether it does
-bool keep_to_own_core(std::size_t place, std::size_t count);
+bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread = pthread_self());
+
+/// The calling thread, and those it starts from now on, leave the first core to others, where there
+/// are so many cores for it, and more than one: real-time work that comes again and again stays on
+/// the core it was on last, however busy that one is. @return whether it does
+bool leave_first_core(std::size_t count);
 
 /// Gives way to everybody else. @param steps  of niceness, 0 … 19
 void lower_priority(int steps);

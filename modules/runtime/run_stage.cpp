@@ -9,6 +9,7 @@
 #include "modules/runtime/cycle_budget.h"
 #include "modules/runtime/joined_streams.h"
 #include "modules/runtime/kept_state.h"
+#include "modules/runtime/realtime.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
 
@@ -83,6 +84,7 @@ void run_stage(const ModuleOptions& options, const scene::Scene& scene, const st
                Priority priority, const MakeStage& make) {
   spdlog::set_pattern("[" + name + "] %l: %v");  // of several processes of a program, which one
   if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
+  if (name == "haptics" || name == "collision") leave_first_core(scene.deformation_threads);
   Module module(options, scene, name, rate_of(name, scene), priority);
   const auto stage = make(module.bus());
   KeptState kept(options.kept_state, scene::scene_digest(scene));

@@ -1,6 +1,7 @@
 #include "modules/runtime/worker_team.h"
 
 #include "modules/core/error.h"
+#include "modules/runtime/realtime.h"
 
 namespace palpate::runtime {
 namespace {
@@ -29,6 +30,14 @@ WorkerTeam::WorkerTeam(std::size_t threads) : shares_(threads) {
 }
 
 WorkerTeam::~WorkerTeam() { end(); }
+
+void WorkerTeam::keep_to_own_cores() {
+  if (workers_.empty()) return;
+  for (std::size_t i = 1; i < size(); ++i) {
+    keep_to_own_core(i, size(), workers_[i - 1].native_handle());
+  }
+  keep_to_own_core(0, size());
+}
 
 void WorkerTeam::end() {
   stop_ = true;

@@ -24,6 +24,9 @@ class WorkerTeam : public ChunkRunner {
   WorkerTeam& operator=(const WorkerTeam&) = delete;
 
   std::size_t size() const { return shares_.size(); }
+  /// Where there are as many cores as threads, each keeps to one from now on, the calling thread to
+  /// the first: two that share a core while another is free would hold up each other.
+  void keep_to_own_cores();
   /// Called from one thread at a time; the body must not throw.
   void run(std::size_t count, ChunkBody body) override;
 

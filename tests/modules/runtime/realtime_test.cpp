@@ -139,6 +139,28 @@ TEST_CASE("realtime: as many processes as cores keep to one each, other numbers 
         }) == 0);
 }
 
+TEST_CASE("realtime: who leaves the first core has all others, where there are so many") {
+  // Oracle: the cores that the scheduler says it allows, for a thread started afterwards, too.
+  CHECK(in_child([] {
+          cpu_set_t all, left, inherited, own;
+          sched_getaffinity(0, sizeof all, &all);
+          const auto cores = static_cast<std::size_t>(CPU_COUNT(&all));
+          if (leave_first_core(cores + 1)) return 1;
+          sched_getaffinity(0, sizeof left, &left);
+          if (!CPU_EQUAL(&left, &all)) return 2;
+          if (cores == 1) return leave_first_core(1) ? 3 : 0;
+          if (!leave_first_core(cores)) return 4;
+          sched_getaffinity(0, sizeof left, &left);
+          std::thread([&] { sched_getaffinity(0, sizeof inherited, &inherited); }).join();
+          int first = 0;
+          while (!CPU_ISSET(first, &all)) ++first;
+          CPU_ZERO(&own);
+          CPU_SET(first, &own);
+          CPU_XOR(&all, &all, &own);
+          return CPU_EQUAL(&left, &all) && CPU_EQUAL(&left, &inherited) ? 0 : 5;
+        }) == 0);
+}
+
 TEST_CASE("realtime: a background process gives way") {
   // Oracle: the system's niceness.
   CHECK(in_child([] {

@@ -1,5 +1,6 @@
 #include "modules/runtime/worker_team.h"
 
+#include <sched.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -120,6 +121,42 @@ TEST_CASE("worker team: threads that the system does not give are an error, not 
   CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
 }
 #endif
+
+TEST_CASE("worker team: as many threads as cores keep to one each, others to none") {
+  // Oracle: the cores that the scheduler allows each thread; in a process of its own, which they
+  // stay with. A chunk waits until all have begun, so each thread does one.
+  const pid_t child = fork();
+  if (child == 0) {
+    cpu_set_t all;
+    sched_getaffinity(0, sizeof all, &all);
+    const auto cores = static_cast<std::size_t>(CPU_COUNT(&all));
+    const auto cores_of_threads = [&](std::size_t threads) {
+      WorkerTeam team(threads);
+      team.keep_to_own_cores();
+      std::atomic<std::size_t> begun{0};
+      std::vector<cpu_set_t> allowed(threads);
+      team.run(threads, [&](std::size_t chunk) {
+        sched_getaffinity(0, sizeof(cpu_set_t), &allowed[chunk]);
+        ++begun;
+        while (begun < threads) std::this_thread::yield();
+      });
+      std::set<int> together;
+      std::size_t sum = 0;
+      for (const cpu_set_t& set : allowed) {
+        sum += static_cast<std::size_t>(CPU_COUNT(&set));
+        for (int core = 0; core < CPU_SETSIZE; ++core) {
+          if (CPU_ISSET(core, &set)) together.insert(core);
+        }
+      }
+      return std::pair(sum, together.size());
+    };
+    if (cores_of_threads(cores + 1) != std::pair((cores + 1) * cores, cores)) _exit(1);
+    _exit(cores_of_threads(cores) == std::pair(cores, cores) ? 0 : 2);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
+}
 
 }  // namespace
 }  // namespace palpate::runtime
