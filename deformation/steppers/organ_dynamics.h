@@ -53,7 +53,7 @@ class OrganDynamics {
   }
 
   /// V, g and gᵀM⁻¹g at these positions, as evaluate_volume() finds them (volume_gradient.h), of
-  /// a stepper that has faster means; null: it has none. Valid until the next step.
+  /// a stepper that has faster means; null: it has none. Valid until the next call or step.
   virtual const VolumeGradient* volume_at(const std::vector<Vec3>& /*positions*/) {
     return nullptr;
   }

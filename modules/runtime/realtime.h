@@ -50,7 +50,7 @@ void resume_realtime(int fifo_priority);
 /// Nothing for who has real-time priority.
 void wait_for_turn();
 
-/// The calling thread, and those it starts from now on, keep to one core, where there are as many
+/// The thread, and those it starts from now on, keep to one core, where there are as many
 /// cores for it as processes that compute at the same time: where others still work on the core
 /// that it was on, it would wait for them while another core idles. @param place  of `count`, from
 /// 0

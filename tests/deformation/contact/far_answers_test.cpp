@@ -5,6 +5,7 @@
 
 #include "deformation/springs/patch_springs.h"
 #include "tests/deformation/organs.h"
+#include "tests/deformation/springs/chunk_threads.h"
 #include "tests/dense_algebra.h"
 
 namespace palpate::deformation {
@@ -71,6 +72,30 @@ TEST_CASE("far answers: A⁻¹ of a push along each axis, and what couples it to
   const Mat3 alone = A.block<3, 3>(at, at).inverse();
   REQUIRE(far.alone(7) != nullptr);
   CHECK((*far.alone(7) - alone).norm() < kDigits * alone.norm());
+}
+
+TEST_CASE("far answers: the same bits on any number of threads") {
+  // Oracle: itself on one. A patch of more slices than threads are given at a time.
+  const OrganModel model = testing::ball_model(4);
+  const Neighbours neighbours(model, {});
+  const std::vector<std::uint32_t> touched{3, 7};
+  const std::vector<ComplianceRow> rows{{{{3, 0.4}, {7, 0.6}}, Vec3::UnitX()}};
+  const SpringShares shares{.mass = 1 / 0.0025, .damping = 1 / 0.05, .stiffness = 1};
+  const auto find = [&](FarAnswers& far) {
+    far.find(model.rest_positions, neighbours, touched, model.rest_positions[3], 10,
+             model.node_count(), rows, shares);
+  };
+  FarAnswers alone(model);
+  find(alone);
+  CHECK(alone.own_block().norm() > 0);
+  for (const std::size_t count : {2u, 3u}) {
+    testing::ChunkThreads threads(count);
+    FarAnswers far(model, &threads);
+    find(far);
+    CHECK(far.near_block() == alone.near_block());
+    CHECK(far.own_block() == alone.own_block());
+    CHECK(far.load(100, Vec3::UnitX()) == alone.load(100, Vec3::UnitX()));
+  }
 }
 
 }  // namespace
