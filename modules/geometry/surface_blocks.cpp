@@ -1,7 +1,9 @@
 #include "modules/geometry/surface_blocks.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "modules/core/error.h"
@@ -10,9 +12,15 @@
 namespace palpate::geometry {
 namespace {
 
+/// As std::nextafter(x, -∞), which is a call. x may not be -∞, or no number.
+float next_below(float x) {
+  if (x == 0) return -std::numeric_limits<float>::denorm_min();
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  return std::bit_cast<float>(x > 0 ? bits - 1 : bits + 1);
+}
 float rounded_down(double x) {
   const float nearest = static_cast<float>(x);
-  return nearest > x ? std::nextafter(nearest, -std::numeric_limits<float>::infinity()) : nearest;
+  return nearest > x ? next_below(nearest) : nearest;
 }
 float rounded_up(double x) { return -rounded_down(-x); }
 

@@ -1,6 +1,7 @@
 #include "modules/geometry/surface_blocks.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -79,6 +80,26 @@ TEST_CASE("surface blocks: boxes hold their nodes, of doubles and of floats, and
       CHECK(boxes[block].lower[k] == Approx(exact.min()[k]).margin(1.2e-7));
       CHECK(double{of_floats[block].lower[k]} == single.min()[k]);
       CHECK(double{of_floats[block].upper[k]} == single.max()[k]);
+    }
+  }
+}
+
+TEST_CASE("surface blocks: a box is rounded outwards, by one float at most, whatever the number") {
+  // Oracle: std::nextafter. Numbers between floats, next to zero, subnormal, and beyond all floats.
+  constexpr float kFar = std::numeric_limits<float>::infinity();
+  const auto below = [](double x) {
+    const auto nearest = static_cast<float>(x);
+    return nearest > x ? std::nextafter(nearest, -kFar) : nearest;
+  };
+  for (const double size : {0.0, 1e-46, 1e-45, 3e-42, 1.1754943e-38, 0.1, 1.0, 1 + 1e-9, 16777217.0,
+                            3.4028234e38, 3.4028236e38, 1e39, 1e300}) {
+    for (const double x : {size, -size}) {
+      BlockBox box;
+      box.add({x, 0.5, -0.5});
+      CHECK(box.lower[0] == below(x));
+      CHECK(box.upper[0] == -below(-x));
+      CHECK(box.lower[0] <= x);
+      CHECK(box.upper[0] >= x);
     }
   }
 }
