@@ -242,7 +242,7 @@ std::uint64_t change(const Options& options, std::uint32_t tenths) {
     places.assign(pressed.touched_places().begin(), pressed.touched_places().end());
     tally.forces.push_back(slide.step(at(angle)));
     const auto reading = pressed.read();
-    const double energy = reading.kinetic_energy + reading.elastic_energy;
+    const double energy = reading.kinetic_energy + pressed.elastic_energy();
     tally.most_energy = std::max(tally.most_energy, energy);
     tally.least_energy = std::min(tally.least_energy, energy);
     if (told == 0) {

@@ -73,7 +73,8 @@ SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ
   return named(surface_message(*next.model), world, organ, next.generation);
 }
 
-void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out) {
+void write_node_positions(const DeformationWorld& world, std::size_t organ, double elastic_energy,
+                          NodePositions& out) {
   const OrganReading reading = world.read(organ);
   out.organ = static_cast<std::uint32_t>(organ);
   out.generation = world.generation(organ);
@@ -81,9 +82,13 @@ void write_node_positions(const DeformationWorld& world, std::size_t organ, Node
   out.target_volume = reading.target_volume;
   out.pressure = reading.pressure;
   out.kinetic_energy = reading.kinetic_energy;
-  out.elastic_energy = reading.elastic_energy;
+  out.elastic_energy = elastic_energy;
   out.organ_contacts = static_cast<std::uint32_t>(reading.organ_contacts);
   write_float32(reading.positions, out.positions);
+}
+
+void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out) {
+  write_node_positions(world, organ, world.elastic_energy(organ), out);
 }
 
 void write_block_boxes(const geometry::SurfaceBlocks& blocks, NodePositions& out) {

@@ -18,6 +18,9 @@ SurfaceTopology surface_message(const DeformationWorld& world, std::size_t organ
 /// Positions (float32), volume, pressure and energies of an organ. No allocation once `out` has
 /// held the organ.
 void write_node_positions(const DeformationWorld& world, std::size_t organ, NodePositions& out);
+/// The same with an elastic energy that was found before [J].
+void write_node_positions(const DeformationWorld& world, std::size_t organ, double elastic_energy,
+                          NodePositions& out);
 
 /// The box of every block of the organ's surface, of the positions that `out` holds.
 /// @param blocks  those of surface_message()

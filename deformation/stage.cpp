@@ -11,6 +11,7 @@
 #include "deformation/organ_messages.h"
 #include "deformation/own_organs.h"
 #include "deformation/simulated_time.h"
+#include "deformation/slow_readings.h"
 #include "deformation/usual_age.h"
 #include "modules/core/units.h"
 #include "modules/messages/message_state.h"
@@ -136,38 +137,18 @@ double least_advance(const DeformationWorld& world, double period) {
   return least;
 }
 
-/// How wrong the forces are by the meshes: it changes slowly, and costs more than a law.
-class ForceErrors {
- public:
-  explicit ForceErrors(std::size_t probes) : errors_(probes, 0.0) {}
-
-  void look(const DeformationWorld& world) {
-    const bool was_reset = world.time() + kEvery < next_;
-    if (world.time() < next_ && !was_reset) return;
-    for (std::size_t probe = 0; probe < errors_.size(); ++probe) {
-      errors_[probe] = world.estimated_force_error(probe);
-    }
-    next_ = world.time() + kEvery;
-  }
-  double of(std::size_t probe) const { return errors_[probe]; }
-
-  void exchange(StateArchive& archive) {
-    archive.same(errors_.size());
-    for (double& error : errors_) archive(error);
-    archive(next_);
-  }
-
- private:
-  static constexpr double kEvery = 0.1;  // [s]
-  std::vector<double> errors_;           ///< by probe
-  double next_ = 0;                      ///< simulated [s]
-};
+// Errors of forces and energies change slowly, and cost more than a law and than a volume [s].
+constexpr double kForceErrorsEvery = 0.1, kEnergiesEvery = 0.04;
 
 /// What leaves the process.
 class Outputs {
  public:
   Outputs(bus::Bus& bus, const OwnOrgans& organs, std::size_t probes, std::size_t process)
-      : bus_(bus), organs_(organs), models_(bus.writer(bus::kContactModel)), force_errors_(probes) {
+      : bus_(bus),
+        organs_(organs),
+        models_(bus.writer(bus::kContactModel)),
+        force_errors_(probes, kForceErrorsEvery),
+        elastic_energies_(organs.count(), kEnergiesEvery) {
     for (std::size_t organ = 0; organ < organs.count(); ++organ) {
       extremes_.push_back({organs.in_scene(organ)});
       surfaces_.push_back(bus.writer(bus::kSurface));
@@ -203,8 +184,9 @@ class Outputs {
   void publish_positions(double sim_time, const DeformationWorld& world, bool running) {
     ran_ = ran_ || running;
     const Header header{0, ns_from_seconds(sim_time), 0};
+    elastic_energies_.look(world.time(), [&](std::size_t o) { return world.elastic_energy(o); });
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
-      write_node_positions(world, organ, node_positions_);
+      write_node_positions(world, organ, elastic_energies_.of(organ), node_positions_);
       write_block_boxes(blocks_[organ], node_positions_);
       node_positions_.organ = organs_.in_scene(organ);
       node_positions_.header = header;
@@ -219,7 +201,7 @@ class Outputs {
                     std::int64_t now_ns) {
     const Header header{0, ns_from_seconds(sim_time), 0};
     bool any_bounded = false;
-    force_errors_.look(world);
+    force_errors_.look(world.time(), [&](std::size_t p) { return world.estimated_force_error(p); });
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
       LocalLaw law = world.local_law(probe, &bounded);
@@ -246,7 +228,7 @@ class Outputs {
 
   /// When it reads, surfaces that are not those told at first are said, too.
   void exchange(StateArchive& archive, const DeformationWorld& world) {
-    archive(force_errors_);
+    archive(force_errors_, elastic_energies_);
     if (!archive.reads()) return;
     bool as_told = true;
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
@@ -277,9 +259,9 @@ class Outputs {
   std::vector<bus::Writer<SurfaceTopology>> surfaces_;
   std::vector<bus::Writer<NodePositions>> positions_;
   bus::Writer<ContactModel> models_;
-  ForceErrors force_errors_;
-  std::vector<geometry::SurfaceBlocks> blocks_;  ///< by organ
-  std::vector<NextBlocks> next_blocks_;          ///< told last
+  SlowReadings force_errors_, elastic_energies_;  ///< by probe, by organ
+  std::vector<geometry::SurfaceBlocks> blocks_;   ///< by organ
+  std::vector<NextBlocks> next_blocks_;           ///< told last
   NodePositions node_positions_;
   ContactModel model_;
   std::vector<OrganExtremes> extremes_;  ///< by organ

@@ -297,11 +297,7 @@ AdvanceReport DeformationWorld::advance(double period) {
   impl_->period = period;
   impl_->change_meshes(report);
   for (auto& probe : impl_->probes) report.probe_jumped |= !probe.begin(period);
-  if (impl_->organ_contacts) {
-    impl_->advance_together(report);
-  } else {
-    impl_->advance_apart(report);
-  }
+  impl_->organ_contacts ? impl_->advance_together(report) : impl_->advance_apart(report);
   impl_->finish(report);
   impl_->look_ahead();
   for (auto& probe : impl_->probes) probe.end();
@@ -353,19 +349,21 @@ int DeformationWorld::substeps(std::size_t organ, double period) const {
 }
 
 OrganReading DeformationWorld::read(std::size_t organ_index) const {
-  const WorldOrgan& organ = impl_->organs.at(organ_index);
-  const OrganModel& model = organ.simulated.model();
-  const OrganState& state = organ.simulated.state();
+  const SimulatedOrgan& organ = impl_->organs.at(organ_index).simulated;
   OrganReading reading;
   reading.positions = positions(organ_index);
-  reading.volume = organ.simulated.volume();
-  reading.target_volume = std::max(state.target_volume, 0.0);
-  reading.pressure = state.pressure;
-  reading.kinetic_energy = kinetic_energy(model, state.velocities);
-  // A difference of large sums may come out a little below its least value, rest.
-  reading.elastic_energy = std::max(0.0, organ.simulated.dynamics().elastic_energy(state));
+  reading.volume = organ.volume();
+  reading.target_volume = std::max(organ.state().target_volume, 0.0);
+  reading.pressure = organ.state().pressure;
+  reading.kinetic_energy = kinetic_energy(organ.model(), organ.state().velocities);
   if (impl_->organ_contacts) reading.organ_contacts = impl_->organ_contacts->count(organ_index);
   return reading;
+}
+
+double DeformationWorld::elastic_energy(std::size_t organ) const {
+  const SimulatedOrgan& simulated = impl_->organs.at(organ).simulated;
+  // A difference of large sums may come out a little below its least value, rest.
+  return std::max(0.0, simulated.dynamics().elastic_energy(simulated.state()));
 }
 
 std::span<const Vec3> DeformationWorld::positions(std::size_t organ) const {

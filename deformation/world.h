@@ -24,7 +24,6 @@ struct OrganReading {
   double target_volume = 0;         ///< V* [m³]
   double pressure = 0;              ///< of the contents over the outside, p = −λ [Pa]
   double kinetic_energy = 0;        ///< [J]
-  double elastic_energy = 0;        ///< [J]
   std::size_t organ_contacts = 0;   ///< places where it presses on another organ or on itself
 };
 
@@ -95,6 +94,7 @@ class DeformationWorld {
 
   /// After the last advance().
   OrganReading read(std::size_t organ) const;
+  double elastic_energy(std::size_t organ) const;  ///< costs as much as a part of a step [J]
   /// OrganReading::positions alone, without what the rest costs to compute.
   std::span<const Vec3> positions(std::size_t organ) const;
   /// Mean force on a probe over the last advance() [N].

@@ -69,7 +69,7 @@ struct NodePositions {
   double target_volume = 0;          ///< V* [m³]
   double pressure = 0;               ///< of the contents over the outside, p = −λ [Pa]
   double kinetic_energy = 0;         ///< [J]
-  double elastic_energy = 0;         ///< in all springs [J]
+  double elastic_energy = 0;         ///< in all springs or elements; of now or up to 0.04 s ago [J]
   std::uint32_t organ_contacts = 0;  ///< places where it presses on another organ or on itself
   std::vector<float> positions;      ///< x, y, z per node, in W [m]  (node_count × 3)
   std::vector<float> block_boxes;  ///< least and greatest x, y, z of the triangles of each block of

@@ -59,6 +59,7 @@ class PressedOrgan {
     return session_.world().touched_places(0);
   }
   deformation::OrganReading read() const { return session_.world().read(0); }
+  double elastic_energy() const { return session_.world().elastic_energy(0); }  ///< [J]
   /// Of the last period.
   const deformation::AdvanceReport& report() const { return session_.deformation().report(); }
   double step() const { return period_ / session_.world().substeps(0, period_); }  ///< h [s]

@@ -67,10 +67,7 @@ class Following {
   void go(const Vec3& to, double speed) {
     pressed.move_and_settle({to}, speed, [] {});
   }
-  double energy() const {
-    const OrganReading reading = pressed.read();
-    return reading.kinetic_energy + reading.elastic_energy;
-  }
+  double energy() const { return pressed.read().kinetic_energy + pressed.elastic_energy(); }
 
   rigs::PressedOrgan pressed;
 };

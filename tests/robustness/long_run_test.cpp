@@ -50,11 +50,11 @@ Round press_once(session::InProcess& pipeline, int index) {
   pipeline.run_until(kRound * index + 2 * kPress - 1e-3);
   const NodePositions& nodes = pipeline.node_positions(0);
   round.force = pipeline.contact_model(0).force().norm();
-  round.pressed_energy = nodes.elastic_energy;
+  round.pressed_energy = pipeline.world().elastic_energy(0);
   round.pressed = nodes.positions;
   round.volume = volume_error(nodes);
   pipeline.run_until(kRound * (index + 1) - 1e-3);
-  round.free_energy = nodes.elastic_energy + nodes.kinetic_energy;
+  round.free_energy = pipeline.world().elastic_energy(0) + nodes.kinetic_energy;
   round.free_nodes = nodes.positions;
   round.volume = std::max(round.volume, volume_error(nodes));
   return round;

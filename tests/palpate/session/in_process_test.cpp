@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <set>
 
 #include "haptics/devices/placed_device.h"
 #include "modules/geometry/primitives.h"
@@ -208,6 +209,27 @@ TEST_CASE("session in process: every module runs at its own rate") {
     // what a period leads to
     CHECK(session.node_positions(0).header.sim_time_ns == (tick / 10 + 1) * 10'000'000);
   }
+}
+
+TEST_CASE("session in process: an elastic energy that is told was true within the last 0.04 s") {
+  // Oracle: the world's own energies after the last four advances of 0.01 s, of a ball that is
+  // pressed: all of them differ, and each fourth is told.
+  auto scene = press_scene({{at_depth(0.012), 1.0}});
+  scene.rates.deformation = 100;
+  auto session = ball_session(scene);
+  session.run_until(0.5);
+  std::vector<double> own;
+  std::set<double> told;
+  for (int advance = 0; advance < 40; ++advance) {
+    session.run_until(session.time() + 0.01);
+    own.push_back(session.world().elastic_energy(0));
+    if (own.size() < 4) continue;
+    const double energy = session.node_positions(0).elastic_energy;
+    CHECK(std::find(own.end() - 4, own.end(), energy) != own.end());
+    told.insert(energy);
+  }
+  CHECK(told.size() >= 9);
+  CHECK(told.size() <= 10);
 }
 
 TEST_CASE("session in process: a module is timed, replaced or left out, and the rest is as usual") {
