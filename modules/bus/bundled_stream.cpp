@@ -18,9 +18,9 @@ int BundleSender::matched_readers() {
 
 bool BundleSender::send() {
   // Streams are of the present: what nobody reads is nobody's.
-  const bool read = matched_readers() > 0;
+  read_ = writer_->has_readers();
   if (bundle_.empty()) return true;
-  const bool sent = !read || writer_->write(bundle_.finish());
+  const bool sent = !read_ || writer_->write(bundle_.finish());
   bundle_.clear();
   return sent;
 }

@@ -103,7 +103,7 @@ class Bus {
 
   /// Sends what waits to travel together, topic by topic in the order their writers were made: what
   /// others wait for comes first. Who writes streams with every_sample calls it before it waits for
-  /// anything.
+  /// anything; while it waits, what there was no room for goes.
   virtual void flush() {}
 
   /// All readers alive, in the order they were made.

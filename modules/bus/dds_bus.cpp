@@ -11,6 +11,7 @@
 
 #include "modules/bus/bundled_stream.h"
 #include "modules/bus/clock_exchange.h"
+#include "modules/bus/host_stream.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
 #include "modules/bus/polled_sockets.h"
@@ -31,6 +32,12 @@ WriterId id_of(const eprosima::fastrtps::rtps::GUID_t& guid) {
   std::copy_n(guid.guidPrefix.value, 12, id.begin());
   std::copy_n(guid.entityId.value, 4, id.begin() + 12);
   return id;
+}
+
+/// That was matched last, or is no more.
+WriterId writer_of(const dds::SubscriptionMatchedStatus& status) {
+  return id_of(eprosima::fastrtps::rtps::iHandle2GUID(
+      eprosima::fastrtps::rtps::InstanceHandle_t(status.last_publication_handle)));
 }
 
 template <class Clock>
@@ -75,6 +82,60 @@ class DdsWriter : public RawWriter {
   PayloadType::Sample sample_;
 };
 
+GuidPrefix prefix_of(const WriterId& writer) {
+  GuidPrefix prefix;
+  std::copy_n(writer.begin(), prefix.size(), prefix.begin());
+  return prefix;
+}
+
+/// A stream to readers on this host, which find it by what DDS tells them.
+class HostWriter : public RawWriter {
+ public:
+  HostWriter(Participant& participant, const TopicInfo& topic)
+      : stream_(*participant.polled(), host_stream_name(participant.prefix(), topic.name),
+                participant.token()),
+        announced_(participant, topic) {}
+
+  bool write(messages::Payload payload) override { return stream_.write(payload); }
+  int matched_readers() const override { return stream_.matched_readers(); }
+  bool has_readers() const override { return stream_.has_readers(); }
+  bool wait_until_received(double longest) override { return stream_.wait_until_received(longest); }
+
+ private:
+  HostStreamWriter stream_;  // listens before it is told of
+  DdsWriter announced_;
+};
+
+class HostReader : public RawReader, private dds::DataReaderListener {
+ public:
+  HostReader(Participant& participant, const TopicInfo& topic, Keep keep)
+      : participant_(participant),
+        topic_(topic),
+        stream_(*participant.polled(), participant.token()),
+        reader_(participant.add_reader(topic, keep, this)) {}
+  ~HostReader() override {
+    reader_->set_listener(nullptr);
+    participant_.remove(reader_);
+  }
+
+  bool take(RawSample& sample) override { return stream_.take(sample); }
+  bool wait(double timeout) override { return stream_.wait(timeout); }
+  int matched_writers() const override { return stream_.matched_writers(); }
+
+ private:
+  void on_subscription_matched(dds::DataReader* /*reader*/,
+                               const dds::SubscriptionMatchedStatus& status) override {
+    if (status.current_count_change <= 0) return;
+    const WriterId writer = writer_of(status);
+    stream_.meet(writer, host_stream_name(prefix_of(writer), topic_.name));
+  }
+
+  Participant& participant_;
+  TopicInfo topic_;
+  HostStreamReader stream_;
+  dds::DataReader* reader_;
+};
+
 SampleShortcut::EntityId entity_of(const dds::DataReader& reader) {
   SampleShortcut::EntityId id = 0;
   for (const std::uint8_t byte : reader.guid().entityId.value) id = id << 8 | byte;
@@ -89,8 +150,7 @@ class InboxMatches : public dds::DataReaderListener {
 
   void on_subscription_matched(dds::DataReader* reader,
                                const dds::SubscriptionMatchedStatus& status) override {
-    const WriterId writer = id_of(eprosima::fastrtps::rtps::iHandle2GUID(
-        eprosima::fastrtps::rtps::InstanceHandle_t(status.last_publication_handle)));
+    const WriterId writer = writer_of(status);
     const auto own = entity_of(*reader);
     shortcut_.disconnect(writer, own);
     if (status.current_count_change > 0) shortcut_.connect(writer, own, inbox_);
@@ -246,6 +306,10 @@ std::unique_ptr<RawWriter> DdsBus::raw_writer(const TopicInfo& topic) {
 }
 
 std::unique_ptr<RawReader> DdsBus::raw_reader(const TopicInfo& topic, Keep keep) {
+  if (is_bundled(topic) && participant_->streams_on_host()) {
+    return std::make_unique<BundledReader>(
+        std::make_unique<HostReader>(*participant_, topic, keep));
+  }
   const bool plain =
       participant_->shortcut() != nullptr && topic.delivery == Delivery::kStream && !every_sample_;
   auto reader = std::make_unique<DdsReader>(*participant_, topic, keep, clocks_.get(),
@@ -268,7 +332,13 @@ std::shared_ptr<BundleSender> DdsBus::sender_of(const TopicInfo& topic) {
   std::erase_if(senders_, [](const auto& known) { return known.second.expired(); });
   const auto known = std::ranges::find(senders_, topic.name, [](const auto& s) { return s.first; });
   if (known != senders_.end()) return known->second.lock();
-  auto made = std::make_shared<BundleSender>(std::make_unique<DdsWriter>(*participant_, topic));
+  std::unique_ptr<RawWriter> writer;
+  if (participant_->streams_on_host()) {
+    writer = std::make_unique<HostWriter>(*participant_, topic);
+  } else {
+    writer = std::make_unique<DdsWriter>(*participant_, topic);
+  }
+  auto made = std::make_shared<BundleSender>(std::move(writer));
   senders_.emplace_back(topic.name, made);
   return made;
 }

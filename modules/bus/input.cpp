@@ -15,8 +15,9 @@ Input::Input(Bus& bus, const TopicInfo& topic, Keep keep)
 
 Input::~Input() { std::erase(bus_.inputs_, this); }
 
-void Input::set_horizon(std::int64_t source_time_ns) {
+void Input::set_horizon(std::int64_t source_time_ns, bool all_heard) {
   horizon_ = source_time_ns;
+  all_heard_ = all_heard;
   gated_ = true;
 }
 
@@ -34,7 +35,7 @@ bool Input::heard_until(std::int64_t source_time_ns, std::size_t keys) {
 
 const RawSample* Input::next() {
   if (!gated_) return raw_->take(current_) ? &current_ : nullptr;
-  if (!has_admitted()) pull();
+  if (!has_admitted() && !all_heard_) pull();
   if (!has_admitted()) return nullptr;
   spare_.splice(spare_.end(), pending_, pending_.begin());
   return &spare_.back().sample;

@@ -46,7 +46,8 @@ class Input {
   bool wait(double timeout) { return raw_->wait(timeout); }
 
   /// Samples with a later header.source_time_ns wait until the horizon has moved on.
-  void set_horizon(std::int64_t source_time_ns);
+  /// @param all_heard  nothing is to come of what it admits: nobody looks for more
+  void set_horizon(std::int64_t source_time_ns, bool all_heard = false);
   /// True if of at least `keys` keys a sample of that source time or later has arrived, taken or
   /// not. Arrivals are noted from the first call on.
   bool heard_until(std::int64_t source_time_ns, std::size_t keys = 1);
@@ -87,7 +88,7 @@ class Input {
   SequenceGaps gaps_;
   RawSample current_;
 
-  bool gated_ = false;
+  bool gated_ = false, all_heard_ = false;
   std::int64_t horizon_ = kNoHorizon;
   std::int64_t told_before_ = std::numeric_limits<std::int64_t>::min();  ///< source time
   std::list<Waiting> pending_;  ///< in the order they will be handed out

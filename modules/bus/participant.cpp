@@ -122,9 +122,7 @@ Participant::Participant(const BusOptions& options, Arrivals arrivals)
                              ": is the loopback interface up?");
   }
   if (shortcut() != nullptr) {
-    GuidPrefix own;
-    std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
-    shortcut()->set_participant(own);
+    shortcut()->set_participant(prefix());
   }
   try {
     check_files_left();
@@ -144,6 +142,12 @@ Participant::~Participant() { close(); }
 
 Refusals Participant::packets_refused() const {
   return {packets_->refused, text_of(packets_->last)};
+}
+
+GuidPrefix Participant::prefix() const {
+  GuidPrefix own;
+  std::ranges::copy(participant_->guid().guidPrefix.value, own.begin());
+  return own;
 }
 
 bool Participant::admit(std::span<std::uint8_t> payload) {
@@ -176,8 +180,11 @@ dds::Topic* Participant::topic(const TopicInfo& topic) {
   const auto known = topics_.find(topic.name);
   if (known != topics_.end()) return known->second;
   // A bundle holds samples of many keys, and bundles come in the order they were sent.
-  const bool keyed = !(every_sample_ && topic.delivery == Delivery::kStream);
-  const dds::TypeSupport support(new PayloadType(*topic.type, token_, keyed));
+  const bool bundled = every_sample_ && topic.delivery == Delivery::kStream;
+  dds::TypeSupport support(new PayloadType(*topic.type, token_, !bundled));
+  if (bundled && streams_on_host()) {
+    support->setName((std::string(topic.type->wire_name) + "@host").c_str());
+  }
   participant_->register_type(support);
   dds::Topic* created = demand_created(
       participant_->create_topic(std::string(topic.name), support.get_type_name(), dds::TopicQos()),

@@ -59,6 +59,11 @@ class Participant {
   SampleShortcut* shortcut() const { return hearing_.shortcut.get(); }
   /// Who waits for something has to let them hear; nullptr where others do.
   PolledSockets* polled() const { return hearing_.polled.get(); }
+  /// Whether streams go past DDS (host_stream.h): in a lockstep on one host, without keys.
+  /// Endpoints of DDS only tell of each other then, and match no others.
+  bool streams_on_host() const { return every_sample_ && polled() != nullptr && role_.empty(); }
+  std::uint64_t token() const { return token_; }
+  GuidPrefix prefix() const;
   /// Where a participant that was heard speaks from, as "10.0.0.6"; empty for this host.
   std::string host_of(const GuidPrefix& participant) const;
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,6 +21,8 @@ namespace palpate::bus {
 class PolledSockets {
  public:
   using Take = std::function<void(std::span<const std::uint8_t>, const PacketSender&)>;
+  /// Reads a descriptor, or writes to it. @returns whether anything was taken
+  using Serve = std::function<bool()>;
   /// Of one socket in one hear(), so that it ends while packets rain.
   static constexpr int kMostAtOnce = 4096;
 
@@ -35,9 +38,17 @@ class PolledSockets {
   /// @throws std::system_error as ListeningSocket does, or if the system takes no more, and listens
   /// at
   ///                  none of them then
-  void open(const std::vector<std::string>& addresses, std::uint16_t port, int room, Take take);
+  void open(const std::vector<std::string>& addresses, std::uint16_t port, int room,
+            const Take& take);
   bool is_open(std::uint16_t port) const;
   bool close(std::uint16_t port);  ///< false if it is not open
+
+  /// Of another kind: `serve` is called by hear() when something has come, or room is awaited and
+  /// there. It may watch and forget descriptors, its own too.
+  /// @throws std::system_error if the system takes no more
+  void watch(int descriptor, Serve serve);
+  void await_room(int descriptor, bool awaited);  ///< of a watched one
+  void forget(int descriptor);                    ///< before it is closed
 
   /// Takes what has come; if nothing has, waits until something comes, at most `longest` [s], to
   /// the next millisecond.
@@ -45,17 +56,12 @@ class PolledSockets {
   bool hear(double longest);
 
  private:
-  struct Channel {
-    std::uint16_t port = 0;
-    std::vector<ListeningSocket> sockets;
-    Take take;
-  };
   static constexpr int kMostReady = 64;  ///< in one call of the system
-  bool drain(int descriptor);
-  bool drain(const ListeningSocket& socket, const Take& take);
+  bool drain(int descriptor, const Take& take);
 
-  std::vector<Channel> channels_;
-  int ready_;  ///< tells which of their sockets have something
+  std::map<std::uint16_t, std::vector<ListeningSocket>> channels_;  ///< by port
+  std::map<int, std::shared_ptr<Serve>> served_;                    ///< by descriptor
+  int ready_;  ///< tells which of them have something
   /// Memory for a packet; touched as far as packets are long.
   std::unique_ptr<std::uint8_t[]> packet_ =
       std::make_unique_for_overwrite<std::uint8_t[]>(kMostPacketBytes);

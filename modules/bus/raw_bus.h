@@ -39,6 +39,8 @@ class RawWriter {
   /// False if the bus refused it.
   virtual bool write(messages::Payload payload) = 0;
   virtual int matched_readers() const = 0;
+  /// Whether there are some, as far as it was heard: asked for each bundle.
+  virtual bool has_readers() const { return matched_readers() > 0; }
   /// False where it is known, without asking, that nobody gets what is written now.
   virtual bool is_read() const { return true; }
   /// Waits until every reader of a reliable topic has what was written, at most `longest` [s].

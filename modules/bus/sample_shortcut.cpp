@@ -68,7 +68,7 @@ std::optional<PlainSample> only_sample(std::span<const std::uint8_t> packet) {
 
 void SampleInbox::put(const WriterId& writer, std::int64_t arrived_ns, messages::Payload payload) {
   const std::lock_guard lock(mutex_);
-  if (bytes_ + payload.size() > kMostBytes) return;
+  if (payload.size() > most_bytes_ - bytes_) return;
   if (count_ == samples_.size()) samples_.emplace_back();
   RawSample& sample = samples_[count_++];
   sample.writer = writer;

@@ -19,9 +19,11 @@ namespace palpate::bus {
 /// What came for one reader. Thread-safe.
 class SampleInbox {
  public:
-  /// Of one reader; what comes then is lost, and a gap in its writer's numbers [bytes].
+  /// Of one reader, unless told otherwise; what comes then is lost, and a gap in its writer's
+  /// numbers [bytes].
   static constexpr std::size_t kMostBytes = 16u << 20;
 
+  explicit SampleInbox(std::size_t most_bytes = kMostBytes) : most_bytes_(most_bytes) {}
   /// @param arrived_ns  by the monotonic clock
   void put(const WriterId& writer, std::int64_t arrived_ns, messages::Payload payload);
   /// The oldest one. `sample` gives its memory for it. False if there is none.
@@ -29,6 +31,7 @@ class SampleInbox {
   bool empty() const;
 
  private:
+  std::size_t most_bytes_;
   mutable std::mutex mutex_;
   std::vector<RawSample> samples_;  ///< places keep their memory
   std::size_t next_ = 0, count_ = 0, bytes_ = 0;

@@ -8,22 +8,32 @@ LockstepCursor::LockstepCursor(const scene::Scene& scene, const std::string& mod
   open_until(CycleGrid::kSetUp);
 }
 
+std::optional<std::int64_t> LockstepCursor::awaited(const bus::Input& input,
+                                                    std::int64_t time_ns) const {
+  const std::string_view topic = input.topic().name;
+  const std::int64_t required = rule_.required(topic, time_ns);
+  if (rule_.keys(topic) == 0 || required == CycleGrid::kNever) return {};
+  if (required > CycleGrid::kSetUp && required < start_ns_) return {};
+  return required;
+}
+
 /// The first one: stages read first what is said first. So it is read while others still work on
 /// what comes last, for which everybody waits.
 bus::Input* LockstepCursor::missing_at(std::int64_t time_ns) {
   for (bus::Input* input : inputs_) {
-    const std::size_t keys = rule_.keys(input->topic().name);
-    const std::int64_t required = rule_.required(input->topic().name, time_ns);
-    if (keys == 0 || required == CycleGrid::kNever) continue;
-    if (required > CycleGrid::kSetUp && required < start_ns_) continue;
-    if (!input->heard_until(required, keys)) return input;
+    const auto required = awaited(*input, time_ns);
+    if (required && !input->heard_until(*required, rule_.keys(input->topic().name))) return input;
   }
+  nothing_missing_ns_ = time_ns;
   return nullptr;
 }
 
 void LockstepCursor::open_until(std::int64_t time_ns) {
   for (bus::Input* input : inputs_) {
-    input->set_horizon(rule_.horizon(input->topic().name, time_ns));
+    // Of what no cycle waits for, such as states, more may come.
+    const bool all_heard = nothing_missing_ns_ == time_ns &&
+                           awaited(*input, time_ns).value_or(CycleGrid::kSetUp) > CycleGrid::kSetUp;
+    input->set_horizon(rule_.horizon(input->topic().name, time_ns), all_heard);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +47,8 @@ class LockstepCursor {
   void finish(Stage& stage, std::int64_t end_ns);
 
  private:
+  /// Whether a cycle of that time waits for samples of the input, and then until when.
+  std::optional<std::int64_t> awaited(const bus::Input& input, std::int64_t time_ns) const;
   bus::Input* missing_at(std::int64_t time_ns);
   void open_until(std::int64_t time_ns);
 
@@ -53,8 +56,9 @@ class LockstepCursor {
   CycleGrid grid_;
   std::vector<bus::Input*> inputs_;
   std::int64_t start_ns_ = 0, next_ns_ = 0;
-  std::int64_t prepared_ns_ = CycleGrid::kSetUp;  ///< for which cycle it was last, and
-  const bus::Input* prepared_until_ = nullptr;    ///< before which input
+  std::int64_t nothing_missing_ns_ = CycleGrid::kNever;  ///< when it was asked last
+  std::int64_t prepared_ns_ = CycleGrid::kSetUp;         ///< for which cycle it was last, and
+  const bus::Input* prepared_until_ = nullptr;           ///< before which input
 };
 
 }  // namespace palpate::runtime

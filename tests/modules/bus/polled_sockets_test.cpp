@@ -1,5 +1,8 @@
 #include "modules/bus/polled_sockets.h"
 
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <system_error>
@@ -121,6 +124,62 @@ TEST_CASE("polled sockets: hearing ends while packets rain", "[bus]") {
   }
   raining = false;
   rain.join();
+}
+
+TEST_CASE("polled sockets: what is watched is served when something came, or there is room",
+          "[bus]") {
+  // Oracle: a pair of sockets of the test's own.
+  int pair[2];
+  REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, pair) == 0);
+  PolledSockets sockets;
+  int served = 0;
+  sockets.watch(pair[0], [&] {
+    ++served;
+    char byte = 0;
+    return ::recv(pair[0], &byte, 1, 0) == 1;
+  });
+  CHECK_FALSE(sockets.hear(0));
+  REQUIRE(::send(pair[1], "a", 1, 0) == 1);
+  CHECK(sockets.hear(1));
+  CHECK(served == 1);
+  sockets.await_room(pair[0], true);
+  CHECK_FALSE(sockets.hear(1));  // there is room, and nothing came
+  CHECK(served == 2);
+  sockets.await_room(pair[0], false);
+  CHECK_FALSE(sockets.hear(0));
+  CHECK(served == 2);
+  sockets.forget(pair[0]);
+  REQUIRE(::send(pair[1], "a", 1, 0) == 1);
+  CHECK_FALSE(sockets.hear(0));
+  CHECK(served == 2);
+  for (const int each : pair) ::close(each);
+}
+
+TEST_CASE("polled sockets: who is served may end itself and another one", "[bus]") {
+  // Oracle: of two that have something, whoever is served first leaves the other unserved.
+  int first[2], second[2];
+  for (int* pair : {first, second}) {
+    REQUIRE(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, pair) == 0);
+    REQUIRE(::send(pair[1], "a", 1, 0) == 1);
+  }
+  PolledSockets sockets;
+  int served = 0;
+  const auto end_both = [&] {
+    ++served;
+    sockets.forget(first[0]);
+    sockets.forget(second[0]);
+    return true;
+  };
+  sockets.watch(first[0], end_both);
+  sockets.watch(second[0], end_both);
+  CHECK(sockets.hear(1));
+  CHECK(served == 1);
+  CHECK_FALSE(sockets.hear(0));
+  CHECK_THROWS_AS(sockets.watch(-1, end_both), std::system_error);
+  for (const int* pair : {first, second}) {
+    ::close(pair[0]);
+    ::close(pair[1]);
+  }
 }
 
 }  // namespace palpate::bus
