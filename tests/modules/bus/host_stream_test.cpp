@@ -31,7 +31,7 @@ std::string own_stream_name() {
 
 Bytes numbered(std::uint32_t number, std::size_t size) {
   Bytes bytes(size, static_cast<std::uint8_t>(number));
-  std::memcpy(bytes.data(), &number, std::min(size, sizeof number));
+  if (size > 0) std::memcpy(bytes.data(), &number, std::min(size, sizeof number));
   return bytes;
 }
 
