@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Lockstep over DDS beside the same session in one process.
+"""Lockstep of the real processes beside the same session in one process.
 
   bench/lockstep_identity.py identity [SCENE…]   each scene: one run in process, then --runs runs of
       the real processes, any of which is stopped (SIGSTOP) and continued at random. The recordings
       must be the same bytes. Exit code 1 if any differs.
-  bench/lockstep_identity.py cost [SCENE…]       what a deformation period costs more over DDS than in
+  bench/lockstep_identity.py cost [SCENE…]       what a deformation period costs more between processes than in
       one process [ms]: difference of two durations, so that starting and ending drop out.
 """
 import argparse
@@ -98,7 +98,7 @@ def cost(arguments):
         pairs = [(per_period(["--in-process"]), per_period(lockstep(n))) for n in range(arguments.runs)]
         inside = statistics.median(a for a, _ in pairs)
         more = sorted(b - a for a, b in pairs)
-        print(f"{scene.stem}: a period in one process {inside:.3f} ms; over DDS "
+        print(f"{scene.stem}: a period in one process {inside:.3f} ms; between processes "
               f"{statistics.median(more):.3f} ms more ({more[0]:.3f} to {more[-1]:.3f}, "
               f"{arguments.runs} pairs)", flush=True)
     return 0

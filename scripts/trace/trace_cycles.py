@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints what one cycle of each stage really calls, as docs/pipeline.md shows it.
 
-Builds the preset `trace`, runs a scene in lockstep (the real processes, over DDS) with a tracer preloaded, and
+Builds the preset `trace`, runs a scene in lockstep (the real processes) with a tracer preloaded, and
 turns the last cycle of each into a tree: functions with a body of more than a line in a .cpp file, in the order of
 their first call, with how often they were called; what is taken from the bus (<-) and written to it (->).
 """

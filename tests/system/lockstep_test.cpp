@@ -1,4 +1,4 @@
-// Lockstep over DDS with the real processes, beside the same session in one process.
+// Lockstep with the real processes, beside the same session in one process.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
