@@ -1,7 +1,7 @@
 // Streams between processes of one host, past the DDS library: samples whole, in their order, and
-// none lost, by a local socket from each writer to each reader. To write, acknowledge, keep and
-// hand on a sample takes the library ten times what the system takes to copy it. Who may be heard
-// is the library's word all the same: it tells a reader of its writers.
+// none lost, by a local socket from each writer to each reader. What the library does with a sample
+// besides, to acknowledge, keep and hand it on, is not needed there. Who may be heard is its word
+// all the same: it tells a reader of its writers.
 //
 // Both ends are of one user (SO_PEERCRED). A reader begins with the session's token, the writer
 // answers with it; then come samples, each behind its size (uint32, of this host).

@@ -56,6 +56,27 @@ void match(const Writer<Message>& writer, const Reader<Message>& reader, int wri
   }));
 }
 
+inline ProbeState state_at(std::int64_t source_time_ns, std::uint32_t probe = 0) {
+  ProbeState state;
+  state.header.source_time_ns = source_time_ns;
+  state.probe = probe;
+  return state;
+}
+
+// Everything that arrives until `count` samples came; the writer waits for it in turns, as there is
+// no room for all of it on the way.
+template <class Message>
+std::vector<Message> take_all(Writer<Message>& writer, Reader<Message>& reader, std::size_t count) {
+  std::vector<Message> taken;
+  Message message;
+  wait_until([&] {
+    writer.wait_until_received(0.001);
+    while (reader.take(message)) taken.push_back(message);
+    return taken.size() >= count;
+  });
+  return taken;
+}
+
 }  // namespace palpate::bus::testing
 
 #define PALPATE_BOTH_BUSES DdsSession, GatheredSession, PolledSession, MemorySession
