@@ -1,14 +1,13 @@
 #include "modules/bus/bus.h"
 
-#include <chrono>
-
+#include "modules/bus/clock_ns.h"
 #include "modules/messages/cdr.h"
 
 namespace palpate::bus {
 
 std::int64_t Bus::now_ns() const {
   if (clock_) return clock_();
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return monotonic_ns();
 }
 
 template <class Message>

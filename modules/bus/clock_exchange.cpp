@@ -4,6 +4,7 @@
 #include <chrono>
 #include <random>
 
+#include "modules/bus/clock_ns.h"
 #include "modules/messages/cdr.h"
 
 namespace palpate::bus {
@@ -14,10 +15,6 @@ constexpr auto kPeriod = 50ms;
 /// At first faster: until clocks are known, nothing of another host is used.
 constexpr auto kFirstPeriod = 10ms;
 constexpr int kFirstPeriods = 100;
-
-std::int64_t monotonic_ns() {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 
 #include "modules/bus/bundled_stream.h"
 #include "modules/bus/clock_exchange.h"
+#include "modules/bus/clock_ns.h"
 #include "modules/bus/host_stream.h"
 #include "modules/bus/participant.h"
 #include "modules/bus/payload_type.h"
@@ -40,11 +41,6 @@ WriterId writer_of(const dds::SubscriptionMatchedStatus& status) {
       eprosima::fastrtps::rtps::InstanceHandle_t(status.last_publication_handle)));
 }
 
-template <class Clock>
-std::int64_t ns_of() {
-  return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
-}
-
 class DdsWriter : public RawWriter {
  public:
   DdsWriter(Participant& participant, const TopicInfo& topic)
@@ -63,8 +59,8 @@ class DdsWriter : public RawWriter {
   bool wait_until_received(double longest) override {
     PolledSockets* const polled = participant_.polled();
     if (polled == nullptr) return is_acknowledged(longest);
-    const std::int64_t until = ns_of<std::chrono::steady_clock>() + ns_from_seconds(longest);
-    for (std::int64_t left = 1; left > 0; left = until - ns_of<std::chrono::steady_clock>()) {
+    const std::int64_t until = monotonic_ns() + ns_from_seconds(longest);
+    for (std::int64_t left = 1; left > 0; left = until - monotonic_ns()) {
       if (is_acknowledged(0)) return true;
       polled->hear(seconds_from_ns(left));
     }
@@ -213,7 +209,7 @@ class DdsReader : public RawReader {
     while (inbox_ && inbox_->take(sample)) {
       if (participant_.admit(sample.payload)) return true;
     }
-    const std::int64_t asked = ns_of<std::chrono::steady_clock>();
+    const std::int64_t asked = monotonic_ns();
     if (take_heard(sample)) return true;
     PolledSockets* const polled = participant_.polled();
     if (polled != nullptr && polled->hear(0) && take_heard(sample)) return true;
@@ -245,9 +241,9 @@ class DdsReader : public RawReader {
 
   /// DDS stamps arrivals with the wall clock; everything else here runs on the monotonic one.
   std::int64_t monotonic(std::int64_t wall_ns) {
-    const std::int64_t before = ns_of<std::chrono::steady_clock>();
-    const std::int64_t wall_now = ns_of<std::chrono::system_clock>();
-    return wall_shift_.arrival(wall_ns, before, wall_now, ns_of<std::chrono::steady_clock>());
+    const std::int64_t before = monotonic_ns();
+    const std::int64_t wall_now = clock_ns<std::chrono::system_clock>();
+    return wall_shift_.arrival(wall_ns, before, wall_now, monotonic_ns());
   }
 
   bool put_on_this_clock(RawSample& sample) const {

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "modules/bus/clock_ns.h"
 #include "modules/bus/packet_chunks.h"
 #include "modules/bus/packet_gatherer.h"
 #include "modules/bus/packet_stamp.h"
@@ -199,9 +200,7 @@ class FilteredTransport : public transport::ChainingTransport {
   bool known_sender(std::span<const std::uint8_t> packet, const rtps::Locator_t& remote) {
     GuidPrefix prefix;
     std::copy_n(packet.begin() + kPrefixAt, prefix.size(), prefix.begin());
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return descriptor_.tally->senders.admit(prefix, sender_of(remote),
-                                            std::chrono::nanoseconds(now).count());
+    return descriptor_.tally->senders.admit(prefix, sender_of(remote), monotonic_ns());
   }
 
   Descriptor descriptor_;

@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <limits>
 #include <system_error>
 #include <utility>
 
+#include "modules/bus/clock_ns.h"
 #include "modules/bus/session_token.h"
 #include "modules/core/units.h"
 
@@ -65,11 +65,6 @@ bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == 
 bool greet(const HostSocket& socket, std::uint64_t token) {
   const ssize_t sent = ::send(socket.descriptor(), &token, sizeof token, MSG_NOSIGNAL);
   return sent == static_cast<ssize_t>(sizeof token);
-}
-
-std::int64_t now_ns() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return std::chrono::nanoseconds(now).count();
 }
 
 }  // namespace
@@ -214,8 +209,9 @@ int HostStreamWriter::matched_readers() const {
 }
 
 bool HostStreamWriter::wait_until_received(double longest) {
-  const std::int64_t until = now_ns() + ns_from_seconds(longest);
-  for (std::int64_t left = until - now_ns(); left > 0 && !all_gone(); left = until - now_ns()) {
+  const std::int64_t until = monotonic_ns() + ns_from_seconds(longest);
+  for (std::int64_t left = until - monotonic_ns(); left > 0 && !all_gone();
+       left = until - monotonic_ns()) {
     sockets_.hear(seconds_from_ns(left));
   }
   return all_gone();
@@ -314,7 +310,7 @@ bool HostStreamReader::read(Writer& writer) {
     writer.greeted = true;
     at = sizeof token_;
   }
-  const std::int64_t arrived_ns = now_ns();
+  const std::int64_t arrived_ns = monotonic_ns();
   SampleSize size = 0;
   while (writer.greeted && has(sizeof size)) {
     std::memcpy(&size, writer.bytes.data() + at, sizeof size);

@@ -12,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include "modules/bus/clock_ns.h"
+
 namespace palpate::bus {
 namespace {
 
@@ -19,11 +21,6 @@ constexpr std::size_t kPacketsAtOnce = 32;
 constexpr std::size_t kMostCalls = 64;  // then it looks whether it is to end
 /// What the kernel counts beside a packet's bytes, about.
 constexpr std::size_t kBesideBytes = 1024;
-
-template <class Clock>
-std::int64_t clock_ns() {
-  return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
-}
 
 void stamp_packets(const ListeningSocket& socket, const std::string& address) {
   const int on = 1;
@@ -74,12 +71,12 @@ class PacketGatherer::Batch {
       header.msg_control = words_[i].data();
       header.msg_controllen = words_[i].size();
     }
-    asked_ns_ = clock_ns<std::chrono::steady_clock>();
+    asked_ns_ = monotonic_ns();
     const int count =
         ::recvmmsg(descriptor, messages_.data(), kPacketsAtOnce, MSG_DONTWAIT, nullptr);
-    before_ns_ = clock_ns<std::chrono::steady_clock>();
+    before_ns_ = monotonic_ns();
     wall_ns_ = clock_ns<std::chrono::system_clock>();
-    after_ns_ = clock_ns<std::chrono::steady_clock>();
+    after_ns_ = monotonic_ns();
     return count < 0 ? 0 : static_cast<std::size_t>(count);
   }
 
