@@ -98,7 +98,11 @@ void wait_for_turn() {
 }
 
 bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread) {
-  const auto cores = cores_for(thread);
+  return keep_to_own_core(place, count, thread, thread);
+}
+
+bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread, pthread_t another) {
+  const auto cores = cores_for(another);
   if (cores.size() != count || place >= count) return false;
   cpu_set_t own;
   CPU_ZERO(&own);

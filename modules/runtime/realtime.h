@@ -56,6 +56,8 @@ void wait_for_turn();
 /// 0
 /// @return whether it does
 bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread = pthread_self());
+/// The same of the cores that another thread has.
+bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread, pthread_t another);
 
 /// The calling thread, and those it starts from now on, leave the first core to others, where there
 /// are so many cores for it, and more than one: real-time work that comes again and again stays on

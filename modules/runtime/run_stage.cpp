@@ -84,8 +84,9 @@ void run_stage(const ModuleOptions& options, const scene::Scene& scene, const st
                Priority priority, const MakeStage& make) {
   spdlog::set_pattern("[" + name + "] %l: %v");  // of several processes of a program, which one
   if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
-  // Before there are threads of DDS, which then do so, too.
-  if (name == "haptics" || name == "collision") leave_first_core(scene.deformation_threads);
+  // Before there are threads of DDS, which then do so, too: those of deformation, where the first
+  // core is its main thread's, would take a tenth of it.
+  if (name != "visualizer") leave_first_core(scene.deformation_threads);
   Module module(options, scene, name, rate_of(name, scene), priority);
   const auto stage = make(module.bus());
   KeptState kept(options.kept_state, scene::scene_digest(scene));

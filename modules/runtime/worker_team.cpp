@@ -1,13 +1,18 @@
 #include "modules/runtime/worker_team.h"
 
+#include <chrono>
+
 #include "modules/core/error.h"
 #include "modules/runtime/realtime.h"
 
 namespace palpate::runtime {
 namespace {
 
-/// About 20 µs of looking before sleeping: longer than the serial part between two runs of a step.
-constexpr int kSpins = 2000;
+/// Of looking before sleeping: longer than most of what one thread does alone between two runs of a
+/// step. To wake a sleeper costs the caller some 10 µs; who looks keeps others from a core, those
+/// who draw pictures too.
+constexpr std::chrono::microseconds kSpin{60};
+constexpr int kLooksPerTime = 50;  ///< between looks at the clock
 
 constexpr std::uint64_t kClosed = ~std::uint64_t{0};  ///< a ticket whose chunk is beyond any count
 
@@ -33,10 +38,11 @@ WorkerTeam::~WorkerTeam() { end(); }
 
 void WorkerTeam::keep_to_own_cores() {
   if (workers_.empty()) return;
+  // The calling thread may have left the first core since the workers were started.
+  keep_to_own_core(0, size(), pthread_self(), workers_.front().native_handle());
   for (std::size_t i = 1; i < size(); ++i) {
     keep_to_own_core(i, size(), workers_[i - 1].native_handle());
   }
-  keep_to_own_core(0, size());
 }
 
 void WorkerTeam::end() {
@@ -83,10 +89,13 @@ void WorkerTeam::work(std::size_t own) {
 }
 
 std::uint32_t WorkerTeam::await_run(std::uint32_t last_run) const {
-  for (int spin = 0; spin < kSpins; ++spin) {
-    if (run_.load() != last_run) return run_.load();
-    relax();
-  }
+  const auto end = std::chrono::steady_clock::now() + kSpin;
+  do {
+    for (int look = 0; look < kLooksPerTime; ++look) {
+      if (run_.load() != last_run) return run_.load();
+      relax();
+    }
+  } while (std::chrono::steady_clock::now() < end);
   run_.wait(last_run);
   return run_.load();
 }

@@ -12,8 +12,8 @@ namespace palpate::runtime {
 
 /// The calling thread and `threads` − 1 more. Each has its share of a run's chunks, the same part
 /// in every run, so that what it worked on is in its core's cache still; who is done with his takes
-/// from the others'. Workers spin for some microseconds after a run, for the next is usually near,
-/// then sleep. A run neither allocates nor locks.
+/// from the others'. Workers spin for 60 µs after a run, for the next is usually near, then
+/// sleep. A run neither allocates nor locks.
 class WorkerTeam : public ChunkRunner {
  public:
   /// @param threads  ≥ 1; 1 has no workers
@@ -24,8 +24,9 @@ class WorkerTeam : public ChunkRunner {
   WorkerTeam& operator=(const WorkerTeam&) = delete;
 
   std::size_t size() const { return shares_.size(); }
-  /// Where there are as many cores as threads, each keeps to one from now on, the calling thread to
-  /// the first: two that share a core while another is free would hold up each other.
+  /// Where there were as many cores as threads when the team began, each keeps to one from now on,
+  /// the calling thread to the first: two that share a core while another is free would hold up
+  /// each other.
   void keep_to_own_cores();
   /// Called from one thread at a time; the body must not throw.
   void run(std::size_t count, ChunkBody body) override;
