@@ -13,7 +13,7 @@ constexpr double kEnough = 1e-3;
 }  // namespace
 
 FarAnswers::FarAnswers(const OrganModel& model, ChunkRunner* runner)
-    : model_(model), springs_(model, model.network(), false, runner), product_(springs_) {}
+    : model_(model), springs_(model, model.network(), false, runner), product_(springs_, runner) {}
 
 void FarAnswers::find(const std::vector<Vec3>& positions, const Neighbours& neighbours,
                       std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t near,
@@ -24,7 +24,7 @@ void FarAnswers::find(const std::vector<Vec3>& positions, const Neighbours& neig
   near_ = std::min(near, count);
   springs_.find_slices(patch_.nodes, slices_);
   springs_.linearise(positions, shares, slices_);
-  product_.take(patch_, slices_);
+  product_.take(patch_);
   inverse_blocks_.clear();
   for (const std::uint32_t node : patch_.nodes) {
     inverse_blocks_.push_back(springs_.diagonal()[node].inverse());

@@ -17,7 +17,10 @@ SpringShares shares_of(const PeriodSteps& steps, double drag) {
 
 PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours, std::size_t nodes,
                                  ChunkRunner* runner)
-    : model_(model), neighbours_(std::move(neighbours)), nodes_(nodes), runner_(runner) {}
+    : model_(model), neighbours_(std::move(neighbours)), nodes_(nodes) {
+  // When a probe first touches would be too late: a fine wall's takes more than a period.
+  if (!model.is_solid()) far_.emplace(model, runner);
+}
 
 void PatchCompliance::exchange(StateArchive& archive) {
   bool has_solid = solid_.has_value();
@@ -141,7 +144,6 @@ Eigen::Index PatchCompliance::extend(const std::vector<Vec3>& positions, const V
   const std::size_t reach =
       std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(stiffness)));
   if (model_.is_solid() || reach <= 2 * nodes_) return 0;
-  if (!far_) far_.emplace(model_, runner_);
   far_->find(positions, neighbours_, touched_, centre, patch_.nodes.size(), reach, rows, shares);
   return take(far_->near_block(), far_->own_block());
 }

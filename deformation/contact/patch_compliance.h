@@ -98,13 +98,12 @@ class PatchCompliance {
   const OrganModel& model_;
   Neighbours neighbours_;
   std::size_t nodes_;
-  ChunkRunner* runner_;
   std::vector<std::uint32_t> touched_;
   Patch patch_;
   std::vector<Push> pushes_;  ///< buffer
   PressedPatch pressed_;      ///< K and D of patch_; the rest in explicit steps
   std::optional<SolidAnswers> solid_;
-  std::optional<FarAnswers> far_;  ///< of springs, once they reach beyond the patch
+  std::optional<FarAnswers> far_;  ///< of springs
 };
 
 }  // namespace palpate::deformation

@@ -6,8 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "modules/core/sort_unique.h"
-
 namespace palpate::deformation {
 
 Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_t, 4>> tetrahedra)
@@ -45,28 +43,27 @@ Neighbours::Neighbours(const Body& body, std::span<const std::array<std::uint32_
 void grow_patch(const Body& body, const Neighbours& neighbours, const std::vector<Vec3>& positions,
                 std::span<const std::uint32_t> touched, const Vec3& centre, std::size_t most,
                 Patch& patch) {
-  patch.places.resize(body.node_count(), -1);
-  for (const std::uint32_t node : patch.nodes) patch.places[node] = -1;
+  constexpr std::int32_t kElsewhere = -1, kInRing = -2;
+  patch.places.resize(body.node_count(), kElsewhere);
+  for (const std::uint32_t node : patch.nodes) patch.places[node] = kElsewhere;
   patch.nodes.clear();
   std::vector<std::uint32_t> ring(touched.begin(), touched.end());
   std::vector<std::pair<double, std::uint32_t>> by_distance;
   for (std::size_t first = 0; !ring.empty() && patch.nodes.size() < most;) {
-    sort_unique(ring);
-    std::erase_if(ring, [&](std::uint32_t node) {
-      return patch.places[node] >= 0 || body.inverse_masses[node] == 0;
-    });
-    // A plate touches thousands: only those taken are put in order.
     by_distance.clear();
     for (const std::uint32_t node : ring) {
+      if (patch.places[node] != kElsewhere || body.inverse_masses[node] == 0) continue;
+      patch.places[node] = kInRing;
       by_distance.push_back({(positions[node] - centre).squaredNorm(), node});
     }
-    const auto end = by_distance.begin() +
-                     static_cast<std::ptrdiff_t>(std::min(ring.size(), most - patch.nodes.size()));
-    std::partial_sort(by_distance.begin(), end, by_distance.end());
-    by_distance.erase(end, by_distance.end());
-    for (const auto& [squared, node] : by_distance) {
-      patch.places[node] = static_cast<std::int32_t>(patch.nodes.size());
-      patch.nodes.push_back(node);
+    // A plate touches thousands: only those taken are put in order.
+    const std::size_t taken = std::min(by_distance.size(), most - patch.nodes.size());
+    std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<std::ptrdiff_t>(taken),
+                      by_distance.end());
+    for (std::size_t i = 0; i < by_distance.size(); ++i) {
+      const std::uint32_t node = by_distance[i].second;
+      patch.places[node] = i < taken ? static_cast<std::int32_t>(patch.nodes.size()) : kElsewhere;
+      if (i < taken) patch.nodes.push_back(node);
     }
     ring.clear();
     for (; first < patch.nodes.size(); ++first) {

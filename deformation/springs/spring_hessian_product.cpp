@@ -203,7 +203,7 @@ double SpringHessianProduct::apply(std::vector<Vec4f>& out) {
     out[node] = sum;
     dot += static_cast<double>(p.dot(sum));
   }
-  return dot + apply_contacts(out);
+  return dot + add_couplings(contacts_, nodes_, out);
 }
 
 double SpringHessianProduct::apply(std::span<const std::uint32_t> slices, std::vector<Vec4f>& out) {
@@ -215,19 +215,24 @@ double SpringHessianProduct::apply(std::span<const std::uint32_t> slices, std::v
                      virtual_sums_.data() + stride * part, dots_.data() + kLanes * part);
   });
   const auto dots = std::span(dots_).first(kLanes * parts);
-  return std::accumulate(dots.begin(), dots.end(), 0.0) + apply_contacts(out);
+  return std::accumulate(dots.begin(), dots.end(), 0.0) + add_couplings(contacts_, nodes_, out);
 }
 
 void SpringHessianProduct::couple(std::span<const ContactCoupling> couplings) {
   contacts_.assign(couplings.begin(), couplings.end());
 }
 
-double SpringHessianProduct::apply_contacts(std::vector<Vec4f>& out) const {
+SpringMatrix SpringHessianProduct::matrix() {
+  return {functions_, layout_.view(), couplings(), masses_.data(), contacts_};
+}
+
+double add_couplings(std::span<const ContactCoupling> couplings,
+                     const AlignedVector<WideNode>& nodes, std::vector<Vec4f>& out) {
   double dot = 0;
-  for (const ContactCoupling& contact : contacts_) {
+  for (const ContactCoupling& contact : couplings) {
     float speed = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      speed += contact.arms[k].dot(nodes_[contact.nodes[k]].vector);
+      speed += contact.arms[k].dot(nodes[contact.nodes[k]].vector);
     }
     for (std::size_t k = 0; k < 3; ++k) out[contact.nodes[k]] += speed * contact.arms[k];
     dot += static_cast<double>(speed * speed);

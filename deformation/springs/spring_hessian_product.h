@@ -30,6 +30,21 @@ struct ContactCoupling {
   std::array<Vec4f, 3> arms{Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()};  ///< [√kg]
 };
 
+/// out += a (a·p) for each.
+/// @param nodes  with the vectors p
+/// @returns Σ (a·p)²
+double add_couplings(std::span<const ContactCoupling> couplings,
+                     const AlignedVector<WideNode>& nodes, std::vector<Vec4f>& out);
+
+/// The matrix as the kernel sees it, while the product lives and until it is taken anew.
+struct SpringMatrix {
+  const kernel::ProductFunctions& functions;
+  kernel::Layout layout;
+  kernel::Couplings springs;
+  const float* masses = nullptr;  ///< of rows
+  std::span<const ContactCoupling> contacts;
+};
+
 class SpringHessianProduct {
  public:
   /// @param body         outlives this
@@ -56,6 +71,8 @@ class SpringHessianProduct {
   /// Nodes as the product loads them; their vectors p [m/s] are for the caller to set. (node_count)
   AlignedVector<WideNode>& nodes() { return nodes_; }
 
+  SpringMatrix matrix();
+
   /// out = A p. Rows of fixed nodes are like any other: leave p zero there and ignore them.
   /// @param out  [N·s]  (node_count)
   /// @returns p·A p
@@ -65,7 +82,6 @@ class SpringHessianProduct {
 
  private:
   kernel::Couplings couplings();
-  double apply_contacts(std::vector<Vec4f>& out) const;
   /// Of slices of a patch: enough that another thread is worth its waking.
   static constexpr std::size_t kSlicesInPart = 16;
 

@@ -13,8 +13,9 @@ constexpr double kEnough = 1e-4;
 
 }  // namespace
 
-ContactRelaxation::ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs)
-    : model_(model), springs_(springs), neighbours_(model, {}), product_(springs) {}
+ContactRelaxation::ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs,
+                                     ChunkRunner* runner)
+    : model_(model), springs_(springs), neighbours_(model, {}), product_(springs, runner) {}
 
 bool ContactRelaxation::choose(double h, const std::vector<Vec3>& positions,
                                std::span<const ContactRow> rows) {
@@ -40,14 +41,16 @@ bool ContactRelaxation::choose(double h, const std::vector<Vec3>& positions,
   const std::size_t most = std::max(kMostInReach, 2 * touched.size());
   const std::size_t reach = std::min(nodes_in_reach(touched.size(), edges), most);
   grow_patch(model_, neighbours_, positions, touched, centre, reach, patch_);
+  if (patch_.nodes.empty()) return false;
   springs_.find_slices(patch_.nodes, slices_);
-  return !patch_.nodes.empty();
+  product_.take(patch_);
+  return true;
 }
 
 void ContactRelaxation::solve(std::span<const Mat3> inverse_mass_blocks,
                               const std::vector<Vec3>& residual, std::span<ContactRow> rows) {
   const std::size_t count = patch_.nodes.size();
-  product_.take(patch_, slices_);
+  product_.take_couplings(patch_);
   inverse_mass_blocks_.assign(count + 1, Mat3::Zero());
   for (auto* buffer : {&residual_, &change_, &projected_, &products_}) {
     buffer->assign(count + 1, Vec4f::Zero());

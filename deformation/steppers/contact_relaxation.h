@@ -27,8 +27,10 @@ class ContactRelaxation {
   static constexpr double kEdges = 6;
 
   /// @param model    of springs, outlives this
-  /// @param springs  A, linearised before each step; outlives this
-  ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs);
+  /// @param springs  A, linearised before rows are chosen; outlives this
+  /// @param runner   outlives this; none: the calling thread alone. The bits are the same
+  ContactRelaxation(const OrganModel& model, SpringHessianProduct& springs,
+                    ChunkRunner* runner = nullptr);
 
   /// A touch of more nodes is not local: that of a plate.
   static constexpr std::size_t kMostTouched = 2000;
@@ -41,7 +43,8 @@ class ContactRelaxation {
   const std::vector<std::uint32_t>& nodes() const { return patch_.nodes; }
   const std::vector<std::uint32_t>& slices() const { return slices_; }
 
-  /// Solves A Δ = r, B Δ = 0 among these nodes; B of the rows that press.
+  /// Solves A Δ = r, B Δ = 0 among these nodes; B of the rows that press, couplings of A those of
+  /// now.
   /// @param inverse_mass_blocks  W [1/kg]  (node_count)
   /// @param residual   r [N·s]  (node_count)
   /// @param rows       get what their impulses lack
@@ -52,7 +55,7 @@ class ContactRelaxation {
 
  private:
   const OrganModel& model_;
-  const SpringHessianProduct& springs_;
+  SpringHessianProduct& springs_;
   Neighbours neighbours_;
   Patch patch_;
   std::vector<std::uint32_t> slices_;

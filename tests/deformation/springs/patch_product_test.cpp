@@ -5,6 +5,7 @@
 
 #include "deformation/springs/patch_springs.h"
 #include "tests/deformation/organs.h"
+#include "tests/deformation/springs/chunk_threads.h"
 
 namespace palpate::deformation {
 namespace {
@@ -44,16 +45,72 @@ TEST_CASE("patch product: to the bit the springs' own product where all other no
     at.springs.nodes()[at.patch.nodes[i]].vector = p[i];
   }
   at.springs.apply(all);
-  for (auto& node : at.springs.nodes()) node.vector = Vec4f(1, 2, 3, 0);  // of somebody before
+  for (auto& node : at.springs.nodes()) node.vector = Vec4f(1, 2, 3, 0);  // of somebody else
 
   PatchProduct product(at.springs);
-  product.take(at.patch, at.slices);
-  REQUIRE(product.nodes().size() == p.size() + 1);
+  product.take(at.patch);
+  REQUIRE(product.nodes().size() > p.size());
   for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
   std::vector<Vec4f> found(p.size());
   const double curvature = product.apply(found);
   for (std::size_t i = 0; i < p.size(); ++i) CHECK(found[i] == all[at.patch.nodes[i]]);
   CHECK(curvature == Approx(dot(p, found)).epsilon(1e-5));  // float
+}
+
+TEST_CASE("patch product: couplings of contacts within the patch, and partly beyond") {
+  // Oracle: the product over all nodes with the same couplings.
+  Patched at;
+  at.springs.linearise(at.positions, 0.01);
+  std::vector<std::uint32_t> beyond;
+  for (std::uint32_t node = 0; beyond.size() < 3; ++node) {
+    if (at.patch.place(node) < 0) beyond.push_back(node);
+  }
+  const Vec4f arm(0.3F, -0.2F, 0.1F, 0);
+  const std::vector<ContactCoupling> couplings{
+      {{at.patch.nodes[3], at.patch.nodes[9], beyond[0]}, {arm, 2 * arm, arm}},
+      {{beyond[0], beyond[1], beyond[2]}, {arm, arm, arm}}};
+  PatchProduct product(at.springs);
+  product.take(at.patch);
+  at.springs.couple(couplings);
+  product.take_couplings(at.patch);
+  const auto p = at.direction();
+  std::vector<Vec4f> all(at.model.node_count()), found(p.size());
+  for (auto& node : at.springs.nodes()) node.vector.setZero();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    at.springs.nodes()[at.patch.nodes[i]].vector = product.nodes()[i].vector = p[i];
+  }
+  CHECK(product.apply(found) == Approx(at.springs.apply(all)).epsilon(1e-5));  // float
+  for (std::size_t i = 0; i < p.size(); ++i) CHECK(found[i] == all[at.patch.nodes[i]]);
+}
+
+TEST_CASE("patch product: the bits do not depend on threads, and a patch of no nodes has none") {
+  // Oracle: the calling thread alone. A patch of more slices than a part has.
+  Patched at;
+  at.springs.linearise(at.positions, 0.01);
+  const std::vector<std::uint32_t> touched{300};
+  grow_patch(at.model, Neighbours(at.model, {}), at.positions, touched, at.positions[300], 600,
+             at.patch);
+  REQUIRE(at.patch.nodes.size() == 600);
+  const auto p = at.direction();
+  testing::ChunkThreads team(2);
+  std::vector<std::vector<Vec4f>> found;
+  std::vector<double> curvatures;
+  for (ChunkRunner* const runner :
+       {static_cast<ChunkRunner*>(nullptr), static_cast<ChunkRunner*>(&team)}) {
+    PatchProduct product(at.springs, runner);
+    product.take(at.patch);
+    for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
+    found.emplace_back(p.size());
+    curvatures.push_back(product.apply(found.back()));
+  }
+  CHECK(found[0] == found[1]);
+  CHECK(curvatures[0] == curvatures[1]);
+  grow_patch(at.model, Neighbours(at.model, {}), at.positions, touched, at.positions[300], 0,
+             at.patch);
+  PatchProduct none(at.springs);
+  none.take(at.patch);
+  std::vector<Vec4f> nothing;
+  CHECK(none.apply(nothing) == 0);
 }
 
 TEST_CASE("patch product: of any shares of mass, damping and stiffness") {
@@ -78,7 +135,7 @@ TEST_CASE("patch product: of any shares of mass, damping and stiffness") {
   }
   const Eigen::VectorXd expected = A * x;
   PatchProduct product(at.springs);
-  product.take(at.patch, at.slices);
+  product.take(at.patch);
   for (std::size_t i = 0; i < p.size(); ++i) product.nodes()[i].vector = p[i];
   std::vector<Vec4f> found(p.size());
   product.apply(found);
