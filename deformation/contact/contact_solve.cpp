@@ -18,13 +18,15 @@ constexpr double kLeastSlope = 0.05;  ///< of gᵀWg: contacts that hold nearly 
 
 /// A row with what Gauss–Seidel needs at every visit.
 struct PreparedRow {
-  double normal_inverse_mass = 0;       ///< Σ b² W along n with σ held or eliminated [1/kg]
-  double tangential_inverse_mass = 0;   ///< Σ b² W across n, the most of it [1/kg]
-  std::array<Vec3, 3> normal_answers;   ///< b W n of its nodes [1/kg]
-  Vec3 volume_coupling = Vec3::Zero();  ///< Σ b W g [m²/kg]
-  double normal_coupling = 0;           ///< n·Σ b W g
-  double volume_share = 0;              ///< what of gᵀWg the row takes while closed [m⁴/kg]
-  double allowed_approach = 0;          ///< n·v_c + gap/h, or less the separation speed [m/s]
+  double normal_inverse_mass = 0;      ///< Σ b² W along n with σ held or eliminated [1/kg]
+  double tangential_inverse_mass = 0;  ///< Σ b² W across n, the most of it [1/kg]
+  double normal_mass = 0, tangential_mass = 0;  ///< one over these [kg]
+  std::array<Vec3, 3> normal_answers;           ///< b W n of its nodes [1/kg]
+  Vec3 volume_coupling = Vec3::Zero();          ///< Σ b W g [m²/kg]
+  double normal_coupling = 0;                   ///< n·Σ b W g
+  double sigma_per_impulse = 0;  ///< that over gᵀWg, of rows that eliminate σ [1/m²]
+  double volume_share = 0;       ///< what of gᵀWg the row takes while closed [m⁴/kg]
+  double allowed_approach = 0;   ///< n·v_c + gap/h, or less the separation speed [m/s]
   Yielding yielding;
   int first_node = 0, last_node = 2;  ///< of the row's three, those it acts on
   bool friction_is_kept = false;      ///< but for what leaves the cone
@@ -39,7 +41,8 @@ class Solver {
         volume_(volume),
         rows_(rows),
         velocities_(velocities),
-        volume_velocity_(volume_velocity) {
+        volume_velocity_(volume_velocity),
+        per_denominator_(volume == nullptr ? 0 : 1 / volume->at.denominator) {
     sigma_is_held_ = std::all_of(rows.begin(), rows.end(),
                                  [](const ContactRow& row) { return only_node(row) >= 0; });
     prepared_.resize(rows.size());
@@ -85,6 +88,7 @@ class Solver {
       }
       const double coupling = row.normal.dot(prepared.volume_coupling);
       prepared.normal_coupling = coupling;
+      prepared.sigma_per_impulse = sigma_is_held_ ? 0 : coupling * per_denominator_;
       prepared.volume_share = along > 0 ? coupling * coupling / along : 0;
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -97,6 +101,8 @@ class Solver {
           std::max(1 - prepared.volume_share / volume_->at.denominator, kLeastMobility);
     }
     prepared.tangential_inverse_mass = across;
+    prepared.normal_mass = 1 / prepared.normal_inverse_mass;
+    prepared.tangential_mass = 1 / across;
     prepared.yielding = yielding_of(row, h);
     prepared.allowed_approach = allowed_approach(row, h) + row.normal.dot(row.probe_velocity);
   }
@@ -144,20 +150,22 @@ class Solver {
       const auto of_row = static_cast<std::size_t>(k);
       velocities_[rows_[r].nodes[of_row]] += impulse * prepared.normal_answers[of_row];
     }
-    couple(impulse * prepared.normal_coupling);
+    volume_velocity_ += impulse * prepared.normal_coupling;
+    sigma_ += impulse * prepared.sigma_per_impulse;
   }
 
   void couple(double coupling) {
     volume_velocity_ += coupling;
-    if (!sigma_is_held_) sigma_ = volume_impulse();
+    if (!sigma_is_held_) sigma_ += coupling * per_denominator_;
   }
 
   double relax_normal(std::size_t r) {
     ContactRow& row = rows_[r];
     const PreparedRow& prepared = prepared_[r];
-    const double separation = prepared.allowed_approach + sigma_ * prepared.normal_coupling -
-                              row.normal.dot(tissue_velocity(r));
-    const double change = press(row, separation, prepared.normal_inverse_mass, prepared.yielding);
+    // σ last: each visit waits for the one before to change it.
+    const double opening = prepared.allowed_approach - row.normal.dot(tissue_velocity(r));
+    const double separation = opening + sigma_ * prepared.normal_coupling;
+    const double change = press(row, separation, prepared.normal_mass, prepared.yielding);
     if (change == 0) return 0;
     add_normal_impulse(r, -change);
     return std::abs(change) * prepared.normal_inverse_mass;
@@ -169,7 +177,7 @@ class Solver {
     if (prepared_[r].friction_is_kept) return cut_friction(r);
     const Vec3 velocity =
         tissue_velocity(r) - row.probe_velocity - sigma_ * prepared_[r].volume_coupling;
-    const Vec3 change = rub(row, velocity, prepared_[r].tangential_inverse_mass);
+    const Vec3 change = rub(row, velocity, prepared_[r].tangential_mass);
     add_impulse(r, change, prepared_[r].volume_coupling.dot(change));
     return change.norm() * prepared_[r].tangential_inverse_mass;
   }
@@ -188,6 +196,7 @@ class Solver {
   std::vector<Vec3>& velocities_;
   std::vector<PreparedRow> prepared_;
   double volume_velocity_;  ///< g·w [m³/s]; every impulse updates it
+  double per_denominator_;  ///< 1/gᵀWg [kg/m⁴]; 0: no volume
   /// Whether σ stays as it is during a sweep. Rows that act on one node each are independent but
   /// for σ: then Newton on σ needs a few sweeps where elimination, which couples all, needs many.
   bool sigma_is_held_ = false;
@@ -200,7 +209,8 @@ class Solver {
 template <class InverseMass>
 ContactSolveReport solve(const InverseMass& inverse_mass, const VolumeRow* volume,
                          double volume_velocity, double h, std::span<ContactRow> rows,
-                         std::vector<Vec3>& velocities, WarmStart start) {
+                         std::vector<Vec3>& velocities, WarmStart start,
+                         int most_sweeps = kMaxSweeps) {
   ContactSolveReport report;
   if (rows.empty()) {
     if (volume != nullptr) {
@@ -216,7 +226,7 @@ ContactSolveReport solve(const InverseMass& inverse_mass, const VolumeRow* volum
     return report;
   }
   Solver solver(inverse_mass, volume, volume_velocity, h, rows, velocities, start);
-  while (solver.sweep() > kContactVelocityTolerance && solver.sweeps() < kMaxSweeps) {
+  while (solver.sweep() > kContactVelocityTolerance && solver.sweeps() < most_sweeps) {
   }
   report.sweeps = solver.sweeps();
   report.volume_impulse = solver.volume_impulse();
@@ -285,9 +295,9 @@ ContactSolveReport solve_contacts(const Body& body, const VolumeRow* volume, dou
 ContactSolveReport solve_contacts(std::span<const Mat3> inverse_mass_blocks,
                                   const VolumeRow* volume, double volume_velocity, double h,
                                   std::span<ContactRow> rows, std::vector<Vec3>& velocities,
-                                  WarmStart start) {
+                                  WarmStart start, int most_sweeps) {
   return solve(BlockInverseMass(inverse_mass_blocks), volume, volume_velocity, h, rows, velocities,
-               start);
+               start, most_sweeps);
 }
 
 }  // namespace palpate::deformation

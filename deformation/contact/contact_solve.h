@@ -116,9 +116,10 @@ ContactSolveReport solve_contacts(const Body& body, const VolumeRow* volume, dou
 /// The same where a node answers an impulse not by M⁻¹ but by a matrix W, as in implicit steps.
 /// @param inverse_mass_blocks  W, symmetric, positive; zero for fixed nodes [1/kg]  (node_count)
 /// @param volume      with gᵀWg of these as denominator, not vanished; or null
+/// @param most_sweeps  ≥ 1
 ContactSolveReport solve_contacts(std::span<const Mat3> inverse_mass_blocks,
                                   const VolumeRow* volume, double volume_velocity, double h,
                                   std::span<ContactRow> rows, std::vector<Vec3>& velocities,
-                                  WarmStart start);
+                                  WarmStart start, int most_sweeps);
 
 }  // namespace palpate::deformation

@@ -29,13 +29,14 @@ void take_guess(Row& row) {
 }
 
 /// 0 ≤ normal impulse ⊥ separation ≥ 0.
-/// @param separation    speed at which it opens [m/s]
-/// @param inverse_mass  along the normal [1/kg] > 0
+/// @param separation  speed at which it opens [m/s]
+/// @param mass        effective, along the normal [kg] > 0: visits wait for each other, and a
+///                    division would be a third of one
 /// @returns the change of the normal impulse [N·s]
 template <class Row>
-double press(Row& row, double separation, double inverse_mass) {
+double press(Row& row, double separation, double mass) {
   if (row.normal_impulse == 0 && separation >= 0) return 0;
-  const double wanted = row.normal_impulse - separation / inverse_mass;
+  const double wanted = row.normal_impulse - separation * mass;
   const double change = std::max(0.0, wanted) - row.normal_impulse;
   row.normal_impulse += change;
   return change;
@@ -44,25 +45,25 @@ double press(Row& row, double separation, double inverse_mass) {
 /// The same where what is fixed yields, too: the less of the two impulses.
 /// @param yielding  a Yielding
 template <class Row, class Yielding>
-double press(Row& row, double separation, double inverse_mass, const Yielding& yielding) {
-  if (!(yielding.inverse_mass > 0)) return press(row, separation, inverse_mass);
+double press(Row& row, double separation, double mass, const Yielding& yielding) {
+  if (!(yielding.inverse_mass > 0)) return press(row, separation, mass);
   const double before = row.normal_impulse;
   const double parting = separation - yielding.withheld + yielding.inverse_mass * before;
-  const double wanted = std::min(before - separation / inverse_mass,
-                                 before - parting / (inverse_mass + yielding.inverse_mass));
+  const double wanted =
+      std::min(before - separation * mass, before - parting / (1 / mass + yielding.inverse_mass));
   row.normal_impulse = std::max(0.0, wanted);
   return row.normal_impulse - before;
 }
 
 /// Stops what slides, within the cone.
-/// @param velocity      of one side to the other; what is along the normal does not matter [m/s]
-/// @param inverse_mass  across the normal [1/kg] > 0
+/// @param velocity  of one side to the other; what is along the normal does not matter [m/s]
+/// @param mass      effective, across the normal [kg] > 0
 /// @returns the change of the tangential impulse [N·s]
 template <class Row>
-Vec3 rub(Row& row, const Vec3& velocity, double inverse_mass) {
+Vec3 rub(Row& row, const Vec3& velocity, double mass) {
   const Vec3 sliding = velocity - row.normal * row.normal.dot(velocity);
   const Vec3 before = row.tangential_impulse;
-  row.tangential_impulse -= sliding / inverse_mass;
+  row.tangential_impulse -= sliding * mass;
   clamp_to_cone(row);
   return row.tangential_impulse - before;
 }

@@ -141,7 +141,7 @@ class OrganSolver {
     OrganContactRow& row = rows_[r];
     const PreparedOrganRow& prepared = prepared_[r];
     const double parting = row.normal.dot(velocity(r)) + row.approach;
-    const double change = press(row, parting, prepared.normal_inverse_mass, row.yielding);
+    const double change = press(row, parting, 1 / prepared.normal_inverse_mass, row.yielding);
     if (change == 0) return 0;
     add_impulse(r, change * row.normal);
     return std::abs(change) * prepared.normal_inverse_mass;
@@ -150,7 +150,7 @@ class OrganSolver {
   double relax_friction(std::size_t r) {
     OrganContactRow& row = rows_[r];
     if (!may_rub(row)) return 0;
-    const Vec3 change = rub(row, velocity(r), prepared_[r].tangential_inverse_mass);
+    const Vec3 change = rub(row, velocity(r), 1 / prepared_[r].tangential_inverse_mass);
     add_impulse(r, change);
     return change.norm() * prepared_[r].tangential_inverse_mass;
   }

@@ -17,7 +17,7 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
       ranges_(runner),
       springs_(model, model.network(), volume.is_kept, runner),
       projection_(runner),
-      contacts_(model, springs_),
+      contacts_(model, springs_, runner),
       kernel_(model, model.network(), volume.is_kept, runner) {
   for (const double mass : model.masses) total_mass_ += mass;
   for (auto* buffer : {&change_, &residual_, &trial_}) {
@@ -27,10 +27,6 @@ BackwardEuler::BackwardEuler(const OrganModel& model, const KeptVolume& volume, 
     buffer->assign(model.node_count(), Vec4f::Zero());
   }
   inverse_mass_blocks_.assign(model.node_count(), Mat3::Zero());
-}
-
-void BackwardEuler::add(double scale, const std::vector<Vec3>& b, std::vector<Vec3>& a) const {
-  for_nodes(a.size(), [&](std::size_t i) { a[i] += scale * b[i]; });
 }
 
 StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
@@ -48,8 +44,10 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
   }
 
   // 6. the new state, and what the linearisation of the volume left
-  add(1, change_, state.velocities);
-  add(h, state.velocities, state.positions);
+  for_nodes(change_.size(), [&](std::size_t i) {
+    state.velocities[i] += change_[i];
+    state.positions[i] += h * state.velocities[i];
+  });
   for (int k = 0; volume_row_ && k < volume_.corrections; ++k) correct_volume(h, rows, state);
   state.pressure = -volume_impulse_ / h;
   return report;
@@ -58,9 +56,10 @@ StepReport BackwardEuler::step(double h, std::span<ContactRow> rows, OrganState&
 void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   // 2. which contacts close
   volume_impulse_ = 0;
-  forces_ = residual_;
+  forces_.resize(residual_.size());
+  for_nodes(residual_.size(), [&](std::size_t i) { forces_[i] = residual_[i]; });
   friction_.begin(rows);
-  solve_impulses(h, rows, state, WarmStart::kToApply);
+  solve_impulses(h, rows, state, WarmStart::kToApply, kMostSweeps);
 
   // 3. springs and friction, with those contacts and the volume held
   linearise_friction(rows);
@@ -68,10 +67,11 @@ void BackwardEuler::solve(double h, std::span<ContactRow> rows, const OrganState
   relax_springs(rows, state);
 
   // 4. what opened or closed meanwhile
-  solve_impulses(h, rows, state, WarmStart::kFrictionKept);
+  const bool fine = !rows.empty() && contacts_.choose(h, predicted_.positions, rows);
+  solve_impulses(h, rows, state, WarmStart::kFrictionKept, fine ? kSweepsBetween : kMostSweeps);
 
   // 5. springs and friction about the contacts
-  relax_contacts(h, rows, state);
+  for (int pass = 0; fine && pass < kFrictionPasses; ++pass) relax_contacts(h, rows, state);
   keep_momentum(h, rows, state);
 }
 
@@ -115,9 +115,10 @@ void BackwardEuler::push_with(double volume_impulse, double h, std::span<Contact
 
 void BackwardEuler::linearise_springs(double h, std::span<const ContactRow> rows,
                                       const OrganState& state) {
-  predicted_.velocities = state.velocities;
+  predicted_.velocities.resize(state.velocities.size());
   predicted_.positions.resize(state.positions.size());
   for_nodes(state.positions.size(), [&](std::size_t i) {
+    predicted_.velocities[i] = state.velocities[i];
     predicted_.positions[i] = state.positions[i] + h * state.velocities[i];
   });
   kernel_.free_step(h, predicted_, free_);
@@ -187,41 +188,45 @@ void BackwardEuler::take_volume_answer(std::size_t node) {
 }
 
 void BackwardEuler::solve_impulses(double h, std::span<ContactRow> rows, const OrganState& state,
-                                   WarmStart start) {
-  for_nodes(trial_.size(), [&](std::size_t i) {
+                                   WarmStart start, int most_sweeps) {
+  const std::size_t moved = moved_by_volume();
+  const double volume_velocity = sum_of(trial_.size(), [&](std::size_t i) {
     trial_[i] = state.velocities[i] + change_[i] + inverse_mass_blocks_[i] * residual_[i];
+    return i < moved ? free_.volume.gradient[i].dot(trial_[i]) : 0;
   });
-  hold_rows(h, rows, start);
-  take_change(state);
+  hold_rows(h, rows, volume_velocity, start, most_sweeps, state.velocities);
 }
 
-void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, WarmStart start) {
+double BackwardEuler::volume_velocity() {
+  return sum_of(moved_by_volume(),
+                [&](std::size_t i) { return free_.volume.gradient[i].dot(trial_[i]); });
+}
+
+void BackwardEuler::hold_rows(double h, std::span<ContactRow> rows, double volume_velocity,
+                              WarmStart start, int most_sweeps,
+                              const std::vector<Vec3>& velocities) {
   const VolumeRow* const volume = volume_row_ ? &*volume_row_ : nullptr;
-  const std::size_t moved = volume != nullptr ? volume_answers_.size() : 0;
-  const double volume_velocity =
-      sum_of(moved, [&](std::size_t i) { return volume->at.gradient[i].dot(trial_[i]); });
-  const double sigma =
-      solve_contacts(inverse_mass_blocks_, volume, volume_velocity, h, rows, trial_, start)
-          .volume_impulse;
+  const double sigma = solve_contacts(inverse_mass_blocks_, volume, volume_velocity, h, rows,
+                                      trial_, start, most_sweeps)
+                           .volume_impulse;
   volume_impulse_ += sigma;
-  for_nodes(moved, [&](std::size_t i) { trial_[i] -= sigma * volume_answers_[i]; });
-}
-
-void BackwardEuler::take_change(const OrganState& state) {
-  for_nodes(trial_.size(), [&](std::size_t i) { change_[i] = trial_[i] - state.velocities[i]; });
+  const std::size_t moved = moved_by_volume();
+  for_nodes(trial_.size(), [&](std::size_t i) {
+    if (i < moved) trial_[i] -= sigma * volume_answers_[i];
+    change_[i] = trial_[i] - velocities[i];
+  });
 }
 
 void BackwardEuler::update_residual(std::span<const ContactRow> rows) {
   auto& nodes = springs_.nodes();
   for_nodes(change_.size(), [&](std::size_t i) { nodes[i].vector = wide(change_[i]); });
   springs_.apply(product_);
+  const std::size_t moved = moved_by_volume();
   for_nodes(change_.size(), [&](std::size_t i) {
     residual_[i] = forces_[i] - product_[i].head<3>().cast<double>();
+    if (i < moved) residual_[i] -= volume_impulse_ * free_.volume.gradient[i];
   });
   take_impulses_from(rows);
-  if (!volume_row_) return;
-  const auto& gradient = volume_row_->at.gradient;
-  for_nodes(gradient.size(), [&](std::size_t i) { residual_[i] -= volume_impulse_ * gradient[i]; });
 }
 
 void BackwardEuler::update_local_residual(std::span<const ContactRow> rows) {
@@ -263,23 +268,22 @@ void BackwardEuler::relax_springs(std::span<ContactRow> rows, const OrganState& 
     residual_[i] = inner_residual_[i].head<3>().cast<double>();
   });
   friction_.apply(inverse_mass_blocks_, trial_, rows);
-  take_change(state);
+  for (const ContactRow& row : rows) {
+    for (const std::uint32_t node : row.nodes)
+      change_[node] = trial_[node] - state.velocities[node];
+  }
 }
 
 void BackwardEuler::relax_contacts(double h, std::span<ContactRow> rows, const OrganState& state) {
-  if (rows.empty() || !contacts_.choose(h, predicted_.positions, rows)) return;
-  for (int pass = 0; pass < kFrictionPasses; ++pass) {
-    linearise_friction(rows);
-    update_local_residual(rows);
-    springs_.couple(couplings_);
-    contacts_.solve(inverse_mass_blocks_, residual_, rows);
-    for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
-      trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
-    }
-    friction_.apply(inverse_mass_blocks_, trial_, rows);
-    hold_rows(h, rows, WarmStart::kFrictionKept);
-    take_change(state);
+  linearise_friction(rows);
+  update_local_residual(rows);
+  springs_.couple(couplings_);
+  contacts_.solve(inverse_mass_blocks_, residual_, rows);
+  for (std::size_t i = 0; i < contacts_.nodes().size(); ++i) {
+    trial_[contacts_.nodes()[i]] += contacts_.change()[i].head<3>().cast<double>();
   }
+  friction_.apply(inverse_mass_blocks_, trial_, rows);
+  hold_rows(h, rows, volume_velocity(), WarmStart::kFrictionKept, kMostSweeps, state.velocities);
 }
 
 /// Truncated iterations leave a little of the total momentum undone. An organ that is not fixed can
@@ -305,10 +309,11 @@ void BackwardEuler::correct_volume(double h, std::span<ContactRow> rows, OrganSt
   kernel_.evaluate_volume(state.positions, free_);
   if (!linearise_volume(h, state.target_volume, state.velocities)) return;
   trial_ = state.velocities;
-  hold_rows(h, rows, WarmStart::kFrictionKept);
-  for_nodes(trial_.size(),
-            [&](std::size_t i) { state.positions[i] += h * (trial_[i] - state.velocities[i]); });
-  state.velocities = trial_;
+  hold_rows(h, rows, volume_velocity(), WarmStart::kFrictionKept, kMostSweeps, state.velocities);
+  for_nodes(trial_.size(), [&](std::size_t i) {
+    state.positions[i] += h * change_[i];
+    state.velocities[i] = trial_[i];
+  });
 }
 
 }  // namespace palpate::deformation

@@ -173,7 +173,7 @@ void Modal::add_impulse(const Row& row, const Vec3& impulse, Eigen::VectorXd& ra
 /// @returns the change of the contact's velocity [m/s]
 double Modal::relax(std::size_t r, ContactRow& contact, Eigen::VectorXd& rates) const {
   const Row& row = rows_[r];
-  const double pressed = press(contact, separation(r, contact, rates), row.along, row.yielding);
+  const double pressed = press(contact, separation(r, contact, rates), 1 / row.along, row.yielding);
   if (pressed != 0) add_impulse(row, -pressed * contact.normal, rates);
   double change = std::abs(pressed) * row.along;
   if (contact.friction == 0 || row.across <= 0) return change;

@@ -63,7 +63,7 @@ void solve_blocks(const std::vector<Mat3>& inverse_mass_blocks, const VolumeRow*
     volume_velocity += volume->at.gradient[i].dot(velocities[i]);
   }
   const double sigma =
-      solve_contacts(inverse_mass_blocks, volume, volume_velocity, h, rows, velocities, start)
+      solve_contacts(inverse_mass_blocks, volume, volume_velocity, h, rows, velocities, start, 60)
           .volume_impulse;
   for (std::size_t i = 0; volume != nullptr && i < volume->at.gradient.size(); ++i) {
     velocities[i] -= sigma * (inverse_mass_blocks[i] * volume->at.gradient[i]);
