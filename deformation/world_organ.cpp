@@ -59,7 +59,7 @@ Eigen::MatrixXd WorldOrgan::contact_compliance(std::span<const ComplianceRow> to
 bool WorldOrgan::look_ahead(double time) {
   const OrganState& state = simulated.state();
   const bool is_first = positions_ahead.size() != state.positions.size();
-  positions_ahead.resize(state.positions.size());
+  positions_ahead.resize(state.positions.size(), Vec3::Zero());
   const auto moved =
       Ranges(runner).sums(positions_ahead.size(), [&](std::size_t first, std::size_t last) {
         double count = 0;
