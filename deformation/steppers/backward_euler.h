@@ -50,9 +50,9 @@ class BackwardEuler : public OrganDynamics {
   /// Picard iterations of friction where a wall is fine; one more changes a press's force by less
   /// than 2 %.
   static constexpr int kFrictionPasses = 2;
-  /// Gauss–Seidel at most; and where it is done again about the contacts, which are to be known
-  /// only. Fewer at first, where friction comes from, would be felt: with 20 a sphere that sticks
-  /// is dragged with 3 % less force.
+  /// Gauss–Seidel at most; the second where the springs about the contacts are relaxed next and it
+  /// is done again. Fewer at first, where friction comes from, would be felt: a sphere that sticks
+  /// would be dragged with less force.
   static constexpr int kMostSweeps = 60, kSweepsBetween = 20;
   /// Passes over all springs in a step: forces, residual, one product per iteration.
   static constexpr int passes(int iterations) { return iterations + 2; }

@@ -5,17 +5,8 @@
 #include "tests/modules/bus/both_buses.h"
 
 namespace palpate::bus {
+using namespace testing;
 namespace {
-
-using testing::DdsSession;
-using testing::GatheredSession;
-using testing::match;
-using testing::MemorySession;
-using testing::PolledSession;
-using testing::state_at;
-using testing::take_all;
-using testing::take_soon;
-using testing::wait_until;
 
 /// A writer and a reader of probe states, matched.
 template <class Session>

@@ -7,22 +7,11 @@
 #include "tests/modules/messages/random_messages.h"
 
 namespace palpate::bus {
-namespace {
 
 using messages::testing::equal;
 using messages::testing::Random;
 using messages::testing::random_message;
-using testing::DdsSession;
-using testing::GatheredSession;
-using testing::match;
-using testing::MemorySession;
-using testing::PolledSession;
-using testing::state_at;
-using testing::take_all;
-using testing::take_soon;
-using testing::wait_until;
-
-}  // namespace
+using namespace testing;
 
 TEMPLATE_TEST_CASE("bus contract: what was written arrives, bit by bit, and is counted", "[bus]",
                    PALPATE_BOTH_BUSES) {
