@@ -5,25 +5,42 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace palpate::launcher {
 namespace {
 
 /// In the child, after fork: only what is safe there. Returns only if the program cannot start.
-int become(const char* program, char* const* arguments, int output, std::optional<int> inherited,
-           pid_t parent) {
+int become(const char* program, char* const* arguments, char* const* environment, int output,
+           std::optional<int> inherited, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) return ESRCH;  // the launcher died before the line above
   setpgid(0, 0);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
   if (inherited) fcntl(*inherited, F_SETFD, 0);
-  execv(program, arguments);
+  execve(program, arguments, environment);
   return errno;
+}
+
+/// The launcher's own, with `changed` in place of what has the same name. It refers to both.
+std::vector<char*> environment_with(const std::vector<std::string>& changed) {
+  std::vector<char*> all;
+  for (char** own = environ; *own != nullptr; ++own) {
+    const std::string_view entry = *own;
+    const std::string_view name = entry.substr(0, entry.find('=') + 1);
+    if (std::ranges::none_of(changed, [&](const auto& one) { return one.starts_with(name); })) {
+      all.push_back(*own);
+    }
+  }
+  for (const auto& one : changed) all.push_back(const_cast<char*>(one.c_str()));
+  all.push_back(nullptr);
+  return all;
 }
 
 [[noreturn]] void fail(const std::filesystem::path& program, int system_error) {
@@ -46,12 +63,13 @@ std::string describe_exit(int wait_status) {
 }
 
 ChildProcess::ChildProcess(const std::filesystem::path& program,
-                           const std::vector<std::string>& arguments,
-                           std::optional<int> inherited) {
+                           const std::vector<std::string>& arguments, std::optional<int> inherited,
+                           const std::vector<std::string>& environment) {
   const std::string path = program.string();
   std::vector<char*> argv{const_cast<char*>(path.c_str())};
   for (const auto& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
+  const std::vector<char*> envp = environment_with(environment);
 
   int output[2], failure[2];
   if (pipe2(output, O_CLOEXEC) != 0) fail(program, errno);
@@ -63,7 +81,8 @@ ChildProcess::ChildProcess(const std::filesystem::path& program,
   const pid_t launcher = getpid();
   process_id_ = fork();
   if (process_id_ == 0) {
-    const int error = become(path.c_str(), argv.data(), output[1], inherited, launcher);
+    const int error =
+        become(path.c_str(), argv.data(), envp.data(), output[1], inherited, launcher);
     const auto written = write(failure[1], &error, sizeof error);
     _exit(written == sizeof error ? 127 : 126);
   }

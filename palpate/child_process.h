@@ -20,8 +20,9 @@ class ChildProcess {
  public:
   /// @throws std::runtime_error naming the program if it cannot be started
   /// @param inherited  a descriptor that it gets, too
+  /// @param environment  NAME=value each, which it gets in place of the launcher's of that name
   ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
-               std::optional<int> inherited = {});
+               std::optional<int> inherited = {}, const std::vector<std::string>& environment = {});
   ~ChildProcess();  ///< kills it if it still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

@@ -41,7 +41,8 @@ void ModuleGroup::start(Member& member) {
     inherited = member.kept->descriptor();
     command.arguments.insert(command.arguments.end(), {"--kept-state", std::to_string(*inherited)});
   }
-  member.process = std::make_unique<ChildProcess>(command.program, command.arguments, inherited);
+  member.process = std::make_unique<ChildProcess>(command.program, command.arguments, inherited,
+                                                  command.environment);
   reaper_.watch(member.process->process_id());
   member.began_ns = runtime::monotonic_now_ns();
   member.end_reported = false;

@@ -96,12 +96,21 @@ void add_lockstep(const RunOptions& options, const std::vector<std::string>& mod
   }
 }
 
+/// glibc's wish for huge pages (man mallopt, "tunables"), beside what the user has asked of it: the
+/// memory of a fine organ is wider than the processor's tables of small pages reach.
+std::string wish_for_huge_pages() {
+  const char* const own = std::getenv("GLIBC_TUNABLES");
+  const std::string before = own != nullptr && *own != '\0' ? std::string(own) + ":" : "";
+  return "GLIBC_TUNABLES=" + before + "glibc.malloc.hugetlb=1";
+}
+
 ModuleCommand module_command(const RunOptions& options, const std::vector<std::string>& modules,
                              const std::string& module, const std::filesystem::path& folder) {
   ModuleCommand command;
   command.module = module;
   const runtime::ModuleName name = *runtime::module_named(module);
   command.keeps_state = name.job == "deformation" && !options.lockstep;
+  if (name.job == "deformation") command.environment = {wish_for_huge_pages()};
   command.program = folder / ("palpate-" + std::string(name.job));
   command.arguments = {std::filesystem::absolute(options.scene).string()};
   for (auto& argument : session_arguments(options.bus)) command.arguments.push_back(argument);

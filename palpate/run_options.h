@@ -49,6 +49,7 @@ struct ModuleCommand {
   std::vector<std::string> arguments;
   bool reports_status = true;  ///< publishes module_status: the session waits until it is ready
   bool keeps_state = false;    ///< a successor goes on from what it remembered (kept_state.h)
+  std::vector<std::string> environment = {};  ///< NAME=value, beside what it inherits
 };
 
 /// Fills in what `hosts` says: modules and participants, and for this process and its children

@@ -50,6 +50,20 @@ TEST_CASE("child process: gets its arguments as they are") {
   CHECK(lines_to_the_end(child) == std::vector<std::string>{"<a b>", "<$HOME>", "<>"});
 }
 
+TEST_CASE("child process: what it is given for its environment replaces what has the same name") {
+  // Oracle: what the shell finds; of two names one begins with the other.
+  ::setenv("PALPATE_TEST_A", "ours", 1);
+  ::setenv("PALPATE_TEST_AB", "kept", 1);
+  const Scripts scripts;
+  ChildProcess child(scripts.add("teller",
+                                 "echo $PALPATE_TEST_A $PALPATE_TEST_AB; env | grep -c "
+                                 "^PALPATE_TEST_A="),
+                     {}, {}, {"PALPATE_TEST_A=given"});
+  ::unsetenv("PALPATE_TEST_A");
+  ::unsetenv("PALPATE_TEST_AB");
+  CHECK(lines_to_the_end(child) == std::vector<std::string>{"given kept", "1"});
+}
+
 TEST_CASE("child process: gets the one descriptor that it is to inherit") {
   // Oracle: the kernel's list; of two files that close on exec the child has one.
   const palpate::runtime::KeptMemory given, other;

@@ -120,6 +120,19 @@ TEST_CASE("run options: each process of deformation is a module of its own") {
   CHECK_THROWS_WITH(module_commands(options, ""), Catch::Contains("no module 'deformation_2'"));
 }
 
+TEST_CASE(
+    "run options: deformation alone asks for huge pages, beside what the user asks of malloc") {
+  // Oracle: the names that glibc documents.
+  ::setenv("GLIBC_TUNABLES", "glibc.malloc.arena_max=2", 1);
+  const auto commands = module_commands(some_run(), "/bin/p");
+  ::unsetenv("GLIBC_TUNABLES");
+  const Names wished{"GLIBC_TUNABLES=glibc.malloc.arena_max=2:glibc.malloc.hugetlb=1"};
+  CHECK(commands[0].environment == wished);
+  for (std::size_t k = 1; k < commands.size(); ++k) CHECK(commands[k].environment.empty());
+  CHECK(module_commands(some_run(), "/bin/p")[0].environment ==
+        Names{"GLIBC_TUNABLES=glibc.malloc.hugetlb=1"});
+}
+
 TEST_CASE("run options: --no-realtime reaches every module") {
   // Oracle: definition.
   auto options = some_run();
