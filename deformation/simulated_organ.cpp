@@ -23,12 +23,14 @@ constexpr int kAdvancesToShow = 4;
 }  // namespace
 
 SimulatedOrgan::SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
-                               std::unique_ptr<OrganDynamics> dynamics, Guarding guarding)
+                               std::unique_ptr<OrganDynamics> dynamics, Guarding guarding,
+                               ChunkRunner* runner)
     : model_(std::move(model)),
       dynamics_(std::move(dynamics)),
       target_volume_(organ.filling),
       knows_energy_(row_of(organ.model).knows_energy),
-      detector_(std::make_unique<DivergenceDetector>(*model_, knows_energy_)),
+      runner_(runner),
+      detector_(std::make_unique<DivergenceDetector>(*model_, knows_energy_, runner)),
       guarding_(guarding),
       holds_volume_(row_of(organ.model).has_volume_constraint),
       pressure_limit_(holds_volume_ ? pressure_cap(organ.tissue, model_->rest_volume)
@@ -83,7 +85,7 @@ void SimulatedOrgan::change_mesh(std::unique_ptr<const OrganModel> model,
   state_ = carry(state_);
   seat(state_);
   last_good_ = carry(last_good_);
-  auto detector = std::make_unique<DivergenceDetector>(*model, knows_energy_);
+  auto detector = std::make_unique<DivergenceDetector>(*model, knows_energy_, runner_);
   detector->take_over(*detector_, state_);
   detector_ = std::move(detector);
   dynamics_ = std::move(dynamics);

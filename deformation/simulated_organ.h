@@ -48,8 +48,10 @@ enum class Guarding : std::uint8_t { kOn, kOff };
 
 class SimulatedOrgan {
  public:
+  /// @param runner  outlives this; none: the calling thread alone
   SimulatedOrgan(const scene::Organ& organ, std::unique_ptr<const OrganModel> model,
-                 std::unique_ptr<OrganDynamics> dynamics, Guarding guarding = Guarding::kOn);
+                 std::unique_ptr<OrganDynamics> dynamics, Guarding guarding = Guarding::kOn,
+                 ChunkRunner* runner = nullptr);
 
   const OrganModel& model() const { return *model_; }
   OrganDynamics& dynamics() const { return *dynamics_; }
@@ -131,6 +133,7 @@ class SimulatedOrgan {
   std::unique_ptr<OrganDynamics> dynamics_;
   TargetVolume target_volume_;
   bool knows_energy_;
+  ChunkRunner* runner_;
   std::unique_ptr<DivergenceDetector> detector_;
   OrganState state_, last_good_;
   OrganState start_;  ///< of a step that may be taken again

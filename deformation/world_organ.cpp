@@ -166,7 +166,7 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
   const IntegratorChoice integrator = choose_integrator(organ, *model, period);
   WorldOrgan made{
       .name = organ.name,
-      .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding),
+      .simulated = SimulatedOrgan(organ, std::move(model), std::move(dynamics), guarding, runner),
       .integrator = integrator,
       .runner = runner,
   };

@@ -49,7 +49,8 @@ class BlockInverseMass {
     }
     const Vec3 t = row.normal.unitOrthogonal(), s = row.normal.cross(t);
     const double tt = t.dot(sum * t), ss = s.dot(sum * s), ts = t.dot(sum * s);
-    return {row.normal.dot(sum * row.normal), (tt + ss + std::hypot(tt - ss, 2 * ts)) / 2};
+    const double apart = std::sqrt((tt - ss) * (tt - ss) + 4 * ts * ts);  // hypot() is a call
+    return {row.normal.dot(sum * row.normal), (tt + ss + apart) / 2};
   }
 
  private:

@@ -39,9 +39,10 @@ double largest_rest_distance(const Body& body) {
 
 }  // namespace
 
-DivergenceDetector::DivergenceDetector(const Body& body, bool knows_energy)
+DivergenceDetector::DivergenceDetector(const Body& body, bool knows_energy, ChunkRunner* runner)
     : body_(body),
       knows_energy_(knows_energy),
+      ranges_(runner),
       total_mass_(moving_mass(body)),
       largest_distance_(kMaxGrowth * largest_rest_distance(body)),
       calm_energy_(total_mass_ * kCalmSpeed * kCalmSpeed / 2),
@@ -107,39 +108,59 @@ bool DivergenceDetector::is_finite(const OrganState& state) const {
   return std::isfinite(state.pressure) && std::isfinite(energy_budget_);
 }
 
-Violation DivergenceDetector::check_bounds(const OrganState& state, double period) {
+/// Of all nodes, since they were seen last. @param period  since then [s]
+DivergenceDetector::Motion DivergenceDetector::motion_of(const OrganState& state, double period) {
   const double way = period * period * kMaxNodeSpeed * kMaxNodeSpeed;
   const double far = largest_distance_ * largest_distance_;
   const double fastest = kMaxNodeSpeed * kMaxNodeSpeed;
-  const Vec3 first = state.positions[0];
-  double twice_energy = 0, squares = 0;
-  Vec3 sum = Vec3::Zero(), momentum = Vec3::Zero();
-  bool sound = is_finite(state);
-  for (std::size_t i = 0; i < state.positions.size(); ++i) {
-    const double speed = state.velocities[i].squaredNorm();
-    const double distance = (state.positions[i] - first).squaredNorm();
-    const double moved = (state.positions[i] - seen_[i]).squaredNorm();
-    sound &= (speed <= fastest) & (moved <= way) & (distance <= far);  // false for NaN
-    twice_energy += body_.masses[i] * speed;
-    momentum += body_.masses[i] * state.velocities[i];
-    if (i >= body_.surface_node_count) continue;
-    squares += moved;
-    sum += state.positions[i] - seen_[i];
+  const Vec3 first_node = state.positions[0];
+  const std::size_t nodes = state.positions.size();
+  motions_.assign(Ranges::count_of(nodes), Motion());
+  ranges_.each(nodes, [&](std::size_t first, std::size_t last) {
+    Motion of_range;
+    for (std::size_t i = first; i < last; ++i) {
+      const double speed = state.velocities[i].squaredNorm();
+      const double distance = (state.positions[i] - first_node).squaredNorm();
+      const Vec3 went = state.positions[i] - seen_[i];
+      const double moved = went.squaredNorm();
+      of_range.sound &= (speed <= fastest) & (moved <= way) & (distance <= far);  // false for NaN
+      of_range.twice_energy += body_.masses[i] * speed;
+      of_range.momentum += body_.masses[i] * state.velocities[i];
+      if (body_.inverse_masses[i] > 0) of_range.moment += body_.masses[i] * state.positions[i];
+      if (i >= body_.surface_node_count) continue;
+      of_range.squares += moved;
+      of_range.way += went;
+    }
+    motions_[first / Ranges::kSize] = of_range;
+  });
+  Motion all;
+  for (const Motion& of_range : motions_) {
+    all.sound &= of_range.sound;
+    all.twice_energy += of_range.twice_energy;
+    all.squares += of_range.squares;
+    all.momentum += of_range.momentum;
+    all.moment += of_range.moment;
+    all.way += of_range.way;
   }
+  return all;
+}
+
+Violation DivergenceDetector::check_bounds(const OrganState& state, double period) {
+  const Motion motion = motion_of(state, period);
   suspicious_ = false;
-  if (!sound) return explain(state, period);
-  seen_ = state.positions;
-  kinetic_energy_ = twice_energy / 2;
-  inner_energy_ = kinetic_energy_ - momentum.squaredNorm() / (2 * total_mass_);
+  if (!(motion.sound && is_finite(state))) return explain(state, period);
+  ranges_.each(seen_.size(), [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) seen_[i] = state.positions[i];
+  });
+  kinetic_energy_ = motion.twice_energy / 2;
+  inner_energy_ = kinetic_energy_ - motion.momentum.squaredNorm() / (2 * total_mass_);
   const auto count = static_cast<double>(body_.surface_node_count);
-  shaking_squared_ = (squares / count - (sum / count).squaredNorm()) / (period * period);
+  shaking_squared_ =
+      (motion.squares / count - (motion.way / count).squaredNorm()) / (period * period);
   const bool fast = shaking_squared_ > kShakenForLongSpeed * kShakenForLongSpeed;
   shaken_time_ = fast ? shaken_time_ + period : 0;
-  if (!body_.gravity.isZero(0)) {
-    const Vec3 moment = first_moment(body_, state.positions);
-    give(body_.gravity.dot(moment - first_moment_));
-    first_moment_ = moment;
-  }
+  give(body_.gravity.dot(motion.moment - first_moment_));
+  first_moment_ = motion.moment;
   suspicious_ = knows_energy_ && inner_energy_ > kSuspiciousGain * may_hold();
   return Violation::kNone;
 }

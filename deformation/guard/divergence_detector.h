@@ -40,6 +40,7 @@
 
 #include "deformation/guard/advance_report.h"
 #include "deformation/steppers/organ_dynamics.h"
+#include "modules/core/ranges.h"
 #include "modules/core/state_archive.h"
 #include "modules/core/tolerances.h"
 
@@ -71,7 +72,8 @@ class DivergenceDetector {
  public:
   /// @param body  outlives this
   /// @param knows_energy  false: the energy budget is not kept
-  DivergenceDetector(const Body& body, bool knows_energy);
+  /// @param runner        outlives this; none: the calling thread alone
+  DivergenceDetector(const Body& body, bool knows_energy, ChunkRunner* runner = nullptr);
 
   /// Begins anew with `state`, whose stored energy is `elastic_energy` [J].
   void begin(const OrganState& state, double elastic_energy);
@@ -116,6 +118,14 @@ class DivergenceDetector {
   }
 
  private:
+  /// Of some nodes.
+  struct Motion {
+    bool sound = true;                                    ///< within all bounds
+    double twice_energy = 0, squares = 0;                 ///< kinetic [J]; of ways [m²]
+    Vec3 momentum = Vec3::Zero(), moment = Vec3::Zero();  ///< [kg·m/s]; Σ m x of what moves [kg·m]
+    Vec3 way = Vec3::Zero();                              ///< Σ of the surface's nodes [m]
+  };
+  Motion motion_of(const OrganState& state, double period);
   bool is_finite(const OrganState& state) const;
   void give(double work);
   double may_hold() const { return energy_budget_ + calm_energy_; }  ///< [J]
@@ -127,6 +137,8 @@ class DivergenceDetector {
 
   const Body& body_;
   bool knows_energy_;
+  Ranges ranges_;
+  std::vector<Motion> motions_;  ///< of each range
   double total_mass_ = 0, largest_distance_ = 0, calm_energy_ = 0, largest_injected_energy_ = 0;
   double energy_budget_ = 0, injected_energy_ = 0, kinetic_energy_ = 0;  ///< [J]
   double inner_energy_ = 0;           ///< kinetic, about the mean [J]

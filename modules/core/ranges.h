@@ -17,6 +17,8 @@ class Ranges {
   static constexpr std::size_t kSize = 1024;
   using Sums = std::array<double, 2>;
 
+  static constexpr std::size_t count_of(std::size_t things) { return (things + kSize - 1) / kSize; }
+
   /// @param runner  outlives this; none: the calling thread alone
   explicit Ranges(ChunkRunner* runner = nullptr) : runner_(runner) {}
 
@@ -26,7 +28,7 @@ class Ranges {
     const auto in_range = [&](std::size_t range) {
       body(range * kSize, std::min((range + 1) * kSize, count));
     };
-    const std::size_t ranges = (count + kSize - 1) / kSize;
+    const std::size_t ranges = count_of(count);
     if (runner_ != nullptr && ranges > 1) return runner_->run(ranges, in_range);
     for (std::size_t range = 0; range < ranges; ++range) in_range(range);
   }
@@ -34,7 +36,7 @@ class Ranges {
   /// Adds up what body(first, last) returns.
   template <class Body>
   Sums sums(std::size_t count, const Body& body) {
-    parts_.resize((count + kSize - 1) / kSize);
+    parts_.resize(count_of(count));
     each(count,
          [&](std::size_t first, std::size_t last) { parts_[first / kSize] = body(first, last); });
     Sums total{};

@@ -6,6 +6,7 @@
 
 #include "deformation/steppers/symplectic_euler.h"
 #include "tests/deformation/guard/torn_organ.h"
+#include "tests/deformation/springs/chunk_threads.h"
 #include "tests/deformation/volume/rules/method_checks.h"
 
 namespace palpate::deformation {
@@ -140,6 +141,34 @@ TEST_CASE("divergence detector: work that takes more than there is leaves nothin
   detector.add_work(kWatchedStep, {}, -1, state);
   detector.add_work(kWatchedStep, {}, 1e-5, state);
   CHECK(detector.energy_budget() == Approx(1e-3));
+}
+
+TEST_CASE("divergence detector: threads find what one finds, in every range of nodes, bit by bit") {
+  // Oracle: itself on one thread, by all it remembers; and which node was put out of bounds.
+  const auto model = testing::ball_model(4, testing::ball_organ(), Vec3(0, 0, -9.81));
+  REQUIRE(model.node_count() > 2 * Ranges::kSize);
+  auto dynamics = testing::constrained(model);
+  testing::ChunkThreads threads(3);
+  DivergenceDetector alone(model, true), shared(model, true, &threads);
+  OrganState state = rest_state(model);
+  for (DivergenceDetector* const detector : {&alone, &shared}) detector->begin(state, 0);
+  for (int s = 0; s < 5; ++s) {
+    dynamics.step(kWatchedStep, {}, state);
+    std::vector<std::uint8_t> remembered;
+    for (DivergenceDetector* const detector : {&alone, &shared}) {
+      REQUIRE(detector->check(state, kWatchedStep, dynamics) == Violation::kNone);
+      StateArchive archive;
+      archive(*detector);
+      if (detector == &alone) remembered = archive.bytes();
+      CHECK(archive.bytes() == remembered);
+    }
+  }
+  for (std::size_t node = 0; node < model.node_count(); node += Ranges::kSize / 2) {
+    OrganState fast = state;
+    fast.velocities[node].z() = 2 * kMaxNodeSpeed;
+    CHECK(shared.check(fast, kWatchedStep, dynamics) == Violation::kTooFast);
+    CHECK(shared.check(state, kWatchedStep, dynamics) == Violation::kNone);
+  }
 }
 
 TEST_CASE("divergence detector: each kind of nonsense is told from the others") {
