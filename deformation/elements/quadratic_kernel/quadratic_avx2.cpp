@@ -14,10 +14,6 @@ struct Avx2Quads {
   static Pack join(const Quad* quads) {
     return __builtin_shufflevector(quads[0], quads[1], 0, 1, 2, 3, 4, 5, 6, 7);
   }
-  static Quad part(const Pack& pack, std::size_t k) {
-    return k == 0 ? __builtin_shufflevector(pack, pack, 0, 1, 2, 3)
-                  : __builtin_shufflevector(pack, pack, 4, 5, 6, 7);
-  }
   static Pack root(const Pack& x) { return _mm256_sqrt_ps(x); }
 };
 

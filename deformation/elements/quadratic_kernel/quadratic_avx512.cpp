@@ -16,18 +16,6 @@ struct Avx512Quads {
     const auto high = __builtin_shufflevector(quads[2], quads[3], 0, 1, 2, 3, 4, 5, 6, 7);
     return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   }
-  static Quad part(const Pack& pack, std::size_t k) {
-    switch (k) {
-      case 0:
-        return __builtin_shufflevector(pack, pack, 0, 1, 2, 3);
-      case 1:
-        return __builtin_shufflevector(pack, pack, 4, 5, 6, 7);
-      case 2:
-        return __builtin_shufflevector(pack, pack, 8, 9, 10, 11);
-      default:
-        return __builtin_shufflevector(pack, pack, 12, 13, 14, 15);
-    }
-  }
   /// With a mask, all ones: GCC 12 takes the plain one's undefined register for uninitialised.
   static Pack root(const Pack& x) { return _mm512_maskz_sqrt_ps(0xffff, x); }
 };

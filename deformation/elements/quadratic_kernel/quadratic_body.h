@@ -79,10 +79,13 @@ struct Quadratic {
   static void scatter_all(float* base, std::size_t stride, const QuadraticBatch& batch,
                           std::size_t lane, const Vector (&vectors)[10],
                           const Pack (&fourths)[10]) {
+    const Addends<Set> addends[10] = {{vectors[0], fourths[0]}, {vectors[1], fourths[1]},
+                                      {vectors[2], fourths[2]}, {vectors[3], fourths[3]},
+                                      {vectors[4], fourths[4]}, {vectors[5], fourths[5]},
+                                      {vectors[6], fourths[6]}, {vectors[7], fourths[7]},
+                                      {vectors[8], fourths[8]}, {vectors[9], fourths[9]}};
     for (std::size_t k = 0; k < Set::kWidth / 4; ++k) {
-      for (int a = 0; a < 10; ++a) {
-        scatter_quad(k, base, batch.nodes[a] + lane, stride, vectors[a], fourths[a]);
-      }
+      for (int a = 0; a < 10; ++a) addends[a].add(k, base, batch.nodes[a] + lane, stride);
     }
   }
   static constexpr Pack kNone[10] = {};
@@ -232,12 +235,16 @@ struct Quadratic {
     Pack rates[4];  // of 6 V J
     for (int a = 0; a < 10; ++a) nodes[a] = gather<Set>(pass.vector, batch.nodes[a] + lane);
     differentiate(nodes, at);
-    for (int q = 0; q < 4; ++q) rates[q] = inner(cofactor(load_tangent(batch, lane, q)), at[q]);
+    Matrix areas[4];
+    for (int q = 0; q < 4; ++q) {
+      areas[q] = cofactor(load_tangent(batch, lane, q));
+      rates[q] = inner(areas[q], at[q]);
+    }
     const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
     const Pack of_all = pass.scale * pass.bulk_modulus / 576 * per_volume *
                         ((rates[0] + rates[1]) + (rates[2] + rates[3]));
     for (int q = 0; q < 4; ++q) {
-      const Matrix tangent = load_tangent(batch, lane, q), areas = cofactor(tangent);
+      const Matrix tangent = load_tangent(batch, lane, q);
       const Matrix raised = metric.raise(at[q]);
       const Pack shape = load<Set>(batch.shapes[q] + lane);
       const Pack turning = load<Set>(batch.turnings[q] + lane);
@@ -247,7 +254,7 @@ struct Quadratic {
       const Matrix turned = {
           {cross(b, w) + cross(v, c), cross(c, u) + cross(w, a), cross(a, v) + cross(u, b)}};
       for (int j = 0; j < 3; ++j) {
-        at[q].along[j] = scaled(shape, raised.along[j]) + scaled(push, areas.along[j]) +
+        at[q].along[j] = scaled(shape, raised.along[j]) + scaled(push, areas[q].along[j]) +
                          scaled(turning, turned.along[j]);
       }
     }

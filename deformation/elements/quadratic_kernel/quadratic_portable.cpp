@@ -11,7 +11,6 @@ struct PortableQuads {
   using Unaligned = float __attribute__((vector_size(16), aligned(4), may_alias));
 
   static Pack join(const Quad* quads) { return quads[0]; }
-  static Quad part(const Pack& pack, std::size_t /*k*/) { return pack; }
   static Pack root(const Pack& x) {
     return Pack{__builtin_sqrtf(x[0]), __builtin_sqrtf(x[1]), __builtin_sqrtf(x[2]),
                 __builtin_sqrtf(x[3])};

@@ -4,12 +4,12 @@
 //   kWidth           lanes: 4, 8 or 16
 //   Pack, Unaligned  so many floats in a register, and anywhere in memory
 //   join(quads)      kWidth/4 quads side by side
-//   part(pack, k)    the k-th of them
 //   root(pack)       elementwise
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace palpate::deformation::kernel {
 namespace {
@@ -64,46 +64,67 @@ typename Set::Pack smaller(const typename Set::Pack& a, const typename Set::Pack
   return a < b ? a : b;
 }
 
+/// In every quad of lanes: of its four of `a`, 0 to 3, and of `b`, 4 to 7, those named.
+template <class Set, int... of_quad, std::size_t... lanes>
+typename Set::Pack shuffled(const typename Set::Pack& a, const typename Set::Pack& b,
+                            std::index_sequence<lanes...>) {
+  constexpr int named[] = {of_quad...};
+  constexpr auto place = [](std::size_t lane) {
+    const int from = named[lane % 4], quad = static_cast<int>(lane / 4) * 4;
+    return from < 4 ? quad + from : static_cast<int>(Set::kWidth) + quad + from - 4;
+  };
+  return __builtin_shufflevector(a, b, place(lanes)...);
+}
+
+/// Each quad of the four packs, as a matrix, the other way round: four of a node from x, y, z and w
+/// of four nodes, and back.
+template <class Set>
+void transpose(typename Set::Pack (&packs)[4]) {
+  using Pack = typename Set::Pack;
+  constexpr auto lanes = std::make_index_sequence<Set::kWidth>();
+  const Pack low_01 = shuffled<Set, 0, 4, 1, 5>(packs[0], packs[1], lanes);
+  const Pack low_23 = shuffled<Set, 0, 4, 1, 5>(packs[2], packs[3], lanes);
+  const Pack high_01 = shuffled<Set, 2, 6, 3, 7>(packs[0], packs[1], lanes);
+  const Pack high_23 = shuffled<Set, 2, 6, 3, 7>(packs[2], packs[3], lanes);
+  packs[0] = shuffled<Set, 0, 1, 4, 5>(low_01, low_23, lanes);
+  packs[1] = shuffled<Set, 2, 3, 6, 7>(low_01, low_23, lanes);
+  packs[2] = shuffled<Set, 0, 1, 4, 5>(high_01, high_23, lanes);
+  packs[3] = shuffled<Set, 2, 3, 6, 7>(high_01, high_23, lanes);
+}
+
 /// x, y and z of kWidth nodes of four floats each.
 template <class Set>
 Vectors<Set> gather(const float* base, const std::uint32_t* nodes) {
-  Quad x[Set::kWidth / 4], y[Set::kWidth / 4], z[Set::kWidth / 4];
-  for (std::size_t k = 0; k < Set::kWidth / 4; ++k) {
-    Quad node[4];
-    for (std::size_t i = 0; i < 4; ++i) {
-      node[i] = *reinterpret_cast<const UnalignedQuad*>(base + 4 * std::size_t{nodes[4 * k + i]});
+  typename Set::Pack packs[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    Quad quads[Set::kWidth / 4];
+    for (std::size_t k = 0; k < Set::kWidth / 4; ++k) {
+      quads[k] = *reinterpret_cast<const UnalignedQuad*>(base + 4 * std::size_t{nodes[4 * k + i]});
     }
-    const Quad xy_01 = __builtin_shufflevector(node[0], node[1], 0, 4, 1, 5);
-    const Quad xy_23 = __builtin_shufflevector(node[2], node[3], 0, 4, 1, 5);
-    const Quad z_01 = __builtin_shufflevector(node[0], node[1], 2, 6, 3, 7);
-    const Quad z_23 = __builtin_shufflevector(node[2], node[3], 2, 6, 3, 7);
-    x[k] = __builtin_shufflevector(xy_01, xy_23, 0, 1, 4, 5);
-    y[k] = __builtin_shufflevector(xy_01, xy_23, 2, 3, 6, 7);
-    z[k] = __builtin_shufflevector(z_01, z_23, 0, 1, 4, 5);
+    packs[i] = Set::join(quads);
   }
-  return {Set::join(x), Set::join(y), Set::join(z)};
+  transpose<Set>(packs);
+  return {packs[0], packs[1], packs[2]};
 }
 
-/// Adds the k-th quad of lanes to four floats of each of its nodes, one node after the other.
-/// @param stride  floats from node to node
+/// What is added to kWidth nodes: of the i-th of each quad of lanes four floats in packs[i].
 template <class Set>
-void scatter_quad(std::size_t k, float* base, const std::uint32_t* nodes, std::size_t stride,
-                  const Vectors<Set>& vectors, const typename Set::Pack& fourth) {
-  const Quad x = Set::part(vectors.x, k), y = Set::part(vectors.y, k);
-  const Quad z = Set::part(vectors.z, k), w = Set::part(fourth, k);
-  const Quad xy_01 = __builtin_shufflevector(x, y, 0, 4, 1, 5);
-  const Quad xy_23 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
-  const Quad zw_01 = __builtin_shufflevector(z, w, 0, 4, 1, 5);
-  const Quad zw_23 = __builtin_shufflevector(z, w, 2, 6, 3, 7);
-  const Quad rows[4] = {__builtin_shufflevector(xy_01, zw_01, 0, 1, 4, 5),
-                        __builtin_shufflevector(xy_01, zw_01, 2, 3, 6, 7),
-                        __builtin_shufflevector(xy_23, zw_23, 0, 1, 4, 5),
-                        __builtin_shufflevector(xy_23, zw_23, 2, 3, 6, 7)};
-  for (std::size_t i = 0; i < 4; ++i) {
-    auto& sum = *reinterpret_cast<UnalignedQuad*>(base + stride * std::size_t{nodes[4 * k + i]});
-    sum = sum + rows[i];
+struct Addends {
+  typename Set::Pack packs[4];
+
+  Addends(const Vectors<Set>& vectors, const typename Set::Pack& fourth)
+      : packs{vectors.x, vectors.y, vectors.z, fourth} {
+    transpose<Set>(packs);
   }
-}
+  /// Those of the k-th quad of lanes, one node after the other.
+  /// @param stride  floats from node to node
+  void add(std::size_t k, float* base, const std::uint32_t* nodes, std::size_t stride) const {
+    for (std::size_t i = 0; i < 4; ++i) {
+      auto& sum = *reinterpret_cast<UnalignedQuad*>(base + stride * std::size_t{nodes[4 * k + i]});
+      sum = sum + reinterpret_cast<const UnalignedQuad*>(&packs[i])[k];
+    }
+  }
+};
 
 }  // namespace
 }  // namespace palpate::deformation::kernel
