@@ -26,7 +26,8 @@ class CornerPairs {
   /// Of corners behind walls so many pairs with their walls' triangles, and kLeastWall of each.
   static constexpr std::size_t kManyWallPairs = 8192, kLeastWall = 16;
 
-  using Pair = PairSorter::Pair;  ///< a corner, or a line behind a wall, and a triangle
+  /// A corner, or a line behind a wall, and a triangle.
+  using Pair = std::pair<std::uint32_t, std::uint32_t>;
 
   /// Begins with the corners and lines that are behind walls, whose triangles are appended.
   void hold(const OrganStep& step, const ProbeModel& probe, CoreContacts& cores,
@@ -58,7 +59,7 @@ class CornerPairs {
   // Kept between calls for their memory only.
   std::vector<std::uint32_t> held_, near_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> wall_pairs_;  ///< corner, triangle
-  PairSorter sorter_;
+  PairSorter<Pair> sorter_;
 };
 
 }  // namespace palpate::collision

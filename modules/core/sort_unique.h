@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -17,18 +18,18 @@ void sort_unique(std::vector<T>& items) {
 
 /// sort_unique() of many pairs that share few first members: each of those gets a bucket, so that
 /// only short lists are sorted.
+/// @tparam Pair  std::pair or std::array of two std::uint32_t
+template <class Pair>
 class PairSorter {
  public:
-  using Pair = std::pair<std::uint32_t, std::uint32_t>;
-
   /// @param count  first members are below this
   void sort_unique(std::vector<Pair>& pairs, std::size_t count) {
     ends_.assign(count, 0);
-    for (const Pair& pair : pairs) ++ends_[pair.first];
+    for (const auto& [first_member, second] : pairs) ++ends_[first_member];
     std::uint32_t sum = 0;
     for (std::uint32_t& end : ends_) end = std::exchange(sum, sum + end);
     seconds_.resize(pairs.size());
-    for (const Pair& pair : pairs) seconds_[ends_[pair.first]++] = pair.second;
+    for (const auto& [first_member, second] : pairs) seconds_[ends_[first_member]++] = second;
     pairs.clear();
     auto first = seconds_.begin();
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -45,5 +46,13 @@ class PairSorter {
   std::vector<std::uint32_t> ends_;     ///< of each bucket, in seconds_
   std::vector<std::uint32_t> seconds_;  ///< by first member
 };
+
+/// Edges of a mesh: first members are numbers of nodes.
+inline void sort_unique(std::vector<std::array<std::uint32_t, 2>>& edges) {
+  std::uint32_t last = 0;
+  for (const auto& edge : edges) last = std::max(last, edge[0]);
+  if (last / 4 > edges.size()) return sort_unique<std::array<std::uint32_t, 2>>(edges);
+  PairSorter<std::array<std::uint32_t, 2>>().sort_unique(edges, std::size_t{last} + 1);
+}
 
 }  // namespace palpate
