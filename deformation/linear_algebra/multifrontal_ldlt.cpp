@@ -200,12 +200,41 @@ void MultifrontalLdlt::Sum::add_column(std::span<const Eigen::Index> places, std
   }
 }
 
+/// Adds all of a child. Its unknowns ascend, so those eliminated here do, and those that wait.
+void MultifrontalLdlt::Sum::add_child(std::span<const Eigen::Index> places, const double* values) {
+  const std::size_t count = places.size();
+  std::vector<std::size_t> eliminated, left;  // of the child's
+  for (std::size_t i = 0; i < count; ++i) {
+    if (places[i] < own.cols()) {
+      eliminated.push_back(i);
+    } else {
+      left.push_back(i);
+    }
+  }
+  for (const std::size_t j : eliminated) {  // where they belong all rows are below
+    const double* const from = values + j * count;
+    double* const into = &own(0, places[j]);
+    for (std::size_t i = j; i < count; ++i) into[places[i]] += from[i];
+  }
+  auto own_below = eliminated.begin();
+  for (std::size_t k = 0; k < left.size(); ++k) {
+    const std::size_t j = left[k];
+    const double* const from = values + j * count;
+    const Eigen::Index skipped = own.cols();
+    double* const into = &waiting(0, places[j] - skipped);
+    for (const std::size_t i : std::span(left).subspan(k)) into[places[i] - skipped] += from[i];
+    while (own_below != eliminated.end() && *own_below < j) ++own_below;
+    for (auto i = own_below; i != eliminated.end(); ++i) own(places[j], places[*i]) += from[*i];
+  }
+}
+
 /// The front's sum of its elements and of what its children left, the last on the stack.
 /// @param children  behind the last of it
 void MultifrontalLdlt::assemble(const MatrixOf& matrix_of, const Front& front,
                                 const double* children, Sum sum) {
   sum.own.setZero();
-  sum.waiting.setZero();
+  const Eigen::Index waiting = sum.waiting.cols();
+  for (Eigen::Index j = 0; j < waiting; ++j) sum.waiting.col(j).tail(waiting - j).setZero();
   for (std::size_t i = 0; i < front.dofs.size(); ++i) {
     places_[static_cast<std::size_t>(front.dofs[i])] = static_cast<Eigen::Index>(i);
   }
@@ -227,9 +256,7 @@ void MultifrontalLdlt::assemble(const MatrixOf& matrix_of, const Front& front,
     if (*child < 0) continue;
     look_up(fronts_[static_cast<std::size_t>(*child)].waiting_dofs());
     children -= places.size() * places.size();
-    for (std::size_t j = 0; j < places.size(); ++j) {
-      sum.add_column(places, j, children + j * places.size());
-    }
+    sum.add_child(places, children);
   }
 }
 
@@ -258,7 +285,9 @@ bool MultifrontalLdlt::factor(const MatrixOf& matrix_of, const std::function<voi
       const std::size_t left = fronts_[static_cast<std::size_t>(child)].waiting_dofs().size();
       top -= left * left;
     }
-    std::copy_n(waiting.data(), waiting.size(), top);
+    for (Eigen::Index j = 0; j < count; ++j) {  // of the lower triangle, forwards
+      std::copy_n(waiting.data() + j * (count + 1), count - j, top + j * (count + 1));
+    }
     top += waiting.size();
   }
   return true;

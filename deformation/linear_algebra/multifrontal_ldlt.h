@@ -64,6 +64,7 @@ class MultifrontalLdlt {
   struct Sum {
     Eigen::Ref<Eigen::MatrixXd> own, waiting;
     void add_column(std::span<const Eigen::Index> places, std::size_t begin, const double* values);
+    void add_child(std::span<const Eigen::Index> places, const double* values);
   };
   struct DofUse {
     int dof = 0, elements = 0;
