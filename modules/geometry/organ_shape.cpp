@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/core/sort_unique.h"
@@ -17,15 +19,30 @@ using Edge = std::array<std::uint32_t, 2>;
 Edge edge_between(std::uint32_t a, std::uint32_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// Edges and the number of the first middle node; edge e's is first + e.
-struct EdgeNumbers {
-  std::vector<Edge> edges;  ///< sorted
-  std::uint32_t first = 0;
-
-  std::uint32_t at(std::uint32_t a, std::uint32_t b) const {
-    const auto found = std::lower_bound(edges.begin(), edges.end(), edge_between(a, b));
-    if (found == edges.end() || *found != edge_between(a, b)) return kNone;
-    return first + static_cast<std::uint32_t>(found - edges.begin());
+class EdgeNumbers {
+ public:
+  /// @param edges       sorted
+  /// @param node_count  of their ends
+  EdgeNumbers(std::vector<Edge> edges, std::size_t node_count, std::uint32_t first_number)
+      : edges_(std::move(edges)), begins_(node_count + 1, 0), first_number_(first_number) {
+    for (const Edge& edge : edges_) ++begins_[edge[0] + 1];
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
   }
+
+  const std::vector<Edge>& edges() const { return edges_; }
+  std::uint32_t at(std::uint32_t a, std::uint32_t b) const {
+    const Edge edge = edge_between(a, b);
+    if (edge[0] + 1 >= begins_.size()) return kNone;
+    for (std::uint32_t i = begins_[edge[0]]; i < begins_[edge[0] + 1]; ++i) {
+      if (edges_[i][1] == edge[1]) return first_number_ + i;
+    }
+    return kNone;
+  }
+
+ private:
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> begins_;  ///< of each first end, in edges_
+  std::uint32_t first_number_;
 };
 
 std::vector<Edge> edges_inside(const OrganShape& shape, const EdgeNumbers& outside) {
@@ -94,18 +111,19 @@ OrganShape shape_of(const TetMesh& mesh, std::span<const BoundaryTriangle> bound
 OrganShape with_edge_nodes(const OrganShape& shape) {
   PALPATE_DEMAND(shape.is_solid() && shape.edge_nodes.empty());
   const auto corner_count = static_cast<std::uint32_t>(shape.surface.nodes.size());
-  const EdgeNumbers outside{edges_of(shape.surface.triangles), corner_count};
-  const auto surface_count = corner_count + static_cast<std::uint32_t>(outside.edges.size());
+  const EdgeNumbers outside(edges_of(shape.surface.triangles), corner_count, corner_count);
+  const auto surface_count = corner_count + static_cast<std::uint32_t>(outside.edges().size());
   const auto inner_count = static_cast<std::uint32_t>(shape.inner_nodes.size());
-  const EdgeNumbers inside{edges_inside(shape, outside), surface_count + inner_count};
+  const EdgeNumbers inside(edges_inside(shape, outside), shape.node_count(),
+                           surface_count + inner_count);
 
   OrganShape result;
   result.surface.nodes = shape.surface.nodes;
-  for (const auto& [a, b] : outside.edges) {
+  for (const auto& [a, b] : outside.edges()) {
     result.surface.nodes.push_back((shape.node(a) + shape.node(b)) / 2);
   }
   result.inner_nodes = shape.inner_nodes;
-  for (const auto& [a, b] : inside.edges) {
+  for (const auto& [a, b] : inside.edges()) {
     result.inner_nodes.push_back((shape.node(a) + shape.node(b)) / 2);
   }
   for (const auto& [a, b, c] : shape.surface.triangles) {
