@@ -33,8 +33,10 @@ std::vector<char*> environment_with(const std::vector<std::string>& changed) {
   std::vector<char*> all;
   for (char** own = environ; *own != nullptr; ++own) {
     const std::string_view entry = *own;
-    const std::string_view name = entry.substr(0, entry.find('=') + 1);
-    if (std::ranges::none_of(changed, [&](const auto& one) { return one.starts_with(name); })) {
+    const std::string_view name = entry.substr(0, entry.find('='));
+    if (std::ranges::none_of(changed, [&](const std::string& one) {
+          return name == std::string_view(one).substr(0, one.find('='));
+        })) {
       all.push_back(*own);
     }
   }

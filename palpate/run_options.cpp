@@ -96,12 +96,15 @@ void add_lockstep(const RunOptions& options, const std::vector<std::string>& mod
   }
 }
 
-/// glibc's wish for huge pages (man mallopt, "tunables"), beside what the user has asked of it: the
-/// memory of a fine organ is wider than the processor's tables of small pages reach.
+/// glibc's wish for huge pages (its manual, "Memory Allocation Tunables"), beside what the user
+/// asks of it and not against that: the memory of a fine organ is wider than the processor's tables
+/// of small pages reach.
 std::string wish_for_huge_pages() {
-  const char* const own = std::getenv("GLIBC_TUNABLES");
-  const std::string before = own != nullptr && *own != '\0' ? std::string(own) + ":" : "";
-  return "GLIBC_TUNABLES=" + before + "glibc.malloc.hugetlb=1";
+  const std::string wish = "glibc.malloc.hugetlb=";
+  const char* const variable = std::getenv("GLIBC_TUNABLES");
+  std::string own = variable == nullptr ? "" : variable;
+  if (own.find(wish) == std::string::npos) own += (own.empty() ? "" : ":") + wish + "1";
+  return "GLIBC_TUNABLES=" + own;
 }
 
 ModuleCommand module_command(const RunOptions& options, const std::vector<std::string>& modules,

@@ -131,6 +131,10 @@ TEST_CASE(
   for (std::size_t k = 1; k < commands.size(); ++k) CHECK(commands[k].environment.empty());
   CHECK(module_commands(some_run(), "/bin/p")[0].environment ==
         Names{"GLIBC_TUNABLES=glibc.malloc.hugetlb=1"});
+  ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=0", 1);
+  CHECK(module_commands(some_run(), "/bin/p")[0].environment ==
+        Names{"GLIBC_TUNABLES=glibc.malloc.hugetlb=0"});
+  ::unsetenv("GLIBC_TUNABLES");
 }
 
 TEST_CASE("run options: --no-realtime reaches every module") {
