@@ -175,10 +175,7 @@ std::vector<Vec3> doubles_of(const std::vector<float>& frame) {
   return nodes;
 }
 
-double p99(Seconds values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() * 99 / 100];
-}
+double p99(const Seconds& values) { return report::quantile(values, 0.99); }
 
 struct Samples {
   Seconds update, search, both;

@@ -4,11 +4,9 @@
 // The session is run tick by tick. A tick is haptics alone, haptics and search, or all three: the
 // search is sought twice a period of deformation so that each part is seen without the next. Times
 // are first quartiles: other programs on the machine only ever add. What the slowest periods take
-// is processor time: a mesh that changes shows there.
-#include <algorithm>
+// is processor time of the one thread: a mesh that changes shows there.
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 
 #include "modules/core/data_folder.h"
@@ -21,13 +19,6 @@
 namespace {
 
 using namespace palpate;
-
-/// @param part  [0, 1)
-double quantile(std::vector<double> values, double part) {
-  std::sort(values.begin(), values.end());
-  const auto place = part * static_cast<double>(values.size());
-  return values.empty() ? NAN : values[static_cast<std::size_t>(place)];
-}
 
 int run(const std::string& file, double seconds) {
   auto scene = scene::load_scene(file);
@@ -44,15 +35,16 @@ int run(const std::string& file, double seconds) {
     if (tick % 4 == 0) busy.push_back(report::processor_time() - busy_before);
     costs[tick % 4 == 0 ? 2 : tick % 2 == 0 ? 1 : 0].push_back(cost.count());
   }
-  const double haptics = quantile(costs[0], 0.25), with_search = quantile(costs[1], 0.25),
-               all = quantile(costs[2], 0.25);
+  const double haptics = report::quantile(costs[0], 0.25),
+               with_search = report::quantile(costs[1], 0.25),
+               all = report::quantile(costs[2], 0.25);
   std::printf("%s\n%s, %g s\n", report::machine_name().c_str(), file.c_str(), seconds);
   std::printf("  haptic tick         %10.2f us\n", 1e6 * haptics);
   std::printf("  contact search      %10.2f us\n", 1e6 * (with_search - haptics));
   std::printf("  deformation period  %10.2f us\n", 1e6 * (all - with_search));
   std::printf("  such ticks, processor time: half of them %.2f ms, 99.9 %% %.2f ms, all %.2f ms\n",
-              1e3 * quantile(busy, 0.5), 1e3 * quantile(busy, 0.999),
-              1e3 * quantile(busy, std::nextafter(1.0, 0.0)));
+              1e3 * report::quantile(busy, 0.5), 1e3 * report::quantile(busy, 0.999),
+              1e3 * report::quantile(busy, 1));
   return kExitDone;
 }
 

@@ -110,11 +110,6 @@ class Slide {
   rigs::SlidBlock block_;
 };
 
-double percentile(std::vector<double> values, double part) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-}
-
 /// Slides at each speed over a way of which the first tenth is not looked at.
 void measure(const Options& options, bool follows, double angle) {
   constexpr double kWay = 2 * rigs::BlockSlide::kHalfWay;  // [m]
@@ -146,7 +141,7 @@ void measure(const Options& options, bool follows, double angle) {
     std::printf("%-8s %9.0f %5.0f %6zu %8u %8.4f %7.2f %% %7.2f %% %7.2f %% %7.2f %8.2f\n",
                 follows ? "follows" : "fine", angle, speed, slide.pressed().node_count(),
                 generation - first, mean, 100 * (high - low) / mean, 100 * at_change, 100 * other,
-                1e3 * report::median(slide.costs), 1e3 * percentile(slide.costs, 0.999));
+                1e3 * report::median(slide.costs), 1e3 * report::quantile(slide.costs, 0.999));
     std::fflush(stdout);
   }
 }

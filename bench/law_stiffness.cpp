@@ -16,6 +16,7 @@
 #include "modules/scene/models.h"
 #include "modules/scene/scene_reader.h"
 #include "studies/certify/law.h"
+#include "studies/report/measures.h"
 #include "studies/rigs/poked_organ.h"
 #include "studies/rigs/pressed_organ.h"
 #include "studies/rigs/squeezed_ball.h"
@@ -123,15 +124,11 @@ void print_cost() {
     sweeps = std::max(sweeps, found.sweeps);
   }
   for (int i = 0; i < 1000; ++i) timed(making, [&] { sum += organ.law(0).stiffness(2, 2); });
-  const auto at = [](std::vector<double>& times, double share) {
-    std::ranges::sort(times);
-    return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))];
-  };
   std::printf(
       "%zu rows with friction: solved in %.1f us (median), %.1f us (99.9 %%), at most %d "
       "sweeps; made in %.0f us (median, %zu nodes)%s\n",
-      law.rows.size(), at(solving, 0.5), at(solving, 0.999), sweeps, at(making, 0.5),
-      organ.node_count(), sum == 0 ? " " : "");
+      law.rows.size(), report::quantile(solving, 0.5), report::quantile(solving, 0.999), sweeps,
+      report::quantile(making, 0.5), organ.node_count(), sum == 0 ? " " : "");
   if (organ.lacks_contacts())
     throw std::runtime_error("contacts of the pressed ball were left out");
 }

@@ -28,6 +28,7 @@
 #include "modules/core/error.h"
 #include "modules/core/temporary_folder.h"
 #include "modules/runtime/program.h"
+#include "studies/report/measures.h"
 
 namespace {
 
@@ -49,13 +50,7 @@ struct Latencies {
   std::vector<double> microseconds;
   int missed = 0;
 
-  double quantile(double fraction) const {
-    std::vector<double> sorted = microseconds;
-    std::sort(sorted.begin(), sorted.end());
-    if (sorted.empty()) return 0;
-    const double rank = fraction * static_cast<double>(sorted.size() - 1);
-    return sorted[static_cast<std::size_t>(rank + 0.5)];
-  }
+  double quantile(double part) const { return palpate::report::quantile(microseconds, part); }
 };
 
 std::int64_t now_ns() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }

@@ -1,5 +1,6 @@
 #include "studies/certify/tables.h"
 
+#include "studies/report/measures.h"
 #include "studies/report/table_file.h"
 
 namespace palpate::certify {
@@ -31,7 +32,8 @@ void write_timing(const Timing& timing, const std::filesystem::path& folder) {
   constexpr int kPoints = 2000;
   for (int i = 1; i <= kPoints; ++i) {
     const double share = double(i) / kPoints;
-    table.write_row({share, quantile(timing.periods, share), quantile(timing.latencies, share)});
+    table.write_row({share, report::quantile(timing.periods, share),
+                     report::quantile(timing.latencies, share)});
   }
   table.finish();
 }

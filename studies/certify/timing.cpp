@@ -2,10 +2,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "modules/runtime/stolen_time.h"
+#include "studies/report/measures.h"
 
 namespace palpate::certify {
 namespace {
@@ -29,7 +27,7 @@ std::vector<Line> quantile_lines(const std::string& group, const std::string& wh
     }
     Measured line = limits[i];
     line.name = name;
-    line.value = 1e3 * quantile(values, kParts[i]);
+    line.value = 1e3 * report::quantile(values, kParts[i]);
     line.unit = "ms";
     line.note = fmt::format("of {} samples", values.size());
     lines.push_back(at_most(group, line));
@@ -38,15 +36,6 @@ std::vector<Line> quantile_lines(const std::string& group, const std::string& wh
 }
 
 }  // namespace
-
-double quantile(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  const auto rank =
-      static_cast<std::ptrdiff_t>(std::ceil(part * static_cast<double>(values.size()))) - 1;
-  const auto at = values.begin() + std::max<std::ptrdiff_t>(rank, 0);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 Timing measure_timing(Processes& processes, double seconds) {
   Heard& heard = processes.heard();

@@ -17,9 +17,6 @@ struct Timing {
 /// Of a started session, whose hand presses.
 Timing measure_timing(Processes& processes, double seconds);
 
-/// Value below which `part` of them are; 0 if there are none.
-double quantile(std::vector<double> values, double part);
-
 /// @param group   of the lines
 /// @param period  T of the scene [s]
 std::vector<Line> timing_lines(const std::string& group, const Timing& timing, double period);

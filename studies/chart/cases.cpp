@@ -8,6 +8,7 @@
 #include "modules/core/error.h"
 #include "studies/chart/case_parts.h"
 #include "studies/chart/reference_solutions.h"
+#include "studies/report/measures.h"
 
 namespace palpate::chart {
 namespace {
@@ -63,13 +64,6 @@ double bar_of(const Sample& sample) {
 Known relative_error(const Sample& sample) {
   const double error = std::abs(sample.force / sample.reference_force - 1);
   return {error, bar_of(sample) / std::abs(sample.reference_force) * (1 + error)};
-}
-
-/// The value that so many of 1 do not exceed. @param values  not empty
-double quantile(std::vector<double> values, double part) {
-  std::ranges::sort(values);
-  const double count = static_cast<double>(values.size());
-  return values[static_cast<std::size_t>(std::max(1.0, std::ceil(part * count - 1e-9))) - 1];
 }
 
 /// √ mean of squares of what is known.
@@ -193,8 +187,9 @@ Known force_quantile(const Measurement& measurement, double part) {
     most.push_back(error + bar);
   }
   if (values.empty()) return {};
-  const double value = quantile(values, part);
-  return {value, std::max(value - quantile(least, part), quantile(most, part) - value)};
+  const double value = report::quantile(values, part);
+  return {value,
+          std::max(value - report::quantile(least, part), report::quantile(most, part) - value)};
 }
 
 double ripple(const Measurement& measurement) {

@@ -13,6 +13,9 @@ std::string text_of(const char* format, double value);
 /// The middle value; the upper one of the two middle ones. @param values  not empty
 double median(std::vector<double> values);
 
+/// The least value that `part` (0, 1] of them do not exceed; 0 if there are none.
+double quantile(std::vector<double> values, double part);
+
 /// Processor time of this thread [s]: what other programs take of the core does not count.
 double processor_time();
 

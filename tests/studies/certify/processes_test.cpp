@@ -5,6 +5,7 @@
 #include "studies/certify/hands.h"
 #include "studies/certify/release.h"
 #include "studies/certify/timing.h"
+#include "studies/report/measures.h"
 #include "tests/modules/runtime/own_bus.h"
 #include "tests/studies/certify/subjects.h"
 
@@ -30,8 +31,8 @@ TEST_CASE("certify processes: pressed over DDS, timed, and let go by whatever fa
   const Timing timing = measure_timing(processes, 1);
   REQUIRE(timing.periods.size() > 100);
   REQUIRE(timing.latencies.size() > 100);
-  CHECK(quantile(timing.latencies, 0.01) > 0);
-  CHECK(quantile(timing.periods, 0.5) == Approx(1e-3).epsilon(0.5));
+  CHECK(report::quantile(timing.latencies, 0.01) > 0);
+  CHECK(report::quantile(timing.periods, 0.5) == Approx(1e-3).epsilon(0.5));
 
   int told = 0;
   const auto releases = measure_releases(processes, 0.005, 1, [&](const Release& release) {

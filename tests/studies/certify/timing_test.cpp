@@ -4,16 +4,6 @@
 
 using namespace palpate::certify;
 
-TEST_CASE("certify timing: quantiles are values that so many do not exceed") {
-  // Oracle: definition, on 1 to 1000.
-  std::vector<double> values;
-  for (int i = 1000; i > 0; --i) values.push_back(i);
-  CHECK(quantile(values, 0.5) == 500);
-  CHECK(quantile(values, 0.999) == 999);
-  CHECK(quantile(values, 1) == 1000);
-  CHECK(quantile({}, 0.5) == 0);
-}
-
 TEST_CASE("certify timing: a loop that misses ticks, or answers late, fails the lines of that") {
   // Oracle: definition. Of 10,000 periods 20 are doubled: 99.8 % on time, and 0.2 % of periods are
   // long; latencies are 2 ms.

@@ -15,6 +15,19 @@ TEST_CASE("measures: median and number text") {
   CHECK(text_of("%.2f s", 1.234) == "1.23 s");
 }
 
+TEST_CASE("measures: quantiles are values that so many do not exceed") {
+  // Oracle: definition, on 1 to 1000, and on 1 to 100, where 0.07 · 100 rounds to more than 7.
+  std::vector<double> values;
+  for (int i = 1000; i > 0; --i) values.push_back(i);
+  CHECK(quantile(values, 0.5) == 500);
+  CHECK(quantile(values, 0.999) == 999);
+  CHECK(quantile(values, 1) == 1000);
+  CHECK(quantile(values, 1e-6) == 1);
+  REQUIRE(0.07 * 100 > 7);
+  CHECK(quantile({values.end() - 100, values.end()}, 0.07) == 7);
+  CHECK(quantile({}, 0.5) == 0);
+}
+
 TEST_CASE("measures: processor time runs while this thread works") {
   // Oracle: a busy loop, ended by the time itself.
   const double begin = processor_time();
