@@ -47,7 +47,8 @@ class PairSorter {
   std::vector<std::uint32_t> seconds_;  ///< by first member
 };
 
-/// Edges of a mesh: first members are numbers of nodes.
+/// Edges of a mesh: first members are numbers of nodes. Where those are so far apart that there
+/// would be more than four buckets for each edge, all are sorted at once.
 inline void sort_unique(std::vector<std::array<std::uint32_t, 2>>& edges) {
   std::uint32_t last = 0;
   for (const auto& edge : edges) last = std::max(last, edge[0]);
