@@ -224,6 +224,9 @@ Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index 
   }
   const Eigen::LLT<Eigen::MatrixXf> factor(A);
   if (factor.info() != Eigen::Success) {
+    // What goes along beyond may be so little that float sees nothing of it: as if held.
+    const Eigen::Index near = A.rows() - far;
+    if (far > 0) return answers(A.topLeftCorner(near, near), 0, mass_share, rows, gradient);
     return Eigen::MatrixXd::Zero(count, count);  // no law from a bad state
   }
   // W = (L⁻¹Cᵀ)ᵀ(L⁻¹Cᵀ): symmetric and positive however it is rounded.
