@@ -66,14 +66,31 @@ AverageNodalPressure::AverageNodalPressure(LinearTetrahedra tetrahedra,
   areas_.resize(tetrahedra_.size());
   volumes_.resize(tetrahedra_.size());
   node_pressures_.resize(tetrahedra_.node_count);
+  kept_.setZero(static_cast<Eigen::Index>(tetrahedra_.node_count));
+  shares_.setOnes(kept_.size());
   volume_rows_.resize(pairs_.pair_count());
   forces_.assign(tetrahedra_.node_count, Vec3::Zero());
   diagonal_.assign(tetrahedra_.node_count, Mat3::Zero());
 }
 
+void AverageNodalPressure::take_pressures_of_shape(const std::vector<Vec3>& positions,
+                                                   Eigen::VectorXd& pressures) {
+  take_volumes(positions);
+  pressures = Eigen::Map<const Eigen::VectorXd>(node_pressures_.data(), kept_.size());
+}
+
+void AverageNodalPressure::go_on_from(const Eigen::VectorXd& kept, const Eigen::VectorXd& shares) {
+  kept_ = kept;
+  shares_ = shares;
+}
+
 void AverageNodalPressure::linearise(const std::vector<Vec3>& positions, double scale,
                                      std::span<const double> shift) {
   take_volumes(positions);
+  for (std::size_t i = 0; i < node_pressures_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    node_pressures_[i] = kept_[k] + shares_[k] * node_pressures_[i];
+  }
   matrix_.set_zero();
   add_shape_forces(positions);
   std::fill(volume_rows_.begin(), volume_rows_.end(), Vec4f::Zero());
@@ -162,8 +179,9 @@ double AverageNodalPressure::kept_turning(double c, double stretch, double J) co
 void AverageNodalPressure::add_pressures(double scale) {
   for (std::size_t i = 0; i < diagonal_.size(); ++i) diagonal_[i] = matrix_.diagonal(i);
   for (std::size_t i = 0; i < node_volumes_.size(); ++i) {
-    const auto weight =
-        static_cast<float>(std::sqrt(scale * nodal_modulus_ / node_volumes_[i]) / 4);
+    const auto weight = static_cast<float>(std::sqrt(scale * shares_[static_cast<Eigen::Index>(i)] *
+                                                     nodal_modulus_ / node_volumes_[i]) /
+                                           4);
     for (auto k = pairs_.row_starts[i]; k < pairs_.row_starts[i + 1]; ++k) {
       volume_rows_[k] *= weight;
       const Vec3 row = volume_rows_[k].head<3>().cast<double>();

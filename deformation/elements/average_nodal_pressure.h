@@ -40,8 +40,6 @@ double nodal_bulk_modulus(const ElasticConstants& tissue,
 /// The plain code: nodal_pressure_kernel.h does the same fast.
 class AverageNodalPressure : public ElasticForceElements {
  public:
-  static constexpr int kIterations = 40;
-
   AverageNodalPressure(LinearTetrahedra tetrahedra, const ElasticConstants& tissue,
                        const AverageNodalPressureSettings& settings = {});
 
@@ -51,6 +49,12 @@ class AverageNodalPressure : public ElasticForceElements {
   const std::vector<Mat3>& diagonal() const override { return diagonal_; }
   void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) override;
   void add_block(const Patch& patch, float share, Eigen::MatrixXf& sum) const override;
+  ElementPressures pressures() const override {
+    return {node_volumes_.size(), nodal_modulus_, law_.shear_modulus};
+  }
+  void take_pressures_of_shape(const std::vector<Vec3>& positions,
+                               Eigen::VectorXd& pressures) override;
+  void go_on_from(const Eigen::VectorXd& kept, const Eigen::VectorXd& shares) override;
   double energy(const std::vector<Vec3>& positions) override;
 
  private:
@@ -71,6 +75,8 @@ class AverageNodalPressure : public ElasticForceElements {
   std::vector<Mat34> areas_;            ///< b, by tetrahedron [m²]
   std::vector<double> volumes_;         ///< v_e [m³]
   std::vector<double> node_pressures_;  ///< κ' (J_a − 1), positive when stretched [Pa]
+  Eigen::VectorXd kept_;                ///< of the pressures of steps before [Pa]
+  Eigen::VectorXd shares_;              ///< s of each node
   std::vector<Vec4f> volume_rows_;      ///< ∂v_a/∂x_b by pair, times √(scale κ'/V_a)
   std::vector<Vec3> forces_;
   std::vector<Mat3> diagonal_;

@@ -17,8 +17,6 @@ namespace palpate::deformation {
 /// The plain code: corotational_kernel.h does the same fast.
 class Corotational : public ElasticForceElements {
  public:
-  static constexpr int kIterations = 20;
-
   /// @param tissue  ν < 1/2
   Corotational(LinearTetrahedra tetrahedra, const ElasticConstants& tissue);
 

@@ -10,6 +10,13 @@
 
 namespace palpate::deformation {
 
+/// Of elements that keep their volume by pressures of their own.
+struct ElementPressures {
+  std::size_t count = 0;     ///< 0: there are none
+  double modulus = 0;        ///< κ' [Pa]
+  double shear_modulus = 0;  ///< μ [Pa]
+};
+
 /// Elastic forces f(x) of a body's nodes and, about x, the matrix A = diag(shift) + scale K that a
 /// step solves with: K approximates −∂f/∂x and is symmetric positive semidefinite. Keeps no state
 /// but buffers. Rows of fixed nodes are like any other.
@@ -22,6 +29,14 @@ class ElasticForceElements {
   /// @param shift  > 0, each for the three coordinates of a node [kg]  (node_count)
   virtual void linearise(const std::vector<Vec3>& positions, double scale,
                          std::span<const double> shift) = 0;
+
+  /// For steps that remember pressures (augmented_pressures.h).
+  virtual ElementPressures pressures() const { return {}; }
+  /// κ' ε of the shapes at these positions [Pa], to `pressures`, which is resized  (count).
+  virtual void take_pressures_of_shape(const std::vector<Vec3>&, Eigen::VectorXd&) {}
+  /// linearise() takes pressures `kept` + share κ' ε(x) from now on, and K goes with that. Before
+  /// this was called all shares are 1 and nothing is kept.  (count)
+  virtual void go_on_from(const Eigen::VectorXd& /*kept*/, const Eigen::VectorXd& /*shares*/) {}
 
   virtual const std::vector<Vec3>& forces() const = 0;    ///< f [N]  (node_count)
   virtual const std::vector<Mat3>& diagonal() const = 0;  ///< 3×3 blocks of A [kg]  (node_count)

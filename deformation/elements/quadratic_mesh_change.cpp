@@ -76,6 +76,7 @@ void QuadraticMeshChange::find_parts(std::span<const std::uint8_t> from_halvings
       append(to_, j, to_end, parts_.back().after);
       if (from_halvings[i] == level) find_coming(i, j, to_end, found);
     }
+    rows_.push_back({i, from_end, j, to_end});
     i = from_end;
     j = to_end;
   }
@@ -125,6 +126,22 @@ void QuadraticMeshChange::hand_over(const Part& part, const std::vector<Vec3>& b
   }
 }
 
+Eigen::VectorXd QuadraticMeshChange::carried(const Eigen::VectorXd& pressures) const {
+  Eigen::VectorXd carried(static_cast<Eigen::Index>(to_.mesh().tetrahedra.size()));
+  for (const Row& row : rows_) {
+    double mass = 0, sum = 0;
+    for (std::size_t e = row.from; e < row.from_end; ++e) {
+      const double own = tetrahedron_mass(from_.mesh(), e, from_.rest_positions);
+      mass += own;
+      sum += own * pressures[static_cast<Eigen::Index>(e)];
+    }
+    for (std::size_t e = row.to; e < row.to_end; ++e) {
+      carried[static_cast<Eigen::Index>(e)] = sum / mass;
+    }
+  }
+  return carried;
+}
+
 OrganState QuadraticMeshChange::carried(const OrganState& state) const {
   OrganState carried = state;
   carried.internal = {};
@@ -148,6 +165,9 @@ OrganState QuadraticMeshChange::carried(const OrganState& state) const {
   const std::vector<Vec3> found = carried.velocities;
   for (const Part& part : parts_) hand_over(part, state.velocities, found, carried.velocities);
   for (const std::uint32_t node : to_.fixed_nodes) carried.velocities[node].setZero();
+  if (state.internal.pressures.size() > 0) {
+    carried.internal.pressures = this->carried(state.internal.pressures);
+  }
   return carried;
 }
 

@@ -11,6 +11,9 @@
 // what its tetrahedra give it, by mass. So momentum stays what it was (what comes to a fixed node
 // is taken by what holds it), an even motion stays one, and kinetic energy never grows: squares of
 // means are no more than means of squares.
+//
+// Pressures, which each tetrahedron has one of: halves have that of the whole, a whole the mean of
+// its halves, by volume.
 #pragma once
 
 #include <array>
@@ -41,6 +44,10 @@ class QuadraticMeshChange {
   struct Part {
     std::vector<Share> before, after;
   };
+  /// Rows of tetrahedra that fill the same place, one of them alone.
+  struct Row {
+    std::size_t from = 0, from_end = 0, to = 0, to_end = 0;
+  };
   struct Coming {
     std::uint32_t node = 0;              ///< of `to`
     std::array<std::uint32_t, 10> in{};  ///< nodes of `from`
@@ -50,6 +57,7 @@ class QuadraticMeshChange {
   void find_parts(std::span<const std::uint8_t> from_halvings,
                   std::span<const std::uint8_t> to_halvings);
   void find_coming(std::size_t in, std::size_t first, std::size_t end, std::vector<bool>& found);
+  Eigen::VectorXd carried(const Eigen::VectorXd& pressures) const;
   void hand_over(const Part& part, const std::vector<Vec3>& before, const std::vector<Vec3>& found,
                  std::vector<Vec3>& velocities) const;
 
@@ -58,6 +66,7 @@ class QuadraticMeshChange {
   std::vector<std::uint32_t> kept_;  ///< of each node of `to` the same one of `from`
   std::vector<Coming> coming_;
   std::vector<Part> parts_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace palpate::deformation

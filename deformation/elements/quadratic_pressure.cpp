@@ -94,6 +94,7 @@ void QuadraticPressure::add_element(std::size_t e, const std::vector<Vec3>& rest
   const double volume = edges.determinant() / 6;
   batch.volume[0][lane] = static_cast<float>(volume);
   batch.per_volume[0][lane] = static_cast<float>(1 / volume);
+  batch.share[0][lane] = 1;
   const Mat3 inverse = edges.inverse();  // its rows: ∇L_j
   const Mat3 metric = inverse * inverse.transpose();
   for (std::size_t k = 0; k < 6; ++k) {
@@ -110,6 +111,27 @@ kernel::QuadraticPass QuadraticPressure::begin_pass() {
   pass.bulk_modulus = static_cast<float>(bulk_modulus_);
   pass.scale = static_cast<float>(scale_);
   return pass;
+}
+
+void QuadraticPressure::take_pressures_of_shape(const std::vector<Vec3>& positions,
+                                                Eigen::VectorXd& pressures) {
+  kernel::QuadraticPass pass = begin_pass();
+  pass.positions = positions.front().data();
+  kernel_.press(pass);
+  pressures.resize(static_cast<Eigen::Index>(elements_.size()));
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    pressures[static_cast<Eigen::Index>(e)] =
+        batches_[e % batches_.size()].pressure[0][e / batches_.size()];
+  }
+}
+
+void QuadraticPressure::go_on_from(const Eigen::VectorXd& kept, const Eigen::VectorXd& shares) {
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    kernel::QuadraticBatch& batch = batches_[e % batches_.size()];
+    const std::size_t lane = e / batches_.size();
+    batch.pressure[0][lane] = static_cast<float>(kept[static_cast<Eigen::Index>(e)]);
+    batch.share[0][lane] = static_cast<float>(shares[static_cast<Eigen::Index>(e)]);
+  }
 }
 
 void QuadraticPressure::linearise(const std::vector<Vec3>& positions, double scale,
@@ -157,7 +179,7 @@ void QuadraticPressure::add_element_block(std::size_t e, const Patch& patch, flo
   const std::size_t lane = e / batches_.size();
   const double per_volume = share * scale_ * batch.per_volume[0][lane];
   const double of_points = law_.volume_modulus / 144 * per_volume;
-  const double of_all = bulk_modulus_ / 576 * per_volume;
+  const double of_all = batch.share[0][lane] * bulk_modulus_ / 576 * per_volume;
   const Mat3 metric = metric_of(batch, lane);
   std::array<Mat3, 4> tangents;
   std::array<PointShapes, 4> rows, raised;  // 24 V/4 ∂J/∂x; ∂N by the metric

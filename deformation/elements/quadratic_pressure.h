@@ -40,6 +40,12 @@ class QuadraticPressure : public ElasticForceElements {
 
   void linearise(const std::vector<Vec3>& positions, double scale,
                  std::span<const double> shift) override;
+  ElementPressures pressures() const override {
+    return {elements_.size(), bulk_modulus_, law_.shear_modulus};
+  }
+  void take_pressures_of_shape(const std::vector<Vec3>& positions,
+                               Eigen::VectorXd& pressures) override;
+  void go_on_from(const Eigen::VectorXd& kept, const Eigen::VectorXd& shares) override;
   const std::vector<Vec3>& forces() const override { return forces_; }
   const std::vector<Mat3>& diagonal() const override { return diagonal_; }
   void apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& out) override;

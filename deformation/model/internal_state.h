@@ -9,16 +9,19 @@
 
 namespace palpate::deformation {
 
-/// Goes with the positions and velocities kept here. A step that finds the organ elsewhere, for it
-/// was put there from outside, begins with what those positions and velocities say alone.
+/// Where positions and velocities are kept here, it goes with these: a step that finds the organ
+/// elsewhere, for it was put there from outside, begins with what is there alone.
 struct InternalState {
-  Eigen::VectorXd pressures;   ///< Taylor–Hood elements: p of the corners [Pa], else empty
-  Eigen::VectorXd amplitudes;  ///< modal: a [m·kg^½], else empty
-  Eigen::VectorXd rates;       ///< modal: ȧ [m·kg^½/s], else empty
+  /// Taylor–Hood elements: p of the corners; elements that remember theirs: of each
+  /// (steppers/augmented_pressures.h); else empty [Pa]
+  Eigen::VectorXd pressures;
+  Eigen::VectorXd shape_pressures;  ///< what the shape alone says beside the latter [Pa], or empty
+  Eigen::VectorXd amplitudes;       ///< modal: a [m·kg^½], else empty
+  Eigen::VectorXd rates;            ///< modal: ȧ [m·kg^½/s], else empty
   std::vector<Vec3> positions, velocities;
 
   void exchange(StateArchive& archive) {
-    archive(pressures, amplitudes, rates, positions, velocities);
+    archive(pressures, shape_pressures, amplitudes, rates, positions, velocities);
   }
   bool goes_with(const std::vector<Vec3>& x, const std::vector<Vec3>& v) const {
     return positions == x && velocities == v;

@@ -68,6 +68,9 @@ OrganState MeshChange::carried(const OrganState& state) const {
   }
   OrganState carried = state;
   carried.internal = {};
+  if (state.internal.pressures.size() > 0) {
+    carried.internal.pressures = this->carried(state.internal.pressures);
+  }
   carried.positions.assign(to_.node_count(), Vec3::Zero());
   carried.velocities.assign(to_.node_count(), Vec3::Zero());
   for (std::size_t i = 0; i < kept_.size(); ++i) {
@@ -81,6 +84,17 @@ OrganState MeshChange::carried(const OrganState& state) const {
     carried.velocities[middle.node] = (carried.velocities[a] + carried.velocities[b]) / 2;
   }
   for (const std::uint32_t node : to_.fixed_nodes) carried.velocities[node].setZero();
+  return carried;
+}
+
+Eigen::VectorXd MeshChange::carried(const Eigen::VectorXd& pressures) const {
+  Eigen::VectorXd carried(static_cast<Eigen::Index>(kept_.size()));
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] != kNoPlace) carried[static_cast<Eigen::Index>(i)] = pressures[kept_[i]];
+  }
+  for (const Middle& middle : coming_) {
+    carried[middle.node] = (carried[middle.ends[0]] + carried[middle.ends[1]]) / 2;
+  }
   return carried;
 }
 

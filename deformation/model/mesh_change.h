@@ -6,7 +6,7 @@
 // φ_a⁻ = φ_a + φ_m/2 for an end of the edge that m was the middle of, m_a⁻ = m_a + m_m/2. So the
 // momentum of all nodes stays what it was (what comes to a fixed node is taken by what holds it),
 // an even motion stays one, and, a mean's square being no more than the mean of squares, no kinetic
-// energy is gained by either way.
+// energy is gained by either way. Pressures of nodes are carried as positions are.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,8 @@ class MeshChange {
   OrganState carried(const OrganState& state) const;
 
  private:
+  Eigen::VectorXd carried(const Eigen::VectorXd& pressures) const;
+
   struct Middle {
     std::uint32_t node = 0;
     Parents ends{};

@@ -14,7 +14,7 @@ constexpr int kMostGoingOn = 4;
 LinearlyImplicitEuler::LinearlyImplicitEuler(const Body& body,
                                              std::unique_ptr<ElasticForceElements> elements,
                                              int iterations)
-    : body_(body), elements_(std::move(elements)), max_iterations_(iterations) {
+    : body_(body), elements_(std::move(elements)), max_iterations_(iterations), pressures_(body) {
   for (const double mass : body.masses) total_mass_ += mass;
   shift_.assign(body.node_count(), 0);
   predicted_.assign(body.node_count(), Vec3::Zero());
@@ -28,6 +28,7 @@ LinearlyImplicitEuler::LinearlyImplicitEuler(const Body& body,
 }
 
 StepReport LinearlyImplicitEuler::step(double h, std::span<ContactRow> rows, OrganState& state) {
+  pressures_.begin(h, state, *elements_);
   linearise(h, state);
   if (rows.empty()) begin_with_free_motion();
   solve(h, rows, state);
@@ -36,6 +37,7 @@ StepReport LinearlyImplicitEuler::step(double h, std::span<ContactRow> rows, Org
     state.velocities[i] = velocities_[i];
     state.positions[i] += h * velocities_[i];
   }
+  pressures_.end(state, *elements_);
   state.pressure = mean_pressure();
   return {};
 }
@@ -143,9 +145,11 @@ void LinearlyImplicitEuler::set_preconditioner(std::size_t node, const Mat3& inv
 }
 
 void LinearlyImplicitEuler::take_residual(std::span<const ContactRow> rows) {
-  elements_->apply(change_, product_);
   residual_ = load_;
-  add(-1, product_, residual_);
+  if (std::ranges::any_of(change_, [](const Vec4f& change) { return !change.isZero(0); })) {
+    elements_->apply(change_, product_);
+    add(-1, product_, residual_);
+  }
   contacts_.add_impulses(rows, residual_);
 }
 

@@ -9,6 +9,9 @@
 //   E. Polak, G. Ribière, Rev. Fr. Inform. Rech. Opér. 3 (16), 1969.
 //   D. Baraff, A. Witkin, "Large steps in cloth simulation", SIGGRAPH 1998.
 //
+// Elements that keep their volume by pressures remember these (augmented_pressures.h), in
+// state.internal.
+//
 // There is no global volume constraint: tissue keeps its volume by what it is made of, and
 // state.target_volume is not looked at.
 #pragma once
@@ -19,6 +22,7 @@
 
 #include "deformation/contact/augmented_contacts.h"
 #include "deformation/elements/elastic_force_elements.h"
+#include "deformation/steppers/augmented_pressures.h"
 #include "deformation/steppers/organ_dynamics.h"
 
 namespace palpate::deformation {
@@ -70,6 +74,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   int max_iterations_, iterations_used_ = 0;
   double total_mass_ = 0, step_ = 0;  ///< [kg]; h of the last step [s]
   AugmentedContacts contacts_;
+  AugmentedPressures pressures_;
   std::vector<double> shift_;                         ///< (1 + h·drag) m [kg]
   std::vector<Vec3> predicted_;                       ///< x̃ [m]
   std::vector<Vec3> velocities_;                      ///< v + Δv [m/s]

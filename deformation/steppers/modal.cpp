@@ -16,7 +16,7 @@ constexpr int kMaxSweeps = 200;
 
 using ConstCoordinates = Eigen::Map<const Eigen::VectorXd>;
 
-ConstCoordinates coordinates(const std::vector<Vec3>& vectors) {
+ConstCoordinates coordinates_of(const std::vector<Vec3>& vectors) {
   return {vectors.front().data(), static_cast<Eigen::Index>(3 * vectors.size())};
 }
 
@@ -75,7 +75,7 @@ StepReport Modal::step(double h, std::span<ContactRow> rows, OrganState& state) 
   InternalState& internal = state.internal;
   if (!internal.goes_with(state.positions, state.velocities)) {
     internal.amplitudes = amplitudes(state);
-    internal.rates = momenta_.transpose() * coordinates(state.velocities);
+    internal.rates = momenta_.transpose() * coordinates_of(state.velocities);
   }
   prepare(h, rows);
   if (!move_freely(h, rows, internal)) move_in_touch(h, rows, internal);
@@ -85,7 +85,8 @@ StepReport Modal::step(double h, std::span<ContactRow> rows, OrganState& state) 
 
 /// Of the positions alone.
 Eigen::VectorXd Modal::amplitudes(const OrganState& state) const {
-  return momenta_.transpose() * (coordinates(state.positions) - coordinates(model_.rest_positions));
+  return momenta_.transpose() *
+         (coordinates_of(state.positions) - coordinates_of(model_.rest_positions));
 }
 
 void Modal::write(OrganState& state) const {

@@ -13,7 +13,9 @@ NodalPressureKernel::NodalPressureKernel(LinearTetrahedra tetrahedra,
     : KernelElements(std::move(tetrahedra), true, runner, set),
       law_(tissue.shear_modulus(), settings.stabilisation * tissue.shear_modulus()),
       nodal_modulus_(nodal_bulk_modulus(tissue, settings)),
-      rest_volumes_(mesh().node_count, 0) {
+      rest_volumes_(mesh().node_count, 0),
+      kept_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mesh().node_count))),
+      shares_(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(mesh().node_count))) {
   for (std::size_t e = 0; e < mesh().size(); ++e) {
     for (const auto node : mesh().corners[e]) rest_volumes_[node] += mesh().volumes[e];
   }
@@ -31,6 +33,20 @@ double NodalPressureKernel::pressure(std::size_t node) const {
   return nodal_modulus_ * (sum_of(arrays().node_volumes, node) / rest_volumes_[node] - 1);
 }
 
+void NodalPressureKernel::take_pressures_of_shape(const std::vector<Vec3>& positions,
+                                                  Eigen::VectorXd& pressures) {
+  take_volumes(positions);
+  pressures.resize(kept_.size());
+  for (Eigen::Index i = 0; i < pressures.size(); ++i) {
+    pressures[i] = pressure(static_cast<std::size_t>(i));
+  }
+}
+
+void NodalPressureKernel::go_on_from(const Eigen::VectorXd& kept, const Eigen::VectorXd& shares) {
+  kept_ = kept;
+  shares_ = shares;
+}
+
 void NodalPressureKernel::linearise(const std::vector<Vec3>& positions, double scale,
                                     std::span<const double> shift) {
   take_volumes(positions);
@@ -38,9 +54,10 @@ void NodalPressureKernel::linearise(const std::vector<Vec3>& positions, double s
   for_parts([&](const ElementPart& part) {
     for (std::size_t slot = part.first_slot; slot < part.first_slot + part.slot_count; ++slot) {
       const std::uint32_t node = parts().node(slot);
-      arrays().positions[4 * slot + 3] = pressure(node);
+      arrays().positions[4 * slot + 3] = kept_[node] + shares_[node] * pressure(node);
       // Of 4 v_a: κ'/V_a (∂v_a)(∂v_a)ᵀ is κ'/(4 · 4 V_a) of it.
-      set_weight(slot, static_cast<float>(scale * nodal_modulus_ / (4 * rest_volumes_[node])));
+      set_weight(slot, static_cast<float>(scale * shares_[node] * nodal_modulus_ /
+                                          (4 * rest_volumes_[node])));
     }
     functions().assemble_pressure(part, parts().tetrahedra(), arrays(), terms);
   });

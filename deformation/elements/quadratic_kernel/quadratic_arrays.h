@@ -25,6 +25,8 @@ struct alignas(64) QuadraticBatch {
   Floats<6> metric;                          ///< ∇L_i·∇L_j of ij = 11 22 33 12 13 23 [1/m²]
   Floats<1> volume;                          ///< V at rest [m³]
   Floats<1> per_volume;                      ///< 1/V; 0 of a lane left over
+  Floats<1> pressure;                        ///< kept from steps before; of press() κ' ε [Pa]
+  Floats<1> share;                           ///< of κ' that resists at once
   // As linearised last, at the four points q:
   Floats<36> tangents;  ///< ∂x/∂L_j at 9 q + 3 (j − 1) + axis [m]
   Floats<4> shapes;     ///< scale V/4 (μ + θ)
@@ -39,10 +41,11 @@ struct QuadraticPass {
   float bulk_modulus = 0;   ///< κ' [Pa]
   float scale = 0;          ///< h² of a step [s²]
 
-  // Of linearise(), added to:
+  // Of linearise() and press(), which sets pressures:
   const double* positions = nullptr;  ///< three a node [m]
-  float* forces = nullptr;            ///< four a node [N]
-  float* diagonal = nullptr;          ///< xx yy zz xy xz yz 0 0 of each node's block [kg]
+  // Of linearise(), added to:
+  float* forces = nullptr;    ///< four a node [N]
+  float* diagonal = nullptr;  ///< xx yy zz xy xz yz 0 0 of each node's block [kg]
 
   // Of multiply():
   const float* vector = nullptr;  ///< four a node
@@ -51,6 +54,7 @@ struct QuadraticPass {
 
 /// The code of one instruction set.
 struct QuadraticKernel {
+  void (*press)(const QuadraticPass&);
   void (*linearise)(const QuadraticPass&);
   void (*multiply)(const QuadraticPass&);
 };

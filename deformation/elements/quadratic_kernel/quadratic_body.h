@@ -132,6 +132,26 @@ struct Quadratic {
     return smaller<Set>(larger<Set>(c, -smaller<Set>(mu / stretch, of_stretches)), Pack{});
   }
 
+  /// Of what positions are at the points, 4 ε.
+  static Pack grown(const Pack (&J)[4]) {
+    return ((J[0] - 1) + (J[1] - 1)) + ((J[2] - 1) + (J[3] - 1));
+  }
+
+  static void press(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
+    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    Vector nodes[10];
+    Matrix at[4];
+    Pack J[4];
+    load_positions(pass, batch, lane, nodes);
+    differentiate(nodes, at);
+    for (int q = 0; q < 4; ++q) {
+      const auto& [a, b, c] = at[q].along;
+      J[q] = per_volume / 6 * dot(cross(b, c), a);
+    }
+    float* const pressures = batch.pressure[0] + lane;
+    store<Set>(pressures, pass.bulk_modulus / 4 * grown(J));
+  }
+
   static void linearise(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
     const float mu = pass.shear_modulus, alpha = pass.point_modulus;
     const Pack volume = load<Set>(batch.volume[0] + lane);
@@ -147,8 +167,9 @@ struct Quadratic {
       areas[q] = cofactor(at[q]);
       J[q] = per_volume / 6 * dot(areas[q].along[0], at[q].along[0]);
     }
-    const Pack growth = ((J[0] - 1) + (J[1] - 1)) + ((J[2] - 1) + (J[3] - 1));
-    const Pack pressure = pass.bulk_modulus / 4 * growth;
+    const Pack growth = grown(J);
+    const Pack pressure = load<Set>(batch.pressure[0] + lane) +
+                          pass.bulk_modulus / 4 * load<Set>(batch.share[0] + lane) * growth;
     for (int q = 0; q < 4; ++q) {
       const Matrix raised = metric.raise(at[q]);
       const Pack squared = squared_stretch(at[q], raised), stretch = Set::root(squared);
@@ -170,6 +191,7 @@ struct Quadratic {
   static void add_diagonals(const QuadraticPass& pass, const QuadraticBatch& batch,
                             std::size_t lane, const Matrix (&areas)[4], const Pack (&shapes)[4]) {
     const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    const Pack share = load<Set>(batch.share[0] + lane);
     Pack own[4], mixed[6];
     Metric(batch, lane).of_corners(own);
     Metric(batch, lane).of_edges(mixed);
@@ -197,7 +219,7 @@ struct Quadratic {
           rows[q] = fi * faces[q][j] + fj * faces[q][i];
         }
       }
-      const Outer block = squared(pass, per_volume, rows);
+      const Outer block = squared(pass, per_volume, share, rows);
       squares[a] = block.squares + Vector{weight, weight, weight};
       mixed_xy[a] = block.mixed.x;
       others[a] = Vector{block.mixed.y, block.mixed.z, Pack{}};
@@ -212,9 +234,10 @@ struct Quadratic {
   };
   /// What volumes add to a node's block.
   /// @param rows  24 V/4 ∂J/∂x of the node at the points
-  static Outer squared(const QuadraticPass& pass, const Pack& per_volume, const Vector (&rows)[4]) {
+  static Outer squared(const QuadraticPass& pass, const Pack& per_volume, const Pack& share,
+                       const Vector (&rows)[4]) {
     const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
-    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * per_volume;
+    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * share * per_volume;
     const Vector all = (rows[0] + rows[1]) + (rows[2] + rows[3]);
     const Vector scaled_all = scaled(of_all, all);
     Vector squares = {scaled_all.x * all.x, scaled_all.y * all.y, scaled_all.z * all.z};
@@ -241,8 +264,8 @@ struct Quadratic {
       rates[q] = inner(areas[q], at[q]);
     }
     const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
-    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * per_volume *
-                        ((rates[0] + rates[1]) + (rates[2] + rates[3]));
+    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * load<Set>(batch.share[0] + lane) *
+                        per_volume * ((rates[0] + rates[1]) + (rates[2] + rates[3]));
     for (int q = 0; q < 4; ++q) {
       const Matrix tangent = load_tangent(batch, lane, q);
       const Matrix raised = metric.raise(at[q]);
@@ -271,7 +294,7 @@ struct Quadratic {
     }
   }
 
-  static QuadraticKernel kernel() { return {&run<&linearise>, &run<&multiply>}; }
+  static QuadraticKernel kernel() { return {&run<&press>, &run<&linearise>, &run<&multiply>}; }
 };
 
 }  // namespace

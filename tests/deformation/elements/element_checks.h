@@ -1,6 +1,8 @@
 // What elastic force elements are tested by.
 #pragma once
 
+#include <cmath>
+
 #include "deformation/elements/elastic_force_elements.h"
 #include "deformation/elements/linear_tetrahedra.h"
 #include "tests/deformation/steppers/tetrahedral_solids.h"
@@ -17,6 +19,17 @@ Elements elements_of(const OrganModel& model) {
 inline void linearise(ElasticForceElements& elements, const OrganModel& model,
                       const std::vector<Vec3>& positions, double h) {
   elements.linearise(positions, h * h, model.masses);
+}
+
+/// Elements that remember pressures go on from some, each resisting with another share at once.
+inline void remember(ElasticForceElements& elements) {
+  const auto [count, modulus, shear_modulus] = elements.pressures();
+  Eigen::VectorXd kept(static_cast<Eigen::Index>(count)), shares(kept.size());
+  for (Eigen::Index k = 0; k < kept.size(); ++k) {
+    kept[k] = 0.3 * shear_modulus * std::sin(static_cast<double>(k));
+    shares[k] = 0.1 + 0.2 * static_cast<double>(k % 5);
+  }
+  elements.go_on_from(kept, shares);
 }
 
 /// Largest difference of the forces from −∂U/∂x by central differences over `by`, relative to the

@@ -107,6 +107,36 @@ TEST_CASE("quadratic mesh change: a quadratic shape is carried from mesh to mesh
                          });
 }
 
+TEST_CASE(
+    "quadratic mesh change: halves press as the whole, and the whole as its halves in the mean") {
+  // Oracle: Σ V p over the body stays, whatever changes; what goes to finer meshes comes back.
+  const scene::Organ organ = quadratic_organ();
+  FollowingMesh mesh(quadratic_cube(), 1, 20000);
+  const SolidThere coarse(mesh, {}, organ), one(mesh, {small_touch_at({0.01, 0.02, 0.06})}, organ),
+      other(mesh, {small_touch_at({0.04, 0.03, 0.06})}, organ);
+  const auto pushed = [](const SolidThere& there, const OrganState& state) {
+    double sum = 0;
+    for (std::size_t e = 0; e < there.model.mesh().tetrahedra.size(); ++e) {
+      const auto& t = there.model.mesh().tetrahedra[e];
+      const auto& x = there.model.rest_positions;
+      sum += geometry::tetrahedron_volume(x[t[0]], x[t[1]], x[t[2]], x[t[3]]) *
+             state.internal.pressures[static_cast<Eigen::Index>(e)];
+    }
+    return sum;
+  };
+  OrganState state = rest_state(coarse.model);
+  CHECK(carried_quadratic(coarse, one, state).internal.pressures.size() == 0);
+  state.internal.pressures =
+      Eigen::VectorXd::Random(static_cast<Eigen::Index>(coarse.model.mesh().tetrahedra.size()));
+  const double expected = pushed(coarse, state);
+  const OrganState fine = carried_quadratic(coarse, one, state);
+  const OrganState moved = carried_quadratic(one, other, fine);
+  CHECK(pushed(one, fine) == Approx(expected).epsilon(1e-12));
+  CHECK(pushed(other, moved) == Approx(expected).epsilon(1e-12));
+  const OrganState back = carried_quadratic(other, coarse, moved);
+  CHECK((back.internal.pressures - state.internal.pressures).norm() < 1e-12);
+}
+
 TEST_CASE("quadratic mesh change: any shape is the same function on a finer mesh, and back") {
   // Oracle: of nodes at random the way back gives the same bits; a cube blown up evenly has one
   // energy on any mesh.

@@ -44,10 +44,41 @@ TEST_CASE("quadratic pressure: the matrix is the forces' derivative at rest") {
   CHECK(matrix_error(elements, model, model.rest_positions, 0.01, 1e-4) < 5e-3);
 }
 
+TEST_CASE("quadratic pressure: the matrix goes with the share that resists at once") {
+  // Oracle: finite differences, as above, of a fifth of κ' alone.
+  const auto model = quadratic_cube(0.49, 2);
+  auto elements = quadratic_elements_of(model);
+  const auto all = static_cast<Eigen::Index>(elements.pressures().count);
+  elements.go_on_from(Eigen::VectorXd::Zero(all), Eigen::VectorXd::Constant(all, 0.2));
+  CHECK(matrix_error(elements, model, model.rest_positions, 0.01, 1e-4) < 5e-3);
+}
+
+TEST_CASE("quadratic pressure: what is remembered presses as the shape that had it did") {
+  // Oracle: definition: forces of the shape's own pressures, all remembered but for a share, are
+  // those of the shape alone.
+  const auto model = quadratic_cube(0.49, 2);
+  auto elements = quadratic_elements_of(model);
+  const auto positions = shaken(model, 3e-3);
+  linearise(elements, model, positions, 0.01);
+  const auto forces = elements.forces();
+  Eigen::VectorXd pressures;
+  elements.take_pressures_of_shape(positions, pressures);
+  const Eigen::VectorXd shares = Eigen::VectorXd::Constant(pressures.size(), 0.1);
+  elements.go_on_from(0.9 * pressures, shares);
+  linearise(elements, model, positions, 0.01);
+  double largest = 0, error = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    largest = std::max(largest, forces[i].norm());
+    error = std::max(error, (elements.forces()[i] - forces[i]).norm());
+  }
+  CHECK(error < kOfFloat * largest);
+}
+
 TEST_CASE("quadratic pressure: the matrix is symmetric, and its blocks are what it multiplies by") {
   // Oracle: unit vectors, on nodes off by up to 5 mm of 60: turnings are limited there.
   const auto model = quadratic_cube(0.5, 1);
   auto elements = quadratic_elements_of(model);
+  remember(elements);
   linearise(elements, model, shaken(model, 5e-3), 0.02);
   Patch patch;
   patch.places.assign(model.node_count(), -1);
@@ -209,11 +240,17 @@ TEST_CASE("quadratic pressure: every instruction set gives the same bits") {
   const auto p = random_velocities(model.node_count());
   auto portable = quadratic_elements_of(model, InstructionSet::kPortable);
   std::vector<Vec4f> expected(p.size()), product(p.size());
+  Eigen::VectorXd expected_pressures, pressures;
+  portable.take_pressures_of_shape(positions, expected_pressures);
+  remember(portable);
   linearise(portable, model, positions, 0.01);
   portable.apply(p, expected);
   for (const InstructionSet set : available_instruction_sets()) {
     CAPTURE(name_of(set));
     auto elements = quadratic_elements_of(model, set);
+    elements.take_pressures_of_shape(positions, pressures);
+    CHECK(pressures == expected_pressures);
+    remember(elements);
     linearise(elements, model, positions, 0.01);
     elements.apply(p, product);
     CHECK(product == expected);

@@ -62,6 +62,25 @@ TEST_CASE("mesh change: a finer mesh is the same shape, and an even strain costs
   CHECK(carried_linear(fine, coarse, refined).positions == state.positions);
 }
 
+TEST_CASE("mesh change: pressures of nodes are a piecewise linear function before and after") {
+  // Oracle: one that is linear over the whole cube stays so, and comes back to the bit.
+  const scene::Organ organ = testing::solid_organ("nodal_pressure", 0.499);
+  FollowingMesh mesh(cube_to_change(), 0.6, 20000);
+  const SolidThere coarse(mesh, {}, organ), fine(mesh, {touch_at({0.02, 0.03, 0.06})}, organ);
+  const auto linear = [](const SolidThere& there) {
+    Eigen::VectorXd pressures(static_cast<Eigen::Index>(there.model.node_count()));
+    for (Eigen::Index i = 0; i < pressures.size(); ++i) {
+      pressures[i] = Vec3(1, -2, 3).dot(there.model.rest_positions[static_cast<std::size_t>(i)]);
+    }
+    return pressures;
+  };
+  OrganState state = rest_state(coarse.model);
+  state.internal.pressures = linear(coarse);
+  const OrganState refined = carried_linear(coarse, fine, state);
+  CHECK((refined.internal.pressures - linear(fine)).norm() < 1e-14);
+  CHECK(carried_linear(fine, coarse, refined).internal.pressures == state.internal.pressures);
+}
+
 TEST_CASE("mesh change: what holds an organ holds the same places on every mesh") {
   // Oracle: the coarse mesh's fixed nodes span what a refined mesh's may; a ball that lies between
   // coarse nodes holds nothing, however fine the mesh is there.

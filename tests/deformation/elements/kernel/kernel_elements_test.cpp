@@ -19,6 +19,7 @@ struct Answers {
   std::vector<Vec4f> product;
   Eigen::MatrixXf block;
   double energy = 0;
+  Eigen::VectorXd pressures;
 };
 
 /// The nodes of a corner and what lies between: surface and inside.
@@ -35,6 +36,8 @@ Patch patch_of(const OrganModel& model, std::size_t count) {
 Answers answers_of(ElasticForceElements& elements, const OrganModel& model,
                    const std::vector<Vec3>& positions) {
   Answers answers;
+  elements.take_pressures_of_shape(positions, answers.pressures);
+  remember(elements);
   linearise(elements, model, positions, 0.01);
   answers.forces = elements.forces();
   answers.diagonal = elements.diagonal();
@@ -49,7 +52,7 @@ Answers answers_of(ElasticForceElements& elements, const OrganModel& model,
 
 /// Largest difference over largest size.
 struct Difference {
-  double forces = 0, diagonal = 0, product = 0, block = 0, energy = 0;
+  double forces = 0, diagonal = 0, product = 0, block = 0, energy = 0, pressures = 0;
 };
 
 Difference difference(const Answers& a, const Answers& b) {
@@ -68,6 +71,9 @@ Difference difference(const Answers& a, const Answers& b) {
   const Eigen::MatrixXf other = a.block.triangularView<Eigen::Lower>();
   most.block = static_cast<double>((other - low).norm() / low.norm());
   most.forces /= force;
+  if (b.pressures.size() > 0) {
+    most.pressures = (a.pressures - b.pressures).norm() / b.pressures.norm();
+  }
   most.diagonal /= diagonal;
   most.product /= product;
   most.energy = std::abs(a.energy - b.energy) / b.energy;
@@ -95,6 +101,7 @@ void check_agrees(const OrganModel& model, const std::vector<Vec3>& positions) {
     INFO(name_of(set) << ", " << model.node_count() << " nodes");
     CHECK(found.forces < 1e-12);
     CHECK(found.energy < 1e-12);
+    CHECK(found.pressures < 1e-12);
     CHECK(found.diagonal < 2e-6);
     CHECK(found.product < 2e-6);
     CHECK(found.block < 2e-6);
@@ -103,7 +110,7 @@ void check_agrees(const OrganModel& model, const std::vector<Vec3>& positions) {
 
 bool same_bits(const Answers& a, const Answers& b) {
   return a.forces == b.forces && a.diagonal == b.diagonal && a.product == b.product &&
-         a.block == b.block;
+         a.block == b.block && a.pressures == b.pressures;
 }
 
 /// One set gives the same bits whatever the threads; `a` and `b` of all that fuse.
