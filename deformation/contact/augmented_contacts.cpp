@@ -11,6 +11,8 @@ namespace {
 /// leave is soon taken up, and conjugate gradients are not slowed. At 100 they did not find the
 /// contacts of a fine mesh.
 constexpr double kStiffness = 10;
+/// The same where the contact did not press in the step before: nothing remembered bears a part.
+constexpr double kStiffnessWhenNew = 15;
 /// Friction that changes by less than this part of ρ is no change.
 constexpr double kFrictionTolerance = 0.1;
 /// A step ends where the energy falls by less than this part of how it fell at first; pieces are
@@ -75,7 +77,8 @@ void AugmentedContacts::begin(std::span<const Mat3> inverse_mass_blocks, std::sp
     spring.allowed_approach = palpate::deformation::allowed_approach(row, h);
     spring.yielding = yielding_of(row, h);
     if (inverse_mass > 0) {
-      spring.stiffness = kStiffness / inverse_mass;
+      const bool is_new = !(row.normal_impulse > 0);
+      spring.stiffness = (is_new ? kStiffnessWhenNew : kStiffness) / inverse_mass;
       spring.last_pressing = row.normal_impulse;
       spring.last_friction = across(row.tangential_impulse, row.normal);
     }

@@ -84,30 +84,35 @@ void LinearlyImplicitEuler::begin_with_free_motion() {
 
 void LinearlyImplicitEuler::solve(double h, std::span<ContactRow> rows, const OrganState& state) {
   iterations_used_ = 0;
+  // A touch that begins has no impulses to go on from.
+  const auto pressed = [](const ContactRow& row) { return row.normal_impulse > 0; };
+  const bool begins = !rows.empty() && std::ranges::none_of(rows, pressed);
+  const int most = begins ? 3 * max_iterations_ / 2 : max_iterations_;
   for (std::size_t i = 0; i < change_.size(); ++i) {
     velocities_[i] = state.velocities[i] + change_[i].head<3>().cast<double>();
   }
   contacts_.begin(inverse_diagonal_, rows, h, velocities_);
-  descend(rows, state);
+  descend(most, rows, state);
   const auto is_deep = [&](const ContactRow& row) {
     return excess_depth(body_, row, h, velocities_) > kUnsolvedDepth;
   };
   for (int more = 0; more < kMostGoingOn && std::ranges::any_of(rows, is_deep); ++more) {
     contacts_.go_on(rows);
-    descend(rows, state);
+    descend(most, rows, state);
   }
 }
 
 /// Conjugate gradients of an energy that is quadratic in pieces: as far along each direction as it
 /// falls, and the next direction by Polak and Ribière.
-void LinearlyImplicitEuler::descend(std::span<ContactRow> rows, const OrganState& state) {
+void LinearlyImplicitEuler::descend(int iterations, std::span<ContactRow> rows,
+                                    const OrganState& state) {
   const double negligible = total_mass_ * kNegligibleVelocity * kNegligibleVelocity;
   take_preconditioner(rows);
   take_residual(rows);
   std::ranges::fill(direction_, Vec4f::Zero());
   std::ranges::fill(product_, Vec4f::Zero());
   double descent = go(0).descent, kept = 0;
-  for (int i = 0; i < max_iterations_ && descent > negligible; ++i) {
+  for (int i = 0; i < iterations && descent > negligible; ++i) {
     ++iterations_used_;
     const double along = turn(kept);
     elements_->apply(direction_, product_);

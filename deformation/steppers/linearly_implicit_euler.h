@@ -33,7 +33,8 @@ class LinearlyImplicitEuler : public OrganDynamics {
   static constexpr double kLargestStep = 0.01;
 
   /// @param body       outlives this
-  /// @param iterations  of conjugate gradients per step, at most
+  /// @param iterations  of conjugate gradients per step, at most; half as many more where a touch
+  ///                    begins
   LinearlyImplicitEuler(const Body& body, std::unique_ptr<ElasticForceElements> elements,
                         int iterations);
 
@@ -55,7 +56,7 @@ class LinearlyImplicitEuler : public OrganDynamics {
   void begin_with_free_motion();
   /// Δv and the contacts' impulses together.
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
-  void descend(std::span<ContactRow> rows, const OrganState& state);
+  void descend(int iterations, std::span<ContactRow> rows, const OrganState& state);
   struct Gone {
     double descent = 0, change = 0;  ///< r·z; z·(the product)
   };

@@ -202,8 +202,7 @@ TEST_CASE("linearly implicit Euler: fixed nodes do not move, and steps are the s
 TEST_CASE("linearly implicit Euler: a block pressed between plates has the force of its material") {
   // Oracle: analytic, frictionless plates: F = E A ε; μ A (1/λ² − λ) for incompressible tissue,
   // here of κ = 100 μ (0.5 %). Contacts give way by 10 µm at most: 0.2 %; by twice that where
-  // middles of edges bear what their corners do not. A contact is ten times as hard as its node
-  // with others held: where the plate hits it, it gives way by an eleventh of a step's way at most.
+  // middles of edges bear what their corners do not.
   // The mean pressure is a third of the stress.
   for (const auto& kind : kModels) {
     auto organ = solid_organ(kind, poisson_of(kind));
@@ -231,7 +230,7 @@ TEST_CASE("linearly implicit Euler: a block pressed between plates has the force
       }
       for (const ContactRow& row : rows) {
         const double z = state.positions[row.nodes[0]].z();
-        CHECK((row.normal.z() > 0 ? 0.06 - depth - z : z) > (k == 0 ? -0.01 * speed / 11 : -1e-5));
+        CHECK((row.normal.z() > 0 ? 0.06 - depth - z : z) > -1e-5);
       }
     }
     const bool linear = kind == "corotational";
