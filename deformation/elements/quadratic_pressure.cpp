@@ -72,6 +72,7 @@ QuadraticPressure::QuadraticPressure(const std::vector<Vec3>& rest_positions, co
   shift_.resize(rest_positions.size());
   wide_forces_.resize(rest_positions.size());
   wide_diagonal_.resize(rest_positions.size());
+  wide_mixed_z_.resize(rest_positions.size());
   forces_.assign(rest_positions.size(), Vec3::Zero());
   diagonal_.assign(rest_positions.size(), Mat3::Zero());
 }
@@ -106,9 +107,9 @@ kernel::QuadraticPass QuadraticPressure::begin_pass() {
   kernel::QuadraticPass pass;
   pass.batches = batches_.data();
   pass.batch_count = batches_.size();
-  pass.shear_modulus = static_cast<float>(law_.shear_modulus);
-  pass.point_modulus = static_cast<float>(law_.volume_modulus);
-  pass.bulk_modulus = static_cast<float>(bulk_modulus_);
+  pass.shear_modulus = law_.shear_modulus;
+  pass.point_modulus = law_.volume_modulus;
+  pass.bulk_modulus = bulk_modulus_;
   pass.scale = static_cast<float>(scale_);
   return pass;
 }
@@ -138,17 +139,21 @@ void QuadraticPressure::linearise(const std::vector<Vec3>& positions, double sca
                                   std::span<const double> shift) {
   scale_ = scale;
   std::fill(wide_forces_.begin(), wide_forces_.end(), Vec4f::Zero());
-  std::fill(wide_diagonal_.begin(), wide_diagonal_.end(), std::array<float, 8>{});
+  std::fill(wide_diagonal_.begin(), wide_diagonal_.end(), Vec4f::Zero());
+  std::fill(wide_mixed_z_.begin(), wide_mixed_z_.end(), Vec4f::Zero());
   kernel::QuadraticPass pass = begin_pass();
   pass.positions = positions.front().data();
   pass.forces = wide_forces_.front().data();
   pass.diagonal = wide_diagonal_.front().data();
+  pass.mixed_z = wide_mixed_z_.front().data();
   kernel_.linearise(pass);
   for (std::size_t i = 0; i < forces_.size(); ++i) {
     forces_[i] = wide_forces_[i].head<3>().cast<double>();
     shift_[i] = static_cast<float>(shift[i]);
-    const auto& [xx, yy, zz, xy, xz, yz, none, unused] = wide_diagonal_[i];
-    diagonal_[i] << xx + shift[i], xy, xz, xy, yy + shift[i], yz, xz, yz, zz + shift[i];
+    const Vec4f& own = wide_diagonal_[i];
+    const double xy = own[3], xz = wide_mixed_z_[i][0], yz = wide_mixed_z_[i][1];
+    diagonal_[i] << own[0], xy, xz, xy, own[1], yz, xz, yz, own[2];
+    diagonal_[i].diagonal().array() += shift[i];
   }
 }
 
@@ -216,24 +221,14 @@ void QuadraticPressure::add_element_block(std::size_t e, const Patch& patch, flo
 }
 
 double QuadraticPressure::energy(const std::vector<Vec3>& positions) {
+  kernel::QuadraticPass pass = begin_pass();
+  pass.positions = positions.front().data();
+  energies_.resize(kLanes * batches_.size());
+  pass.energies = energies_.data();
+  kernel_.measure(pass);
   double sum = 0;
   for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const kernel::QuadraticBatch& batch = batches_[e % batches_.size()];
-    const std::size_t lane = e / batches_.size();
-    const double volume = batch.volume[0][lane];
-    const Mat3 metric = metric_of(batch, lane);
-    Eigen::Matrix<double, 3, kElementNodes> x;
-    for (int a = 0; a < kElementNodes; ++a) {
-      x.col(a) = positions[elements_[e][static_cast<std::size_t>(a)]] - positions[elements_[e][0]];
-    }
-    double growth = 0;
-    for (const PointShapes& shapes : point_shapes()) {
-      const Mat3 tangent = x * shapes.transpose();
-      const double J = tangent.determinant() / (6 * volume);
-      growth += (J - 1) / 4;
-      sum += volume / 4 * law_.energy_density((tangent * metric).cwiseProduct(tangent).sum(), J);
-    }
-    sum += volume * bulk_modulus_ / 2 * growth * growth;
+    sum += energies_[kLanes * (e % batches_.size()) + e / batches_.size()];
   }
   return sum;
 }

@@ -70,7 +70,8 @@ class QuadraticPressure : public ElasticForceElements {
   double scale_ = 0;          ///< of the last linearise() [s²]
   std::vector<float> shift_;  ///< of the same [kg]
   std::vector<Vec4f> wide_forces_;
-  std::vector<std::array<float, 8>> wide_diagonal_;
+  std::vector<Vec4f> wide_diagonal_, wide_mixed_z_;
+  std::vector<double> energies_;  ///< buffer of energy()
   std::vector<Vec3> forces_;
   std::vector<Mat3> diagonal_;
 };

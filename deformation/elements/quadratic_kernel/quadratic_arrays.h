@@ -14,7 +14,7 @@ namespace palpate::deformation::kernel {
 inline constexpr std::size_t kQuadraticLanes = 16;
 
 /// Barycentric coordinates of the four points: of the corner that is near, of the others.
-inline constexpr float kNearCorner = 0.58541020F, kFarCorner = 0.13819660F;
+inline constexpr double kNearCorner = 0.58541019662496845, kFarCorner = 0.13819660112501052;
 
 /// Lanes left over are of node 0 alone and have no volume.
 struct alignas(64) QuadraticBatch {
@@ -36,16 +36,20 @@ struct alignas(64) QuadraticBatch {
 struct QuadraticPass {
   QuadraticBatch* batches = nullptr;
   std::size_t batch_count = 0;
-  float shear_modulus = 0;  ///< μ [Pa]
-  float point_modulus = 0;  ///< α [Pa]
-  float bulk_modulus = 0;   ///< κ' [Pa]
-  float scale = 0;          ///< h² of a step [s²]
+  double shear_modulus = 0;  ///< μ [Pa]
+  double point_modulus = 0;  ///< α [Pa]
+  double bulk_modulus = 0;   ///< κ' [Pa]
+  float scale = 0;           ///< h² of a step [s²]
 
-  // Of linearise() and press(), which sets pressures:
+  // Of linearise(), measure(), and press(), which sets pressures:
   const double* positions = nullptr;  ///< three a node [m]
   // Of linearise(), added to:
   float* forces = nullptr;    ///< four a node [N]
-  float* diagonal = nullptr;  ///< xx yy zz xy xz yz 0 0 of each node's block [kg]
+  float* diagonal = nullptr;  ///< xx yy zz xy of each node's block [kg]
+  float* mixed_z = nullptr;   ///< xz yz 0 0
+
+  // Of measure():
+  double* energies = nullptr;  ///< by batch and lane, set; of lanes left over no numbers [J]
 
   // Of multiply():
   const float* vector = nullptr;  ///< four a node
@@ -57,6 +61,7 @@ struct QuadraticKernel {
   void (*press)(const QuadraticPass&);
   void (*linearise)(const QuadraticPass&);
   void (*multiply)(const QuadraticPass&);
+  void (*measure)(const QuadraticPass&);  ///< in double
 };
 
 QuadraticKernel portable_quadratic_kernel();

@@ -15,6 +15,7 @@ constexpr float kLeastSquaredStretch = 1e-3F;
 
 template <class Set>
 struct Quadratic {
+  using Number = typename Set::Number;
   using Pack = typename Set::Pack;
   using Vector = Vectors<Set>;
   using Matrix = Derivatives<Set>;  ///< by columns
@@ -24,22 +25,28 @@ struct Quadratic {
     return {{cross(b, c), cross(c, a), cross(a, b)}};
   }
   static Pack inner(const Matrix& a, const Matrix& b) {
-    return dot(a.along[0], b.along[0]) + dot(a.along[1], b.along[1]) + dot(a.along[2], b.along[2]);
+    return plus_dot(plus_dot(dot(a.along[0], b.along[0]), a.along[1], b.along[1]), a.along[2],
+                    b.along[2]);
   }
 
   /// ∇L_i·∇L_j
   struct Metric {
     Pack g[6];
 
-    Metric(const QuadraticBatch& batch, std::size_t lane) {
-      for (int k = 0; k < 6; ++k) g[k] = load<Set>(batch.metric[k] + lane);
+    /// `by` times it.
+    Metric(const QuadraticBatch& batch, std::size_t lane, const Pack& by) {
+      for (int k = 0; k < 6; ++k) g[k] = by * load<Set>(batch.metric[k] + lane);
     }
+    Metric(const QuadraticBatch& batch, std::size_t lane) : Metric(batch, lane, Pack{} + 1) {}
     /// Σ_i (∇L_i·∇L_j) m_i
-    Matrix raise(const Matrix& m) const {
+    Matrix raise(const Matrix& m) const { return raise(m, {}); }
+    /// sum + that
+    Matrix raise(const Matrix& m, const Matrix& sum) const {
       const auto& [a, b, c] = m.along;
-      return {{scaled(g[0], a) + scaled(g[3], b) + scaled(g[4], c),
-               scaled(g[3], a) + scaled(g[1], b) + scaled(g[5], c),
-               scaled(g[4], a) + scaled(g[5], b) + scaled(g[2], c)}};
+      const auto& [u, v, w] = sum.along;
+      return {{plus(plus(plus(u, g[0], a), g[3], b), g[4], c),
+               plus(plus(plus(v, g[3], a), g[1], b), g[5], c),
+               plus(plus(plus(w, g[4], a), g[5], b), g[2], c)}};
     }
     /// ∇L_a·∇L_a of the corners.
     void of_corners(Pack (&own)[4]) const {
@@ -76,16 +83,15 @@ struct Quadratic {
   }
 
   /// Four lanes after four, so that all instruction sets add to a node in the same order.
-  static void scatter_all(float* base, std::size_t stride, const QuadraticBatch& batch,
-                          std::size_t lane, const Vector (&vectors)[10],
-                          const Pack (&fourths)[10]) {
+  static void scatter_all(float* base, const QuadraticBatch& batch, std::size_t lane,
+                          const Vector (&vectors)[10], const Pack (&fourths)[10]) {
     const Addends<Set> addends[10] = {{vectors[0], fourths[0]}, {vectors[1], fourths[1]},
                                       {vectors[2], fourths[2]}, {vectors[3], fourths[3]},
                                       {vectors[4], fourths[4]}, {vectors[5], fourths[5]},
                                       {vectors[6], fourths[6]}, {vectors[7], fourths[7]},
                                       {vectors[8], fourths[8]}, {vectors[9], fourths[9]}};
     for (std::size_t k = 0; k < Set::kWidth / 4; ++k) {
-      for (int a = 0; a < 10; ++a) addends[a].add(k, base, batch.nodes[a] + lane, stride);
+      for (int a = 0; a < 10; ++a) addends[a].add(k, base, batch.nodes[a] + lane);
     }
   }
   static constexpr Pack kNone[10] = {};
@@ -95,15 +101,17 @@ struct Quadratic {
                              std::size_t lane, Vector (&x)[10]) {
     x[0] = Vector{};
     for (int a = 1; a < 10; ++a) {
-      float apart[3][Set::kWidth];
+      Number apart[3][Set::kWidth];
       for (std::size_t l = 0; l < Set::kWidth; ++l) {
         const double* const from = pass.positions + 3 * std::size_t{batch.nodes[0][lane + l]};
         const double* const to = pass.positions + 3 * std::size_t{batch.nodes[a][lane + l]};
         for (int axis = 0; axis < 3; ++axis) {
-          apart[axis][l] = static_cast<float>(to[axis] - from[axis]);
+          apart[axis][l] = static_cast<Number>(to[axis] - from[axis]);
         }
       }
-      x[a] = Vector{load<Set>(apart[0]), load<Set>(apart[1]), load<Set>(apart[2])};
+      __builtin_memcpy(&x[a].x, apart[0], sizeof(Pack));
+      __builtin_memcpy(&x[a].y, apart[1], sizeof(Pack));
+      __builtin_memcpy(&x[a].z, apart[2], sizeof(Pack));
     }
   }
 
@@ -125,10 +133,10 @@ struct Quadratic {
   /// c' of c, as AverageNodalPressure::kept_turning().
   static Pack kept_turning(const QuadraticPass& pass, const Pack& c, const Pack& squared_stretch,
                            const Pack& stretch, const Pack& J) {
-    const float mu = pass.shear_modulus;
+    const auto mu = static_cast<float>(pass.shear_modulus);
     const Pack of_stretches =
-        larger<Set>(J, Pack{}) *
-        (1.5F * pass.point_modulus + 0.5F * mu / (squared_stretch * squared_stretch));
+        larger<Set>(J, Pack{}) * (1.5F * static_cast<float>(pass.point_modulus) +
+                                  0.5F * mu / (squared_stretch * squared_stretch));
     return smaller<Set>(larger<Set>(c, -smaller<Set>(mu / stretch, of_stretches)), Pack{});
   }
 
@@ -149,11 +157,33 @@ struct Quadratic {
       J[q] = per_volume / 6 * dot(cross(b, c), a);
     }
     float* const pressures = batch.pressure[0] + lane;
-    store<Set>(pressures, pass.bulk_modulus / 4 * grown(J));
+    store<Set>(pressures, static_cast<float>(pass.bulk_modulus) / 4 * grown(J));
+  }
+
+  /// U of each.
+  static void measure(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
+    const Pack volume = load<Set>(batch.volume[0] + lane);
+    const Metric metric(batch, lane);
+    Vector nodes[10];
+    Matrix at[4];
+    Pack growth = {}, sum = {};
+    load_positions(pass, batch, lane, nodes);
+    differentiate(nodes, at);
+    for (const Matrix& m : at) {
+      const Pack change = dot(cross(m.along[1], m.along[2]), m.along[0]) / (6 * volume) - 1;
+      sum = sum + pass.shear_modulus / 2 * (inner(m, metric.raise(m)) - 3) -
+            pass.shear_modulus * change + pass.point_modulus / 2 * change * change;
+      growth = growth + change / 4;
+    }
+    const Pack energies = volume * (sum / 4 + pass.bulk_modulus / 2 * growth * growth);
+    double* const first = pass.energies + kQuadraticLanes * (&batch - pass.batches) + lane;
+    __builtin_memcpy(first, &energies, sizeof(Pack));
   }
 
   static void linearise(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
-    const float mu = pass.shear_modulus, alpha = pass.point_modulus;
+    const auto mu = static_cast<float>(pass.shear_modulus);
+    const auto alpha = static_cast<float>(pass.point_modulus);
+    const auto kappa = static_cast<float>(pass.bulk_modulus);
     const Pack volume = load<Set>(batch.volume[0] + lane);
     const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
     const Metric metric(batch, lane);
@@ -168,8 +198,8 @@ struct Quadratic {
       J[q] = per_volume / 6 * dot(areas[q].along[0], at[q].along[0]);
     }
     const Pack growth = grown(J);
-    const Pack pressure = load<Set>(batch.pressure[0] + lane) +
-                          pass.bulk_modulus / 4 * load<Set>(batch.share[0] + lane) * growth;
+    const Pack pressure =
+        load<Set>(batch.pressure[0] + lane) + kappa / 4 * load<Set>(batch.share[0] + lane) * growth;
     for (int q = 0; q < 4; ++q) {
       const Matrix raised = metric.raise(at[q]);
       const Pack squared = squared_stretch(at[q], raised), stretch = Set::root(squared);
@@ -180,11 +210,11 @@ struct Quadratic {
       store<Set>(batch.turnings[q] + lane, pass.scale / 24 * kept);
       for (int j = 0; j < 3; ++j) {
         at[q].along[j] =
-            scaled(-mu / 4 * volume, raised.along[j]) - scaled(c / 24, areas[q].along[j]);
+            plus(scaled(-mu / 4 * volume, raised.along[j]), -c / 24, areas[q].along[j]);
       }
     }
     integrate(at, nodes);
-    scatter_all(pass.forces, 4, batch, lane, nodes, kNone);
+    scatter_all(pass.forces, batch, lane, nodes, kNone);
     add_diagonals(pass, batch, lane, areas, shapes);
   }
 
@@ -207,13 +237,13 @@ struct Quadratic {
       Vector rows[4];
       for (int q = 0; q < 4; ++q) {
         if (a < 4) {
-          const float f = 4 * (a == q ? kNearCorner : kFarCorner) - 1;
+          const auto f = static_cast<float>(4 * (a == q ? kNearCorner : kFarCorner) - 1);
           weight = weight + f * f * shapes[q] * own[a];
           rows[q] = f * faces[q][a];
         } else {
           const auto [i, j] = kEdgeEnds[a - 4];
-          const float fi = 4 * (i == q ? kNearCorner : kFarCorner);
-          const float fj = 4 * (j == q ? kNearCorner : kFarCorner);
+          const auto fi = static_cast<float>(4 * (i == q ? kNearCorner : kFarCorner));
+          const auto fj = static_cast<float>(4 * (j == q ? kNearCorner : kFarCorner));
           weight = weight +
                    shapes[q] * (fi * fi * own[j] + 2 * fi * fj * mixed[a - 4] + fj * fj * own[i]);
           rows[q] = fi * faces[q][j] + fj * faces[q][i];
@@ -224,8 +254,8 @@ struct Quadratic {
       mixed_xy[a] = block.mixed.x;
       others[a] = Vector{block.mixed.y, block.mixed.z, Pack{}};
     }
-    scatter_all(pass.diagonal, 8, batch, lane, squares, mixed_xy);
-    scatter_all(pass.diagonal + 4, 8, batch, lane, others, kNone);
+    scatter_all(pass.diagonal, batch, lane, squares, mixed_xy);
+    scatter_all(pass.mixed_z, batch, lane, others, kNone);
   }
 
   /// xx, yy, zz and xy, xz, yz.
@@ -236,8 +266,9 @@ struct Quadratic {
   /// @param rows  24 V/4 ∂J/∂x of the node at the points
   static Outer squared(const QuadraticPass& pass, const Pack& per_volume, const Pack& share,
                        const Vector (&rows)[4]) {
-    const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
-    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * share * per_volume;
+    const Pack of_points = pass.scale * static_cast<float>(pass.point_modulus) / 144 * per_volume;
+    const Pack of_all =
+        pass.scale * static_cast<float>(pass.bulk_modulus) / 576 * share * per_volume;
     const Vector all = (rows[0] + rows[1]) + (rows[2] + rows[3]);
     const Vector scaled_all = scaled(of_all, all);
     Vector squares = {scaled_all.x * all.x, scaled_all.y * all.y, scaled_all.z * all.z};
@@ -252,7 +283,6 @@ struct Quadratic {
 
   static void multiply(const QuadraticPass& pass, const QuadraticBatch& batch, std::size_t lane) {
     const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
-    const Metric metric(batch, lane);
     Vector nodes[10];
     Matrix at[4];
     Pack rates[4];  // of 6 V J
@@ -263,26 +293,24 @@ struct Quadratic {
       areas[q] = cofactor(load_tangent(batch, lane, q));
       rates[q] = inner(areas[q], at[q]);
     }
-    const Pack of_points = pass.scale * pass.point_modulus / 144 * per_volume;
-    const Pack of_all = pass.scale * pass.bulk_modulus / 576 * load<Set>(batch.share[0] + lane) *
-                        per_volume * ((rates[0] + rates[1]) + (rates[2] + rates[3]));
+    const Pack of_points = pass.scale * static_cast<float>(pass.point_modulus) / 144 * per_volume;
+    const Pack of_all = pass.scale * static_cast<float>(pass.bulk_modulus) / 576 *
+                        load<Set>(batch.share[0] + lane) * per_volume *
+                        ((rates[0] + rates[1]) + (rates[2] + rates[3]));
     for (int q = 0; q < 4; ++q) {
-      const Matrix tangent = load_tangent(batch, lane, q);
-      const Matrix raised = metric.raise(at[q]);
-      const Pack shape = load<Set>(batch.shapes[q] + lane);
       const Pack turning = load<Set>(batch.turnings[q] + lane);
-      const Pack push = of_points * rates[q] + of_all;
-      const auto& [a, b, c] = tangent.along;
+      const Pack push = Set::fma(of_points, rates[q], of_all);
+      const auto& [a, b, c] = load_tangent(batch, lane, q).along;
       const auto& [u, v, w] = at[q].along;
-      const Matrix turned = {
-          {cross(b, w) + cross(v, c), cross(c, u) + cross(w, a), cross(a, v) + cross(u, b)}};
-      for (int j = 0; j < 3; ++j) {
-        at[q].along[j] = scaled(shape, raised.along[j]) + scaled(push, areas[q].along[j]) +
-                         scaled(turning, turned.along[j]);
-      }
+      const Vector tu = scaled(turning, u), tv = scaled(turning, v), tw = scaled(turning, w);
+      const auto& [p, r, s] = areas[q].along;
+      const Matrix of_volume = {{plus_cross(plus_cross(scaled(push, p), b, tw), tv, c),
+                                 plus_cross(plus_cross(scaled(push, r), c, tu), tw, a),
+                                 plus_cross(plus_cross(scaled(push, s), a, tv), tu, b)}};
+      at[q] = Metric(batch, lane, load<Set>(batch.shapes[q] + lane)).raise(at[q], of_volume);
     }
     integrate(at, nodes);
-    scatter_all(pass.product, 4, batch, lane, nodes, kNone);
+    scatter_all(pass.product, batch, lane, nodes, kNone);
   }
 
   template <auto visit>
@@ -294,7 +322,11 @@ struct Quadratic {
     }
   }
 
-  static QuadraticKernel kernel() { return {&run<&press>, &run<&linearise>, &run<&multiply>}; }
+  static QuadraticKernel kernel() {
+    return {&run<&press>, &run<&linearise>, &run<&multiply>,
+            &Quadratic<typename Set::Doubles>::template run<
+                &Quadratic<typename Set::Doubles>::measure>};
+  }
 };
 
 }  // namespace

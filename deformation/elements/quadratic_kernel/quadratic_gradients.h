@@ -21,45 +21,49 @@ struct Derivatives {
   Vectors<Set> along[3];
 };
 
+/// What a point has of its own corner, and of all.
+template <class Set>
+constexpr auto kOwn = static_cast<typename Set::Number>(kNearCorner - kFarCorner);
+template <class Set>
+constexpr auto kCommon = static_cast<typename Set::Number>(kFarCorner);
+
 template <class Set>
 Vectors<Set> corner_derivative(const Vectors<Set> (&u)[10], int corner, int coordinate) {
   if (corner == coordinate) return 3 * u[corner];
-  return 4 * u[kMiddle[corner][coordinate]] - u[coordinate];
+  return plus(-u[coordinate], 4, u[kMiddle[corner][coordinate]]);
 }
 
 template <class Set>
 void differentiate(const Vectors<Set> (&u)[10], Derivatives<Set> (&at)[4]) {
-  Vectors<Set> sums[3] = {};
+  Vectors<Set> sums[3];
   for (int k = 0; k < 4; ++k) {
     const Vectors<Set> first = corner_derivative(u, k, 0);
     for (int j = 0; j < 3; ++j) {
       const Vectors<Set> own = corner_derivative(u, k, j + 1) - first;
-      sums[j] = sums[j] + own;
-      at[k].along[j] = (kNearCorner - kFarCorner) * own;
+      sums[j] = k == 0 ? own : sums[j] + own;
+      at[k].along[j] = own;
     }
   }
   for (int j = 0; j < 3; ++j) {
-    const Vectors<Set> common = kFarCorner * sums[j];
-    for (auto& point : at) point.along[j] = point.along[j] + common;
+    const Vectors<Set> common = kCommon<Set> * sums[j];
+    for (auto& point : at) point.along[j] = plus(common, kOwn<Set>, point.along[j]);
   }
 }
 
 /// The transpose.
 template <class Set>
 void integrate(const Derivatives<Set> (&at)[4], Vectors<Set> (&u)[10]) {
-  Vectors<Set> common[3], corners[4][4], sums[4] = {};
+  Vectors<Set> sums[4], corners[4][4];  // of all corners: weights of a point add up to 1
   for (int j = 0; j < 3; ++j) {
-    common[j] =
-        kFarCorner * ((at[0].along[j] + at[1].along[j]) + (at[2].along[j] + at[3].along[j]));
-  }
-  for (int k = 0; k < 4; ++k) {
-    for (int j = 0; j < 3; ++j) {
-      corners[k][j + 1] = common[j] + (kNearCorner - kFarCorner) * at[k].along[j];
+    sums[j + 1] = (at[0].along[j] + at[1].along[j]) + (at[2].along[j] + at[3].along[j]);
+    const Vectors<Set> common = kCommon<Set> * sums[j + 1];
+    for (int k = 0; k < 4; ++k) {
+      corners[k][j + 1] = plus(common, kOwn<Set>, at[k].along[j]);
     }
-    corners[k][0] = -1.0F * (corners[k][1] + corners[k][2] + corners[k][3]);
-    for (int a = 0; a < 4; ++a) sums[a] = sums[a] + corners[k][a];
   }
-  for (int a = 0; a < 4; ++a) u[a] = 4 * corners[a][a] - sums[a];
+  sums[0] = -(sums[1] + sums[2] + sums[3]);
+  for (auto& own : corners) own[0] = -(own[1] + own[2] + own[3]);
+  for (int a = 0; a < 4; ++a) u[a] = plus(-sums[a], 4, corners[a][a]);
   for (int e = 0; e < 6; ++e) {
     const auto [i, j] = kEdgeEnds[e];
     u[4 + e] = 4 * (corners[i][j] + corners[j][i]);

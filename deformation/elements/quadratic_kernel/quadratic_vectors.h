@@ -2,9 +2,12 @@
 // `Set` gives
 //
 //   kWidth           lanes: 4, 8 or 16
-//   Pack, Unaligned  so many floats in a register, and anywhere in memory
+//   Number, Pack     float, and so many of them in a register
+//   Unaligned        so many floats anywhere in memory
 //   join(quads)      kWidth/4 quads side by side
+//   fma(a, b, c), fnma(a, b, c)   c + a b and c − a b, rounded once; elementwise
 //   root(pack)       elementwise
+//   Doubles          half as many doubles, a set without join and root
 #pragma once
 
 #include <cstddef>
@@ -31,25 +34,53 @@ Vectors<Set> operator-(const Vectors<Set>& a, const Vectors<Set>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class Set>
-Vectors<Set> operator*(float s, const Vectors<Set>& a) {
+Vectors<Set> operator-(const Vectors<Set>& a) {
+  return {-a.x, -a.y, -a.z};
+}
+template <class Set>
+Vectors<Set> operator*(typename Set::Number s, const Vectors<Set>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
 template <class Set>
 Vectors<Set> scaled(const typename Set::Pack& s, const Vectors<Set>& a) {
   return {s * a.x, s * a.y, s * a.z};
 }
+/// sum + s a
+template <class Set>
+Vectors<Set> plus(const Vectors<Set>& sum, const typename Set::Pack& s, const Vectors<Set>& a) {
+  return {Set::fma(s, a.x, sum.x), Set::fma(s, a.y, sum.y), Set::fma(s, a.z, sum.z)};
+}
+template <class Set>
+Vectors<Set> plus(const Vectors<Set>& sum, typename Set::Number s, const Vectors<Set>& a) {
+  return plus(sum, typename Set::Pack{} + s, a);
+}
+/// sum + a·b
+template <class Set>
+typename Set::Pack plus_dot(const typename Set::Pack& sum, const Vectors<Set>& a,
+                            const Vectors<Set>& b) {
+  return Set::fma(a.z, b.z, Set::fma(a.y, b.y, Set::fma(a.x, b.x, sum)));
+}
 template <class Set>
 typename Set::Pack dot(const Vectors<Set>& a, const Vectors<Set>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return Set::fma(a.z, b.z, Set::fma(a.y, b.y, a.x * b.x));
 }
 template <class Set>
 Vectors<Set> cross(const Vectors<Set>& a, const Vectors<Set>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  return {Set::fnma(a.z, b.y, a.y * b.z), Set::fnma(a.x, b.z, a.z * b.x),
+          Set::fnma(a.y, b.x, a.x * b.y)};
+}
+/// sum + a × b
+template <class Set>
+Vectors<Set> plus_cross(const Vectors<Set>& sum, const Vectors<Set>& a, const Vectors<Set>& b) {
+  return {Set::fnma(a.z, b.y, Set::fma(a.y, b.z, sum.x)),
+          Set::fnma(a.x, b.z, Set::fma(a.z, b.x, sum.y)),
+          Set::fnma(a.y, b.x, Set::fma(a.x, b.y, sum.z))};
 }
 
 template <class Set>
 typename Set::Pack load(const float* from) {
-  return *reinterpret_cast<const typename Set::Unaligned*>(from);
+  using Pack = typename Set::Pack;
+  return __builtin_convertvector(*reinterpret_cast<const typename Set::Unaligned*>(from), Pack);
 }
 template <class Set>
 void store(float* to, const typename Set::Pack& pack) {
@@ -92,6 +123,14 @@ void transpose(typename Set::Pack (&packs)[4]) {
   packs[3] = shuffled<Set, 2, 3, 6, 7>(high_01, high_23, lanes);
 }
 
+/// A node's four floats.
+inline const UnalignedQuad& quad_of(const float* base, std::size_t node) {
+  return *reinterpret_cast<const UnalignedQuad*>(base + 4 * node);
+}
+inline UnalignedQuad& quad_of(float* base, std::size_t node) {
+  return *reinterpret_cast<UnalignedQuad*>(base + 4 * node);
+}
+
 /// x, y and z of kWidth nodes of four floats each.
 template <class Set>
 Vectors<Set> gather(const float* base, const std::uint32_t* nodes) {
@@ -99,7 +138,7 @@ Vectors<Set> gather(const float* base, const std::uint32_t* nodes) {
   for (std::size_t i = 0; i < 4; ++i) {
     Quad quads[Set::kWidth / 4];
     for (std::size_t k = 0; k < Set::kWidth / 4; ++k) {
-      quads[k] = *reinterpret_cast<const UnalignedQuad*>(base + 4 * std::size_t{nodes[4 * k + i]});
+      quads[k] = quad_of(base, nodes[4 * k + i]);
     }
     packs[i] = Set::join(quads);
   }
@@ -117,10 +156,9 @@ struct Addends {
     transpose<Set>(packs);
   }
   /// Those of the k-th quad of lanes, one node after the other.
-  /// @param stride  floats from node to node
-  void add(std::size_t k, float* base, const std::uint32_t* nodes, std::size_t stride) const {
+  void add(std::size_t k, float* base, const std::uint32_t* nodes) const {
     for (std::size_t i = 0; i < 4; ++i) {
-      auto& sum = *reinterpret_cast<UnalignedQuad*>(base + stride * std::size_t{nodes[4 * k + i]});
+      UnalignedQuad& sum = quad_of(base, nodes[4 * k + i]);
       sum = sum + reinterpret_cast<const UnalignedQuad*>(&packs[i])[k];
     }
   }

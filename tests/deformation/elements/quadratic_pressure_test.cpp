@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "deformation/elements/quadrature.h"
 #include "tests/deformation/elements/element_checks.h"
 #include "tests/dense_algebra.h"
 
@@ -23,11 +24,54 @@ QuadraticPressure quadratic_elements_of(const OrganModel& model,
   return QuadraticPressure(model.rest_positions, model.mesh(), set);
 }
 
+/// U, point by point.
+double energy_by_definition(const OrganModel& model, const std::vector<Vec3>& positions) {
+  const TetMesh& mesh = model.mesh();
+  const double mu = mesh.elastic().shear_modulus(), alpha = QuadraticPressure::kPointModulus * mu;
+  const double kappa =
+      std::min(QuadraticPressure::kLargestBulkModulus, mesh.elastic().bulk_over_shear()) * mu;
+  double sum = 0;
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    Eigen::Matrix<double, 3, kElementNodes> rest, moved;
+    for (int a = 0; a < kElementNodes; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      const std::uint32_t node = k < 4 ? mesh.tetrahedra[e][k] : mesh.edge_nodes[e][k - 4];
+      rest.col(a) = model.rest_positions[node];
+      moved.col(a) = positions[node];
+    }
+    double growth = 0, volume = 0;
+    for (const TetrahedronPoint& point : four_point_rule()) {
+      const auto shape = quadratic_shape_gradient(point.barycentric);
+      const Mat3 reference = rest * shape, F = moved * shape * reference.inverse();
+      const double J = F.determinant();
+      volume = reference.determinant() / 6;
+      growth += point.weight * (J - 1);
+      sum += point.weight * volume *
+             (mu / 2 * (F.squaredNorm() - 3) - mu * (J - 1) + alpha / 2 * (J - 1) * (J - 1));
+    }
+    sum += volume * (kappa - alpha + mu / 3) / 2 * growth * growth;
+  }
+  return sum;
+}
+
 bool is_on_surface(const OrganModel& model, std::size_t node) {
   return node < model.surface_node_count;
 }
 
 }  // namespace
+
+TEST_CASE(
+    "quadratic pressure: energies are the definition's, of every instruction set to the bit") {
+  // Oracle: the definition, straight from the rest shape; volumes and metrics are kept in float.
+  const auto model = quadratic_cube(0.499, 2);
+  const auto positions = shaken(model, 3e-3);
+  const double expected = energy_by_definition(model, positions);
+  const double found = quadratic_elements_of(model).energy(positions);
+  CHECK(found == Approx(expected).epsilon(1e-6));
+  for (const InstructionSet set : available_instruction_sets()) {
+    CHECK(quadratic_elements_of(model, set).energy(positions) == found);
+  }
+}
 
 TEST_CASE("quadratic pressure: forces are minus the energy's gradient") {
   // Oracle: finite differences of the energy, in double; nodes off by up to 3 mm of 30.
