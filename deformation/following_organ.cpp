@@ -51,10 +51,11 @@ FollowingOrgan::FollowingOrgan(const scene::Scene& scene, scene::Organ organ,
 }
 
 OrganMesh FollowingOrgan::made(std::uint32_t generation) {
-  OrganMesh mesh{generation, mesh_.fine_at(places_), nullptr};
+  OrganMesh mesh{generation, mesh_.fine_at(places_), nullptr, nullptr};
   OrganModel model = build_organ_model(organ_, gravity_, mesh.refined.shape);
   hold_as_coarse(mesh.refined, model);
   mesh.model = std::make_unique<const OrganModel>(std::move(model));
+  mesh.dynamics = make_dynamics(organ_, *mesh.model, period_, runner_);
   return mesh;
 }
 
@@ -106,10 +107,6 @@ OrganMesh FollowingOrgan::present(std::uint32_t generation) {
   OrganMesh mesh = made(generation);
   places_.swap(present_);
   return mesh;
-}
-
-std::unique_ptr<OrganDynamics> FollowingOrgan::dynamics_of(const OrganModel& model) const {
-  return make_dynamics(organ_, model, period_, runner_);
 }
 
 std::size_t FollowingOrgan::first_of(std::uint32_t generation) const {

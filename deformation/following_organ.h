@@ -27,6 +27,7 @@ struct OrganMesh {
   std::uint32_t generation = 0;
   RefinedShape refined;
   std::unique_ptr<const OrganModel> model;
+  std::unique_ptr<OrganDynamics> dynamics;  ///< of the model
 };
 
 class FollowingOrgan {
@@ -52,7 +53,6 @@ class FollowingOrgan {
   /// The organ goes on with next(). @param model  that it had
   /// @param generation  of that
   OrganMesh take_next(std::uint32_t generation, const OrganModel& model);
-  std::unique_ptr<OrganDynamics> dynamics_of(const OrganModel& model) const;
 
   /// The surface before the last change on that after it.
   const geometry::SurfaceTransfer& last_transfer() const { return earlier_.back().transfer; }

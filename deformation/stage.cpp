@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "deformation/following_organ.h"
@@ -163,7 +162,7 @@ class Outputs {
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
       SurfaceTopology surface = surface_message(world, organ);
       blocks_.emplace_back(surface.triangles, surface.triangle_blocks);
-      next_blocks_[organ].generation = surface.generation;
+      next_blocks_[organ] = {surface.generation, {}};
       tell(organ, surface);
     }
   }
@@ -171,12 +170,11 @@ class Outputs {
   /// An advance before an organ has it, so that nobody is without when it does.
   void publish_next_surfaces(const DeformationWorld& world) {
     for (std::size_t organ = 0; organ < world.organ_count(); ++organ) {
-      if (next_blocks_[organ].generation == world.generation(organ)) take_next_blocks(organ);
+      if (next_blocks_[organ].generation == world.generation(organ)) take_next_blocks(organ, world);
       const OrganMesh* next = world.next_mesh(organ);
       if (next == nullptr || next->generation == next_blocks_[organ].generation) continue;
       SurfaceTopology surface = surface_message(world, organ, *next);
-      next_blocks_[organ] = {next->generation,
-                             geometry::SurfaceBlocks(surface.triangles, surface.triangle_blocks)};
+      next_blocks_[organ] = {next->generation, surface.triangle_blocks};
       tell(organ, surface);
     }
   }
@@ -241,16 +239,16 @@ class Outputs {
  private:
   struct NextBlocks {
     std::uint32_t generation = 0;
-    std::optional<geometry::SurfaceBlocks> blocks;  ///< none: the organ has them
+    std::vector<std::uint32_t> of_triangles;  ///< none: the organ has them
   };
   void tell(std::size_t organ, SurfaceTopology& surface) {
     surface.organ = organs_.in_scene(organ);
     surfaces_[organ].write(surface);
   }
-  void take_next_blocks(std::size_t organ) {
-    if (!next_blocks_[organ].blocks) return;
-    blocks_[organ] = std::move(*next_blocks_[organ].blocks);
-    next_blocks_[organ].blocks.reset();
+  void take_next_blocks(std::size_t organ, const DeformationWorld& world) {
+    const auto of_triangles = std::exchange(next_blocks_[organ].of_triangles, {});
+    if (of_triangles.empty()) return;
+    blocks_[organ] = geometry::SurfaceBlocks(world.model(organ).triangles, of_triangles);
   }
 
   bus::Bus& bus_;

@@ -82,16 +82,18 @@ void WorldOrgan::take_volume_ahead() {
   }
 }
 
+std::unique_ptr<PatchCompliance> WorldOrgan::compliance_of(const OrganModel& model) const {
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
+  const std::size_t nodes = model.is_solid() ? kPatchOfSolid : kPatchOfSprings;
+  return std::make_unique<PatchCompliance>(model, Neighbours(model, tetrahedra), nodes, runner);
+}
+
 /// What is kept of the model beside it.
 void WorldOrgan::know_model() {
   const OrganModel& model = simulated.model();
   positions_ahead.clear();
-  std::vector<geometry::Tetrahedron> tetrahedra;
-  if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
   surface = std::make_unique<SurfaceWalk>(model);
-  compliance =
-      std::make_unique<PatchCompliance>(model, Neighbours(model, tetrahedra),
-                                        model.is_solid() ? kPatchOfSolid : kPatchOfSprings, runner);
   mean_edge = geometry::mean_edge_length(
       {{model.rest_positions.begin(),
         model.rest_positions.begin() + static_cast<std::ptrdiff_t>(model.surface_node_count)},
@@ -99,13 +101,15 @@ void WorldOrgan::know_model() {
 }
 
 void WorldOrgan::take(OrganMesh mesh, std::span<const CoreLine> outside) {
-  auto dynamics = following->dynamics_of(*mesh.model);
   const OrganModel &before = simulated.model(), &next = *mesh.model;
   RefinedShape& refined = mesh.refined;
   const auto seat = [&](OrganState& state) { seat_outside(outside, next, state.positions); };
+  auto next_compliance = compliance_of(next);
   const auto goes_on = [&](const auto& change) {
+    next_compliance->begin_with(
+        *compliance, [&](const std::vector<Vec4f>& found) { return change.carried(found); });
     simulated.change_mesh(
-        std::move(mesh.model), std::move(dynamics),
+        std::move(mesh.model), std::move(mesh.dynamics),
         [&](const OrganState& state) { return change.carried(state); }, seat);
   };
   if (next.mesh().edge_nodes.empty()) {
@@ -113,6 +117,7 @@ void WorldOrgan::take(OrganMesh mesh, std::span<const CoreLine> outside) {
   } else {
     goes_on(QuadraticMeshChange(before, halvings, next, refined.halvings));
   }
+  compliance = std::move(next_compliance);
   parents = std::move(refined.parents);
   halvings = std::move(refined.halvings);
   is_coarser = mesh.refined.is_coarser;
@@ -180,6 +185,7 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
   made.following = std::move(following);
   made.parents = std::move(refined.parents);
   made.halvings = std::move(refined.halvings);
+  made.compliance = made.compliance_of(kept);
   made.know_model();
   return made;
 }

@@ -22,6 +22,12 @@ PatchCompliance::PatchCompliance(const OrganModel& model, Neighbours neighbours,
   if (!model.is_solid()) far_.emplace(model, runner);
 }
 
+void PatchCompliance::begin_with(const PatchCompliance& before,
+                                 const SolidAnswers::Carry& carried) {
+  solid_.reset();
+  if (before.solid_) solid_.emplace(model_).begin_with(*before.solid_, carried);
+}
+
 void PatchCompliance::exchange(StateArchive& archive) {
   bool has_solid = solid_.has_value();
   archive(has_solid);
@@ -138,8 +144,8 @@ Eigen::Index PatchCompliance::extend(const std::vector<Vec3>& positions, const V
   };
   if (last && patch_.nodes.size() + model_.fixed_nodes.size() < model_.node_count()) {
     if (!solid_) solid_.emplace(model_);
-    solid_->find(last, shares, patch_, rows);
-    return take(solid_->near_block(patch_), solid_->own_block());
+    solid_->find(last, shares, patch_, A, rows);
+    return take(solid_->near_block(), solid_->own_block());
   }
   const std::size_t reach =
       std::min(kMostInReach, nodes_in_reach(touched_.size(), edges_in_reach(stiffness)));

@@ -56,6 +56,8 @@ class PatchCompliance {
 
   /// What was found for periods before.
   void forget() { solid_.reset(); }
+  /// What was found on a mesh before. @param carried  to this one
+  void begin_with(const PatchCompliance& before, const SolidAnswers::Carry& carried);
 
   /// What was found for periods before.
   void exchange(StateArchive& archive);

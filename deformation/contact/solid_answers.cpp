@@ -19,26 +19,20 @@ struct SolidAnswers::System {
   double whole;  ///< b·P b
 
   double begin() {
+    std::ranges::fill(a.direction_, Vec4f::Zero());
     a.apply(x, a.product_);
     add(-1, a.product_, a.residual_);
-    double descent = a.precondition();
+    double descent = a.go(0, x);
     if (!(descent < whole)) {
       std::ranges::fill(x, Vec4f::Zero());
       a.residual_ = a.load_;
-      descent = a.precondition();
+      descent = a.go(0, x);
     }
     a.direction_ = a.preconditioned_;
     return descent;
   }
-  double curvature() {
-    a.apply(a.direction_, a.product_);
-    return dot(a.direction_, a.product_);
-  }
-  double descend(double length) {
-    add(length, a.direction_, x);
-    add(-length, a.product_, a.residual_);
-    return a.precondition();
-  }
+  double curvature() { return a.apply(a.direction_, a.product_); }
+  double descend(double length) { return a.go(length, x); }
   void turn(double kept) {
     const auto part = static_cast<float>(kept);
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -50,7 +44,7 @@ struct SolidAnswers::System {
 SolidAnswers::SolidAnswers(const Body& body) : body_(body) {
   const std::size_t count = body.node_count();
   rest_.assign(count, 0);
-  inverse_blocks_.assign(count, Eigen::Matrix3f::Zero());
+  inverse_blocks_.assign(count, {Vec4f::Zero(), Vec4f::Zero(), Vec4f::Zero()});
   for (auto* buffer : {&load_, &residual_, &preconditioned_, &direction_, &product_}) {
     buffer->assign(count, Vec4f::Zero());
   }
@@ -63,8 +57,14 @@ void SolidAnswers::forget() {
   for (auto& x : found_) x.assign(body_.node_count(), Vec4f::Zero());
 }
 
+void SolidAnswers::begin_with(const SolidAnswers& before, const Carry& carried) {
+  for (std::size_t axis = 0; axis < found_.size(); ++axis) {
+    found_[axis] = carried(before.found_[axis]);
+  }
+}
+
 void SolidAnswers::find(const StepMatrix& last, const SpringShares& shares, const Patch& near,
-                        std::span<const ComplianceRow> rows) {
+                        const Eigen::MatrixXf& pressed, std::span<const ComplianceRow> rows) {
   take_matrix(last, shares);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::ranges::fill(load_, Vec4f::Zero());
@@ -76,13 +76,41 @@ void SolidAnswers::find(const StepMatrix& last, const SpringShares& shares, cons
       }
     }
     residual_ = load_;
-    const double whole = precondition();
+    std::ranges::fill(direction_, Vec4f::Zero());
+    std::ranges::fill(product_, Vec4f::Zero());
+    const double whole = go(0, found_[axis]);
     System system{*this, found_[axis], whole};
     conjugate_gradients(system, kIterations, kEnough * whole);
-    answers_[axis] = found_[axis];
-    for (const std::uint32_t node : near.nodes) answers_[axis][node].setZero();
-    apply(answers_[axis], products_[axis]);
+    products_[axis] = load_;
+    add(-1, residual_, products_[axis]);
   }
+  couple(near, pressed);
+}
+
+/// What A does to all that was found is known; the small patch's part is taken off.
+void SolidAnswers::couple(const Patch& near, const Eigen::MatrixXf& pressed) {
+  const auto count = static_cast<Eigen::Index>(3 * near.nodes.size());
+  Eigen::MatrixXf there(count, 3);
+  near_block_.resize(count, 3);
+  answers_ = found_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto column = static_cast<Eigen::Index>(axis);
+    for (std::size_t i = 0; i < near.nodes.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(3 * i);
+      Vec4f& answer = answers_[axis][near.nodes[i]];
+      there.block<3, 1>(at, column) = answer.head<3>();
+      near_block_.block<3, 1>(at, column) = products_[axis][near.nodes[i]].head<3>();
+      answer.setZero();
+    }
+  }
+  near_block_ -= pressed.selfadjointView<Eigen::Lower>() * there;
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      own_block_(a, b) = static_cast<float>(
+          dot(answers_[static_cast<std::size_t>(a)], products_[static_cast<std::size_t>(b)]));
+    }
+  }
+  own_block_ -= near_block_.transpose() * there;
 }
 
 void SolidAnswers::take_matrix(const StepMatrix& last, const SpringShares& shares) {
@@ -94,44 +122,54 @@ void SolidAnswers::take_matrix(const StepMatrix& last, const SpringShares& share
     const double rest = shares.mass * body_.masses[i] - stiffness * last.shift[i];
     rest_[i] = static_cast<float>(rest);
     const Mat3 block = stiffness * elements_->diagonal()[i] + rest * Mat3::Identity();
-    inverse_blocks_[i] = block.inverse().cast<float>();
+    const Mat3 inverse = block.inverse();
+    for (int k = 0; k < 3; ++k) {
+      inverse_blocks_[i][static_cast<std::size_t>(k)] = wide(inverse.col(k));
+    }
   }
 }
 
-/// Fixed nodes neither move nor answer.
-void SolidAnswers::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& q) {
+/// Fixed nodes neither move nor answer. Summed as dot() does, in the same pass.
+double SolidAnswers::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& q) {
   elements_->apply(p, q);
-  for (std::size_t i = 0; i < q.size(); ++i) q[i] = stiffness_ * q[i] + rest_[i] * p[i];
   for (const std::uint32_t node : body_.fixed_nodes) q[node].setZero();
-}
-
-double SolidAnswers::precondition() {
-  for (std::size_t i = 0; i < residual_.size(); ++i) {
-    preconditioned_[i].head<3>() = inverse_blocks_[i] * residual_[i].head<3>();
-  }
-  return dot(residual_, preconditioned_);
-}
-
-Eigen::MatrixXf SolidAnswers::near_block(const Patch& near) const {
-  Eigen::MatrixXf block(static_cast<Eigen::Index>(3 * near.nodes.size()), 3);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& product = products_[static_cast<std::size_t>(axis)];
-    for (std::size_t i = 0; i < near.nodes.size(); ++i) {
-      block.block<3, 1>(static_cast<Eigen::Index>(3 * i), axis) = product[near.nodes[i]].head<3>();
+  double sum = 0;
+  for (std::size_t first = 0; first < q.size(); first += kDotBlock) {
+    Vec4f block = Vec4f::Zero();
+    for (std::size_t i = first; i < std::min(first + kDotBlock, q.size()); ++i) {
+      q[i] = stiffness_ * q[i] + rest_[i] * p[i];
+      block += q[i].cwiseProduct(p[i]);
     }
+    sum += block.sum();
   }
-  return block;
+  return sum;
 }
 
-Eigen::Matrix3f SolidAnswers::own_block() const {
-  Eigen::Matrix3f block;
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t b = 0; b < 3; ++b) {
-      block(static_cast<int>(a), static_cast<int>(b)) =
-          static_cast<float>(dot(answers_[a], products_[b]));
+double SolidAnswers::go(double a, std::vector<Vec4f>& x) {
+  const auto length = static_cast<float>(a);
+  double sum = 0;
+  for (std::size_t first = 0; first < x.size(); first += kDotBlock) {
+    Vec4f block = Vec4f::Zero();
+    for (std::size_t i = first; i < std::min(first + kDotBlock, x.size()); ++i) {
+      x[i] += length * direction_[i];
+      const Vec4f r = residual_[i] - length * product_[i];
+      const auto& P = inverse_blocks_[i];
+      const Vec4f z = r[0] * P[0] + r[1] * P[1] + r[2] * P[2];
+      residual_[i] = r;
+      preconditioned_[i] = z;
+      block += r.cwiseProduct(z);
     }
+    sum += block.sum();
   }
-  return block;
+  return sum;
+}
+
+Mat3 SolidAnswers::alone(std::uint32_t node) const {
+  Mat3 inverse;
+  for (int k = 0; k < 3; ++k) {
+    inverse.col(k) = inverse_blocks_[node][static_cast<std::size_t>(k)].head<3>().cast<double>();
+  }
+  return inverse;
 }
 
 Eigen::Vector3f SolidAnswers::load(std::uint32_t node, const Vec3& push) const {

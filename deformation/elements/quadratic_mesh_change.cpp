@@ -126,6 +126,20 @@ void QuadraticMeshChange::hand_over(const Part& part, const std::vector<Vec3>& b
   }
 }
 
+std::vector<Vec4f> QuadraticMeshChange::carried(const std::vector<Vec4f>& ways) const {
+  std::vector<Vec4f> carried(to_.node_count(), Vec4f::Zero());
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] != kNoPlace) carried[i] = ways[kept_[i]];
+  }
+  for (const Coming& coming : coming_) {
+    for (std::size_t a = 0; a < coming.in.size(); ++a) {
+      carried[coming.node] += static_cast<float>(coming.shape[a]) * ways[coming.in[a]];
+    }
+  }
+  for (const std::uint32_t node : to_.fixed_nodes) carried[node].setZero();
+  return carried;
+}
+
 Eigen::VectorXd QuadraticMeshChange::carried(const Eigen::VectorXd& pressures) const {
   Eigen::VectorXd carried(static_cast<Eigen::Index>(to_.mesh().tetrahedra.size()));
   for (const Row& row : rows_) {

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "deformation/model/organ_model.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
@@ -33,6 +34,8 @@ class QuadraticMeshChange {
                       const OrganModel& to, std::span<const std::uint8_t> to_halvings);
 
   OrganState carried(const OrganState& state) const;
+  /// How far nodes go, zero of fixed ones  (node_count of `from`, of `to`).
+  std::vector<Vec4f> carried(const std::vector<Vec4f>& ways) const;
 
  private:
   /// Of a tetrahedron's mass.

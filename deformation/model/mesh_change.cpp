@@ -87,6 +87,18 @@ OrganState MeshChange::carried(const OrganState& state) const {
   return carried;
 }
 
+std::vector<Vec4f> MeshChange::carried(const std::vector<Vec4f>& ways) const {
+  std::vector<Vec4f> carried(to_.node_count(), Vec4f::Zero());
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] != kNoPlace) carried[i] = ways[kept_[i]];
+  }
+  for (const Middle& middle : coming_) {
+    carried[middle.node] = (carried[middle.ends[0]] + carried[middle.ends[1]]) / 2;
+  }
+  for (const std::uint32_t node : to_.fixed_nodes) carried[node].setZero();
+  return carried;
+}
+
 Eigen::VectorXd MeshChange::carried(const Eigen::VectorXd& pressures) const {
   Eigen::VectorXd carried(static_cast<Eigen::Index>(kept_.size()));
   for (std::size_t i = 0; i < kept_.size(); ++i) {

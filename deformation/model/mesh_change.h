@@ -15,6 +15,7 @@
 
 #include "deformation/model/following_mesh.h"
 #include "deformation/model/organ_state.h"
+#include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {
 
@@ -28,6 +29,8 @@ class MeshChange {
              std::span<const Parents> to_parents);
 
   OrganState carried(const OrganState& state) const;
+  /// How far nodes go, zero of fixed ones  (node_count of `from`, of `to`).
+  std::vector<Vec4f> carried(const std::vector<Vec4f>& ways) const;
 
  private:
   Eigen::VectorXd carried(const Eigen::VectorXd& pressures) const;

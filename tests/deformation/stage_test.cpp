@@ -155,7 +155,8 @@ TEST_CASE(
 
 TEST_CASE(
     "deformation stage: boxes are of the mesh they come with, if it changes in every advance") {
-  // Oracle: brute force, as above, over the surface told under the generation of the positions.
+  // Oracle: brute force, as above, over the surface told under the generation of the positions. A
+  // reset, with the probe away, comes between the two advances of a change.
   scene::Scene scene = testing::ball_scene(0);
   scene.organs[0].model = "nodal_pressure";
   scene.organs[0].solid.refine.follow = true;
@@ -178,13 +179,15 @@ TEST_CASE(
   std::uint32_t generation = 1;
   for (int cycle = 1; cycle < 60; ++cycle) {
     ProbeState state;
-    state.pose.position = Vec3(0.05 + 0.03 * std::sin(0.4 * cycle), 0.05, 0.055);
+    const bool reset = cycle % 20 == 19;
+    state.pose.position = Vec3(0.05 + 0.03 * std::sin(0.4 * cycle), 0.05, reset ? 0.5 : 0.055);
     state.header.source_time_ns = 10'000'000 * cycle;
     REQUIRE(probe.write(state));
     runtime::Cycle now;
     now.running = true;
     now.advance = 0.01;
     now.now_ns = 10'000'000 * cycle;
+    now.reset = reset;
     stage.cycle(now);
     take_told();
     NodePositions positions;

@@ -71,6 +71,22 @@ struct SteppedCube {
     }
     return patch;
   }
+  Eigen::MatrixXf pressed(const Patch& near) const {
+    const auto count = static_cast<Eigen::Index>(3 * near.nodes.size());
+    Eigen::MatrixXf block = Eigen::MatrixXf::Zero(count, count);
+    const auto place = [&](Eigen::Index k) {
+      return static_cast<Eigen::Index>(3 * near.nodes[static_cast<std::size_t>(k / 3)]) + k % 3;
+    };
+    for (Eigen::Index i = 0; i < count; ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        block(i, j) = static_cast<float>(A(place(i), place(j)));
+      }
+    }
+    return block;
+  }
+  void find(SolidAnswers& answers) const {
+    answers.find(dynamics->step_matrix(), shares, near(), pressed(near()), rows);
+  }
   Eigen::MatrixXd found(const SolidAnswers& answers) const {
     Eigen::MatrixXd X(size(), 3);
     for (std::uint32_t node = 0; node < model.node_count(); ++node) {
@@ -97,7 +113,7 @@ TEST_CASE("solid answers: A⁻¹ of a push along each axis, and what couples it 
     const SteppedCube cube = stepped_cube(word);
     const Patch near = cube.near();
     SolidAnswers answers(cube.model);
-    answers.find(cube.dynamics->step_matrix(), cube.shares, near, cube.rows);
+    cube.find(answers);
     const Eigen::MatrixXd X = cube.found(answers), exact = cube.exact();
     Eigen::MatrixXd lack = X - exact;
     for (const std::uint32_t node : near.nodes) {
@@ -112,7 +128,7 @@ TEST_CASE("solid answers: A⁻¹ of a push along each axis, and what couples it 
           0.2 * (exact.transpose() * cube.A * exact).trace());
     CHECK(X.norm() > 0.2 * exact.norm());
     const Eigen::MatrixXd AX = cube.A * X;
-    const Eigen::MatrixXf block = answers.near_block(near);
+    const Eigen::MatrixXf& block = answers.near_block();
     double off = 0;
     for (std::size_t i = 0; i < near.nodes.size(); ++i) {
       const Eigen::MatrixXd found =
@@ -131,11 +147,11 @@ TEST_CASE("solid answers: A⁻¹ of a push along each axis, and what couples it 
 TEST_CASE("solid answers: they begin with what was found before, and can forget it") {
   // Oracle: the exact answer is nearer after a second go at the same touch than after one; another
   // touch, to which what was found is no help, gets what it would get alone, to the bit; so does
-  // one after forget().
+  // one after forget(). One that begins with another's goes on as that one does.
   SteppedCube cube = stepped_cube("nodal_pressure");
   const Patch near = cube.near();
   const auto find = [&](SolidAnswers& answers) {
-    answers.find(cube.dynamics->step_matrix(), cube.shares, near, cube.rows);
+    cube.find(answers);
     return cube.found(answers);
   };
   const auto lack = [&](const Eigen::MatrixXd& X) {
@@ -149,6 +165,9 @@ TEST_CASE("solid answers: they begin with what was found before, and can forget 
   const Eigen::MatrixXd again = find(answers);
   SolidAnswers fresh(cube.model);
   CHECK(lack(again) < lack(find(fresh)));
+  SolidAnswers successor(cube.model);
+  successor.begin_with(answers, [](const std::vector<Vec4f>& ways) { return ways; });
+  CHECK(find(successor) == find(answers));
   answers.forget();
   fresh.forget();
   CHECK(find(answers) == find(fresh));

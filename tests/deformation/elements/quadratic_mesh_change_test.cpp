@@ -107,6 +107,17 @@ TEST_CASE("quadratic mesh change: a quadratic shape is carried from mesh to mesh
                          });
 }
 
+TEST_CASE("quadratic mesh change: how far nodes go is carried as where they are") {
+  const scene::Organ organ = quadratic_organ();
+  FollowingMesh mesh(quadratic_cube(), 1, 20000);
+  const SolidThere coarse(mesh, {}, organ), fine(mesh, {small_touch_at({0.02, 0.03, 0.06})}, organ);
+  OrganState state = rest_state(coarse.model);
+  state.positions = testing::shaken(coarse.model, 5e-3);
+  const QuadraticMeshChange change(coarse.model, coarse.refined.halvings, fine.model,
+                                   fine.refined.halvings);
+  testing::check_ways_carried(coarse.model, fine.model, change, state);
+}
+
 TEST_CASE(
     "quadratic mesh change: halves press as the whole, and the whole as its halves in the mean") {
   // Oracle: Σ V p over the body stays, whatever changes; what goes to finer meshes comes back.

@@ -62,6 +62,16 @@ TEST_CASE("mesh change: a finer mesh is the same shape, and an even strain costs
   CHECK(carried_linear(fine, coarse, refined).positions == state.positions);
 }
 
+TEST_CASE("mesh change: how far nodes go is carried as where they are") {
+  const scene::Organ organ = testing::solid_organ("nodal_pressure", 0.499);
+  FollowingMesh mesh(cube_to_change(), 0.6, 20000);
+  const SolidThere coarse(mesh, {}, organ), fine(mesh, {touch_at({0.02, 0.03, 0.06})}, organ);
+  OrganState state = rest_state(coarse.model);
+  state.positions = testing::shaken(coarse.model, 5e-3);
+  const MeshChange change(coarse.model, coarse.refined.parents, fine.model, fine.refined.parents);
+  testing::check_ways_carried(coarse.model, fine.model, change, state);
+}
+
 TEST_CASE("mesh change: pressures of nodes are a piecewise linear function before and after") {
   // Oracle: one that is linear over the whole cube stays so, and comes back to the bit.
   const scene::Organ organ = testing::solid_organ("nodal_pressure", 0.499);

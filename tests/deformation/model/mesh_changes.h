@@ -77,4 +77,25 @@ inline void check_motion_carried(const SolidThere& from, const SolidThere& to, s
   state = after;
 }
 
+/// Oracle: positions carried, less those at rest; in float.
+template <class Change>
+void check_ways_carried(const OrganModel& from, const OrganModel& to, const Change& change,
+                        const OrganState& state) {
+  std::vector<Vec4f> ways;
+  for (std::size_t i = 0; i < from.node_count(); ++i) {
+    ways.push_back(wide(state.positions[i] - from.rest_positions[i]));
+  }
+  const std::vector<Vec4f> carried = change.carried(ways);
+  const OrganState expected = change.carried(state);
+  REQUIRE(carried.size() == to.node_count());
+  double most = 0, off = 0;
+  for (std::size_t i = 0; i < carried.size(); ++i) {
+    const Vec3 way = expected.positions[i] - to.rest_positions[i];
+    most = std::max(most, way.norm());
+    off = std::max(off, (carried[i].template head<3>().template cast<double>() - way).norm());
+  }
+  CHECK(most > 0);
+  CHECK(off < 1e-6 * most);
+}
+
 }  // namespace palpate::deformation::testing
