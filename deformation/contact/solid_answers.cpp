@@ -145,23 +145,9 @@ double SolidAnswers::apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& q) {
   return sum;
 }
 
-double SolidAnswers::go(double a, std::vector<Vec4f>& x) {
-  const auto length = static_cast<float>(a);
-  double sum = 0;
-  for (std::size_t first = 0; first < x.size(); first += kDotBlock) {
-    Vec4f block = Vec4f::Zero();
-    for (std::size_t i = first; i < std::min(first + kDotBlock, x.size()); ++i) {
-      x[i] += length * direction_[i];
-      const Vec4f r = residual_[i] - length * product_[i];
-      const auto& P = inverse_blocks_[i];
-      const Vec4f z = r[0] * P[0] + r[1] * P[1] + r[2] * P[2];
-      residual_[i] = r;
-      preconditioned_[i] = z;
-      block += r.cwiseProduct(z);
-    }
-    sum += block.sum();
-  }
-  return sum;
+double SolidAnswers::go(double length, std::vector<Vec4f>& x) {
+  return go_along(length, direction_, product_, inverse_blocks_, x, residual_, preconditioned_)
+      .descent;
 }
 
 Mat3 SolidAnswers::alone(std::uint32_t node) const {

@@ -58,8 +58,7 @@ class SolidAnswers {
 
   void take_matrix(const StepMatrix& last, const SpringShares& shares);
   double apply(const std::vector<Vec4f>& p, std::vector<Vec4f>& q);  ///< q = A p @returns p·q
-  /// x += a d, r −= a q, z = P r in one pass @returns r·z
-  double go(double a, std::vector<Vec4f>& x);
+  double go(double length, std::vector<Vec4f>& x);                   ///< @returns r·z
   void couple(const Patch& near, const Eigen::MatrixXf& pressed);
 
   const Body& body_;

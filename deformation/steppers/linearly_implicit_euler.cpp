@@ -158,27 +158,9 @@ void LinearlyImplicitEuler::take_residual(std::span<const ContactRow> rows) {
   contacts_.add_impulses(rows, residual_);
 }
 
-/// All in one pass over the nodes, summed as dot() does.
-LinearlyImplicitEuler::Gone LinearlyImplicitEuler::go(double length) {
-  const auto along = static_cast<float>(length);
-  Gone gone;
-  const std::size_t count = change_.size();
-  for (std::size_t first = 0; first < count; first += kDotBlock) {
-    Vec4f descent = Vec4f::Zero(), change = Vec4f::Zero();
-    for (std::size_t i = first; i < std::min(first + kDotBlock, count); ++i) {
-      change_[i] += along * direction_[i];
-      const Vec4f r = residual_[i] - along * product_[i];
-      const auto& P = preconditioner_[i];
-      const Vec4f z = r[0] * P[0] + r[1] * P[1] + r[2] * P[2];
-      residual_[i] = r;
-      preconditioned_[i] = z;
-      descent += r.cwiseProduct(z);
-      change += product_[i].cwiseProduct(z);
-    }
-    gone.descent += descent.sum();
-    gone.change += change.sum();
-  }
-  return gone;
+Gone LinearlyImplicitEuler::go(double length) {
+  return go_along(length, direction_, product_, preconditioner_, change_, residual_,
+                  preconditioned_);
 }
 
 double LinearlyImplicitEuler::turn(double kept) {

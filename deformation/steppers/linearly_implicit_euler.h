@@ -57,9 +57,6 @@ class LinearlyImplicitEuler : public OrganDynamics {
   /// Δv and the contacts' impulses together.
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
   void descend(int iterations, std::span<ContactRow> rows, const OrganState& state);
-  struct Gone {
-    double descent = 0, change = 0;  ///< r·z; z·(the product)
-  };
   /// Δv += length p, r −= length · product, z = P r.
   Gone go(double length);
   /// p = z + kept p, or z where that leads up. @returns r·p
