@@ -35,7 +35,7 @@ struct Quadratic {
 
     /// `by` times it.
     Metric(const QuadraticBatch& batch, std::size_t lane, const Pack& by) {
-      for (int k = 0; k < 6; ++k) g[k] = by * load<Set>(batch.metric[k] + lane);
+      for (int k = 0; k < 6; ++k) g[k] = by * Set::load(batch.metric[k] + lane);
     }
     Metric(const QuadraticBatch& batch, std::size_t lane) : Metric(batch, lane, Pack{} + 1) {}
     /// Σ_i (∇L_i·∇L_j) m_i
@@ -69,16 +69,16 @@ struct Quadratic {
     for (int j = 0; j < 3; ++j) {
       const auto* axes = batch.tangents + 9 * point + 3 * j;
       m.along[j] =
-          Vector{load<Set>(axes[0] + lane), load<Set>(axes[1] + lane), load<Set>(axes[2] + lane)};
+          Vector{Set::load(axes[0] + lane), Set::load(axes[1] + lane), Set::load(axes[2] + lane)};
     }
     return m;
   }
   static void store_tangent(const Matrix& m, std::size_t lane, int point, QuadraticBatch& batch) {
     for (int j = 0; j < 3; ++j) {
       auto* axes = batch.tangents + 9 * point + 3 * j;
-      store<Set>(axes[0] + lane, m.along[j].x);
-      store<Set>(axes[1] + lane, m.along[j].y);
-      store<Set>(axes[2] + lane, m.along[j].z);
+      Set::store(axes[0] + lane, m.along[j].x);
+      Set::store(axes[1] + lane, m.along[j].y);
+      Set::store(axes[2] + lane, m.along[j].z);
     }
   }
 
@@ -146,7 +146,7 @@ struct Quadratic {
   }
 
   static void press(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
-    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    const Pack per_volume = Set::load(batch.per_volume[0] + lane);
     Vector nodes[10];
     Matrix at[4];
     Pack J[4];
@@ -157,12 +157,12 @@ struct Quadratic {
       J[q] = per_volume / 6 * dot(cross(b, c), a);
     }
     float* const pressures = batch.pressure[0] + lane;
-    store<Set>(pressures, static_cast<float>(pass.bulk_modulus) / 4 * grown(J));
+    Set::store(pressures, static_cast<float>(pass.bulk_modulus) / 4 * grown(J));
   }
 
   /// U of each.
   static void measure(const QuadraticPass& pass, QuadraticBatch& batch, std::size_t lane) {
-    const Pack volume = load<Set>(batch.volume[0] + lane);
+    const Pack volume = Set::load(batch.volume[0] + lane);
     const Metric metric(batch, lane);
     Vector nodes[10];
     Matrix at[4];
@@ -184,8 +184,8 @@ struct Quadratic {
     const auto mu = static_cast<float>(pass.shear_modulus);
     const auto alpha = static_cast<float>(pass.point_modulus);
     const auto kappa = static_cast<float>(pass.bulk_modulus);
-    const Pack volume = load<Set>(batch.volume[0] + lane);
-    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    const Pack volume = Set::load(batch.volume[0] + lane);
+    const Pack per_volume = Set::load(batch.per_volume[0] + lane);
     const Metric metric(batch, lane);
     Vector nodes[10];
     Matrix at[4], areas[4];
@@ -199,15 +199,15 @@ struct Quadratic {
     }
     const Pack growth = grown(J);
     const Pack pressure =
-        load<Set>(batch.pressure[0] + lane) + kappa / 4 * load<Set>(batch.share[0] + lane) * growth;
+        Set::load(batch.pressure[0] + lane) + kappa / 4 * Set::load(batch.share[0] + lane) * growth;
     for (int q = 0; q < 4; ++q) {
       const Matrix raised = metric.raise(at[q]);
       const Pack squared = squared_stretch(at[q], raised), stretch = Set::root(squared);
       const Pack c = alpha * (J[q] - 1) - mu + pressure;
       const Pack kept = kept_turning(pass, c, squared, stretch, J[q]);
       shapes[q] = pass.scale / 4 * volume * (mu + 2 * stretch * larger<Set>(c - kept, kept - c));
-      store<Set>(batch.shapes[q] + lane, shapes[q]);
-      store<Set>(batch.turnings[q] + lane, pass.scale / 24 * kept);
+      Set::store(batch.shapes[q] + lane, shapes[q]);
+      Set::store(batch.turnings[q] + lane, pass.scale / 24 * kept);
       for (int j = 0; j < 3; ++j) {
         at[q].along[j] =
             plus(scaled(-mu / 4 * volume, raised.along[j]), -c / 24, areas[q].along[j]);
@@ -220,8 +220,8 @@ struct Quadratic {
 
   static void add_diagonals(const QuadraticPass& pass, const QuadraticBatch& batch,
                             std::size_t lane, const Matrix (&areas)[4], const Pack (&shapes)[4]) {
-    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
-    const Pack share = load<Set>(batch.share[0] + lane);
+    const Pack per_volume = Set::load(batch.per_volume[0] + lane);
+    const Pack share = Set::load(batch.share[0] + lane);
     Pack own[4], mixed[6];
     Metric(batch, lane).of_corners(own);
     Metric(batch, lane).of_edges(mixed);
@@ -282,7 +282,7 @@ struct Quadratic {
   }
 
   static void multiply(const QuadraticPass& pass, const QuadraticBatch& batch, std::size_t lane) {
-    const Pack per_volume = load<Set>(batch.per_volume[0] + lane);
+    const Pack per_volume = Set::load(batch.per_volume[0] + lane);
     Vector nodes[10];
     Matrix at[4];
     Pack rates[4];  // of 6 V J
@@ -295,10 +295,10 @@ struct Quadratic {
     }
     const Pack of_points = pass.scale * static_cast<float>(pass.point_modulus) / 144 * per_volume;
     const Pack of_all = pass.scale * static_cast<float>(pass.bulk_modulus) / 576 *
-                        load<Set>(batch.share[0] + lane) * per_volume *
+                        Set::load(batch.share[0] + lane) * per_volume *
                         ((rates[0] + rates[1]) + (rates[2] + rates[3]));
     for (int q = 0; q < 4; ++q) {
-      const Pack turning = load<Set>(batch.turnings[q] + lane);
+      const Pack turning = Set::load(batch.turnings[q] + lane);
       const Pack push = Set::fma(of_points, rates[q], of_all);
       const auto& [a, b, c] = load_tangent(batch, lane, q).along;
       const auto& [u, v, w] = at[q].along;
@@ -307,7 +307,7 @@ struct Quadratic {
       const Matrix of_volume = {{plus_cross(plus_cross(scaled(push, p), b, tw), tv, c),
                                  plus_cross(plus_cross(scaled(push, r), c, tu), tw, a),
                                  plus_cross(plus_cross(scaled(push, s), a, tv), tu, b)}};
-      at[q] = Metric(batch, lane, load<Set>(batch.shapes[q] + lane)).raise(at[q], of_volume);
+      at[q] = Metric(batch, lane, Set::load(batch.shapes[q] + lane)).raise(at[q], of_volume);
     }
     integrate(at, nodes);
     scatter_all(pass.product, batch, lane, nodes, kNone);

@@ -1,13 +1,10 @@
 // Vectors of space and quads of memory, as many side by side as an instruction set has lanes. A
-// `Set` gives
+// `Set` is Floats of a packs/<set>_packs.h, whose fma() rounds once whatever the CPU, and beside
+// that gives
 //
-//   kWidth           lanes: 4, 8 or 16
-//   Number, Pack     float, and so many of them in a register
-//   Unaligned        so many floats anywhere in memory
-//   join(quads)      kWidth/4 quads side by side
-//   fma(a, b, c), fnma(a, b, c)   c + a b and c − a b, rounded once; elementwise
-//   root(pack)       elementwise
-//   Doubles          half as many doubles, a set without join and root
+//   Number       of which a Pack is
+//   join(quads)  kWidth/4 quads side by side
+//   Doubles      those of the same file, their load() of floats
 #pragma once
 
 #include <cstddef>
@@ -77,15 +74,6 @@ Vectors<Set> plus_cross(const Vectors<Set>& sum, const Vectors<Set>& a, const Ve
           Set::fnma(a.y, b.x, Set::fma(a.x, b.y, sum.z))};
 }
 
-template <class Set>
-typename Set::Pack load(const float* from) {
-  using Pack = typename Set::Pack;
-  return __builtin_convertvector(*reinterpret_cast<const typename Set::Unaligned*>(from), Pack);
-}
-template <class Set>
-void store(float* to, const typename Set::Pack& pack) {
-  *reinterpret_cast<typename Set::Unaligned*>(to) = pack;
-}
 template <class Set>
 typename Set::Pack larger(const typename Set::Pack& a, const typename Set::Pack& b) {
   return a > b ? a : b;
