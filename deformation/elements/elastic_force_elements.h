@@ -19,7 +19,7 @@ struct ElementPressures {
 
 /// Elastic forces f(x) of a body's nodes and, about x, the matrix A = diag(shift) + scale K that a
 /// step solves with: K approximates −∂f/∂x and is symmetric positive semidefinite. Keeps no state
-/// but buffers. Rows of fixed nodes are like any other.
+/// but buffers and what go_on_from() gave. Rows of fixed nodes are like any other.
 class ElasticForceElements {
  public:
   virtual ~ElasticForceElements() = default;

@@ -56,57 +56,45 @@ MeshChange::MeshChange(const Body& from, std::span<const Parents> from_parents, 
   std::ranges::stable_sort(going_, {}, [&](const Middle& m) { return -from_levels[m.node]; });
 }
 
+template <class Values>
+void MeshChange::interpolate(const Values& from, Values& to) const {
+  for (std::uint32_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i] != kNoPlace) to[i] = from[kept_[i]];
+  }
+  for (const Middle& middle : coming_) {
+    to[middle.node] = (to[middle.ends[0]] + to[middle.ends[1]]) / 2;
+  }
+}
+
 OrganState MeshChange::carried(const OrganState& state) const {
   std::vector<double> masses = from_.masses;
-  std::vector<Vec3> momenta(masses.size());
-  for (std::size_t i = 0; i < masses.size(); ++i) momenta[i] = masses[i] * state.velocities[i];
+  std::vector<Vec3> velocities(masses.size());  // momenta at first
+  for (std::size_t i = 0; i < masses.size(); ++i) velocities[i] = masses[i] * state.velocities[i];
   for (const Middle& middle : going_) {
     for (const std::uint32_t end : middle.ends) {
       masses[end] += masses[middle.node] / 2;
-      momenta[end] += momenta[middle.node] / 2;
+      velocities[end] += velocities[middle.node] / 2;
     }
   }
+  for (std::size_t i = 0; i < masses.size(); ++i) velocities[i] /= masses[i];
   OrganState carried = state;
   carried.internal = {};
   if (state.internal.pressures.size() > 0) {
-    carried.internal.pressures = this->carried(state.internal.pressures);
+    carried.internal.pressures.resize(static_cast<Eigen::Index>(kept_.size()));
+    interpolate(state.internal.pressures, carried.internal.pressures);
   }
   carried.positions.assign(to_.node_count(), Vec3::Zero());
   carried.velocities.assign(to_.node_count(), Vec3::Zero());
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    if (kept_[i] == kNoPlace) continue;
-    carried.positions[i] = state.positions[kept_[i]];
-    carried.velocities[i] = momenta[kept_[i]] / masses[kept_[i]];
-  }
-  for (const Middle& middle : coming_) {
-    const auto& [a, b] = middle.ends;
-    carried.positions[middle.node] = (carried.positions[a] + carried.positions[b]) / 2;
-    carried.velocities[middle.node] = (carried.velocities[a] + carried.velocities[b]) / 2;
-  }
+  interpolate(state.positions, carried.positions);
+  interpolate(velocities, carried.velocities);
   for (const std::uint32_t node : to_.fixed_nodes) carried.velocities[node].setZero();
   return carried;
 }
 
 std::vector<Vec4f> MeshChange::carried(const std::vector<Vec4f>& ways) const {
   std::vector<Vec4f> carried(to_.node_count(), Vec4f::Zero());
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    if (kept_[i] != kNoPlace) carried[i] = ways[kept_[i]];
-  }
-  for (const Middle& middle : coming_) {
-    carried[middle.node] = (carried[middle.ends[0]] + carried[middle.ends[1]]) / 2;
-  }
+  interpolate(ways, carried);
   for (const std::uint32_t node : to_.fixed_nodes) carried[node].setZero();
-  return carried;
-}
-
-Eigen::VectorXd MeshChange::carried(const Eigen::VectorXd& pressures) const {
-  Eigen::VectorXd carried(static_cast<Eigen::Index>(kept_.size()));
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    if (kept_[i] != kNoPlace) carried[static_cast<Eigen::Index>(i)] = pressures[kept_[i]];
-  }
-  for (const Middle& middle : coming_) {
-    carried[middle.node] = (carried[middle.ends[0]] + carried[middle.ends[1]]) / 2;
-  }
   return carried;
 }
 

@@ -33,7 +33,9 @@ class MeshChange {
   std::vector<Vec4f> carried(const std::vector<Vec4f>& ways) const;
 
  private:
-  Eigen::VectorXd carried(const Eigen::VectorXd& pressures) const;
+  /// Of nodes, from a piecewise linear function to the same.
+  template <class Values>
+  void interpolate(const Values& from, Values& to) const;
 
   struct Middle {
     std::uint32_t node = 0;
