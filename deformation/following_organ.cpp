@@ -51,10 +51,15 @@ FollowingOrgan::FollowingOrgan(const scene::Scene& scene, scene::Organ organ,
 }
 
 OrganMesh FollowingOrgan::made(std::uint32_t generation) {
-  OrganMesh mesh{generation, mesh_.fine_at(places_), nullptr, nullptr};
+  OrganMesh mesh{generation, mesh_.fine_at(places_), nullptr, nullptr, nullptr};
   OrganModel model = build_organ_model(organ_, gravity_, mesh.refined.shape);
   hold_as_coarse(mesh.refined, model);
   mesh.model = std::make_unique<const OrganModel>(std::move(model));
+  mesh.compliance = make_compliance(*mesh.model, runner_);
+  return mesh;
+}
+
+OrganMesh FollowingOrgan::with_dynamics(OrganMesh mesh) const {
   mesh.dynamics = make_dynamics(organ_, *mesh.model, period_, runner_);
   return mesh;
 }
@@ -65,7 +70,7 @@ OrganMesh FollowingOrgan::begin(std::uint32_t generation) {
   present_.clear();
   next_.reset();
   earlier_.clear();
-  return made(generation);
+  return with_dynamics(made(generation));
 }
 
 void FollowingOrgan::look(std::span<const Pose> poses, const OrganModel& model,
@@ -81,7 +86,7 @@ void FollowingOrgan::look(std::span<const Pose> poses, const OrganModel& model,
 
 OrganMesh FollowingOrgan::take_next(std::uint32_t generation, const OrganModel& model) {
   PALPATE_DEMAND(next_);
-  OrganMesh next = *std::exchange(next_, std::nullopt);
+  OrganMesh next = with_dynamics(*std::exchange(next_, std::nullopt));
   present_ = places_;
   const auto surface_nodes = [](const OrganModel& of) {
     return std::span(of.rest_positions).first(of.surface_node_count);
@@ -106,7 +111,7 @@ OrganMesh FollowingOrgan::present(std::uint32_t generation) {
   places_.swap(present_);
   OrganMesh mesh = made(generation);
   places_.swap(present_);
-  return mesh;
+  return with_dynamics(std::move(mesh));
 }
 
 std::size_t FollowingOrgan::first_of(std::uint32_t generation) const {

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "deformation/contact/patch_compliance.h"
 #include "deformation/contact/touch_follower.h"
 #include "deformation/model/following_mesh.h"
 #include "deformation/model/organ_model.h"
@@ -27,7 +28,8 @@ struct OrganMesh {
   std::uint32_t generation = 0;
   RefinedShape refined;
   std::unique_ptr<const OrganModel> model;
-  std::unique_ptr<OrganDynamics> dynamics;  ///< of the model
+  std::unique_ptr<PatchCompliance> compliance;  ///< of the model
+  std::unique_ptr<OrganDynamics> dynamics;      ///< of the model; none until the organ has the mesh
 };
 
 class FollowingOrgan {
@@ -74,6 +76,8 @@ class FollowingOrgan {
     void exchange(StateArchive& archive) { archive(generation, transfer); }
   };
   OrganMesh made(std::uint32_t generation);
+  /// Made no earlier, so that none of a change's advances does most of it.
+  OrganMesh with_dynamics(OrganMesh mesh) const;
   std::size_t first_of(std::uint32_t generation) const;
 
   const scene::Organ organ_;

@@ -14,10 +14,6 @@ namespace palpate::deformation {
 namespace {
 
 constexpr double kLeastStep = 1e-6;  // [s]
-/// Nodes that a law's compliance is taken from, each by itself. Nearly incompressible tissue
-/// reaches further.
-constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
-
 /// The organ as it is stepped: contacts with organs take symplectic Euler alone.
 scene::Organ stepped_organ(const scene::Scene& scene, std::size_t index) {
   scene::Organ organ = scene.organs[index];
@@ -82,13 +78,6 @@ void WorldOrgan::take_volume_ahead() {
   }
 }
 
-std::unique_ptr<PatchCompliance> WorldOrgan::compliance_of(const OrganModel& model) const {
-  std::vector<geometry::Tetrahedron> tetrahedra;
-  if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
-  const std::size_t nodes = model.is_solid() ? kPatchOfSolid : kPatchOfSprings;
-  return std::make_unique<PatchCompliance>(model, Neighbours(model, tetrahedra), nodes, runner);
-}
-
 /// What is kept of the model beside it.
 void WorldOrgan::know_model() {
   const OrganModel& model = simulated.model();
@@ -104,9 +93,8 @@ void WorldOrgan::take(OrganMesh mesh, std::span<const CoreLine> outside) {
   const OrganModel &before = simulated.model(), &next = *mesh.model;
   RefinedShape& refined = mesh.refined;
   const auto seat = [&](OrganState& state) { seat_outside(outside, next, state.positions); };
-  auto next_compliance = compliance_of(next);
   const auto goes_on = [&](const auto& change) {
-    next_compliance->begin_with(
+    mesh.compliance->begin_with(
         *compliance, [&](const std::vector<Vec4f>& found) { return change.carried(found); });
     simulated.change_mesh(
         std::move(mesh.model), std::move(mesh.dynamics),
@@ -117,7 +105,7 @@ void WorldOrgan::take(OrganMesh mesh, std::span<const CoreLine> outside) {
   } else {
     goes_on(QuadraticMeshChange(before, halvings, next, refined.halvings));
   }
-  compliance = std::move(next_compliance);
+  compliance = std::move(mesh.compliance);
   parents = std::move(refined.parents);
   halvings = std::move(refined.halvings);
   is_coarser = mesh.refined.is_coarser;
@@ -185,7 +173,7 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
   made.following = std::move(following);
   made.parents = std::move(refined.parents);
   made.halvings = std::move(refined.halvings);
-  made.compliance = made.compliance_of(kept);
+  made.compliance = make_compliance(kept, runner);
   made.know_model();
   return made;
 }

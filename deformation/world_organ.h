@@ -65,7 +65,6 @@ struct WorldOrgan {
   bool look_ahead(double time);
   void take_volume_ahead();
   void take(OrganMesh mesh, std::span<const CoreLine> outside);
-  std::unique_ptr<PatchCompliance> compliance_of(const OrganModel& model) const;
   void know_model();
 };
 

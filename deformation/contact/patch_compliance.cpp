@@ -6,6 +6,10 @@
 namespace palpate::deformation {
 namespace {
 
+/// Nodes that a law's compliance is taken from, each by itself. Nearly incompressible tissue
+/// reaches further.
+constexpr std::size_t kPatchOfSprings = 32, kPatchOfSolid = 110;
+
 SpringShares shares_of(const PeriodSteps& steps, double drag) {
   const double T = steps.period;
   return {.mass = (1 + T * drag * steps.moving()) / (T * T),
@@ -249,6 +253,13 @@ Eigen::MatrixXd PatchCompliance::answers(const Eigen::MatrixXf& A, Eigen::Index 
   if (!(inverse_mass > 0)) return answers;
   const Eigen::VectorXd shares_of_volume = half.leftCols(count).transpose() * half.col(count);
   return answers - shares_of_volume * shares_of_volume.transpose() / inverse_mass;
+}
+
+std::unique_ptr<PatchCompliance> make_compliance(const OrganModel& model, ChunkRunner* runner) {
+  std::vector<geometry::Tetrahedron> tetrahedra;
+  if (model.is_solid()) tetrahedra = model.mesh().tetrahedra;
+  const std::size_t nodes = model.is_solid() ? kPatchOfSolid : kPatchOfSprings;
+  return std::make_unique<PatchCompliance>(model, Neighbours(model, tetrahedra), nodes, runner);
 }
 
 }  // namespace palpate::deformation

@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -107,5 +108,9 @@ class PatchCompliance {
   std::optional<SolidAnswers> solid_;
   std::optional<FarAnswers> far_;  ///< of springs
 };
+
+/// As laws of a probe need it. @param model  outlives it
+/// @param runner  outlives it; none: the calling thread alone
+std::unique_ptr<PatchCompliance> make_compliance(const OrganModel& model, ChunkRunner* runner);
 
 }  // namespace palpate::deformation

@@ -1,6 +1,7 @@
 #include "deformation/elements/kernel/element_parts_builder.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 namespace palpate::deformation {
@@ -16,9 +17,12 @@ constexpr std::size_t kLeaf = 4 * kTetrahedronLanes;
 constexpr std::array<std::array<std::size_t, 4>, 6> kRings{
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
+/// 2⁶⁴ over the golden ratio: multiples scatter evenly.
+constexpr std::uint64_t kFibonacci = 0x9e3779b97f4a7c15;
+
 /// Sebastiano Vigna's splitmix64.
 std::uint64_t scrambled(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15;
+  x += kFibonacci;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
   x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
   return x ^ (x >> 31);
@@ -125,15 +129,16 @@ void ElementPartsBuilder::number_nodes(Part& part) {
 }
 
 void ElementPartsBuilder::find_edges(Part& part) {
-  std::vector<std::uint32_t> heads(part.nodes.size(), kNone);
   part.edges.reserve(8 * part.nodes.size());
   part.edges_of.reserve(part.corners.size());
-  links_.clear();
+  // More places than a part can have edges, six for each tetrahedron.
+  remembered_bits_ = std::bit_width(6 * part.corners.size());
+  remembered_.assign(std::size_t{1} << remembered_bits_, {});
   for (const auto& corners : part.corners) {
     auto& edges = part.edges_of.emplace_back();
     for (std::size_t e = 0; e < 6; ++e) {
       const auto [a, b, c, d] = kRings[e];
-      edges[e] = edge_between(part, heads, corners[a], corners[b]);
+      edges[e] = edge_between(part, corners[a], corners[b]);
       const std::uint64_t from = scrambled_[part.nodes[corners[c]]],
                           to = scrambled_[part.nodes[corners[d]]];
       // Seen from its lower node in the mesh, so that parts add up.
@@ -143,18 +148,21 @@ void ElementPartsBuilder::find_edges(Part& part) {
   }
 }
 
-std::uint32_t ElementPartsBuilder::edge_between(Part& part, std::vector<std::uint32_t>& heads,
-                                                std::uint32_t a, std::uint32_t b) {
+std::uint32_t ElementPartsBuilder::edge_between(Part& part, std::uint32_t a, std::uint32_t b) {
   const auto [low, high] = std::minmax(a, b);
-  for (std::uint32_t e = heads[low]; e != kNone; e = links_[e].next) {
-    if (links_[e].high == high) return e;
+  static_assert(4 * ElementParts::kMostTetrahedra < 1 << 16);
+  const std::uint32_t nodes = low << 16 | high;
+  std::uint64_t place = nodes * kFibonacci >> (64 - remembered_bits_);
+  while (remembered_[place].edge != kNone && remembered_[place].nodes != nodes) {
+    place = (place + 1) % remembered_.size();
   }
-  links_.push_back({high, heads[low]});
-  heads[low] = static_cast<std::uint32_t>(part.edges.size());
-  Edge& edge = part.edges.emplace_back();
-  edge.low = low;
-  edge.high = high;
-  return heads[low];
+  if (remembered_[place].edge == kNone) {
+    remembered_[place] = {nodes, static_cast<std::uint32_t>(part.edges.size())};
+    Edge& edge = part.edges.emplace_back();
+    edge.low = low;
+    edge.high = high;
+  }
+  return remembered_[place].edge;
 }
 
 void ElementPartsBuilder::take_slots() {

@@ -32,9 +32,10 @@ class ElementPartsBuilder {
     Vec3 centre = Vec3::Zero();
     std::uint32_t tetrahedron = 0;
   };
-  /// An edge's higher node, and the edge found before with the same lower one.
-  struct Link {
-    std::uint32_t high = 0, next = kNone;
+  /// Where an edge of a part is remembered by its nodes.
+  struct Remembered {
+    std::uint32_t nodes = 0;  ///< both numbers: a part has fewer than 65,536
+    std::uint32_t edge = kNone;
   };
   struct Part {
     std::size_t first = 0, last = 0;   ///< of order_
@@ -59,8 +60,7 @@ class ElementPartsBuilder {
   std::size_t cut(std::size_t first, std::size_t last);
   void number_nodes(Part& part);
   void find_edges(Part& part);
-  std::uint32_t edge_between(Part& part, std::vector<std::uint32_t>& heads, std::uint32_t a,
-                             std::uint32_t b);
+  std::uint32_t edge_between(Part& part, std::uint32_t a, std::uint32_t b);
   void take_slots();
   void find_owners();
   std::vector<Group> groups_of(const Part& part) const;
@@ -75,7 +75,8 @@ class ElementPartsBuilder {
   ElementParts& out_;
   std::vector<Placed> order_;             ///< of the tetrahedra
   std::vector<std::uint64_t> scrambled_;  ///< numbers of the mesh's nodes
-  std::vector<Link> links_;               ///< of a part's edges, while they are found
+  std::vector<Remembered> remembered_;    ///< a part's edges, while they are found
+  int remembered_bits_ = 0;               ///< of a place there
   std::vector<Part> parts_;
   std::vector<std::uint32_t> numbers_;  ///< of the mesh's nodes within a part, else kNone
   std::vector<bool> is_open_;           ///< nodes with open pairs
