@@ -62,6 +62,7 @@ struct WorldOrgan {
  private:
   friend WorldOrgan make_organ(const scene::Scene&, std::size_t, const geometry::OrganShape&,
                                ChunkRunner*, Guarding);
+  bool is_stale(const StepMatrix& last, std::span<const ComplianceRow> touched) const;
   bool look_ahead(double time);
   void take_volume_ahead();
   void take(OrganMesh mesh, std::span<const CoreLine> outside);

@@ -11,6 +11,7 @@ namespace palpate::deformation {
 struct StepMatrix {
   ElasticForceElements* elements = nullptr;  ///< linearised so; none: no step was made so
   std::span<const double> shift;             ///< [kg]  (node_count)
+  std::span<const Vec3> positions;           ///< where K was taken [m]  (node_count)
   double step = 0;                           ///< h [s]
 
   explicit operator bool() const { return elements != nullptr; }

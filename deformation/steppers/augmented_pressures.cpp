@@ -37,7 +37,21 @@ void AugmentedPressures::begin(double h, OrganState& state, ElasticForceElements
   const double share = this->share(h, pressures);
   const Eigen::ArrayXd squared = (of_shape.array() / (kTame * pressures.modulus)).square();
   shares_ = 1 - (1 - share) / (1 + squared);
-  kept_ = (1 - shares_.array()) * kept.array();
+  go_on_from(kept, elements);
+}
+
+void AugmentedPressures::begin_evenly(double h, const OrganState& state,
+                                      ElasticForceElements& elements) {
+  const ElementPressures pressures = elements.pressures();
+  const Eigen::VectorXd& kept = state.internal.pressures;
+  if (!are_remembered(pressures) || kept.size() != shares_.size()) return;
+  shares_.setConstant(share(h, pressures));
+  go_on_from(kept, elements);
+}
+
+void AugmentedPressures::go_on_from(const Eigen::VectorXd& pressures,
+                                    ElasticForceElements& elements) {
+  kept_ = (1 - shares_.array()) * pressures.array();
   elements.go_on_from(kept_, shares_);
 }
 

@@ -42,10 +42,15 @@ class AugmentedPressures {
   /// Before linearise(): elements go on from the state's pressures; of a state that has none, from
   /// those of its shape.
   void begin(double h, OrganState& state, ElasticForceElements& elements);
+  /// The same of a step that is not made, with s for crushed tissue, too. A state without pressures
+  /// goes on from what was begun last.
+  void begin_evenly(double h, const OrganState& state, ElasticForceElements& elements);
   /// After the step.
   void end(OrganState& state, ElasticForceElements& elements);
 
  private:
+  void go_on_from(const Eigen::VectorXd& pressures, ElasticForceElements& elements);
+
   double density_ = 0;              ///< [kg/m³]
   double squared_wave_number_ = 0;  ///< a quarter of k² [1/m²]
   Eigen::VectorXd kept_;            ///< (1 − s) p [Pa]

@@ -33,8 +33,8 @@ class LinearlyImplicitEuler : public OrganDynamics {
   static constexpr double kLargestStep = 0.01;
 
   /// @param body       outlives this
-  /// @param iterations  of conjugate gradients per step, at most; half as many more where a touch
-  ///                    begins
+  /// @param iterations  of conjugate gradients per step, at most; up to three times as many while
+  ///                    what contacts press with has not settled
   LinearlyImplicitEuler(const Body& body, std::unique_ptr<ElasticForceElements> elements,
                         int iterations);
 
@@ -43,8 +43,9 @@ class LinearlyImplicitEuler : public OrganDynamics {
   void add_stiffness(const Patch& patch, Eigen::MatrixXf& sum) const override;
   StepMatrix step_matrix() const override {
     if (!(step_ > 0)) return {};
-    return {.elements = elements_.get(), .shift = shift_, .step = step_};
+    return {.elements = elements_.get(), .shift = shift_, .positions = predicted_, .step = step_};
   }
+  void foresee(const OrganState& state) override;
   double elastic_energy(const OrganState& state) override {
     return elements_->energy(state.positions);
   }
@@ -56,7 +57,8 @@ class LinearlyImplicitEuler : public OrganDynamics {
   void begin_with_free_motion();
   /// Δv and the contacts' impulses together.
   void solve(double h, std::span<ContactRow> rows, const OrganState& state);
-  void descend(int iterations, std::span<ContactRow> rows, const OrganState& state);
+  /// @param spare  iterations that may be made beside the usual; gets what is left
+  void descend(int& spare, std::span<ContactRow> rows, const OrganState& state);
   /// Δv += length p, r −= length · product, z = P r.
   Gone go(double length);
   /// p = z + kept p, or z where that leads up. @returns r·p

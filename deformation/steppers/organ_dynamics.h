@@ -45,6 +45,10 @@ class OrganDynamics {
   /// Of a solid that keeps one.
   virtual StepMatrix step_matrix() const { return {}; }
 
+  /// Of a solid that keeps one: makes it, and what add_stiffness() tells, that of a step to come
+  /// from this state, crushed tissue in it like any other, until there is a step.
+  virtual void foresee(const OrganState& /*state*/) {}
+
   /// C A⁻¹ Cᵀ of rows on the organ (contact/patch_compliance.h) [m/N], of a model that knows it
   /// better than from a patch of nodes; empty: it does not.
   virtual Eigen::MatrixXd compliance(std::span<const ComplianceRow> /*rows*/,
