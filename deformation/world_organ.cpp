@@ -15,7 +15,7 @@ namespace palpate::deformation {
 namespace {
 
 constexpr double kLeastStep = 1e-6;  // [s]
-/// Of the mean edge. Tissue under a hand of 40 mm/s goes less far in 10 ms.
+/// Of the mean edge. Under a hand of 40 mm/s tissue goes about so far in 10 ms.
 constexpr double kFarOfEdge = 0.05;
 
 /// The organ as it is stepped: contacts with organs take symplectic Euler alone.
