@@ -10,7 +10,7 @@ namespace {
 /// How often contacts that are still penetrated are held by more, all iterations again, at most.
 constexpr int kMostGoingOn = 4;
 /// What contacts press with together has settled when it changes by less than this part of it in
-/// the last third of the iterations. Slides of 20 mm/s have settled, blows have not.
+/// the last third of the iterations. Slow presses have settled, blows have not.
 constexpr double kSettled = 0.07;
 constexpr int kThird = 3;
 /// So many times as many iterations a step makes beside, at most, for it to settle.
