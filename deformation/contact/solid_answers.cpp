@@ -103,7 +103,8 @@ void SolidAnswers::couple(const Patch& near, const Eigen::MatrixXf& pressed) {
       answer.setZero();
     }
   }
-  near_block_ -= pressed.selfadjointView<Eigen::Lower>() * there;
+  // Eigen takes the address of a matrix' first number, of which a patch of held nodes has none.
+  if (count > 0) near_block_ -= pressed.selfadjointView<Eigen::Lower>() * there;
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
       own_block_(a, b) = static_cast<float>(
