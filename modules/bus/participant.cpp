@@ -1,5 +1,6 @@
 #include "modules/bus/participant.h"
 
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -63,8 +64,22 @@ class AssertionsTold {
   struct sigaction earlier_ {};
 };
 
+/// Participants of one process talk as those of several do. Fast DDS 2.9.1 would call readers of
+/// the other by their addresses, and of one that has just left some that are no more (its pull
+/// request 5034).
+void talk_by_sockets_alone() {
+  [[maybe_unused]] static const bool told = [] {
+    using Settings = eprosima::fastrtps::xmlparser::XMLProfileManager;
+    auto settings = Settings::library_settings();
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    Settings::library_settings(settings);
+    return true;
+  }();
+}
+
 dds::DomainParticipant* made_participant(int domain, const dds::DomainParticipantQos& qos) {
   const AssertionsTold told;
+  talk_by_sockets_alone();
   return dds::DomainParticipantFactory::get_instance()->create_participant(
       static_cast<std::uint32_t>(domain), qos);
 }

@@ -1,7 +1,6 @@
 // Buses of their own for each test, and waiting on conditions with a deadline.
 #pragma once
 
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -16,14 +15,9 @@ namespace palpate::bus::testing {
 using palpate::testing::kDeadline;
 using palpate::testing::wait_until;
 
-/// Options that no other test shares: a domain of the process, session from a count. Samples
-/// between buses of one process then travel by UDP, as between processes.
+/// Options that no other test shares: a domain of the process, session from a count.
 inline BusOptions own_options() {
   static std::atomic<int> count{0};
-  eprosima::fastrtps::LibrarySettingsAttributes settings;
-  settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-  eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
-
   BusOptions options;
   options.domain = palpate::testing::own_domain(1);  // below the ephemeral ports
   options.session = std::to_string(getpid()).append("_").append(std::to_string(++count));
