@@ -23,8 +23,8 @@ namespace palpate::python {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{2};
-constexpr double kLongestWait = 1e6;           ///< [s]
-constexpr double kRepeatedWithin = 1;          ///< a command, by the launcher [s]
+constexpr double kLongestWait = 1e6;     ///< [s]
+constexpr double kAllHeardWithin = 0.1;  ///< what each has said last, after the first of it [s]
 constexpr std::size_t kMostUntaken = 100'000;  ///< messages of a topic that nobody takes
 constexpr const char* kWhat = "the connection";
 
@@ -47,7 +47,7 @@ bus::BusOptions options_of(const std::string& session, int domain) {
 Live::Live(const std::string& session, int domain)
     : bus_(std::make_unique<bus::DdsBus>(options_of(session, domain))) {
   input_.emplace(bus_->writer(bus::kProbeInput));
-  controls_.emplace(bus_->reader(bus::kSessionControl));
+  controls_.emplace(bus_->reader(bus::kSessionControl, bus::Keep::kBacklog));
   conductor_.emplace(*bus_);
 }
 
@@ -146,11 +146,19 @@ bool Live::control(SessionCommand command, double timeout) {
     return state_.last_command().header.source_time_ns != 0;
   });
   if (!heard) return false;
+  // Several may have given commands: whoever has just come may hear an older one first.
+  if (!all_heard_)
+    wait_until(kAllHeardWithin, [&] {
+      poll_controls();
+      return false;
+    });
+  all_heard_ = true;
   const std::int64_t before_ns = state_.last_command().header.source_time_ns;
   conductor_->command(state_, command);
-  // What a writer said that leaves at once, some may never hear: the launcher says it again.
+  // What a writer said that leaves at once, some may never hear: the launcher says it again, and
+  // where processors are busy hears it late.
   std::optional<bus::WriterId> first;
-  wait_until(kRepeatedWithin, [&] {
+  wait_until(timeout, [&] {
     SessionControl control;
     bool repeated = false;
     while (controls_->take(control)) {

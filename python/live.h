@@ -33,7 +33,7 @@ class Live {
   /// False if the bus refused it. @param source_time  by this host's monotonic clock
   bool write_probe_input(const ProbeState& state);
   /// Gives a command once the session's own commands have been heard; false if none came within
-  /// `timeout` [s]. Waits until the launcher has said it again, a second at most.
+  /// `timeout` [s]. Waits until the launcher has said it again, as long at most.
   bool control(SessionCommand command, double timeout);
   /// running, paused, …
   std::string phase();
@@ -66,6 +66,7 @@ class Live {
   std::optional<bus::Reader<SessionControl>> controls_;
   std::optional<runtime::SessionConductor> conductor_;
   runtime::SessionState state_;
+  bool all_heard_ = false;  ///< whatever was said before this connection
 };
 
 }  // namespace palpate::python

@@ -142,7 +142,7 @@ class VisualizerStage : public runtime::Stage {
         // bits.
         commands_(common.lockstep.empty()),
         inputs_(bus),
-        controls_(bus.reader(bus::kSessionControl)),
+        controls_(bus.reader(bus::kSessionControl, bus::Keep::kBacklog)),
         probe_inputs_(bus.writer(bus::kProbeInput)),
         conductor_(bus),
         bus_(common.bus),

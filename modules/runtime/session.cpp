@@ -6,7 +6,7 @@
 namespace palpate::runtime {
 
 Session::Session(bus::Bus& bus, std::string scene_digest, Kind kind)
-    : controls_(bus.reader(bus::kSessionControl)),
+    : controls_(bus.reader(bus::kSessionControl, bus::Keep::kBacklog)),
       scenes_(bus.reader(bus::kScene)),
       scene_digest_(std::move(scene_digest)),
       kind_(kind) {}

@@ -33,6 +33,7 @@ class Session {
   bool knows_scene() const { return knows_scene_; }
 
  private:
+  /// All of them: of several writers an older one that is said again comes after a newer one.
   bus::Reader<SessionControl> controls_;
   bus::Reader<SceneDescription> scenes_;
   std::string scene_digest_;

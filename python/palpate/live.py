@@ -77,7 +77,7 @@ class Live(Closing[_core.Live]):
 
     def control(self, command: str, timeout_s: float = 5.0) -> None:
         """Says `start` (or go on), `pause`, `reset` or `stop` to every process of the session (`session_control`).
-        Returns when the launcher has repeated it, or after a second: then the connection may be closed.
+        Returns when the launcher has repeated it, or after `timeout_s`: then the connection may be closed.
 
         Raises:
             ValueError: another command.

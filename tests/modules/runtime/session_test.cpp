@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "modules/bus/dds_bus.h"
+#include "modules/bus/memory_bus.h"
 #include "modules/runtime/clock.h"
 #include "tests/modules/runtime/own_bus.h"
 
@@ -75,6 +76,23 @@ TEST_CASE("session: repeating says the newest command of anybody again") {
     late.poll();
     return late.phase() == SessionPhase::kPaused;
   }));
+}
+
+TEST_CASE("session: an older command said again takes no newer one's place") {
+  // Oracle: the command of the latest source time, given by somebody else.
+  bus::MemoryBus bus;
+  Session launcher(bus, "d"), module(bus, "d");
+  SessionConductor conductor(bus), person(bus);
+  conductor.command(launcher.state(), SessionCommand::kStart);
+  launcher.poll();
+  module.poll();
+  const SessionState before = launcher.state();
+  person.command(before, SessionCommand::kPause);
+  conductor.repeat(before);  // who has not heard the person yet
+  for (Session* session : {&launcher, &module}) {
+    session->poll();
+    CHECK(session->phase() == SessionPhase::kPaused);
+  }
 }
 
 TEST_CASE("session: another scene or protocol is a fault that says what to do") {
