@@ -117,12 +117,18 @@ class LiveTest(unittest.TestCase):
             self.live.control("explode")
 
     def test_commands_of_who_leaves_at_once(self):
-        # Oracle: what each module says of itself. Some never heard the command, and went on alone.
+        # Oracle: what each module says of itself, and the session's time, which a pause holds. Some never heard the
+        # command, and went on alone; some who gave one had heard an older one last.
+        self.live.latest("session_control", timeout_s=10)
         for word, state in (("pause", "paused"), ("start", "running")):
             with palpate.connect(SESSION, DOMAIN) as brief:
                 brief.control(word)
             for module in ("haptics", "collision", "deformation"):
                 until(lambda: self.live.latest("module_status", module)["state"] in (state, state.replace("running", "degraded")))
+        said = self.live.take("session_control")
+        in_order = sorted(zip(said["source_time_ns"], said["command"], said["sim_time_ns"]))
+        held = {word: time for _, word, time in in_order}  # the last of each
+        self.assertEqual(held["pause"], held["start"])
 
     def test_bad_input(self):
         for bad in ([1, 2], [np.nan, 0, 0], [[0, 0, 0]]):
