@@ -189,6 +189,32 @@ std::string told(const scene::Scene& scene, const PlanOptions& options) {
   return fmt::format("{:016x}", std::hash<std::string>{}(text));
 }
 
+/// Of each organ that was judged by truth. What was planned is told however this ends.
+/// @returns exit code
+int verify(const scene::Scene& scene, const PlanOptions& options, std::vector<OrganPlan>& plans,
+           std::ostream& log, const Standard::KeepGoing& keep_going) {
+  const auto stopped = [&] {
+    log << "stopped before all was verified" << std::endl;
+    return kExitStopped;
+  };
+  int code = kExitDone;
+  try {
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+      OrganPlan& plan = plans[i];
+      if (plan.chosen->errors.force_bar == 0) continue;
+      scene::Scene alone = scene;
+      alone.organs = {scene.organs[i]};
+      plan.verification = verified(alone, plan.chosen->candidate, options, log, keep_going);
+      if (plan.verification->instants == 0) code = kExitFailed;
+    }
+  } catch (const report::Stopped&) {
+    return stopped();
+  } catch (const Interrupted&) {  // while Gmsh filled a surface
+    return stopped();
+  }
+  return code;
+}
+
 }  // namespace
 
 int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
@@ -233,15 +259,11 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
       }
       write_whole_file(file, scene::resolved_text(planned));
     }
-    for (std::size_t i = 0; options.verify && is_met && i < plans.size(); ++i) {
-      if (plans[i].chosen->errors.force_bar == 0) continue;  // not judged by truth
-      scene::Scene alone = scene;
-      alone.organs = {scene.organs[i]};
-      plans[i].verification = verified(alone, plans[i].chosen->candidate, options, log, keep_going);
-    }
+    int code = is_met ? kExitDone : kExitFailed;
+    if (options.verify && is_met) code = verify(scene, options, plans, log, keep_going);
     options.json ? print_json(plans, sharing.machines, file, out)
                  : print_text(scene, plans, sharing.machines, file, out);
-    return is_met ? kExitDone : kExitFailed;
+    return code;
   } catch (const report::Stopped&) {
     log << (options.points.empty() ? "stopped; nothing was written"
                                    : "stopped; what was found stays in " + options.points.string())

@@ -108,8 +108,10 @@ void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>
     Json::Value row;
     row["organ"] = plan.name;
     row["instants"] = Json::UInt64(plan.verification->instants);
-    row["force_error"] = plan.verification->errors.force;
-    row["force_error_bar"] = plan.verification->errors.force_bar;
+    if (plan.verification->instants > 0) {
+      row["force_error"] = plan.verification->errors.force;
+      row["force_error_bar"] = plan.verification->errors.force_bar;
+    }
     value["verified"].append(row);
   }
   if (!written.empty()) value["written"] = written.string();
@@ -142,7 +144,9 @@ void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
     print_margins(scene.needs, *plan.chosen, out);
     if (!by_truth) continue;
     out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
-    if (plan.verification) {
+    if (plan.verification && plan.verification->instants == 0) {
+      out << "not verified: at no other instant was there an equilibrium on finer meshes\n";
+    } else if (plan.verification) {
       const Errors& found = plan.verification->errors;
       out << fmt::format("verified by a finer truth at {} other instants: force {}\n",
                          plan.verification->instants, percent(found.force, found.force_bar));

@@ -15,7 +15,7 @@ namespace palpate::plan {
 /// The choice judged by a truth that the plan did not know.
 struct Verification {
   Errors errors;
-  std::size_t instants = 0;
+  std::size_t instants = 0;  ///< that had one
 };
 
 /// What was measured of one organ, the cheapest first.

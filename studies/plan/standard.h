@@ -54,7 +54,7 @@ class Standard {
 
 /// The choice, run anew, against a truth on finer meshes at instants between those of the plan.
 /// @param scene  of one organ, judged by truth
-/// @throws std::runtime_error if none is found; what `keep_going` throws
+/// @returns no instants if none has a truth @throws what `keep_going` throws
 Verification verified(const scene::Scene& scene, const Candidate& chosen,
                       const PlanOptions& options, std::ostream& log,
                       const Standard::KeepGoing& keep_going);

@@ -5,6 +5,7 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -20,6 +21,19 @@
 
 namespace palpate::plan {
 namespace {
+
+/// A log whose reader presses Ctrl-C at some words.
+class StopsWhenTold : public std::stringbuf {
+ public:
+  explicit StopsWhenTold(std::string words) : words_(std::move(words)) {}
+
+ private:
+  int sync() override {
+    if (str().find(words_) != std::string::npos) std::raise(SIGINT);
+    return 0;
+  }
+  std::string words_;
+};
 
 std::filesystem::path write_scene(const std::filesystem::path& folder, const std::string& needs,
                                   const std::string& more_organs = "", int nodes = 250,
@@ -138,6 +152,7 @@ TEST_CASE("plan command: what it promises of a solid an independent finer soluti
   options.touches = 1;
   options.json = true;
   options.verify = true;
+  options.points = folder.path / "points";
   options.scene =
       write_scene(folder.path, "needs: {contents: solid, force_error: 0.35, step_hz: 50}\n", "", 80,
                   "0.060", 0.014);
@@ -176,6 +191,17 @@ TEST_CASE("plan command: what it promises of a solid an independent finer soluti
   CHECK(verified["force_error_bar"].asDouble() > 0);
   CHECK(verified["force_error"].asDouble() + verified["force_error_bar"].asDouble() <= 0.35);
   CHECK(verified["force_error"].asDouble() != found);  // of other instants
+
+  // Stopped while it verifies, it tells what it planned.
+  StopsWhenTold stopping("verifying by");
+  std::ostream stopped_log(&stopping);
+  std::ostringstream again;
+  CHECK(run_plan(options, again, stopped_log) == kExitStopped);
+  Json::Value told;
+  std::istringstream(again.str()) >> told;
+  CHECK(told["candidates"] == said["candidates"]);
+  CHECK(told["written"] == said["written"]);
+  CHECK(told["verified"].empty());
 }
 
 TEST_CASE("plan command: several organs get a model each, and one rate") {

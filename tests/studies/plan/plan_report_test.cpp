@@ -37,5 +37,22 @@ TEST_CASE("plan report: of what was dropped before anything was to compare no er
   CHECK_THAT(json.str(), !Catch::Contains("NaN") && Catch::Contains("\"surface_error_m\" : null"));
 }
 
+TEST_CASE("plan report: a choice that no finer truth was found for is told, as not verified") {
+  // Oracle: the words; no error of a truth that there is none of.
+  OrganPlan organ;
+  organ.name = "ball";
+  organ.verdicts.resize(1);
+  organ.verdicts[0].errors.force_bar = 0.01;
+  organ.chosen = organ.verdicts.data();
+  organ.verification = Verification{};
+  std::ostringstream text, json;
+  print_text({}, {organ}, {}, "planned.yaml", text);
+  print_json({organ}, {}, "planned.yaml", json);
+  CHECK_THAT(text.str(), Catch::Contains("not verified: ") && Catch::Contains("planned.yaml") &&
+                             !Catch::Contains("verified by"));
+  const auto verified = json.str().substr(json.str().find("\"verified\""));
+  CHECK_THAT(verified, Catch::Contains("\"instants\" : 0") && !Catch::Contains("\"force_error\""));
+}
+
 }  // namespace
 }  // namespace palpate::plan
