@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -23,8 +24,7 @@ namespace palpate::python {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{2};
-constexpr double kLongestWait = 1e6;     ///< [s]
-constexpr double kAllHeardWithin = 0.1;  ///< what each has said last, after the first of it [s]
+constexpr double kLongestWait = 1e6;           ///< [s]
 constexpr std::size_t kMostUntaken = 100'000;  ///< messages of a topic that nobody takes
 constexpr const char* kWhat = "the connection";
 
@@ -32,6 +32,12 @@ std::string key_text_of(const messages::AnyMessage& message) {
   messages::KeyOf key;
   std::visit([&](const auto& m) { messages::describe(key, m); }, message);
   return key.text;
+}
+
+bus::GuidPrefix participant_of(const bus::WriterId& writer) {
+  bus::GuidPrefix participant;
+  std::copy_n(writer.begin(), participant.size(), participant.begin());
+  return participant;
 }
 
 bus::BusOptions options_of(const std::string& session, int domain) {
@@ -48,6 +54,7 @@ Live::Live(const std::string& session, int domain)
     : bus_(std::make_unique<bus::DdsBus>(options_of(session, domain))) {
   input_.emplace(bus_->writer(bus::kProbeInput));
   controls_.emplace(bus_->reader(bus::kSessionControl, bus::Keep::kBacklog));
+  scenes_.emplace(bus_->reader(bus::kScene, bus::Keep::kBacklog));
   conductor_.emplace(*bus_);
 }
 
@@ -76,8 +83,21 @@ void Live::receive(Topic& topic) {
 }
 
 void Live::poll_controls() {
+  SceneDescription scene;
+  while (scenes_->take(scene)) launchers_.insert(participant_of(scenes_->writer()));
   SessionControl control;
-  while (controls_->take(control)) state_.apply(control);
+  while (controls_->take(control)) {
+    state_.apply(control);
+    said_by_[participant_of(controls_->writer())] = control.header.source_time_ns;
+  }
+}
+
+std::int64_t Live::launcher_said_ns() const {
+  std::int64_t newest_ns = 0;
+  for (const auto& [participant, time_ns] : said_by_) {
+    if (launchers_.contains(participant)) newest_ns = std::max(newest_ns, time_ns);
+  }
+  return newest_ns;
 }
 
 /// Without the GIL, looking for Ctrl-C meanwhile.
@@ -141,34 +161,20 @@ bool Live::write_probe_input(const ProbeState& state) {
 bool Live::control(SessionCommand command, double timeout) {
   const InUse use(in_use_, kWhat);
   check_open();
-  const bool heard = wait_until(timeout, [&] {
-    poll_controls();
-    return state_.last_command().header.source_time_ns != 0;
-  });
-  if (!heard) return false;
-  // Several may have given commands: whoever has just come may hear an older one first.
-  if (!all_heard_)
-    wait_until(kAllHeardWithin, [&] {
+  // Whoever has just come may first hear what somebody else said before: the launcher's is newest.
+  const auto launcher_says_after = [&](std::int64_t time_ns) {
+    return wait_until(timeout, [&] {
       poll_controls();
-      return false;
+      return launcher_said_ns() > time_ns;
     });
-  all_heard_ = true;
+  };
+  launcher_says_after(0);
   const std::int64_t before_ns = state_.last_command().header.source_time_ns;
+  if (before_ns == 0) return false;
   conductor_->command(state_, command);
   // What a writer said that leaves at once, some may never hear: the launcher says it again, and
   // where processors are busy hears it late.
-  std::optional<bus::WriterId> first;
-  wait_until(timeout, [&] {
-    SessionControl control;
-    bool repeated = false;
-    while (controls_->take(control)) {
-      state_.apply(control);
-      if (control.header.source_time_ns <= before_ns) continue;
-      repeated = repeated || (first && *first != controls_->writer());
-      first = controls_->writer();
-    }
-    return repeated;
-  });
+  launcher_says_after(before_ns);
   return true;
 }
 
@@ -202,6 +208,7 @@ void Live::close() {
   topics_.clear();
   conductor_.reset();
   controls_.reset();
+  scenes_.reset();
   input_.reset();
   bus_.reset();
 }

@@ -7,10 +7,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "modules/bus/bus.h"
+#include "modules/bus/packet_senders.h"
 #include "modules/messages/messages.h"
 #include "modules/runtime/session.h"
 
@@ -32,8 +34,8 @@ class Live {
 
   /// False if the bus refused it. @param source_time  by this host's monotonic clock
   bool write_probe_input(const ProbeState& state);
-  /// Gives a command once the session's own commands have been heard; false if none came within
-  /// `timeout` [s]. Waits until the launcher has said it again, as long at most.
+  /// Gives a command once the launcher's last one has been heard, or after `timeout` [s]; false if
+  /// nobody's was. Waits until the launcher has said it again, as long at most.
   bool control(SessionCommand command, double timeout);
   /// running, paused, …
   std::string phase();
@@ -55,6 +57,8 @@ class Live {
   Topic& topic_of(const std::string& name);
   void receive(Topic& topic);
   void poll_controls();
+  /// Source time of the newest command that a launcher said; 0 before any.
+  std::int64_t launcher_said_ns() const;
   template <class Done>
   bool wait_until(double timeout, const Done& done);
 
@@ -64,9 +68,12 @@ class Live {
   std::map<std::string, Topic> topics_;
   std::optional<bus::Writer<ProbeState>> input_;
   std::optional<bus::Reader<SessionControl>> controls_;
+  std::optional<bus::Reader<SceneDescription>> scenes_;
   std::optional<runtime::SessionConductor> conductor_;
   runtime::SessionState state_;
-  bool all_heard_ = false;  ///< whatever was said before this connection
+  /// Who tells the session its scene says its newest command again, whoever gave it.
+  std::set<bus::GuidPrefix> launchers_;
+  std::map<bus::GuidPrefix, std::int64_t> said_by_;  ///< source time of the command heard last
 };
 
 }  // namespace palpate::python
