@@ -21,8 +21,15 @@ RenderedForce EmulatedDriver::newest_force(std::int64_t now_ns) {
     force_ = heard_;
     force_heard_ns_ = now_ns;
   }
-  const bool holds = now_ns - force_heard_ns_ <= ns_from_seconds(kForceHolds);
-  return holds ? static_cast<const RenderedForce&>(force_) : RenderedForce{};
+  return holds(now_ns) ? static_cast<const RenderedForce&>(force_) : RenderedForce{};
+}
+
+bool EmulatedDriver::holds(std::int64_t now_ns) const {
+  return force_heard_ns_ != 0 && now_ns - force_heard_ns_ <= ns_from_seconds(kForceHolds);
+}
+
+bool EmulatedDriver::is_felt(std::int64_t now_ns) const {
+  return holds(now_ns) && (force_.limits & kDriverSilent) == 0;
 }
 
 void EmulatedDriver::cycle(std::int64_t now_ns, std::optional<std::int64_t> period,

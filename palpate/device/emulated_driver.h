@@ -24,10 +24,14 @@ class EmulatedDriver {
   /// @param buttons  held meanwhile
   void cycle(std::int64_t now_ns, std::optional<std::int64_t> period, std::uint32_t buttons = 0);
 
+  /// Haptics renders by the poses of this device: a force says so, heard within kForceHolds.
+  bool is_felt(std::int64_t now_ns) const;
+
   const haptics::EmulatedDevice& device() const { return device_; }
 
  private:
   RenderedForce newest_force(std::int64_t now_ns);
+  bool holds(std::int64_t now_ns) const;
 
   haptics::EmulatedDevice device_;
   std::int64_t transport_ns_;  ///< how old a reading is

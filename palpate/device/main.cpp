@@ -68,24 +68,31 @@ class Waiting {
                         : std::numeric_limits<std::int64_t>::max()) {}
 
   const std::string& what() const { return what_; }
-  void look(std::int64_t now_ns) {
+  bool runs() const { return runs_; }
+  /// @param runs  the session does, but its haptics does not feel the device yet
+  void look(std::int64_t now_ns, bool runs) {
+    runs_ = runs;
     if (began_ns_ == 0) began_ns_ = line_ns_ = now_ns;
     if (now_ns - began_ns_ >= longest_ns_) {
-      throw std::runtime_error(what_ + " has not begun within " +
-                               std::to_string(longest_ns_ / kNanosecondsPerSecond) + " s");
+      throw std::runtime_error(what_ + (runs ? " has not felt the device" : " has not begun") +
+                               " within " + std::to_string(longest_ns_ / kNanosecondsPerSecond) +
+                               " s");
     }
     if (now_ns - line_ns_ < kWaitingLineEveryNs) return;
     line_ns_ = now_ns;
-    std::cerr << kName << ": waiting for " << what_ << " to begin" << std::endl;
+    std::cerr << kName << ": waiting for " << what_ << (runs ? " to feel the device" : " to begin")
+              << std::endl;
   }
 
  private:
   std::string what_;
+  bool runs_ = false;
   std::int64_t longest_ns_, began_ns_ = 0, line_ns_ = 0;
 };
 
-/// Until the session ends, a signal comes or time is up; the hand takes the device as the session
-/// begins to run, and holds it while it pauses.
+/// Until the session ends, a signal comes or time is up; the hand takes the device once the session
+/// runs and haptics feels where it is, or it would be deep in an organ by then, and holds it while
+/// the session pauses.
 /// @throws Interrupted, std::runtime_error where it ends before the session ran: nothing was felt
 void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDriver& driver,
          bus::Bus& bus, launcher::DeviceLog& log) {
@@ -99,10 +106,10 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
     session.poll();
     if (!session.fault().empty()) throw InputError(session.fault());
     const std::int64_t now_ns = loop.period_began_ns();
-    if (began_ns == 0 && session.running()) began_ns = now_ns;
+    if (began_ns == 0 && session.running() && driver.is_felt(now_ns)) began_ns = now_ns;
     if (began_ns == 0) {
       driver.cycle(now_ns, std::nullopt);
-      waiting.look(now_ns);
+      waiting.look(now_ns, session.running());
       continue;
     }
     const std::int64_t period = (now_ns - began_ns) / loop.period_ns();
@@ -112,9 +119,14 @@ void run(const Options& options, const scene::Scene& scene, launcher::EmulatedDr
     if (options.duration > 0 && time >= options.duration) break;
   }
   if (began_ns == 0 && stop.requested()) {
-    throw Interrupted("stopped; " + waiting.what() + " had not begun, the probe was not moved");
+    throw Interrupted("stopped; " + waiting.what() +
+                      (waiting.runs() ? " had not felt the device" : " had not begun") +
+                      ", the probe was not moved");
   }
-  if (began_ns == 0) throw std::runtime_error(waiting.what() + " ended before it ran");
+  if (began_ns == 0) {
+    throw std::runtime_error(waiting.what() + " ended before it " +
+                             (waiting.runs() ? "felt the device" : "ran"));
+  }
   const runtime::LoopStatistics& statistics = loop.statistics();
   std::cerr << kName << ": " << statistics.cycles << " periods, "
             << 100 * statistics.on_time_fraction() << " % on time\n";

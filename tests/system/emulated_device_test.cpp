@@ -68,6 +68,7 @@ TEST_CASE("emulated device: over DDS a solid liver pushes back as hard as the ha
   const auto scene = files.folder() / "liver.yaml", table = files.folder() / "device.csv";
   std::ofstream(scene) << driven("liver_solid.yaml", Vec3(-0.020, -0.0726, 0.013));
   Launched session(scene, {});
+  REQUIRE(session.wait_for_text("real time"));  // it joins a session that runs
   Device device(scene, session.options(),
                 {"--device", "{axis: [0, 1, 0], hand: {push_n: [0, 0.2, 0]}}", "--duration", "4",
                  "--csv", table.string()});

@@ -21,8 +21,9 @@ struct Attached {
 
   explicit Attached(const scene::EmulatedDevice& config) : driver(config, 1, bus) {}
 
-  void push(const Vec3& force, std::uint32_t probe = 1) {
+  void push(const Vec3& force, std::uint32_t probe = 1, std::uint32_t limits = 0) {
     HapticForce message;
+    message.limits = limits;
     message.header.source_time_ns = now_ns;
     message.probe = probe;
     message.force = force;
@@ -45,6 +46,24 @@ scene::EmulatedDevice config_at(const Vec3& start) {
 }
 
 }  // namespace
+
+TEST_CASE("emulated driver: it is felt where haptics renders its probe and does not miss it") {
+  // Oracle: definition. A force is not known to hold for longer than the driver's own 0.1 s.
+  Attached attached(config_at(Vec3::Zero()));
+  const auto felt = [&] {
+    attached.cycle(std::nullopt);
+    return attached.driver.is_felt(attached.now_ns);
+  };
+  CHECK_FALSE(felt());
+  attached.push(Vec3::Zero(), 0);  // another probe
+  CHECK_FALSE(felt());
+  attached.push(Vec3::Zero(), 1, kDriverSilent);
+  CHECK_FALSE(felt());
+  attached.push(Vec3::Zero(), 1, kForceSaturated);
+  CHECK(felt());
+  for (int i = 0; i < 100; ++i) CHECK(felt());
+  CHECK_FALSE(felt());
+}
 
 TEST_CASE("emulated driver: until a hand takes the device it says where that stands") {
   // Oracle: definition.
