@@ -72,66 +72,95 @@ truth::Body body_of(const scene::Organ& organ, bool solid, std::ostream& log) {
   return body;
 }
 
+bool stand_alike(const truth::Station& one, const truth::Station& other) {
+  return std::ranges::equal(one, other, [](const auto& a, const auto& b) {
+    return a.a == b.a && a.b == b.b && a.radius == b.radius;
+  });
+}
+
+/// One equilibrium, and the instants at which it is asked for: probes that are held stand alike.
+struct Asked {
+  truth::Question question;
+  std::vector<TrueTouch> touches;
+};
+
+std::vector<Asked> asked_at(const ProbePaths& paths, const std::vector<double>& times,
+                            const std::vector<Vec3>& marks) {
+  std::vector<Asked> asked;
+  for (const double time : times) {
+    TrueTouch touch{time, {}, {}};
+    auto question = paths.question_at(time, touch.probes);
+    question.marks = marks;
+    const auto same = std::ranges::find_if(asked, [&](const Asked& before) {
+      return before.touches[0].probes == touch.probes &&
+             stand_alike(before.question.stations[0], question.stations[0]);
+    });
+    if (same == asked.end()) {
+      asked.push_back({std::move(question), {std::move(touch)}});
+    } else {
+      same->touches.push_back(std::move(touch));
+    }
+  }
+  return asked;
+}
+
 /// Equilibria of quadratic elements, each said when it is found.
 /// @param fineness  see truth::Effort
+/// @returns those found, in order of time
 std::vector<TrueTouch> truths_at(const scene::Scene& scene, const ProbePaths& paths,
                                  const std::vector<double>& times, const std::vector<Vec3>& marks,
                                  double fineness, std::ostream& log, const KeepGoing& keep_going) {
   const std::chrono::minutes longest = fineness < 1 ? kLongestFiner : kLongest;
+  std::vector<Asked> asked = asked_at(paths, times, marks);
   report::Progress progress(log, [] { return false; });
-  progress.begin(
-      fmt::format("truth: equilibria of quadratic elements at {} instants", times.size()));
+  std::string at = fmt::format("{} instants", times.size());
+  if (asked.size() < times.size()) at += fmt::format(", {} of them different", asked.size());
+  progress.begin("truth: equilibria of quadratic elements at " + at);
   const auto body = body_of(scene.organs[0], is_solid(scene), log);
-  std::vector<std::optional<TrueTouch>> found(times.size());
   std::mutex lock;
-  std::vector<double> parts(times.size(), 0);  // done
+  std::vector<double> parts(asked.size(), 0);  // done
   const auto say = [&](std::size_t i, double part) {
     const std::lock_guard guard(lock);
     parts[i] = part;
-    progress.at(std::accumulate(parts.begin(), parts.end(), 0.0), double(times.size()), "instants");
+    progress.at(std::accumulate(parts.begin(), parts.end(), 0.0), double(asked.size()), "instants");
   };
-  std::size_t done = 0;
   const auto find = [&](std::size_t i) {
     const auto until = std::chrono::steady_clock::now() + longest;
-    TrueTouch touch{times[i], {}, {}};
-    auto question = paths.question_at(times[i], touch.probes);
-    question.marks = marks;
-    const auto truths = truth::force_truth(body, question,
-                                           {nullptr, fineness,
-                                            [&] {
-                                              keep_going();
-                                              if (std::chrono::steady_clock::now() > until)
-                                                throw TooLong{};
-                                            },
-                                            [&](double part) { say(i, part / 2); }});
-    if (truths.empty()) return;
-    touch.truth = truths[0];
-    found[i] = touch;
+    return truth::force_truth(body, asked[i].question,
+                              {nullptr, fineness,
+                               [&] {
+                                 keep_going();
+                                 if (std::chrono::steady_clock::now() > until) throw TooLong{};
+                               },
+                               [&](double part) { say(i, part / 2); }});
   };
+  std::vector<TrueTouch> found;
+  std::size_t done = 0;
   runtime::WorkerTeam team(std::clamp(std::thread::hardware_concurrency(), 1u, 4u));
-  truth::run_all(team, times.size(), [&](std::size_t i) {
+  truth::run_all(team, asked.size(), [&](std::size_t i) {
+    std::vector<truth::Truth> truths;
     bool was_too_long = false;
     try {
-      find(i);
+      truths = find(i);
     } catch (const TooLong&) {
       was_too_long = true;
     }
     const std::lock_guard guard(lock);
     parts[i] = 1;
-    log << fmt::format("  {} of {}: ", ++done, times.size());
-    if (found[i]) {
-      log << text_of(*found[i]) << std::endl;
-    } else {
-      log << fmt::format("{:.2f} s: no equilibrium found{}", times[i],
+    log << fmt::format("  {} of {}: ", ++done, asked.size());
+    std::vector<TrueTouch>& touches = asked[i].touches;
+    if (truths.empty()) {
+      log << fmt::format("{:.2f} s: no equilibrium found{}", touches[0].time,
                          was_too_long ? fmt::format(" within {} minutes", longest.count()) : "")
           << std::endl;
+      return;
     }
+    for (TrueTouch& touch : touches) touch.truth = truths[0];
+    log << text_of(touches[0]) << std::endl;
+    found.insert(found.end(), touches.begin(), touches.end());
   });
-  std::vector<TrueTouch> truths;
-  for (const auto& touch : found) {
-    if (touch) truths.push_back(*touch);
-  }
-  return truths;
+  std::ranges::sort(found, {}, &TrueTouch::time);
+  return found;
 }
 
 }  // namespace
