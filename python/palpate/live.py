@@ -77,7 +77,8 @@ class Live(Closing[_core.Live]):
 
     def control(self, command: str, timeout_s: float = 5.0) -> None:
         """Says `start` (or go on), `pause`, `reset` or `stop` to every process of the session (`session_control`).
-        Returns when the launcher has repeated it, or after `timeout_s`: then the connection may be closed.
+        The launcher's last command is heard first, and its repetition of this one afterwards: then the connection
+        may be closed. Each is waited for `timeout_s` at most.
 
         Raises:
             ValueError: another command.

@@ -145,7 +145,7 @@ void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
     if (!by_truth) continue;
     out << "the hand would feel: " << text_of(plan.chosen->errors.feel) << '\n';
     if (plan.verification && plan.verification->instants == 0) {
-      out << "not verified: at no other instant was there an equilibrium on finer meshes\n";
+      out << "not verified: on finer meshes no equilibrium was found at any other instant\n";
     } else if (plan.verification) {
       const Errors& found = plan.verification->errors;
       out << fmt::format("verified by a finer truth at {} other instants: force {}\n",
