@@ -36,7 +36,7 @@ HapticRenderer::HapticRenderer(const scene::Haptics& limits, double period, std:
 void HapticRenderer::reset() {
   for (HeldLaw& law : laws_) law.clear();
   passivity_ = PassivityControl(limits_.device_damping, period_);
-  pressed_ = 0;
+  pressed_ = {};
   refused_laws_ = 0;
   refused_since_tick_ = false;
 }
@@ -142,16 +142,14 @@ double HapticRenderer::softening_of(const HeldLaw& law, const DeviceSample& devi
   return alone ? softening : all / own * softening;
 }
 
-/// A contact that stiffens as it is pressed has taken in no more than half its force times the way
-/// against it; a part of that is in the springs of the law already at first touch.
+/// What it took to press the probe there; a part of that is in the springs of the law already at
+/// first touch.
 double HapticRenderer::returnable_energy(const Pose& pose, const Vec3& force) {
   constexpr double kMost = 1e3;  // [J]
-  const double strength = force.stableNorm();
-  if (strength > 0) {
-    pressed_ = std::max(0.0, pressed_ - force.dot(pose.position - pressed_at_) / strength);
-  }
-  pressed_at_ = pose.position;
-  double energy = strength * pressed_ / 2;
+  Vec3 pressing = Vec3::Zero();
+  for (const HeldLaw& law : laws_) pressing += law.pressing();
+  pressed_.move(pose.position, force, pressing);
+  double energy = pressed_.returnable();
   for (const HeldLaw& law : laws_) energy += law.stored_energy();
   return energy < kMost ? energy : kMost;
 }
@@ -175,8 +173,7 @@ Wrench HapticRenderer::passive(const Wrench& wanted, const DeviceSample& device,
   if (apart || !is_finite(device)) {
     passivity_.clear();
     if (is_finite(device)) passivity_.watch(device.pose);
-    pressed_ = 0;
-    pressed_at_ = device.pose.position;
+    pressed_.clear(device.pose.position);
     return wanted;
   }
   passivity_.observe(device.pose, returnable_energy(device.pose, wanted.force));

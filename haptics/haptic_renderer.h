@@ -13,6 +13,7 @@
 #include "haptics/force_limits.h"
 #include "haptics/held_law.h"
 #include "haptics/passivity.h"
+#include "haptics/pressed_work.h"
 #include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/scene/scene.h"
@@ -49,7 +50,7 @@ class HapticRenderer {
   void exchange(StateArchive& archive) {
     archive(force_limiter_, torque_limiter_, passivity_);
     for (HeldLaw& law : laws_) archive(law);
-    archive(presence_, pressed_, pressed_at_, refused_laws_, refused_since_tick_);
+    archive(presence_, pressed_, refused_laws_, refused_since_tick_);
   }
 
  private:
@@ -70,8 +71,7 @@ class HapticRenderer {
 
   std::vector<HeldLaw> laws_;  ///< by source
   double presence_ = 1;        ///< of who holds the device: 0 when its driver is silent
-  double pressed_ = 0;  ///< how far the device went against the force since it touched, ≥ 0 [m]
-  Vec3 pressed_at_ = Vec3::Zero();  ///< where it was last so
+  PressedWork pressed_;
   std::uint64_t refused_laws_ = 0;
   bool refused_since_tick_ = false;
 };

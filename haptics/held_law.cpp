@@ -35,6 +35,7 @@ void HeldLaw::clear() {
   current_.valid = next_.valid = false;
   solver_.clear();
   felt_ = false;
+  pressing_.setZero();
   cross_fade_left_ = 0;
 }
 
@@ -52,6 +53,7 @@ bool HeldLaw::tells_nothing(double time) const {
 
 Wrench HeldLaw::wrench_at(const Pose& pose, double time, std::uint32_t& limits) {
   felt_ = false;
+  pressing_.setZero();
   if (!current_.valid) return {};
   const double old = age(time);
   const LawForce modelled = solver_.evaluate(pose, current_.law.anchor_age + old);
@@ -72,6 +74,7 @@ Wrench HeldLaw::wrench_at(const Pose& pose, double time, std::uint32_t& limits) 
   const double factor = freshness(old, stale_after_, fade_time_);
   if (factor < 1) limits |= kForceStaleFade;
   felt_ = factor > 0;
+  pressing_ = factor * modelled.pressing;
   return factor * wrench;
 }
 

@@ -103,6 +103,7 @@ LawForce LawSolver::evaluate(const Pose& pose, double since_anchor) {
     if (std::all_of(forces, forces + per_row_, [](double force) { return force == 0; })) continue;
     const Row& row = rows_[static_cast<std::size_t>(i / per_row_)];
     const Vec3 surface = pose.rotation * row.point_P - row.radius * row.basis.col(0);
+    result.pressing += forces[0] * row.basis.col(0);
     for (int k = 0; k < per_row_; ++k) {
       const Vec3 force = forces[k] * row.basis.col(k);
       result.wrench.force += force;

@@ -18,6 +18,7 @@ bool is_usable(const LocalLaw& law);
 
 struct LawForce {
   Wrench wrench;
+  Vec3 pressing = Vec3::Zero();  ///< what of the force is along the rows' normals [N]
   bool beyond_validity = false;  ///< evaluated at the validity radius instead of at the probe
   int sweeps = 0;                ///< of Gauss–Seidel
 };

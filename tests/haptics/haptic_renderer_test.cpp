@@ -133,3 +133,30 @@ TEST_CASE("haptic renderer: what the device reports of itself reaches the force 
   sample.limits = kPoseSlewed | kPoseRefused;
   CHECK(bench.tick(sample).limits == (kPoseSlewed | kPoseRefused));
 }
+
+TEST_CASE("haptic renderer: a shell that gives way is felt on its way out as its law is") {
+  // Oracle: the law's own force, from which a slow release with laws of 250 Hz is off by what the
+  // force changes in a period and a half; it is given back all it took, so nothing may be taken
+  // away. At 20 mm the force has fallen to a third of its most.
+  const auto shell = [](double depth) {
+    return 0.4 * std::sin(std::min(std::max(depth, 0.0) * 140, 2.8));
+  };
+  RendererBench bench(scene::Haptics{});
+  double off = 0, most = 0;
+  for (int i = 0; i <= 4000; ++i) {
+    const double depth = 0.02 * (i < 2000 ? i / 2000.0 : 2 - i / 2000.0);
+    LocalLaw law = wall_law(Vec3(0, 0, -depth), 0, 100);
+    law.rows[0].force.z() = shell(depth);
+    law.period = 4 * kT;
+    if (i % 4 == 0) bench.renderer.update_law(law, bench.time());
+    DeviceSample device = resting_at(Vec3(0, 0, -depth));
+    device.twist.linear.z() = i < 2000 ? -0.01 : 0.01;
+    const RenderedForce out = bench.tick(device);
+    INFO("at " << depth << " m");
+    REQUIRE((out.limits & kForcePassivity) == 0);
+    off = std::max(off, std::abs(out.force.z() - shell(depth)));
+    most = std::max(most, out.force.z());
+  }
+  CHECK(most == Approx(0.4).epsilon(0.02));
+  CHECK(off < 0.01 * 1.5 * 4 * kT * (0.4 * 140 + 100));
+}
