@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "deformation/contact/compliance_row.h"
+
 namespace palpate::deformation {
 
 double stiffer_by_closing(const LawRow& row, const Vec3& went, double period, int steps) {
@@ -17,7 +19,9 @@ double stiffer_by_closing(const LawRow& row, const Vec3& went, double period, in
 // W = L Lᵀ; the columns of L are what rows give way by themselves. So W stays positive.
 void stiffen_closing_rows(std::span<const double> stiffer, Eigen::MatrixXd& W) {
   if (std::ranges::all_of(stiffer, [](double by) { return by == 1; })) return;
-  const Eigen::LLT<Eigen::MatrixXd> factor(W);
+  Eigen::MatrixXd regular = W;
+  regular.diagonal() *= 1 + kRegular;
+  const Eigen::LLT<Eigen::MatrixXd> factor(regular);
   if (factor.info() != Eigen::Success) return;
   Eigen::MatrixXd L = factor.matrixL();
   const auto per_row = W.rows() / static_cast<Eigen::Index>(stiffer.size());

@@ -21,6 +21,10 @@ struct PeriodSteps {
   double displaced() const { return (implicit ? count + 1.0 : count - 1.0) / (2.0 * count); }
 };
 
+/// Rows on the same nodes depend on each other, and whether W of them is regular is rounding: it is
+/// with this part more of its diagonal, by which what they share is counted once.
+inline constexpr double kRegular = 1e-6;
+
 /// A weighted place on the body and a direction there: a row of C.
 struct ComplianceRow {
   std::vector<std::pair<std::uint32_t, double>> weights;  ///< of nodes

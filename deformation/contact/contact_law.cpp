@@ -5,6 +5,8 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "deformation/contact/compliance_row.h"
+
 namespace palpate::deformation {
 namespace {
 
@@ -17,8 +19,6 @@ bool slides(const LawRow& row, double friction) {
   return dragging.norm() >= kSlidingFraction * friction * pressing;
 }
 
-/// Rows on the same nodes depend on each other: what they share is counted once.
-constexpr double kRegular = 1e-6;
 /// Two ways to the same stiffness differ by less, where W is no more regular than that.
 constexpr double kRounding = 1 + 1e-3;
 

@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <vector>
 
+#include "deformation/contact/compliance_row.h"
 #include "tests/deformation/organs.h"
 #include "tests/dense_algebra.h"
 
@@ -74,13 +76,31 @@ TEST_CASE("closing rows: what they give way by themselves is divided, the rest s
     return M.bottomRightCorner(2, 2) -
            M.bottomLeftCorner(2, 2) * inverse_of(M.topLeftCorner(2, 2)) * M.topRightCorner(2, 2);
   };
-  CHECK((own(W) - own(before) / 4).norm() < 1e-12 * before.norm());
-  CHECK((W.topRows(2) - before.topRows(2)).norm() < 1e-12 * before.norm());
+  Eigen::MatrixXd regular = before;
+  regular.diagonal() *= 1 + kRegular;
+  CHECK((own(W) - own(regular) / 4).norm() < 1e-12 * before.norm());
+  CHECK((W.topRows(2) - regular.topRows(2)).norm() < 1e-12 * before.norm());
   CHECK(eigenvalues_of(W)[0] > 0);
-  // Two rows on one place: W is not regular and stays.
-  Eigen::MatrixXd same = Eigen::MatrixXd::Ones(2, 2);
-  stiffen_closing_rows(stiffer, same);
-  CHECK(same == Eigen::MatrixXd::Ones(2, 2));
+  // Of what is no compliance nothing is made.
+  Eigen::MatrixXd odd = -Eigen::MatrixXd::Identity(2, 2);
+  const double both[] = {4, 4};
+  stiffen_closing_rows(both, odd);
+  CHECK(odd == -Eigen::MatrixXd::Identity(2, 2));
+}
+
+TEST_CASE("closing rows: of rows on one place rounding decides nothing") {
+  // Oracle: definition: rows on one place are as one, whose compliance is divided; with rounding of
+  // either sign in W, by which it is regular or not.
+  for (const double rounding : {-1e-15, 0.0, 1e-15}) {
+    for (const int rows : {1, 2, 3}) {
+      INFO(rows << " rows, rounding " << rounding);
+      Eigen::MatrixXd W = Eigen::MatrixXd::Constant(rows, rows, 4e-3);
+      W(rows - 1, rows - 1) *= 1 + rounding;
+      const std::vector<double> stiffer(static_cast<std::size_t>(rows), 3);
+      stiffen_closing_rows(stiffer, W);
+      CHECK((W.array() / (4e-3 / 3) - 1).abs().maxCoeff() < 3 * kRegular);
+    }
+  }
 }
 
 }  // namespace
