@@ -5,10 +5,10 @@ namespace palpate::deformation {
 void inertial_prediction(const Body& body, double h, const OrganState& state,
                          std::vector<Vec3>& velocities) {
   velocities.resize(state.velocities.size());
-  const double kept = 1 / (1 + h * body.drag);
+  const double kept = 1 - h * body.drag;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
     const bool moves = body.inverse_masses[i] > 0;
-    velocities[i] = moves ? Vec3(kept * (state.velocities[i] + h * body.gravity)) : Vec3::Zero();
+    velocities[i] = moves ? Vec3(kept * state.velocities[i] + h * body.gravity) : Vec3::Zero();
   }
 }
 

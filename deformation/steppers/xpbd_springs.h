@@ -3,9 +3,10 @@
 //   Dynamics", MIG 2016;  M. Macklin et al., "Small Steps in Physics Simulation", SCA 2019: many
 //   short steps of one iteration.
 //
-// A step begins with the inertial prediction x = xₙ + h (v + h·gravity)/(1 + h·drag). Then every
-// spring is visited, one after another. With C = |x_b − x_a| − l₀, compliance α = 1/(k h²), damping
-// γ = c/(k h), w = 1/m_a + 1/m_b, Δx = x − xₙ and λ at first 0, a visit is
+// A step begins with the inertial prediction x = xₙ + h (v + h (gravity − drag v)): drag of a
+// velocity that is known takes nothing of a weight at rest. Then every spring is visited, one after
+// another. With C = |x_b − x_a| − l₀, compliance α = 1/(k h²), damping γ = c/(k h), w = 1/m_a +
+// 1/m_b, Δx = x − xₙ and λ at first 0, a visit is
 //   Δλ = −(C + γ u·(Δx_b − Δx_a) + α λ) / ((1 + γ) w + α),  λ ← λ + Δλ,  x ← x + M⁻¹∇CᵀΔλ
 // Volume and contacts, constraints of no compliance, follow together and are solved to the end
 // (contact_solve.h) on the velocities (x − xₙ)/h: the contents are kept whatever the springs do.
@@ -54,7 +55,7 @@ class XpbdSprings : public OrganDynamics {
   std::vector<Vec3> positions_;
 };
 
-/// (v + h·gravity)/(1 + h·drag), zero where nodes are fixed  (node_count) [m/s]
+/// v + h (gravity − drag v), zero where nodes are fixed  (node_count) [m/s]
 void inertial_prediction(const Body& body, double h, const OrganState& state,
                          std::vector<Vec3>& velocities);
 

@@ -59,14 +59,22 @@ inline void check_stays_at_rest(const OrganModel& model, OrganDynamics& dynamics
   CHECK(moved <= tolerance);
 }
 
-/// Oracle: analytic. Backward Euler in free fall with drag: v⁺ = (v + h g)/(1 + h·drag).
-inline void check_free_fall(const OrganModel& model, OrganDynamics& dynamics) {
+/// Of which velocity a step takes drag: that it begins with, or ends with.
+enum class DragOf { kBefore, kAfter };
+
+/// Oracle: analytic. Free fall with drag: v⁺ = v + h (g − drag v), by backward Euler
+/// (v + h g)/(1 + h·drag).
+inline void check_free_fall(const OrganModel& model, OrganDynamics& dynamics, DragOf drag) {
   const double h = dynamics.largest_step() / 2;
   OrganState state = rest_state(model);
   Vec3 velocity = Vec3::Zero(), fallen = Vec3::Zero();
   for (int k = 0; k < 30; ++k) {
     dynamics.step(h, {}, state);
-    velocity = (velocity + h * model.gravity) / (1 + h * model.drag);
+    if (drag == DragOf::kBefore) {
+      velocity += h * (model.gravity - model.drag * velocity);
+    } else {
+      velocity = (velocity + h * model.gravity) / (1 + h * model.drag);
+    }
     fallen += h * velocity;
   }
   double error = 0;
