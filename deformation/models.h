@@ -40,6 +40,9 @@ struct ModelRow {
   /// elastic_energy() is all it stores and its contacts' impulses all it is given. Not so where the
   /// contents store energy, or nodes are moved by no force.
   bool knows_energy = true;
+  /// What it is off by under a probe is the size of its mesh, which estimated_force_error() tells:
+  /// it does not lock, has no modes left out and solves its steps.
+  bool tells_mesh_error = false;
   /// The matrix of a touched patch does not tell what its steps answer a press by: a law is pressed
   /// on copies (pressed_copy.h) every so many periods. 0: the matrix tells.
   int press_every = 0;

@@ -377,8 +377,8 @@ const Vec3& DeformationWorld::force(std::size_t probe) const {
 double DeformationWorld::estimated_force_error(std::size_t probe) const {
   double worst = 0;
   for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
+    if (!impl_->organs[i].tells_mesh_error) continue;
     const OrganModel& model = impl_->organs[i].simulated.model();
-    if (!model.is_solid()) continue;
     const TouchedPart part = touched_part(impl_->probes.at(probe), i, model);
     if (!(part.reach > 0)) continue;
     worst = std::max(worst, palpate::deformation::estimated_force_error(model, positions(i), part));

@@ -100,7 +100,7 @@ class DeformationWorld {
   /// Mean force on a probe over the last advance() [N].
   const Vec3& force(std::size_t probe) const;
   /// How much too large that force is because of the solids' meshes, estimated (force_error.h), 0 …
-  /// 1, in some tenths of a millisecond. 0: it presses on no solid.
+  /// 1, in some tenths of a millisecond. 0: it presses on none whose model tells it.
   double estimated_force_error(std::size_t probe) const;
   /// That force row by row and how it varies with the probe's pose. Costs a small factorisation.
   /// @param bounded  out: its stiffness was bounded, or could not be found (contact_law.h)

@@ -182,12 +182,13 @@ WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
       .runner = runner,
   };
   const OrganModel& kept = made.simulated.model();
-  made.keeps_volume = !kept.is_solid() && row_of(organ.model).volume == VolumeKeeping::kExactly;
+  const ModelRow& row = row_of(organ.model);
+  made.keeps_volume = !kept.is_solid() && row.volume == VolumeKeeping::kExactly;
+  made.tells_mesh_error = row.tells_mesh_error;
   if (!kept.is_solid()) {
     made.springs = std::make_unique<PatchSprings>(kept.network(), kept.node_count());
   }
-  const int press_every = row_of(organ.model).press_every;
-  if (press_every > 0) made.copy = std::make_unique<PressedCopy>(press_every);
+  if (row.press_every > 0) made.copy = std::make_unique<PressedCopy>(row.press_every);
   made.following = std::move(following);
   made.parents = std::move(refined.parents);
   made.halvings = std::move(refined.halvings);

@@ -33,6 +33,7 @@ struct WorldOrgan {
   SimulatedOrgan::Mark start = {};  ///< of a step with other organs that may be taken back
   double mean_edge = 0;             ///< of the surface at rest [m]
   bool keeps_volume = false;        ///< by springs' contents: at once, wherever it is touched
+  bool tells_mesh_error = false;    ///< as ModelRow
   bool replaced = false;            ///< its state, at the end of the last advance
   std::unique_ptr<PatchCompliance> compliance = nullptr;
   std::unique_ptr<PatchSprings> springs = nullptr;  ///< none: a solid
