@@ -103,16 +103,17 @@ void record(const palpate::runtime::ModuleOptions& options, const std::filesyste
 }  // namespace
 
 int main(int argc, char** argv) {
-  palpate::runtime::Program program("Records every sample of a session into one MCAP file",
-                                    "palpate-recorder");
+  palpate::runtime::Program program("Records a session into one MCAP file", "palpate-recorder");
   palpate::runtime::ModuleOptions options;
   options.bus.participant_name = "recorder";
   std::filesystem::path file;
   program.add_output("FILE", file, "The recording to write; one that is there is replaced")
       .required();
   Words topics, hears;
-  program.add("--topics", topics,
-              "Topics to record: all, NAME, or NAME=HZ for at most so many samples a second");
+  program.add(
+      "--topics", topics,
+      "Topics to record: all, NAME, or NAME=HZ for at most so many samples a second; else all in "
+      "lockstep, and in real time all,node_positions=20,contact_model=10,contacts=20");
   palpate::runtime::Option hears_option = program.add(
       "--hears", hears,
       "Modules of a session that waits until all of them are heard: a module_status says so");

@@ -164,6 +164,8 @@ std::string unit_of(const std::string& name) {
        std::vector<std::pair<std::string, std::string>>{{"_rad_per_s", "rad/s"},
                                                         {"_m_per_s", "m/s"},
                                                         {"_n_per_m", "N/m"},
+                                                        {"_m_per_n", "m/N"},
+                                                        {"_per_s", "1/s"},
                                                         {"_n_m", "N·m"},
                                                         {"_m3", "m³"},
                                                         {"_pa", "Pa"},
