@@ -45,10 +45,12 @@ std::filesystem::path scene_file(const std::filesystem::path& named) {
   if (std::filesystem::is_regular_file(named, none) && is_mesh(named)) {
     throw InputError(named.string() + ": a mesh, not a scene: palpate new makes a scene of it");
   }
-  if (named.empty() || std::filesystem::exists(named, none)) return named;
+  const bool exists = std::filesystem::exists(named, none);
+  if (named.empty() || (exists && !std::filesystem::is_directory(named, none))) return named;
   for (const auto& scene : shipped_scenes()) {
     if (named == scene.name || named == scene.file.filename()) return scene.file;
   }
+  if (exists) return named;  // who reads it says that it is a folder
   throw InputError(named.string() +
                    ": no such file, and no shipped scene has that name (palpate list scenes)");
 }

@@ -16,7 +16,8 @@ struct ShippedScene {
 /// Of the data folder, by name.
 std::vector<ShippedScene> shipped_scenes();
 
-/// The file that a command's SCENE means: itself if it exists, else the shipped scene of that name.
+/// The file that a command's SCENE means: itself if it exists, else the shipped scene of that name,
+/// which a folder of its name, as an --out may be, does not hide.
 /// @throws InputError where there is neither, or for a mesh
 std::filesystem::path scene_file(const std::filesystem::path& named);
 /// Whether it is a file of the data folder, where nothing is written.

@@ -19,4 +19,17 @@ TEST_CASE("scene file: a file goes before a name, what is neither is refused, a 
   CHECK_FALSE(is_shipped(file));
 }
 
+TEST_CASE("scene file: a folder does not hide the shipped scene of its name") {
+  // Oracle: definition; the folder is the one that `--out stomach_probe` leaves.
+  const test::SceneFolder folder;
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  std::filesystem::create_directories("stomach_probe");
+  std::filesystem::create_directories("mine");
+  const auto shipped = scene_file("stomach_probe"), mine = scene_file("mine");
+  std::filesystem::current_path(before);
+  CHECK(is_shipped(shipped));
+  CHECK(mine == "mine");  // whoever reads it says that it is a folder
+}
+
 }  // namespace palpate::scene
