@@ -21,6 +21,7 @@ int become(const char* program, char* const* arguments, char* const* environment
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) return ESRCH;  // the launcher died before the line above
   setpgid(0, 0);
+  std::signal(SIGPIPE, SIG_DFL);  // which the launcher may ignore
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
   if (inherited) fcntl(*inherited, F_SETFD, 0);

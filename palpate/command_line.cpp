@@ -137,6 +137,7 @@ void use_keys(const std::filesystem::path& folder) {
 void add_run(Program& program, RunOptions& options) {
   Options command =
       program.command("run", "Run a scene: start, watch and stop its processes", [&options] {
+        outlive_readers();
         use_keys(options.secure);
         options.headless |= no_display();
         options.scene = scene::scene_file(options.scene);
@@ -152,6 +153,7 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
   Options command = program.command(
       "replay", "Show a recording; with SCENE, run that scene with the recorded probe motion",
       [&program, &recording, &playing, &options] {
+        outlive_readers();
         check_replay_options(program.given(), playing, options);
         use_keys(options.secure);
         options.headless |= no_display();

@@ -7,6 +7,8 @@
 #include <csignal>
 #include <ctime>
 #include <ostream>
+#include <stdexcept>
+#include <utility>
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
@@ -22,8 +24,11 @@ bool is_information(const std::string& line) { return line.find("] info: ") != s
 }  // namespace
 
 ModuleGroup::ModuleGroup(std::vector<ModuleCommand> commands, std::ostream& log,
-                         Restarting restarting)
-    : restarting_(restarting), log_(log) {
+                         Restarting restarting, std::filesystem::path folder)
+    : restarting_(restarting),
+      reaper_(std::move(folder)),
+      reaper_began_ns_(runtime::monotonic_now_ns()),
+      log_(log) {
   for (auto& command : commands) {
     Member member{std::move(command), nullptr};
     if (member.command.keeps_state && restarting_ != Restarting::kNever) {
@@ -74,7 +79,9 @@ ModuleEnd ModuleGroup::end_of(Member& member, int wait_status) {
                 code == kExitBadInput,
                 member.hung.empty() ? describe_exit(wait_status) : member.hung + ", was killed",
                 member.last_error,
-                command_text(again(member.command, member.restarts + 1))};
+                command_text(again(member.command, member.restarts + 1)),
+                /*returns=*/false,
+                WIFSIGNALED(wait_status)};
   if (restarting_ == Restarting::kNever || !end.failed || end.bad_input) return end;
   const std::int64_t now = runtime::monotonic_now_ns();
   const auto pause =
@@ -94,7 +101,27 @@ void ModuleGroup::listen(Member& member) {
   log_.flush();
 }
 
+/// Whoever killed it: the session is not its own.
+void ModuleGroup::look_after_reaper() {
+  const auto ended = reaper_.ended();
+  if (!ended) return;
+  log_ << "palpate: palpate-reaper, which ends what a killed launcher leaves, ended: "
+       << describe_exit(*ended);
+  const std::int64_t now = runtime::monotonic_now_ns();
+  const bool returns =
+      reaper_policy_
+          .pause_after(seconds_from_ns(std::exchange(reaper_began_ns_, now)), seconds_from_ns(now))
+          .has_value();
+  try {
+    if (returns) reaper_.start_again();
+    log_ << (returns ? "; it is started again" : "; the session goes on without it") << std::endl;
+  } catch (const std::runtime_error& error) {
+    log_ << "; the session goes on without it: " << error.what() << std::endl;
+  }
+}
+
 std::vector<ModuleEnd> ModuleGroup::poll() {
+  look_after_reaper();
   start_due();  // first: an end is told before the return
   std::vector<ModuleEnd> ends;
   for (auto& member : members_) {
@@ -150,7 +177,8 @@ std::optional<ModuleEnd> ModuleGroup::last_end(const std::string& module) {
     ModuleEnd end;
     end.module = module;
     end.how = describe_exit(*ended);
-    end.failed = !WIFEXITED(*ended) || WEXITSTATUS(*ended) != kExitDone;
+    end.killed = !WIFEXITED(*ended);
+    end.failed = end.killed || WEXITSTATUS(*ended) != kExitDone;
     if (end.failed || !is_information(member.last_line)) {
       end.last_error = end.failed ? member.last_error : member.last_line;
     }

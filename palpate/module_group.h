@@ -1,6 +1,7 @@
 // The processes of a run: started, listened to, and ended together.
 #pragma once
 
+#include <filesystem>
 #include <iosfwd>
 #include <map>
 #include <memory>
@@ -25,6 +26,7 @@ struct ModuleEnd {
   std::string last_error;   ///< its last line that is not information; empty if none
   std::string start_again;  ///< the command that starts it again
   bool returns = false;     ///< it is started again by itself
+  bool killed = false;      ///< by a signal
 };
 
 /// Whether processes that failed are started again (restart_policy.h). Those that refused their
@@ -35,9 +37,10 @@ class ModuleGroup {
  public:
   /// Starts all in order. What they say goes to `log`, line by line. To be made while the program
   /// has one thread (reaper.h).
+  /// @param folder  of this process, as Reaper's; empty: none
   /// @throws std::runtime_error naming the program that cannot be started
   ModuleGroup(std::vector<ModuleCommand> commands, std::ostream& log,
-              Restarting restarting = Restarting::kNever);
+              Restarting restarting = Restarting::kNever, std::filesystem::path folder = {});
 
   /// Passes on what was said, starts again what is due; returns those that ended since the last
   /// call.
@@ -89,9 +92,12 @@ class ModuleGroup {
   ModuleEnd end_of(Member& member, int wait_status);
   void listen(Member& member);
   void stop(bool reporting, const std::string& but);
+  void look_after_reaper();
 
   Restarting restarting_;
   Reaper reaper_;  // before the members: it outlives them
+  RestartPolicy reaper_policy_ = {};
+  std::int64_t reaper_began_ns_;
   std::vector<Member> members_;
   std::ostream& log_;
 };

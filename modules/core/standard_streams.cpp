@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
@@ -29,6 +30,8 @@ void open_standard_descriptors() {
     if (::open("/dev/null", O_RDWR) < 0 && ::open("/", O_RDONLY) < 0) ::_exit(kExitFailed);
   }
 }
+
+void outlive_readers() { std::signal(SIGPIPE, SIG_IGN); }
 
 std::string why_output_is_lost() {
   static std::string first_reason;  // a stream says only that it failed

@@ -11,6 +11,10 @@ namespace palpate {
 /// program.
 void open_standard_descriptors();
 
+/// Of a program that holds a session: a reader of what it prints that goes away (`| head`) does not
+/// end it; what it says from then on is lost. Other programs end by SIGPIPE, as ever.
+void outlive_readers();
+
 /// Writes what standard output still holds back.
 /// @returns the reason if not all of it could be written; empty if it could, and where nobody reads
 /// any more (`| head`), who wanted no more

@@ -4,6 +4,7 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
+#include "modules/core/standard_streams.h"
 #include "modules/core/stop_signal.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/recorder.h"
@@ -126,6 +127,7 @@ int main(int argc, char** argv) {
       .needs(lockstep);
   program.footer(palpate::runtime::kModuleExitCodes);
   return program.run(argc, argv, [&] {
+    palpate::outlive_readers();
     for (const auto& module : hears) check_module(module);
     record(options, file, topics, hears);
     return palpate::kExitDone;

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "modules/core/error.h"
+#include "modules/core/standard_streams.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/processes.h"
 
@@ -70,6 +71,7 @@ int run_module(int argc, char** argv, const ModuleProgram& program,
   command.footer(kModuleExitCodes);
   if (program.add_options) program.add_options(command);
   return command.run(argc, argv, [&] {
+    outlive_readers();
     try {
       run(options);
     } catch (const Interrupted& stop) {  // no error: it was asked for

@@ -8,6 +8,7 @@
 
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
+#include "modules/core/standard_streams.h"
 #include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
 #include "modules/core/whole_file.h"
@@ -181,6 +182,7 @@ int main(int argc, char** argv) {
       "Exit code: 0 if it moved the probe until the session ended, its time was up or it was "
       "stopped, 1 if the session did not run, 2 for bad input, 130 if it was stopped before.");
   return program.run(argc, argv, [&] {
+    outlive_readers();
     attach(options);
     return kExitDone;
   });

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "modules/core/standard_streams.h"
 #include "modules/core/stop_signal.h"
 #include "modules/runtime/module_options.h"
 #include "modules/runtime/program.h"
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   program.footer(
       "Exit code: 0 if no line failed, 1 if one did, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
+    outlive_readers();
     const StopSignal signal;
     if (shard) options.shard = report::shard_from(*shard);
     return certify::run_certify(
