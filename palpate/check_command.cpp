@@ -12,6 +12,7 @@
 #include "modules/scene/schema.h"
 #include "modules/scene/settings.h"
 #include "palpate/scene_check.h"
+#include "palpate/scene_doubts.h"
 #include "palpate/session/contact_line.h"
 
 namespace palpate::launcher {
@@ -170,7 +171,8 @@ int check_command(const CheckOptions& options, std::ostream& out, std::ostream& 
     out << scene::resolved_text(scene);
     return kExitDone;
   }
-  const SceneCheck check = check_scene(scene, options.measure_for, progress_on(log));
+  const SceneCheck check =
+      check_scene(scene, options.measure_for, progress_on(log), resampling_on(log));
   options.json ? print_json(check, out) : print_text(check, out);
   return kExitDone;
 }

@@ -124,8 +124,8 @@ void add_run_options(Options& command, RunOptions& options) {
                    "Leave processes that die or hang as they are; else they are started again");
   command.footer(
       "Exit code: 0 if it ran to its end or was stopped, 1 if something failed, or it was stopped "
-      "before its snapshot, 2 for bad input, 130 if it was stopped while an organ was filled, "
-      "--in-process.");
+      "before its snapshot, 2 for bad input, 130 if it was stopped before, while an organ "
+      "was resampled or filled.");
 }
 
 /// By the environment: each process of the session inherits it.

@@ -23,6 +23,7 @@
 #include "modules/scene/scene_reader.h"
 #include "palpate/module_group.h"
 #include "palpate/run_snapshot.h"
+#include "palpate/scene_doubts.h"
 #include "palpate/session/in_process.h"
 #include "palpate/session_monitor.h"
 #include "palpate/session_text.h"
@@ -321,7 +322,7 @@ int run_in_process(const RunOptions& options, std::ostream& out, std::ostream& l
   wanted.runner = &team;
   wanted.from = &start;
   wanted.from_file = options.from_snapshot;
-  session::InProcess session(scene, session::load_assets(scene), wanted);
+  session::InProcess session(scene, session::load_assets(scene, resampling_on(log)), wanted);
   auto scenes = session.bus().writer(bus::kScene);
   SceneDescription description = runtime::scene_description(scene);
   description.header.source_time_ns = runtime::CycleGrid::kSetUp;

@@ -2,7 +2,6 @@
 
 #include <json/json.h>
 
-#include <chrono>
 #include <cmath>
 #include <iomanip>
 #include <ostream>
@@ -115,16 +114,11 @@ void refuse_if_leaky(const MeshReport& report, const TriangleSurface& surface,
 
 TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOptions& options,
                          std::ostream& log) {
-  using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::seconds kLineEvery{2};
-  auto next = Clock::now() + kLineEvery;
-  const auto tell = [&](double part) {
-    if (Clock::now() < next) return;
-    next = Clock::now() + kLineEvery;
-    log << "resampling: " << std::lround(100 * part) << " %" << std::endl;
-  };
+  const std::string file = options.input.string();
   try {
-    return resample_surface(surface, options.node_count, tell);
+    return resample_surface(
+        surface, options.node_count,
+        [&, tell = launcher::resampling_on(log)](double part) { tell(file, part); });
   } catch (const InputError& error) {
     throw InputError(options.input.string() + ": " + error.what());
   }

@@ -19,6 +19,7 @@
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/scene_reader.h"
 #include "palpate/recorded_scene.h"
+#include "palpate/scene_doubts.h"
 #include "palpate/session/in_process.h"
 #include "palpate/unpacked_scene.h"
 
@@ -205,7 +206,8 @@ int rerun(const std::filesystem::path& recording, const std::vector<std::string>
   check_inputs(recording, recorded, stages, scene);
   const std::string anew = fmt::format("{}", fmt::join(stages, ", "));
   runtime::WorkerTeam team(scene.deformation_threads);
-  session::InProcess session(scene, session::load_assets(scene), options_for(stages, team));
+  session::InProcess session(scene, session::load_assets(scene, resampling_on(log)),
+                             options_for(stages, team));
   auto scenes = session.bus().writer(bus::kScene);
   SceneDescription description = runtime::scene_description(scene);
   description.resolved_text = recorded_with.as_told(description.resolved_text);

@@ -366,7 +366,8 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   }
   if (options.only.empty()) {
     const scene::Scene scene = scene::load_scene(options.scene);
-    for (const auto& doubt : doubts_about(scene, load_skins(scene), progress_on(log)).lines) {
+    for (const auto& doubt :
+         doubts_about(scene, load_skins(scene, resampling_on(log)), progress_on(log)).lines) {
       log << "palpate: warning: " << doubt << std::endl;
     }
   }

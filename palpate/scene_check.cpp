@@ -17,6 +17,7 @@
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/key_list.h"
+#include "modules/scene/key_place.h"
 #include "modules/scene/models.h"
 #include "modules/scene/probe_shape.h"
 #include "modules/scene/processes.h"
@@ -189,14 +190,16 @@ class TimedSession {
 }  // namespace
 
 SceneCheck check_scene(const scene::Scene& scene, double measure_for,
-                       const trajectories::Progress& progress) {
+                       const trajectories::Progress& progress,
+                       const scene::Resampling& resampling) {
   SceneCheck check;
   check.scene = scene;
   check.period = 1 / scene.rates.deformation;
   std::vector<geometry::OrganShape> shapes;
   std::vector<geometry::TriangleSurface> skins;
-  for (const auto& organ : scene.organs) {
-    shapes.push_back(scene::load_organ(organ));
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    shapes.push_back(scene::with_organ(
+        scene, i, [&](const auto& organ) { return scene::load_organ(organ, resampling); }));
     skins.push_back(shapes.back().surface);
   }
   SceneDoubts doubts = doubts_about(scene, skins, progress);

@@ -52,6 +52,7 @@ struct SceneCheck {
 /// @param measure_for  about how long the cost of a period is measured [s]
 /// @throws InputError for a scene, mesh or recording that cannot be used
 SceneCheck check_scene(const scene::Scene& scene, double measure_for,
-                       const trajectories::Progress& progress = {});
+                       const trajectories::Progress& progress = {},
+                       const scene::Resampling& resampling = {});
 
 }  // namespace palpate::launcher

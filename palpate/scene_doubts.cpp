@@ -12,9 +12,10 @@
 
 #include "haptics/devices/device.h"
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/core/units.h"
 #include "modules/geometry/bounding_box.h"
-#include "modules/scene/assets.h"
+#include "modules/scene/key_place.h"
 #include "modules/scene/probe_shape.h"
 #include "modules/scene/region.h"
 #include "modules/trajectories/trajectory_file.h"
@@ -242,15 +243,30 @@ trajectories::Progress progress_on(std::ostream& log) {
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::seconds kLineEvery{2};
   return [&log, next = Clock::now() + kLineEvery](double part, std::size_t poses) mutable {
+    if (stop_requested()) throw Interrupted("stopped while a recording was read");
     if (Clock::now() < next) return;
     next = Clock::now() + kLineEvery;
     log << fmt::format("recording: {} poses, {:.0f} % of the file", poses, 100 * part) << std::endl;
   };
 }
 
-std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene) {
+scene::Resampling resampling_on(std::ostream& log) {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::seconds kFirstLine{1}, kLineEvery{2};
+  return [&log, next = Clock::now() + kFirstLine](const std::string& owner, double part) mutable {
+    if (Clock::now() < next) return;
+    next = Clock::now() + kLineEvery;
+    log << fmt::format("{}: resampling: {:.0f} %", owner, 100 * part) << std::endl;
+  };
+}
+
+std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene,
+                                                  const scene::Resampling& resampling) {
   std::vector<geometry::TriangleSurface> skins;
-  for (const auto& organ : scene.organs) skins.push_back(scene::load_skin(organ));
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    skins.push_back(scene::with_organ(
+        scene, i, [&](const auto& organ) { return scene::load_skin(organ, resampling); }));
+  }
   return skins;
 }
 

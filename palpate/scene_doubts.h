@@ -9,6 +9,7 @@
 
 #include "collision/approach.h"
 #include "modules/geometry/triangle_surface.h"
+#include "modules/scene/assets.h"
 #include "modules/scene/scene.h"
 #include "modules/trajectories/motion_facts.h"
 #include "modules/trajectories/progress.h"
@@ -41,8 +42,12 @@ SceneDoubts doubts_about(const scene::Scene& scene,
                          const std::vector<geometry::TriangleSurface>& skins,
                          const trajectories::Progress& progress = {});
 
-/// Prints how far a long recording is read, at most every two seconds.
+/// Prints how far a long recording is read, at most every two seconds. Throws Interrupted if a
+/// signal of StopSignal comes.
 trajectories::Progress progress_on(std::ostream& log);
+
+/// Prints that something is resampled, and how far that is: after a second, then every two.
+scene::Resampling resampling_on(std::ostream& log);
 
 /// @param owner  what messages call it  @param size  its longest side, read in mesh.unit [m]
 /// @throws InputError for a size that no organ has, naming the likely unit
@@ -53,7 +58,8 @@ void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double 
 std::string doubt_about_extent(const std::string& owner, double extent);
 
 /// The skins of all organs.
-/// @throws InputError as scene::load_skin() does
-std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene);
+/// @throws InputError, Interrupted as scene::load_skin() does
+std::vector<geometry::TriangleSurface> load_skins(const scene::Scene& scene,
+                                                  const scene::Resampling& resampling = {});
 
 }  // namespace palpate::launcher

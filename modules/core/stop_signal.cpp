@@ -57,6 +57,11 @@ StopSignal::~StopSignal() {
 
 bool StopSignal::requested() const { return stop_flag != 0; }
 
+bool stop_requested() {
+  const Alone alone;
+  return depth > 0 && stop_flag != 0;
+}
+
 NoSuspension::NoSuspension() {
   suspend_flag = 0;
   struct sigaction action {};

@@ -16,6 +16,9 @@ class StopSignal {
   bool requested() const;
 };
 
+/// Whether one exists and a signal came: for long work that itself is no reason not to be ended.
+bool stop_requested();
+
 /// While one exists, Ctrl-Z (SIGTSTP) does not stop the program: for one whose children would go on
 /// without it. One at a time.
 class NoSuspension {

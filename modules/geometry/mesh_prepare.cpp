@@ -7,11 +7,12 @@ namespace palpate::geometry {
 
 TriangleSurface load_organ_surface(const std::filesystem::path& file, std::string_view unit,
                                    std::size_t node_count,
-                                   const std::function<void(const TriangleSurface&)>& admit) {
+                                   const std::function<void(const TriangleSurface&)>& admit,
+                                   const std::function<void(double)>& progress) {
   TriangleSurface surface = read_surface(file, unit);
   repair_surface(surface);
   try {
-    if (node_count > 0) surface = resample_surface(surface, node_count);
+    if (node_count > 0) surface = resample_surface(surface, node_count, progress);
     if (admit) admit(surface);
   } catch (const InputError& error) {
     throw InputError(file.string() + ": " + error.what());

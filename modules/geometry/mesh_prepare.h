@@ -25,17 +25,21 @@ RepairLog repair_surface(TriangleSurface& surface);
 /// corners a little rounder. A surface that has this count already is returned as it is.
 /// Deterministic.
 /// @param node_count  4 … kMaxNodes
-/// @param progress    called after each round with the part that is done, 0 … 1
-/// @throws InputError if the surface cannot be resampled.
+/// @param progress    called again and again with the part that is done, 0 … 1
+/// @throws InputError if the surface cannot be resampled; Interrupted if a signal of StopSignal
+/// comes
 TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t node_count,
                                  const std::function<void(double)>& progress = {});
 
 /// Reads, repairs, resamples if node_count > 0, and checks.
 /// @param admit  may refuse the surface by an InputError before it is checked, which takes as long
 ///               as there are pairs of triangles at a node
-/// @throws InputError naming file, problems and what to do if the result cannot hold a volume.
+/// @param progress  as resample_surface()
+/// @throws InputError naming file, problems and what to do if the result cannot hold a volume;
+/// Interrupted as resample_surface()
 TriangleSurface load_organ_surface(const std::filesystem::path& file, std::string_view unit,
                                    std::size_t node_count,
-                                   const std::function<void(const TriangleSurface&)>& admit = {});
+                                   const std::function<void(const TriangleSurface&)>& admit = {},
+                                   const std::function<void(double)>& progress = {});
 
 }  // namespace palpate::geometry

@@ -93,6 +93,20 @@ bool flip_improves(const RemeshMesh& mesh, Edge edge) {
          agree(old_sum, new_2);
 }
 
+/// Passes on one call of some thousand, a few milliseconds.
+class RarePulse {
+ public:
+  explicit RarePulse(const Pulse& pulse) : pulse_(pulse) {}
+  void operator()() {
+    constexpr std::size_t kEvery = 4096;
+    if (++calls_ % kEvery == 0 && pulse_) pulse_();
+  }
+
+ private:
+  const Pulse& pulse_;
+  std::size_t calls_ = 0;
+};
+
 }  // namespace
 
 RemeshMesh to_remesh_mesh(const TriangleSurface& surface) {
@@ -152,11 +166,13 @@ std::size_t split_long_edges(RemeshMesh& mesh, double longest, std::size_t most_
 }
 
 std::size_t collapse_short_edges(RemeshMesh& mesh, const AabbTree& target, double shortest,
-                                 double longest, std::size_t fewest_nodes) {
+                                 double longest, std::size_t fewest_nodes, const Pulse& pulse) {
+  RarePulse now_and_then(pulse);
   const auto edges = edges_by_length(mesh);
   std::vector<bool> touched(mesh.n_vertices(), false);
   std::size_t left = mesh.n_vertices(), count = 0;
   for (const auto& [length, edge] : edges) {
+    now_and_then();
     if (length >= shortest || left <= std::max<std::size_t>(fewest_nodes, 4)) break;
     if (mesh.status(edge).deleted()) continue;
     const Halfedge halfedge = mesh.halfedge_handle(edge, 0);
@@ -179,9 +195,11 @@ std::size_t collapse_short_edges(RemeshMesh& mesh, const AabbTree& target, doubl
   return count;
 }
 
-std::size_t equalize_valences(RemeshMesh& mesh) {
+std::size_t equalize_valences(RemeshMesh& mesh, const Pulse& pulse) {
+  RarePulse now_and_then(pulse);
   std::size_t count = 0;
   for (const Edge edge : mesh.edges()) {
+    now_and_then();
     if (!flip_improves(mesh, edge) || !mesh.is_flip_ok(edge)) continue;
     mesh.flip(edge);
     ++count;
@@ -189,8 +207,10 @@ std::size_t equalize_valences(RemeshMesh& mesh) {
   return count;
 }
 
-void relax_on(RemeshMesh& mesh, const AabbTree& target) {
+void relax_on(RemeshMesh& mesh, const AabbTree& target, const Pulse& pulse) {
+  RarePulse now_and_then(pulse);
   for (const Vertex v : mesh.vertices()) {
+    now_and_then();
     const Vec3 here = position(mesh, v);
     Vec3 normal = Vec3::Zero(), centre = Vec3::Zero();
     double weight = 0;

@@ -7,6 +7,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/organ_limits.h"
+#include "modules/core/stop_signal.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/node_order.h"
 #include "modules/geometry/remesh.h"
@@ -26,27 +27,34 @@ double edge_length_for(double area, std::size_t node_count) {
   return std::sqrt(4 * area / (std::sqrt(3.0) * triangles));
 }
 
-void remesh_once(RemeshMesh& mesh, const AabbTree& target, double length) {
+/// @param pulse  called between pieces of the work
+void remesh_once(RemeshMesh& mesh, const AabbTree& target, double length, const Pulse& pulse) {
   const double longest = 4.0 / 3 * length, shortest = 4.0 / 5 * length;
   const std::size_t no_limit = std::numeric_limits<std::size_t>::max();
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    pulse();
     if (split_long_edges(mesh, longest, no_limit) == 0) break;
   }
   for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    if (collapse_short_edges(mesh, target, shortest, longest, 4) == 0) break;
+    pulse();
+    if (collapse_short_edges(mesh, target, shortest, longest, 4, pulse) == 0) break;
   }
-  equalize_valences(mesh);
-  relax_on(mesh, target);
+  pulse();
+  equalize_valences(mesh, pulse);
+  relax_on(mesh, target, pulse);
 }
 
-void reach_count(RemeshMesh& mesh, const AabbTree& target, std::size_t node_count) {
+void reach_count(RemeshMesh& mesh, const AabbTree& target, std::size_t node_count,
+                 const Pulse& pulse) {
   for (int sweep = 0; sweep < kMostSweeps && mesh.n_vertices() > node_count; ++sweep) {
-    if (collapse_short_edges(mesh, target, kInfinity, kInfinity, node_count) == 0) break;
-    equalize_valences(mesh);
+    pulse();
+    if (collapse_short_edges(mesh, target, kInfinity, kInfinity, node_count, pulse) == 0) break;
+    equalize_valences(mesh, pulse);
   }
   for (int sweep = 0; sweep < kMostSweeps && mesh.n_vertices() < node_count; ++sweep) {
+    pulse();
     if (split_long_edges(mesh, 0, node_count) == 0) break;
-    equalize_valences(mesh);
+    equalize_valences(mesh, pulse);
   }
 }
 
@@ -83,21 +91,22 @@ TriangleSurface resample_surface(const TriangleSurface& surface, std::size_t nod
   RemeshMesh mesh = to_remesh_mesh(surface);
   double length = edge_length_for(surface_area(surface.nodes, surface.triangles), node_count);
   int done = 0;  // a round of remeshing takes about four times one of polishing
-  const auto tell = [&](int steps) {
-    done += steps;
+  const auto pulse = [&] {
+    if (stop_requested()) throw Interrupted("stopped while a surface was resampled");
     if (progress) progress(double(done) / (4 * kRounds + kPolishingRounds));
   };
   for (int round = 0; round < kRounds; ++round) {
-    remesh_once(mesh, target, length);
-    tell(4);
+    remesh_once(mesh, target, length, pulse);
+    done += 4;
     const double ratio = static_cast<double>(mesh.n_vertices()) / static_cast<double>(node_count);
     length *= std::clamp(std::sqrt(ratio), 0.8, 1.25);
   }
-  reach_count(mesh, target, node_count);
+  reach_count(mesh, target, node_count, pulse);
   for (int round = 0; round < kPolishingRounds; ++round) {
-    equalize_valences(mesh);
-    relax_on(mesh, target);
-    tell(1);
+    equalize_valences(mesh, pulse);
+    relax_on(mesh, target, pulse);
+    ++done;
+    pulse();
   }
   TriangleSurface result = to_surface(mesh);
   scale_to_volume(result, volume);

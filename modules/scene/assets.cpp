@@ -20,9 +20,11 @@ namespace {
 using Admit = std::function<void(const geometry::TriangleSurface&)>;
 
 geometry::TriangleSurface load(const Mesh& mesh, const std::string& owner,
-                               const Admit& admit = {}) {
+                               const Resampling& resampling = {}, const Admit& admit = {}) {
   try {
-    return geometry::load_organ_surface(mesh.file, mesh.unit, mesh.nodes, admit);
+    return geometry::load_organ_surface(mesh.file, mesh.unit, mesh.nodes, admit, [&](double part) {
+      if (resampling) resampling(owner, part);
+    });
   } catch (const InputError& error) {
     throw InputError(owner + ": " + error.what());
   }
@@ -98,7 +100,7 @@ geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
   }
 }
 
-geometry::TriangleSurface load_skin(const Organ& organ) {
+geometry::TriangleSurface load_skin(const Organ& organ, const Resampling& resampling) {
   const std::string owner = "organ '" + organ.name + "'";
   geometry::TriangleSurface skin;
   if (holds_tetrahedra(organ.mesh.file)) {
@@ -106,13 +108,13 @@ geometry::TriangleSurface load_skin(const Organ& organ) {
     coarse.solid.refine = {};
     skin = load_tetrahedra(coarse, owner).surface;
   } else {
-    skin = load(organ.mesh, owner);
+    skin = load(organ.mesh, owner, resampling);
   }
   for (Vec3& node : skin.nodes) node = organ.pose.to_world(node);
   return skin;
 }
 
-geometry::OrganShape load_organ(const Organ& organ) {
+geometry::OrganShape load_organ(const Organ& organ, const Resampling& resampling) {
   const std::string owner = "organ '" + organ.name + "'";
   const ModelFormat& format = format_of(organ.model);
   geometry::OrganShape shape;
@@ -123,7 +125,7 @@ geometry::OrganShape load_organ(const Organ& organ) {
     const Admit count_springs = [&](const geometry::TriangleSurface& surface) {
       if (!format.is_solid()) check_spring_count(surface, organ.springs);
     };
-    shape = geometry::OrganShape(load(organ.mesh, owner, count_springs));
+    shape = geometry::OrganShape(load(organ.mesh, owner, resampling, count_springs));
     if (format.is_solid()) shape = filled(shape.surface, organ, owner);
   }
   for (auto* nodes : {&shape.surface.nodes, &shape.inner_nodes}) {

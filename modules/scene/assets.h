@@ -1,6 +1,8 @@
 // The meshes a scene names, loaded, checked and placed.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "modules/geometry/organ_shape.h"
@@ -8,14 +10,18 @@
 
 namespace palpate::scene {
 
+/// Told again and again while the surface of an organ or probe is resampled.
+/// @param part  that is done, 0 … 1
+using Resampling = std::function<void(const std::string& owner, double part)>;
+
 /// Shape of one organ in W [m]: load_organ_surface(), filled with tetrahedra where its model wants
 /// them, or tetrahedra as they are in a file (.msh, .vtk); then the organ's pose.
-/// @throws InputError naming organ, file and problem
-geometry::OrganShape load_organ(const Organ& organ);
+/// @throws InputError naming organ, file and problem; Interrupted if a signal of StopSignal comes
+geometry::OrganShape load_organ(const Organ& organ, const Resampling& resampling = {});
 
 /// The organ's surface alone, in W [m]: nothing is filled or refined.
-/// @throws InputError naming organ, file and problem
-geometry::TriangleSurface load_skin(const Organ& organ);
+/// @throws InputError, Interrupted as load_organ()
+geometry::TriangleSurface load_skin(const Organ& organ, const Resampling& resampling = {});
 
 /// `mesh` with smaller tetrahedra near the regions of W.
 /// @param pose  of the mesh's frame

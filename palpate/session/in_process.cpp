@@ -8,7 +8,7 @@
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/runtime/wiring.h"
-#include "modules/scene/assets.h"
+#include "modules/scene/key_place.h"
 #include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
@@ -64,9 +64,12 @@ struct Member {
 
 }  // namespace
 
-Assets load_assets(const scene::Scene& scene) {
+Assets load_assets(const scene::Scene& scene, const scene::Resampling& resampling) {
   Assets assets;
-  for (const auto& organ : scene.organs) assets.organs.push_back(scene::load_organ(organ));
+  for (std::size_t i = 0; i < scene.organs.size(); ++i) {
+    assets.organs.push_back(scene::with_organ(
+        scene, i, [&](const auto& organ) { return scene::load_organ(organ, resampling); }));
+  }
   assets.probe_meshes = scene::load_probe_meshes(scene);
   return assets;
 }

@@ -17,6 +17,7 @@
 #include "modules/geometry/triangle_surface.h"
 #include "modules/runtime/lockstep.h"
 #include "modules/runtime/snapshot.h"
+#include "modules/scene/assets.h"
 #include "modules/scene/scene.h"
 
 namespace palpate::session {
@@ -26,8 +27,8 @@ struct Assets {
   std::vector<geometry::OrganShape> organs;             ///< one per organ
   std::vector<geometry::TriangleSurface> probe_meshes;  ///< one per probe; empty: no MeshShape
 };
-/// @throws InputError for a mesh that cannot be used
-Assets load_assets(const scene::Scene& scene);
+/// @throws InputError for a mesh that cannot be used; Interrupted as scene::load_organ()
+Assets load_assets(const scene::Scene& scene, const scene::Resampling& resampling = {});
 
 /// Makes a stage on the session's bus.
 using MakeStage = std::function<std::unique_ptr<runtime::Stage>(bus::Bus&)>;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 
+using palpate::stop_requested;
 using palpate::StopSignal;
 
 TEST_CASE("stop signal: SIGINT, SIGTERM and SIGHUP are requests, and only while one exists") {
@@ -14,9 +15,12 @@ TEST_CASE("stop signal: SIGINT, SIGTERM and SIGHUP are requests, and only while 
     {
       const StopSignal stop;
       CHECK_FALSE(stop.requested());
+      CHECK_FALSE(stop_requested());
       raise(number);
       CHECK(stop.requested());
+      CHECK(stop_requested());
     }
+    CHECK_FALSE(stop_requested());
     sigaction(number, nullptr, &after);
     CHECK(before.sa_handler == after.sa_handler);
   }

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <csignal>
+#include <utility>
 
 #include "modules/core/error.h"
+#include "modules/core/stop_signal.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "modules/geometry/primitives.h"
 #include "modules/messages/messages.h"
@@ -54,13 +57,24 @@ TEST_CASE("resample: sharp solids and very few nodes stay closed") {
 }
 
 TEST_CASE("resample: it tells how far it is") {
-  // Oracle: definition: from above 0 to 1, never back.
+  // Oracle: definition: from 0 to 1, never back.
   std::vector<double> parts{0};
   resample_surface(make_ball(0.05, 2), 100, [&](double part) { parts.push_back(part); });
   CHECK(parts.size() > 5);
   CHECK(std::ranges::is_sorted(parts));
-  CHECK(parts[1] > 0);
+  CHECK(parts[1] == 0);
   CHECK(parts.back() == 1);
+}
+
+TEST_CASE("resample: a signal ends it where one is waited for") {
+  // Oracle: definition; without StopSignal the signal itself would have ended the program.
+  const TriangleSurface ball = make_ball(0.05, 2);
+  const StopSignal stop;
+  bool raised = false;
+  const auto raise_once = [&](double part) {
+    if (part > 0 && !std::exchange(raised, true)) std::raise(SIGTERM);
+  };
+  CHECK_THROWS_AS(resample_surface(ball, 1000, raise_once), Interrupted);
 }
 
 TEST_CASE("resample: the same input gives the same bits") {
