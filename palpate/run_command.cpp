@@ -84,6 +84,9 @@ class Run {
     repeat_new_command();
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
     monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
+    for (const auto& line : monitor_.take_warnings()) {
+      log_ << "palpate: warning: " << line << std::endl;
+    }
     monitor_.poll();
     if (suspension_.take()) {
       log_ << "palpate: Ctrl-Z stops no session, for its processes would go on pushing: Ctrl-C "

@@ -6,30 +6,27 @@
 #include <string>
 #include <vector>
 
+#include "modules/runtime/name_claim.h"
+
 namespace palpate::launcher {
 
-/// Held as long as this object lives, and given back by the kernel should the program die. Nothing
-/// is left on disk: they are names of abstract sockets.
+/// Held as long as this object lives (runtime::NameClaim).
 class SessionClaim {
  public:
   /// The whole of a session, for a launcher that starts these modules.
   /// @throws InputError naming the session if another program of this host holds it, or one of the
-  /// modules
+  /// modules, or is one (runtime::claim_module()); Interrupted as that
   SessionClaim(const std::string& session, int domain, const std::vector<std::string>& modules);
   /// Modules that join it, but for those of which there may be several: a viewer, a recorder.
   static SessionClaim joining(const std::string& session, int domain,
                               const std::vector<std::string>& modules);
-  ~SessionClaim();
-  SessionClaim(SessionClaim&&) = default;
-  SessionClaim(const SessionClaim&) = delete;
-  SessionClaim& operator=(const SessionClaim&) = delete;
 
   /// It has ended for good: whoever joins may bring it.
   void release(const std::string& module);
 
  private:
   SessionClaim() = default;
-  std::map<std::string, int> sockets_;  ///< by module; of the session itself: ""
+  std::map<std::string, runtime::NameClaim> names_;  ///< by module; of the session itself: ""
 };
 
 }  // namespace palpate::launcher

@@ -3,6 +3,7 @@
 #include "modules/core/text.h"
 #include "modules/core/units.h"
 #include "modules/runtime/clock.h"
+#include "modules/runtime/name_claim.h"
 
 namespace palpate::launcher {
 namespace {
@@ -29,8 +30,32 @@ SessionMonitor::SessionMonitor(bus::Bus& bus, const scene::Scene& scene)
 void SessionMonitor::poll() {
   while (statuses_.take(status_)) {
     tally_.receive(status_);
-    heard_ns_[status_.module] = runtime::monotonic_now_ns();
+    const std::int64_t now_ns = runtime::monotonic_now_ns();
+    heard_ns_[status_.module] = now_ns;
+    if (!runtime::may_be_several(status_.module))
+      writers_[status_.module].hear(statuses_.writer(), now_ns);
   }
+}
+
+std::vector<std::string> SessionMonitor::several() const {
+  std::vector<std::string> names;
+  for (const auto& [name, writers] : writers_) {
+    if (writers.several(runtime::monotonic_now_ns())) names.push_back(name);
+  }
+  return names;
+}
+
+/// Of one host they are refused (runtime::claim_module()).
+std::vector<std::string> SessionMonitor::take_warnings() {
+  constexpr const char* kSeveral =
+      "several processes are it in this session, on several hosts or for several users: what it "
+      "publishes jumps between theirs; end all but one";
+  std::vector<std::string> lines;
+  for (const auto& module : several()) {
+    tally_.note_degraded(module, kSeveral);
+    if (warned_.insert(module).second) lines.push_back(module + ": " + kSeveral);
+  }
+  return lines;
 }
 
 std::vector<std::string> SessionMonitor::silent() const {

@@ -9,6 +9,7 @@
 #include "modules/runtime/cycle_budget.h"
 #include "modules/runtime/joined_streams.h"
 #include "modules/runtime/kept_state.h"
+#include "modules/runtime/name_claim.h"
 #include "modules/runtime/realtime.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
@@ -83,6 +84,7 @@ void run_in_real_time(Module& module, Stage& stage, Readiness readiness, KeptSta
 void run_stage(const ModuleOptions& options, const scene::Scene& scene, const std::string& name,
                Priority priority, const MakeStage& make) {
   spdlog::set_pattern("[" + name + "] %l: %v");  // of several processes of a program, which one
+  const auto alone = claim_module(options.bus, name);
   if (!options.lockstep.empty()) return run_in_lockstep(options, scene, name, make);
   // Before there are threads of DDS, which then do so, too: those of deformation, where the first
   // core is its main thread's, would take a tenth of it.

@@ -1,7 +1,9 @@
 #include "palpate/session_claim.h"
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <optional>
+#include <thread>
 
 #include "modules/core/error.h"
 #include "tests/modules/runtime/own_bus.h"
@@ -49,4 +51,19 @@ TEST_CASE(
   CHECK_NOTHROW(join({"visualizer"}));
   whole.release("collision");  // it has failed for good
   CHECK_NOTHROW(join({"collision"}));
+}
+
+TEST_CASE("session claim: a launcher leaves alone what somebody started by hand") {
+  // Oracle: the kernel's names; the words. Whoever ends soon is waited for.
+  const bus::BusOptions own = palpate::testing::own_bus_options();
+  auto haptics = runtime::claim_module(own, "haptics");
+  CHECK_THROWS_WITH(SessionClaim(own.session, own.domain, kWholeSession),
+                    Catch::Contains("session '" + own.session + "' has haptics here already"));
+  CHECK_NOTHROW(SessionClaim::joining(own.session, own.domain, {"deformation", "collision"}));
+  std::thread ends([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    haptics.reset();
+  });
+  CHECK_NOTHROW(SessionClaim(own.session, own.domain, kWholeSession));
+  ends.join();
 }

@@ -8,6 +8,42 @@
 using namespace palpate;
 using namespace palpate::launcher;
 
+TEST_CASE(
+    "session monitor: names a module that two processes are, not one that was started again") {
+  // Oracle: what was written: the second one speaks while the first does, or after its end.
+  const auto options = palpate::testing::own_bus_options();
+  bus::DdsBus bus(options), first_bus(options), second_bus(options);
+  SessionMonitor monitor(bus, {});
+  std::int64_t said = 0;
+  auto first = first_bus.writer(bus::kModuleStatus), second = second_bus.writer(bus::kModuleStatus);
+  const auto say = [&](bus::Writer<ModuleStatus>& statuses, const char* module) {
+    ModuleStatus status;
+    status.module = module;
+    status.state = ModuleState::kReady;
+    status.process_id = ++said;
+    statuses.write(status);
+    CHECK(palpate::testing::wait_until([&] {
+      monitor.poll();
+      const ModuleTally* heard = monitor.tally().module(module);
+      return heard != nullptr && heard->newest.process_id == said;
+    }));
+  };
+  for (const char* module : {"haptics", "visualizer"}) {
+    for (auto* statuses : {&first, &first, &second, &second}) say(*statuses, module);
+    CHECK(monitor.several().empty());
+  }
+  for (auto* statuses : {&first, &second}) say(*statuses, "visualizer");
+  CHECK(monitor.several().empty());
+  say(first, "haptics");
+  CHECK(monitor.several() == std::vector<std::string>{"haptics"});
+  REQUIRE(monitor.take_warnings().size() == 1);
+  CHECK(monitor.take_warnings().empty());
+  monitor.tally().start();
+  static_cast<void>(monitor.take_warnings());
+  REQUIRE(monitor.tally().troubles().size() == 1);
+  CHECK(monitor.tally().troubles()[0].starts_with("haptics: several processes are it"));
+}
+
 TEST_CASE("session monitor: knows who is ready, and hears no physics") {
   // Oracle: what was written.
   const auto options = palpate::testing::own_bus_options();
