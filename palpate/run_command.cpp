@@ -15,8 +15,6 @@
 #include "modules/core/temporary_folder.h"
 #include "modules/core/units.h"
 #include "modules/core/whole_file.h"
-#include "modules/recording/mcap_writer.h"
-#include "modules/recording/space_watch.h"
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
@@ -256,6 +254,8 @@ class Run {
     if (!begun()) return;
     judge_recording(recorder_lives);
     end.last_words = modules_.last_words();
+    judge_pictures();
+    end.failures = failures_;
     end.restarts = modules_.restarts();
     end.recording = recording_end_;
     const std::string text = summary(monitor_.tally(), end);
@@ -272,7 +272,24 @@ class Run {
       recording_end_ = "not ended well: " + end->how;
       if (!end->last_error.empty()) recording_end_ += "; it said: " + end->last_error;
     }
-    if (end->failed && exit_code_ == kExitDone) exit_code_ = kExitFailed;
+    const bool gone = !options_.record.empty() && !std::filesystem::exists(options_.record);
+    if (gone && !end->failed) {
+      recording_end_ = fmt::format(
+          "there is no {}: no sample found room in it; what came later is "
+          "in a part of its own",
+          options_.record.string());
+    }
+    if ((end->failed || gone) && exit_code_ == kExitDone) exit_code_ = kExitFailed;
+  }
+
+  /// It tells at its end of those that it could not write; of the first at once, for it may have to
+  /// be killed within the next.
+  void judge_pictures() {
+    const auto end = modules_.last_end("visualizer");
+    if (options_.frames.empty() || !end || !end->failed) return;
+    if (end->killed && end->last_error.find("] error: ") == std::string::npos) return;
+    failures_["visualizer"] = end->how;
+    if (exit_code_ == kExitDone) exit_code_ = kExitFailed;
   }
 
   bool begun() const { return began_ns_ != 0; }
@@ -286,6 +303,7 @@ class Run {
     conductor_.command(session_.state(), SessionCommand::kStop);
     modules_.stop();
   }
+    judge_pictures();
 
   const RunOptions& options_;
   SessionClaim claim_;
@@ -317,33 +335,7 @@ class Run {
   HangWatch hangs_;
 };
 
-void check_recording(const RunOptions& options) {
-  if (options.record.empty()) {
-    const bool overwrites = options.overwrite && options.snapshot.empty();
-    if (options.record_topics.empty() && !overwrites) return;
-    throw InputError(
-        fmt::format("{}: of a recording; give --record FILE, too",
-                    options.record_topics.empty() ? "--overwrite" : "--record-topics"));
-  }
-  recording::check_recording_target(options.record);
-  if (!options.overwrite && std::filesystem::exists(options.record)) {
-    throw InputError(options.record.string() +
-                     ": is there already; give another name, or --overwrite");
-  }
-  recording::check_recording_space(options.record);
-}
-
 }  // namespace
-
-void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out) {
-  out << text << std::flush;
-  if (options.summary.empty()) return;
-  try {
-    write_whole_file(options.summary, text);
-  } catch (const std::exception& error) {  // its place was good before the run
-    throw std::runtime_error(std::string(error.what()) + "; the summary is not in a file");
-  }
-}
 
 int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   RunOptions options = asked;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <ostream>
 #include <random>
 #include <stdexcept>
 #include <string_view>
@@ -13,7 +14,10 @@
 #include "modules/bus/key_check.h"
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
+#include "modules/core/whole_file.h"
+#include "modules/recording/mcap_writer.h"
 #include "modules/recording/sample_reader.h"
+#include "modules/recording/space_watch.h"
 #include "modules/recording/topic_selection.h"
 #include "modules/runtime/snapshot.h"
 #include "modules/runtime/wiring.h"
@@ -281,17 +285,29 @@ std::string random_session_name() {
   return name;
 }
 
-InputError told_of(const InputError& error, const std::filesystem::path& scene,
-                   const std::string& known) {
-  std::string text = error.what();
-  const std::string file = scene.string();
-  for (auto at = text.find(file); at != std::string::npos; at = text.find(file, at)) {
-    std::size_t end = at + file.size();
-    const std::size_t digits = text.find_first_not_of("0123456789", end + 1);
-    const bool line = end < text.size() && text[end] == ':' && digits != end + 1;
-    if (line) end = std::min(digits, text.size());
-    text.replace(at, end - at, known);
-    at += known.size();
+void check_recording(const RunOptions& options) {
+  if (options.record.empty()) {
+    const bool overwrites = options.overwrite && options.snapshot.empty();
+    if (options.record_topics.empty() && !overwrites) return;
+    throw InputError(
+        fmt::format("{}: of a recording; give --record FILE, too",
+                    options.record_topics.empty() ? "--overwrite" : "--record-topics"));
+  }
+  recording::check_recording_target(options.record);
+  if (!options.overwrite && std::filesystem::exists(options.record)) {
+    throw InputError(options.record.string() +
+                     ": is there already; give another name, or --overwrite");
+  }
+  recording::check_recording_space(options.record);
+}
+
+void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out) {
+  out << text << std::flush;
+  if (options.summary.empty()) return;
+  try {
+    write_whole_file(options.summary, text);
+  } catch (const std::exception& error) {  // its place was good before the run
+    throw std::runtime_error(std::string(error.what()) + "; the summary is not in a file");
   }
   return InputError(text);
 }

@@ -90,6 +90,11 @@ std::string command_text(const ModuleCommand& command);
 std::string shell_word(const std::string& text);
 
 /// Prints the summary, and writes it where options.summary says.
+/// Before anything is started.
+/// @throws InputError where options.record cannot be written, or may not be replaced, and for
+/// options of a recording without one; std::runtime_error where the disk has no room
+void check_recording(const RunOptions& options);
+
 /// @throws std::runtime_error if it cannot be written
 void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out);
 

@@ -15,12 +15,12 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "modules/core/whole_file.h"
 #include "visualizer/lamps.h"
 #include "visualizer/overlay_actor.h"
 #include "visualizer/scene_actors.h"
@@ -260,18 +260,17 @@ void Renderer::write_png(const std::filesystem::path& file) {
   grab->ReadFrontBufferOff();
   grab->ShouldRerenderOff();
   grab->Update();
-  const std::filesystem::path part = file.string() + ".part";
-  if (!std::ofstream(part)) throw std::runtime_error("cannot write picture " + file.string());
   vtkNew<vtkPNGWriter> writer;
   writer->SetInputConnection(grab->GetOutputPort());
-  writer->SetFileName(part.c_str());
+  writer->WriteToMemoryOn();  // VTK says that a file could not be written, not why
   writer->SetCompressionLevel(4);
   writer->Write();
-  std::error_code error;
-  if (writer->GetErrorCode() == 0) std::filesystem::rename(part, file, error);
-  if (writer->GetErrorCode() != 0 || error) {
-    throw std::runtime_error("cannot write picture " + file.string());
+  vtkUnsignedCharArray* const bytes = writer->GetResult();
+  if (writer->GetErrorCode() != 0 || bytes == nullptr) {
+    throw std::runtime_error("cannot make picture " + file.string());
   }
+  write_whole_file(file, {reinterpret_cast<const char*>(bytes->GetPointer(0)),
+                          static_cast<std::size_t>(bytes->GetNumberOfValues())});
 }
 
 std::vector<std::uint8_t> Renderer::pixels() {

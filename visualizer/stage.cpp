@@ -131,12 +131,19 @@ class Studio {
   bool aimed_ = false;
 };
 
+/// What was to be seen, and is not.
+struct LostPictures {
+  std::size_t count = 0;
+  std::string first;  ///< which, and why
+};
+
 /// Draws into the window each cycle; without one only the pictures that are kept.
 class VisualizerStage : public runtime::Stage {
  public:
   VisualizerStage(const scene::Scene& scene, const VisualizerOptions& options, bool window,
-                  const runtime::ModuleOptions& common, bus::Bus& bus)
+                  const runtime::ModuleOptions& common, bus::Bus& bus, LostPictures& lost)
       : options_(options),
+        lost_(lost),
         window_(window),
         // In lockstep the launcher alone conducts: a key pressed at some moment would change the
         // bits.
@@ -157,7 +164,7 @@ class VisualizerStage : public runtime::Stage {
     if (options_.screenshot.empty()) return;
     try {
       studio_.draw(last_ns_);
-      studio_.renderer.write_png(options_.screenshot);
+      keep(options_.screenshot);
     } catch (const std::exception& error) {
       spdlog::error("{}", error.what());
     }
@@ -169,18 +176,30 @@ class VisualizerStage : public runtime::Stage {
     const Requests requests = studio_.interaction.handle(studio_.renderer.take_events(), view());
     // A recording made in lockstep is replayed without anyone saying that it runs.
     const bool goes_on = now.running || view().sim_time() > 0;
-    const bool keep = !options_.frames.empty() && goes_on && studio_.anything_to_see() &&
+    const bool kept = !options_.frames.empty() && goes_on && studio_.anything_to_see() &&
                       schedule_.take_due(view().sim_time());
-    if (window_ || keep) studio_.draw(now.now_ns);
-    if (keep) studio_.renderer.write_png(options_.frames / frame_name(view().sim_time()));
+    if (window_ || kept) studio_.draw(now.now_ns);
+    if (kept) keep(options_.frames / frame_name(view().sim_time()));
     carry_out(requests, now);
     runtime::Health health;
+    if (lost_.count > 0) health.guard = "pictures of --frames could not be written";
     health.finished = requests.close;
     return health;
   }
 
  private:
   SceneView& view() { return studio_.view; }
+
+  /// One that was asked for: without it the rest goes on, and its loss is told at the end.
+  void keep(const std::filesystem::path& file) {
+    try {
+      studio_.renderer.write_png(file);
+    } catch (const std::runtime_error& error) {
+      if (lost_.count++ > 0) return;
+      lost_.first = error.what();
+      spdlog::error("{}", error.what());
+    }
+  }
 
   void listen(std::int64_t now_ns) {
     inputs_.receive(view(), now_ns);
@@ -263,6 +282,7 @@ class VisualizerStage : public runtime::Stage {
   }
 
   VisualizerOptions options_;
+  LostPictures& lost_;
   bool window_, commands_;
   Inputs inputs_;
   bus::Reader<SessionControl> controls_;
@@ -291,10 +311,15 @@ void run_visualizer(const runtime::ModuleOptions& common, const VisualizerOption
     draw_with_one_thread();
     display.emplace();
   }
+  LostPictures lost;
   runtime::run_stage(
       common, scene, "visualizer", runtime::Priority::kBackground, [&](bus::Bus& bus) {
-        return std::make_unique<VisualizerStage>(scene, options, window, common, bus);
+        return std::make_unique<VisualizerStage>(scene, options, window, common, bus, lost);
       });
+  if (lost.count == 0) return;
+  throw std::runtime_error(std::to_string(lost.count) +
+                           (lost.count == 1 ? " picture is missing: " : " pictures are missing: ") +
+                           lost.first);
 }
 
 }  // namespace palpate::visualizer

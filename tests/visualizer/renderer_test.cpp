@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/file_size_limit.h"
 #include "tests/visualizer/display_or_skip.h"
 #include "tests/visualizer/studio.h"
 
@@ -50,7 +51,7 @@ TEST_CASE("renderer: the same state gives the same picture", "[visualizer]") {
 }
 
 TEST_CASE("renderer: writes a PNG or says which file it could not write", "[visualizer][fault]") {
-  // Oracle: the PNG signature; the message.
+  // Oracle: the PNG signature; the message, EFBIG as a full disk's reason.
   if (!visualizer::testing::xvfb_or_skip()) return;
   Studio studio;
   studio.draw(true);
@@ -63,7 +64,13 @@ TEST_CASE("renderer: writes a PNG or says which file it could not write", "[visu
   file.read(start.data(), 8);
   CHECK(start == "\x89PNG\r\n\x1a\n");
   const auto nowhere = folder / "missing" / "picture.png";
-  CHECK_THROWS_WITH(studio.renderer.write_png(nowhere), "cannot write picture " + nowhere.string());
+  CHECK_THROWS_WITH(studio.renderer.write_png(nowhere), Catch::Contains(nowhere.string()));
+  const auto cut = folder / "cut.png";
+  {
+    const palpate::FileSizeLimit full(1000);
+    CHECK_THROWS_WITH(studio.renderer.write_png(cut),
+                      "cannot write " + cut.string() + ": File too large");
+  }
   CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);  // no half file
   std::filesystem::remove_all(folder);
 }

@@ -187,6 +187,27 @@ TEST_CASE("visualizer process: draws a sequence off-screen and ends well on SIGT
   }
 }
 
+TEST_CASE("visualizer process: pictures that find no place are told of, and it goes on to its end",
+          "[visualizer][fault]") {
+  // Oracle: exit code 1 and the reason, once while it goes on and once at its end. The folder is
+  // gone when the second picture comes.
+  if (!visualizer::testing::xvfb_or_skip()) return;
+  Session session({"--headless", "--frames", "frames", "--frame-interval-s", "0.5"});
+  REQUIRE(session.play_until([&] { return session.reports(ModuleState::kReady); }));
+  session.start();
+  session.surfaces.write(session.topology);
+  REQUIRE(session.play_until([&] { return session.frame_count() >= 1; }));
+  std::filesystem::remove_all(session.folder / "frames");
+  REQUIRE(session.play_until([&] { return session.reports(ModuleState::kDegraded); }));
+  session.signal(SIGTERM);
+  CHECK(session.exit_code() == 1);
+  std::stringstream said;
+  said << std::ifstream(session.folder / "stderr.txt").rdbuf();
+  INFO(said.str());
+  CHECK(said.str().find("error: frames/frame_") != std::string::npos);
+  CHECK(said.str().find("missing: frames/frame_") != std::string::npos);
+}
+
 TEST_CASE("visualizer process: goes on when the deformation falls silent", "[visualizer][fault]") {
   // Oracle: it stays running, keeps publishing its status, and still writes the last picture.
   if (!visualizer::testing::xvfb_or_skip()) return;
