@@ -14,6 +14,7 @@ namespace {
 
 // A recorder that is killed loses the chunk it was gathering: half a second.
 constexpr std::size_t kChunkBytes = 1u << 20;
+constexpr std::size_t kFirstChunkBytes = 8u << 10;
 constexpr std::uint64_t kChunkSpanNs = 500'000'000;
 // The noise of positions gives way to no level: 3 makes 0.4 % less and takes twice the time.
 constexpr int kLevel = 1;
@@ -54,7 +55,8 @@ void McapChunkBuilder::add(const McapMessage& message, std::span<const std::uint
 }
 
 bool McapChunkBuilder::due() const {
-  return messages_.size() >= kChunkBytes || end_time_ns_ - start_time_ns_ >= kChunkSpanNs;
+  const std::size_t most = std::clamp(finished_bytes_, kFirstChunkBytes, kChunkBytes);
+  return messages_.size() >= most || end_time_ns_ - start_time_ns_ >= kChunkSpanNs;
 }
 
 McapChunkIndex McapChunkBuilder::finish(std::uint64_t offset, std::vector<std::uint8_t>& bytes) {
@@ -91,6 +93,7 @@ McapChunkIndex McapChunkBuilder::finish(std::uint64_t offset, std::vector<std::u
   index.compression = kZstd;
   index.compressed_size = packed_.size();
   index.uncompressed_size = messages_.size();
+  finished_bytes_ += messages_.size();
   messages_.clear();
   start_time_ns_ = end_time_ns_ = 0;
   return index;

@@ -26,7 +26,8 @@ class McapChunkBuilder {
 
   void add(const McapMessage& message, std::span<const std::uint8_t> data);
   bool empty() const { return messages_.empty(); }
-  /// Large or long enough to be ended. Until then its messages are in memory alone.
+  /// Large or long enough to be ended: the first ones are small, so that a disk that is soon full
+  /// takes some. Until then its messages are in memory alone.
   bool due() const;
   std::size_t bytes() const { return messages_.size(); }
 
@@ -44,6 +45,7 @@ class McapChunkBuilder {
   std::vector<std::uint8_t> packed_;
   std::map<std::uint16_t, Places> places_;  ///< by channel
   std::uint64_t start_time_ns_ = 0, end_time_ns_ = 0;
+  std::size_t finished_bytes_ = 0;  ///< of messages in the chunks before
 };
 
 /// The records in a chunk, given the content of the chunk's own record.

@@ -282,6 +282,34 @@ TEST_CASE("mcap writer: a disk that is full at once leaves a file that is whole,
   }
 }
 
+TEST_CASE(
+    "mcap writer: a disk that is full before a chunk of the usual size keeps what came first") {
+  // Oracle: the reader. Half a second of these takes five times the limit.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  {
+    const FileSizeLimit full(20'000);
+    McapWriter writer(file);
+    const auto channel =
+        writer.add_channel({0, writer.add_schema({0, "S", "id", "d"}), "t", "cdr", {}});
+    std::mt19937 random(1);
+    const auto write_all = [&] {
+      for (std::uint32_t k = 0; k < 1000; ++k) {
+        std::vector<std::uint8_t> payload(200);
+        for (auto& byte : payload) byte = static_cast<std::uint8_t>(random());
+        writer.add_message({channel, k, 1'000'000ull * k, 0, {}}, payload);
+        writer.flush();
+      }
+    };
+    CHECK_THROWS_AS(write_all(), DiskFull);
+  }
+  McapReader reader(file);
+  std::uint64_t read = 0;
+  while (const auto record = reader.next()) read += std::holds_alternative<McapMessage>(*record);
+  CHECK_FALSE(reader.torn());
+  CHECK(read > 20);
+}
+
 TEST_CASE("mcap writer: a disk without room for a message leaves no file") {
   // Oracle: the folder, and strerror(EFBIG). One limit stops the header, one the summary of
   // nothing, one the first chunk; a limit on the size of files fails where a full disk does.
