@@ -111,7 +111,7 @@ class LockstepRun {
         digest_(scene::scene_digest(scene_)),
         duration_(duration_of(options, scene_)),
         start_ns_(start_of(options, scene_).time_ns),
-        modules_(checked_commands(), log),
+        modules_(checked_commands(), log, Restarting::kNever, options.folder),
         names_(options.everywhere.empty() ? modules_.reporting_modules() : options.everywhere),
         bus_(every_sample(options.bus)),
         session_(bus_, digest_, runtime::Session::Kind::kLockstep),
@@ -280,7 +280,8 @@ int follow_lockstep(const RunOptions& options, std::ostream& log) {
   const StopSignal stop;
   const scene::Scene scene = scene::load_scene(options.scene);
   const std::size_t processes = scene::process_count(scene);
-  ModuleGroup modules(module_commands(options, program_folder(), processes), log);
+  ModuleGroup modules(module_commands(options, program_folder(), processes), log,
+                      Restarting::kNever, options.folder);
   log << fmt::format("palpate: session {} of scene {}, in lockstep that another host conducts\n",
                      options.bus.session, scene.name)
       << std::flush;

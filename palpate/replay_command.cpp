@@ -42,7 +42,7 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   viewing.only = {"visualizer"};
   viewing.record.clear();
   const auto commands = module_commands(viewing, program_folder());
-  ModuleGroup visualizer(commands, log);
+  ModuleGroup visualizer(commands, log, Restarting::kNever, folder.path());
   const bool shown = visualizer.any_running();
   if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
 
@@ -128,6 +128,7 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
     return run_command(again, out, log);
   } catch (const InputError& error) {
     throw told_of(error, again.scene, known);
+  again.folder = folder.path();
   }
 }
 

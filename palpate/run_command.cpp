@@ -54,7 +54,7 @@ class Run {
         scene_(scene::load_scene(options.scene)),
         digest_(scene::scene_digest(scene_)),
         modules_(module_commands(options, program_folder(), scene::process_count(scene_)), log,
-                 options.restart ? Restarting::kWithPauses : Restarting::kNever),
+                 options.restart ? Restarting::kWithPauses : Restarting::kNever, options.folder),
         bus_(options.bus),
         session_(bus_, digest_),
         conductor_(bus_),
@@ -351,6 +351,7 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
     RunOptions changed = options;
     changed.settings.clear();
     changed.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+    changed.folder = folder.path();
     try {
       return run_command(changed, out, log);
     } catch (const InputError& error) {

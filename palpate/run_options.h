@@ -14,6 +14,7 @@ namespace palpate::launcher {
 
 struct RunOptions {
   std::filesystem::path scene;
+  std::filesystem::path folder = {};  ///< where the scene lies, of this process alone; empty: none
   std::vector<std::string> settings = {};  ///< "key=value" each, instead of what the scene says
   bus::BusOptions bus;                     ///< session: a random name unless given
   std::filesystem::path secure = {};       ///< folder of keys (palpate keys); empty: none
