@@ -37,10 +37,10 @@ T number(Payload payload, std::size_t place) {
   return std::bit_cast<T>(bytes);
 }
 
-void put(std::int64_t value, std::vector<std::uint8_t>& payload, std::size_t place) {
+template <class T>
+void put(T value, std::span<std::uint8_t> payload, std::size_t place) {
   auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof value>>(value);
-  const bool big_endian = (payload[1] & 1u) == 0;
-  if (big_endian) std::ranges::reverse(bytes);
+  if (is_big_endian(payload)) std::ranges::reverse(bytes);
   std::ranges::copy(bytes,
                     payload.begin() + static_cast<std::ptrdiff_t>(kEncapsulationBytes + place));
 }
@@ -110,16 +110,19 @@ std::optional<std::uint64_t> token_of(Payload payload) {
 
 void set_token(std::span<std::uint8_t> payload, std::uint64_t token) {
   if (payload.size() < kEncapsulationBytes + kHeaderBytes) return;
-  auto bytes = std::bit_cast<std::array<std::uint8_t, sizeof token>>(token);
-  if (is_big_endian(payload)) std::ranges::reverse(bytes);
-  std::ranges::copy(bytes, payload.begin() + kEncapsulationBytes + kTokenAt);
+  put(token, payload, kTokenAt);
+}
+
+void set_sequence(std::span<std::uint8_t> payload, std::uint64_t sequence) {
+  if (payload.size() < kEncapsulationBytes + kHeaderBytes) return;
+  put(sequence, payload, 0);
 }
 
 void shift_times(const MessageType& type, std::int64_t shift_ns,
                  std::vector<std::uint8_t>& payload) {
   if (payload.size() < kEncapsulationBytes + kHeaderBytes) return;
   const std::int64_t source_ns = number<std::int64_t>(payload, kSourceTimeAt);
-  put(std::max<std::int64_t>(1, source_ns + shift_ns), payload, kSourceTimeAt);
+  put<std::int64_t>(std::max<std::int64_t>(1, source_ns + shift_ns), payload, kSourceTimeAt);
   if (&type != &type_of<SessionControl>()) return;
   SessionControl control;
   if (read_payload(payload, control) != nullptr) return;

@@ -66,6 +66,9 @@ std::optional<std::uint64_t> token_of(Payload payload);
 /// Leaves a payload that is too short as it is.
 void set_token(std::span<std::uint8_t> payload, std::uint64_t token);
 
+/// Leaves a payload that is too short as it is.
+void set_sequence(std::span<std::uint8_t> payload, std::uint64_t sequence);
+
 /// Puts the times of a message that are of its writer's clock on another, `shift_ns` ahead of it:
 /// the source time of every message (1 ns at least: 0 says none), the start of a session's time.
 /// Nothing of a payload that cannot be read.

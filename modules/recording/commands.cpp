@@ -69,7 +69,7 @@ void replay(const ReplayOptions& options, const std::function<bool()>& stop_requ
     err << "warning: nobody listens in session '" << options.session.session << "', domain "
         << options.session.domain << "; playing all the same\n";
   }
-  PlayOptions playing{options.start, options.rate, {}};
+  PlayOptions playing{options.start, options.rate, {}, /*counts_anew=*/true};
   if (options.step) {
     err << "a picture for each press of Enter; Ctrl-C ends\n";
     playing.wait_for_step = [&] { return wait_for_line(stop_requested); };

@@ -126,11 +126,14 @@ PlayReport play(SampleReader& recording, SessionWriter& session,
   std::optional<RecordedSample> sample = recording.next();
   if (!sample) return report;
   const std::int64_t start_ns = sample->received_time_ns + ns_from_seconds(options.start);
-  const auto write = [&](const RecordedSample& each) {
+  std::map<std::string_view, std::uint64_t> counts;  // by topic
+  const auto write = [&](RecordedSample& each) {
+    const std::uint64_t count = ++counts[each.topic->name];
+    if (options.counts_anew) messages::set_sequence(each.payload, count);
     if (!session.write(*each.topic, each.payload)) ++report.refused;
     ++report.samples;
   };
-  for (const RecordedSample& held : skip_to(start_ns, sample, recording)) write(held);
+  for (RecordedSample& held : skip_to(start_ns, sample, recording)) write(held);
 
   const std::int64_t began_ns = runtime::monotonic_now_ns();
   for (; sample; sample = recording.next()) {

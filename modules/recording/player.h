@@ -23,13 +23,16 @@ struct PlayOptions {
   double rate = 1;   ///< times as fast as it was received
   /// Called after each picture (node_positions), instead of keeping time; false ends it.
   std::function<bool()> wait_for_step;
+  /// Sequence numbers as those of one writer of each topic: what the recording had thinned out, or
+  /// several had written, is no gap for who listens.
+  bool counts_anew = false;
 };
 
 /// @throws InputError where the recording ends before `start` [s], and as SampleReader does
 void check_start(const std::filesystem::path& recording, double start);
 
-/// Writes every sample, byte for byte, with the spacing at which it was received. A sample that is
-/// late is written at once; none is left out.
+/// Writes every sample, byte for byte but for options.counts_anew, with the spacing at which it was
+/// received. A sample that is late is written at once; none is left out.
 /// @param stop_requested  asked at least every 20 ms
 /// @throws InputError as SampleReader::next does, and where the recording ends before the start
 PlayReport play(SampleReader& recording, SessionWriter& session,

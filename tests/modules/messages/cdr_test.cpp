@@ -202,23 +202,28 @@ TEST_CASE("cdr: the header is read in both byte orders without the rest", "[mess
   CHECK_FALSE(token_of(little).has_value());
 }
 
-TEST_CASE("cdr: the token is written in a payload's own byte order, and nothing else",
-          "[messages]") {
+TEST_CASE(
+    "cdr: token and sequence number are written in a payload's own byte order, and nothing else",
+    "[messages]") {
   // Oracle: the payload with another token, written as a whole by the generated code.
   Random random(17);
   auto message = random_message<HapticForce>(random);
   message.header.session_token = 0x1122334455667788;
+  message.header.sequence = 0x99aabbccddeeff01;
   const auto ours = payload_of(message);
   const auto wire = testing::generated(ours, message);
   message.header.session_token = 5;
+  message.header.sequence = 6;
   const auto other = testing::generated(payload_of(message), message);
   for (const auto order : {testing::kLittleEndian, testing::kBigEndian}) {
     auto payload = testing::serialized(other, order);
     set_token(payload, 0x1122334455667788);
+    set_sequence(payload, 0x99aabbccddeeff01);
     CHECK(payload == testing::serialized(wire, order));
   }
   std::vector<std::uint8_t> cut(35, 7);
   set_token(cut, 1);
+  set_sequence(cut, 1);
   CHECK(cut == std::vector<std::uint8_t>(35, 7));
 }
 

@@ -144,6 +144,34 @@ TEST_CASE("player: from a time on, what held then goes first, then the rest") {
                     Catch::EndsWith("s long and ends before the start asked for, --start 1"));
 }
 
+TEST_CASE("player: who listens to a replay counts no gaps that its recording had") {
+  // Oracle: the reader's own count of gaps; of every third sample, and of two writers that count
+  // for themselves.
+  const ScratchFolder folder;
+  SampleFile recording(folder / "a.mcap", {});
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    TopicSample sample = raw_sample(bus::kProbeState, probe_state(1 + 3 * i, 0, 0, Vec3::Zero()),
+                                    1000 + std::int64_t(i) * kMs);
+    sample.writer[0] = i % 2;
+    recording.add(sample);
+  }
+  recording.close();
+  const auto gaps = [&](bool counts_anew) {
+    bus::MemoryBus bus;
+    auto reader = bus.reader(bus::kProbeState, bus::Keep::kBacklog);
+    SessionWriter writer(bus);
+    SampleReader played(folder / "a.mcap");
+    play(played, writer, kNeverStop, {.wait_for_step = {}, .counts_anew = counts_anew});
+    ProbeState state;
+    std::uint64_t count = 0;
+    while (reader.take(state)) ++count;
+    CHECK(count == 20);
+    return reader.statistics().dropped;
+  };
+  CHECK(gaps(true) == 0);
+  CHECK(gaps(false) > 0);
+}
+
 TEST_CASE("player: the rate stretches the spacing") {
   // Oracle: 40 ms of recording at a quarter of its speed cannot take less than 160 ms.
   const ScratchFolder folder;
