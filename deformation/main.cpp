@@ -4,6 +4,7 @@
 #include "modules/runtime/wiring.h"
 #include "modules/runtime/worker_team.h"
 #include "modules/scene/assets.h"
+#include "modules/scene/key_place.h"
 #include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 
@@ -27,7 +28,8 @@ int main(int argc, char** argv) {
     runtime::WorkerTeam team(scene.deformation_threads);
     std::vector<geometry::OrganShape> shapes;
     for (const std::size_t organ : scene::organs_of(scene, process)) {
-      shapes.push_back(scene::load_organ(scene.organs[organ]));
+      shapes.push_back(scene::with_organ(scene, organ,
+                                         [](const auto& each) { return scene::load_organ(each); }));
     }
     const auto meshes = scene::load_probe_meshes(scene);
     runtime::run_stage(options, scene, runtime::name_of({"deformation", process}),

@@ -7,6 +7,7 @@
 
 #include "deformation/models.h"
 #include "modules/core/error.h"
+#include "modules/scene/key_place.h"
 
 namespace palpate::deformation {
 namespace {
@@ -91,7 +92,8 @@ void OrganContacts::refuse_crossed_rest(const scene::Scene& scene) {
   if (!touching) return;
   const auto& [a, b] = *touching;
   std::ostringstream message;
-  message << "scene: key 'contacts." << (a == b ? "self" : "organs") << "': ";
+  const std::string key = std::string("contacts.") + (a == b ? "self" : "organs");
+  message << "key '" << key << "': ";
   if (a == b) {
     message << "organ '" << scene.organs[a].name << "' passes through itself or touches itself";
   } else {
@@ -99,7 +101,7 @@ void OrganContacts::refuse_crossed_rest(const scene::Scene& scene) {
             << "' cross or touch";
   }
   message << " at rest, where they must be " << kLeastRestDistance << " m apart at least";
-  throw InputError(message.str());
+  throw scene::error_at(scene, key, message.str());
 }
 
 void OrganContacts::reset() {

@@ -13,6 +13,7 @@
 #include "deformation/organ_contacts.h"
 #include "deformation/world_organ.h"
 #include "modules/core/error.h"
+#include "modules/scene/key_place.h"
 #include "modules/scene/models.h"
 
 namespace palpate::deformation {
@@ -219,11 +220,15 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     : impl_(std::make_unique<Impl>()) {
   PALPATE_DEMAND(rest_shapes.size() == scene.organs.size());
   for (std::uint32_t i = 0; i < rest_shapes.size(); ++i) {
-    impl_->organs.push_back(make_organ(scene, i, rest_shapes[i], runner, guarding));
+    impl_->organs.push_back(scene::with_organ(scene, i, [&](const scene::Organ&) {
+      return make_organ(scene, i, rest_shapes[i], runner, guarding);
+    }));
   }
   if (scene.contacts.any()) {
     const scene::Misfit misfit = scene::misfit_of_contacts(scene);
-    if (!misfit.none()) throw InputError("scene: key '" + misfit.key + "' " + misfit.why);
+    if (!misfit.none()) {
+      throw scene::error_at(scene, misfit.key, "key '" + misfit.key + "' " + misfit.why);
+    }
     std::vector<SimulatedOrgan*> simulated;
     for (WorldOrgan& organ : impl_->organs) simulated.push_back(&organ.simulated);
     impl_->organ_contacts.emplace(scene, std::move(simulated));

@@ -15,6 +15,7 @@
 #include "modules/runtime/wiring.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
+#include "palpate/known_names.h"
 #include "palpate/module_group.h"
 #include "palpate/rerun.h"
 #include "palpate/run_command.h"
@@ -61,7 +62,8 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
 
 /// The scene with the probes of the recording moving as they moved.
 scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::path& recording,
-                                  const std::filesystem::path& folder, std::ostream& log) {
+                                  const std::filesystem::path& folder, KnownNames& names,
+                                  std::ostream& log) {
   std::vector<std::string> warnings;
   const auto trajectories = recording::extract_probe_trajectories(recording, folder, warnings);
   for (const auto& warning : warnings) log << "palpate: " << warning << '\n';
@@ -70,6 +72,7 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
       throw InputError(recording.string() + ": moves probe " + std::to_string(trajectory.probe) +
                        ", the scene has only " + std::to_string(scene.probes.size()));
     }
+    names.add(trajectory.file, recording.string() + ", probe " + std::to_string(trajectory.probe));
     scene.probes[trajectory.probe].device = scene::TrajectoryDevice{.file = trajectory.file};
   }
   return scene;
@@ -107,6 +110,7 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
   const StopSignal stop;  // or a signal would leave the folder
   const TemporaryFolder folder;
   RunOptions again = run;
+  KnownNames names;
   std::string known = run.scene.empty() ? "the scene of " + recording.string() : run.scene.string();
   for (const std::string& setting : run.settings) known += " with --set " + setting;
   if (!playing.rerun.empty()) {
@@ -114,21 +118,25 @@ int replay_command(const std::filesystem::path& recording, const Playing& playin
     if (run.scene.empty()) again.scene = recorded.file();
     const scene::Scene scene = scene::load_scene_with(again.scene, run.settings);
     again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+    names.add(again.scene, known);
     try {
       return rerun(recording, playing.rerun, again, recorded, !run.scene.empty(), out, log);
     } catch (const InputError& error) {
-      throw told_of(error, again.scene, known);
+      throw names.in(error);
     }
   }
   const scene::Scene scene = with_recorded_motion(scene::load_scene_with(run.scene, run.settings),
-                                                  recording, folder.path(), log);
+                                                  recording, folder.path(), names, log);
   again.settings.clear();
-  again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
-  try {
-    return run_command(again, out, log);
-  } catch (const InputError& error) {
-    throw told_of(error, again.scene, known);
   again.folder = folder.path();
+  again.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+  const KnownNames motions = names;  // a command that is told needs the scene where it is
+  NamingStream named_log(log, motions);
+  names.add(again.scene, known);
+  try {
+    return run_command(again, out, named_log);
+  } catch (const InputError& error) {
+    throw names.in(error);
   }
 }
 

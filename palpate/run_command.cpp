@@ -22,6 +22,7 @@
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/hang_watch.h"
+#include "palpate/known_names.h"
 #include "palpate/lockstep_run.h"
 #include "palpate/module_group.h"
 #include "palpate/run_snapshot.h"
@@ -82,10 +83,10 @@ class Run {
     repeat_new_command();
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
     monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
+    monitor_.poll();
     for (const auto& line : monitor_.take_warnings()) {
       log_ << "palpate: warning: " << line << std::endl;
     }
-    monitor_.poll();
     if (suspension_.take()) {
       log_ << "palpate: Ctrl-Z stops no session, for its processes would go on pushing: Ctrl-C "
               "ends it, space in its window pauses it"
@@ -253,9 +254,9 @@ class Run {
     monitor_.poll();
     if (!begun()) return;
     judge_recording(recorder_lives);
-    end.last_words = modules_.last_words();
     judge_pictures();
     end.failures = failures_;
+    end.last_words = modules_.last_words();
     end.restarts = modules_.restarts();
     end.recording = recording_end_;
     const std::string text = summary(monitor_.tally(), end);
@@ -302,8 +303,8 @@ class Run {
     }
     conductor_.command(session_.state(), SessionCommand::kStop);
     modules_.stop();
-  }
     judge_pictures();
+  }
 
   const RunOptions& options_;
   SessionClaim claim_;
@@ -350,14 +351,16 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
     const scene::Scene scene = scene::load_scene_with(options.scene, options.settings);
     RunOptions changed = options;
     changed.settings.clear();
-    changed.scene = folder.write("scene.yaml", scene::resolved_text(scene));
     changed.folder = folder.path();
+    changed.scene = folder.write("scene.yaml", scene::resolved_text(scene));
+    std::string known = options.scene.string() + " with";
+    for (const std::string& setting : options.settings) known += " --set " + setting;
+    KnownNames names;
+    names.add(changed.scene, known);
     try {
       return run_command(changed, out, log);
     } catch (const InputError& error) {
-      std::string known = options.scene.string() + " with";
-      for (const std::string& setting : options.settings) known += " --set " + setting;
-      throw told_of(error, changed.scene, known);
+      throw names.in(error);
     }
   }
   if (options.only.empty()) {

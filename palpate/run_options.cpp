@@ -309,7 +309,6 @@ void write_run_summary(const RunOptions& options, const std::string& text, std::
   } catch (const std::exception& error) {  // its place was good before the run
     throw std::runtime_error(std::string(error.what()) + "; the summary is not in a file");
   }
-  return InputError(text);
 }
 
 }  // namespace palpate::launcher

@@ -90,21 +90,16 @@ std::string command_text(const ModuleCommand& command);
 /// A word as it is typed in a shell: quoted where it has to be.
 std::string shell_word(const std::string& text);
 
-/// Prints the summary, and writes it where options.summary says.
 /// Before anything is started.
 /// @throws InputError where options.record cannot be written, or may not be replaced, and for
 /// options of a recording without one; std::runtime_error where the disk has no room
 void check_recording(const RunOptions& options);
 
+/// Prints the summary, and writes it where options.summary says.
 /// @throws std::runtime_error if it cannot be written
 void write_run_summary(const RunOptions& options, const std::string& text, std::ostream& out);
 
 /// A name no other session has: "s" and 8 random hex digits.
 std::string random_session_name();
-
-/// The same error, of a scene that lies in a folder nobody knows, by what it is known as; lines of
-/// that file mean nothing.
-InputError told_of(const InputError& error, const std::filesystem::path& scene,
-                   const std::string& known);
 
 }  // namespace palpate::launcher

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <limits>
 
 #include "modules/messages/describe.h"
 #include "python/bindings.h"
@@ -24,10 +25,13 @@ SessionCommand command_from(const std::string& word) {
   throw py::value_error("a command is start, pause, reset or stop, not '" + word + "'");
 }
 
-bool write_probe_input(Live& live, std::uint32_t probe, py::handle position, py::handle rotation,
+bool write_probe_input(Live& live, std::int64_t probe, py::handle position, py::handle rotation,
                        py::handle linear, py::handle angular, std::uint32_t buttons) {
+  if (probe < 0 || probe > std::numeric_limits<std::uint32_t>::max()) {
+    throw py::index_error("no probe " + std::to_string(probe) + ": they count from 0");
+  }
   ProbeState state;
-  state.probe = probe;
+  state.probe = static_cast<std::uint32_t>(probe);
   state.pose = {vector_from(position, "position_m", kAny),
                 rotation_from(rotation, "rotation_xyzw")};
   state.twist = {vector_from(linear, "linear_velocity_m_per_s", kAny),

@@ -1,6 +1,7 @@
 #include "python/numbers.h"
 
 #include <cmath>
+#include <sstream>
 
 #include "modules/core/tolerances.h"
 
@@ -43,8 +44,9 @@ Vec3 vector_from(py::handle object, const char* name, double most) {
   check_shape(array, 3, name);
   const Vec3 vector(array.data()[0], array.data()[1], array.data()[2]);
   if (vector.cwiseAbs().maxCoeff() > most) {
-    throw py::value_error(std::string(name) + ": each number must be between -" +
-                          std::to_string(most) + " and " + std::to_string(most));
+    std::ostringstream said;
+    said << name << ": each number must be between " << -most << " and " << most;
+    throw py::value_error(said.str());
   }
   return vector;
 }

@@ -48,6 +48,19 @@ void refuse_to_replace_what_is_no_recording(const std::filesystem::path& file) {
   throw InputError(file.string() + ": is no recording, and is not replaced by one");
 }
 
+[[noreturn]] void refuse_written(const std::filesystem::path& file) {
+  throw InputError(file.string() + ": another program is writing it");
+}
+
+/// Its writer holds a lock; the question gives it back at once.
+void refuse_to_replace_what_is_written(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return;
+  const bool written = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  if (written) refuse_written(file);
+}
+
 }  // namespace
 
 void check_recording_target(const std::filesystem::path& file) {
@@ -64,6 +77,7 @@ void check_recording_target(const std::filesystem::path& file) {
     if (const std::string why = why_not_writable(name); !why.empty()) refuse(why);
   }
   refuse_to_replace_what_is_no_recording(file);
+  refuse_to_replace_what_is_written(file);
 }
 
 McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem::path& named)
@@ -83,7 +97,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem:
 void McapWriter::empty() {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(descriptor_);
-    throw InputError(named_.string() + ": another program is writing it");
+    refuse_written(named_);
   }
   if (::ftruncate(descriptor_, 0) != 0) fail("empty", errno);
 }

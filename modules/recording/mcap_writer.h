@@ -15,7 +15,7 @@ namespace palpate::recording {
 
 /// Before anything is begun whose recording it is to be.
 /// @throws InputError if the folder is missing or cannot be written to, or if there is something
-/// of that name that is no recording
+/// of that name that is no recording, or that another program is writing
 void check_recording_target(const std::filesystem::path& file);
 
 /// No room is left. What had been written, a sample at least, was ended whole, as by close(),

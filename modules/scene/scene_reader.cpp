@@ -13,6 +13,11 @@ YAML::Node parse_yaml(std::string_view text, const Source& source) {
     throw SceneError(source.name, 0, "",
                      "longer than a scene may be (" + std::to_string(kMaxTextBytes) + " bytes)");
   }
+  using namespace std::string_view_literals;
+  for (const auto mark : {"\xFF\xFE"sv, "\xFE\xFF"sv, "\0\0\xFE\xFF"sv}) {
+    if (text.starts_with(mark))
+      throw SceneError(source.name, 1, "", "is UTF-16 or UTF-32; save it as UTF-8");
+  }
   try {
     // The end mark makes yaml-cpp refuse a quoted text that is never closed.
     const auto documents = YAML::LoadAll(std::string(text) + "\n...\n");

@@ -45,6 +45,11 @@ void describe(V& v, Mesh& mesh) {
   v.field("unit", mesh.unit, unit);
   v.field("nodes", mesh.nodes,
           ranged("", 0, double(kMaxNodes), "resample to this many nodes; 0 = as the file is"));
+  constexpr std::size_t kLeastNodes = 4;  // of a tetrahedron
+  v.fits("nodes is 0, or 4 at least",
+         mesh.nodes == 0 || mesh.nodes >= kLeastNodes
+             ? Misfit{}
+             : Misfit{"nodes", "must be 0, or 4 at least: no closed surface has fewer"});
 }
 
 template <class V>

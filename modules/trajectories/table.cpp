@@ -9,6 +9,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
+#include "modules/core/text.h"
 #include "modules/core/units.h"
 #include "modules/trajectories/pose_collector.h"
 #include "modules/trajectories/table_columns.h"
@@ -115,7 +116,7 @@ class TableReader {
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: {}", config_.file.string(), line_, what));
+    throw InputError(fmt::format("{}:{}: {}", config_.file.string(), line_, printable(what)));
   }
 
   void drop_byte_order_mark(std::string& line) const {
@@ -137,6 +138,7 @@ class TableReader {
   }
 
   void find_columns_in(std::string_view line) {
+    if (line.find('\0') != std::string_view::npos) refuse("holds a zero byte: it is no text");
     separator_ = separator_of(line);
     using Order = scene::TrajectoryDevice::QuaternionOrder;
     try {
@@ -191,7 +193,7 @@ class TableReader {
   void take_row(std::string_view line) {
     value_ = {0, 0, 0, 0, 0, 0, 0, 1};
     if (const std::string wrong = parse(line); !wrong.empty()) {
-      return poses_.leave_out(line_, wrong);
+      return poses_.leave_out(line_, printable(wrong));
     }
     const auto& [t, x, y, z, qx, qy, qz, qw] = value_;
     poses_.add(line_, time_, {metre_ * Vec3(x, y, z), Quat(qw, qx, qy, qz)});

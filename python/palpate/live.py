@@ -64,6 +64,7 @@ class Live(Closing[_core.Live]):
 
         Raises:
             TypeError, ValueError: another shape, or not finite.
+            IndexError: a probe below 0. (Of one that the scene has not nobody hears.)
             RuntimeError: it could not be sent.
         """
         if not self._core.write_probe_input(

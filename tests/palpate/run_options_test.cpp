@@ -156,19 +156,6 @@ TEST_CASE("run options: random session names are acceptable and differ") {
   CHECK(seen.size() == 100);
 }
 
-TEST_CASE(
-    "run options: what is wrong with a scene in a temporary folder is told of what it is of") {
-  // Oracle: the texts by hand.
-  const auto told = [](const std::string& text) {
-    return std::string(
-        told_of(palpate::InputError(text), "/tmp/p-1/scene.yaml", "a.yaml with --set b=1").what());
-  };
-  CHECK(told("/tmp/p-1/scene.yaml: no end") == "a.yaml with --set b=1: no end");
-  CHECK(told("/tmp/p-1/scene.yaml:12: of /tmp/p-1/scene.yaml") ==
-        "a.yaml with --set b=1: of a.yaml with --set b=1");
-  CHECK(told("b.yaml:12: no end") == "b.yaml:12: no end");
-}
-
 TEST_CASE("run options: a recorder that comes back writes another part") {
   // Oracle: the names.
   const ModuleCommand recorder{"recorder", "palpate-recorder", {"out/run.mcap", "--session", "s"}};

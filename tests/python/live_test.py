@@ -134,6 +134,10 @@ class LiveTest(unittest.TestCase):
         for bad in ([1, 2], [np.nan, 0, 0], [[0, 0, 0]]):
             with self.assertRaises(ValueError):
                 self.live.write_probe_input(bad)
+        with self.assertRaisesRegex(ValueError, r"position_m: each number must be between -1e\+30 and 1e\+30"):
+            self.live.write_probe_input([1e31, 0, 0])
+        with self.assertRaisesRegex(IndexError, "no probe -1: they count from 0"):
+            self.live.write_probe_input([0, 0, 0], probe=-1)
         with self.assertRaises(ValueError):
             self.live.latest("haptic_force", timeout_s=float("nan"))
         for name, domain in (("", 0), ("a b", 0), ("x" * 65, 0), ("a", -1), ("a", 201)):

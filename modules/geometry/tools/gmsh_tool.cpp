@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -18,6 +19,7 @@
 #include "modules/core/organ_limits.h"
 #include "modules/core/stop_signal.h"
 #include "modules/core/temporary_folder.h"
+#include "modules/core/text.h"
 #include "modules/geometry/gmsh_file.h"
 #include "modules/geometry/mesh_io.h"
 
@@ -124,8 +126,13 @@ TetMesh run_gmsh_with(const TemporaryFolder& folder, std::vector<std::string> op
     throw InputError("gmsh: not found; tetrahedra are made by it (apt-get install gmsh)");
   }
   const std::string wrong = complaints(log);
+  if (status > 128) {
+    const std::string signal = ::strsignal(status - 128);
+    throw InputError("gmsh: broke down (" + signal + ")" + (wrong.empty() ? "" : ": " + wrong));
+  }
   if (status != 0 || !wrong.empty()) {
-    throw InputError("gmsh: exit status " + std::to_string(status) + ": " + wrong);
+    const std::string said = wrong.empty() ? "without a word of why" : wrong;
+    throw InputError("gmsh: exit status " + std::to_string(status) + ": " + printable(said));
   }
   try {
     TetMesh mesh = read_gmsh(output);
@@ -175,7 +182,7 @@ TetMesh read_tetrahedra(const std::filesystem::path& file) {
   try {
     return run_gmsh_with(TemporaryFolder(), {"-save_all", "-save", file.string()});
   } catch (const InputError& error) {
-    throw InputError(file.string() + ": " + error.what());
+    throw InputError(file.string() + ": Gmsh reads no tetrahedra from it; " + error.what());
   }
 }
 

@@ -341,6 +341,7 @@ TEST_CASE("mcap writer: a file that another one writes is refused and keeps what
     McapWriter first(file);
     const auto size = std::filesystem::file_size(file);
     CHECK_THROWS_WITH(McapWriter(file), Catch::Contains("another program is writing it"));
+    CHECK_THROWS_WITH(check_recording_target(file), Catch::Contains("another program is writing"));
     CHECK(std::filesystem::file_size(file) == size);
   }
   CHECK_NOTHROW(McapWriter(file));

@@ -172,11 +172,26 @@ TEST_CASE("scene reader: text that is no YAML is refused at its line") {
              Catch::StartsWith("scene.yaml:7: not valid YAML: "));
   CHECK_THAT(folder.refusal(changed("name: full", "name: *unknown_alias")),
              Catch::StartsWith("scene.yaml:2: not valid YAML: "));
+  for (const auto& mark :
+       {std::string("\xFF\xFE"), std::string("\xFE\xFF"), std::string("\0\0\xFE\xFF", 4)}) {
+    CHECK_THAT(folder.refusal(mark + kFullScene),
+               Catch::Equals("scene.yaml:1: is UTF-16 or UTF-32; save it as UTF-8"));
+  }
   for (const char* bracket : {"[", "{"}) {
     std::string deep;
     for (int k = 0; k < 20'000; ++k) deep += bracket;
     CHECK_THAT(folder.refusal(deep), Catch::StartsWith("scene.yaml:") &&
                                          Catch::EndsWith(": not valid YAML: nested too deep"));
+  }
+}
+
+TEST_CASE("scene reader: a mesh of fewer nodes than a closed surface has is refused at its line") {
+  // Oracle: a tetrahedron's four.
+  const SceneFolder folder;
+  for (const char* nodes : {"nodes: 1", "nodes: 3"}) {
+    CHECK_THAT(folder.refusal(changed("nodes: 550", nodes)),
+               Catch::StartsWith("scene.yaml:5: key 'organs[0].mesh.nodes'") &&
+                   Catch::Contains("must be 0, or 4 at least"));
   }
 }
 

@@ -244,6 +244,10 @@ TEST_CASE("trajectory file: what was meant otherwise is refused, and says how to
              Contains("decimal commas are not read"));
   CHECK_THAT(error_of(std::string("\xFF\xFEt\0,\0x\0", 9)),
              Contains(":1: is UTF-16; save it as UTF-8"));
+  CHECK_THAT(error_of(std::string("t,x\0,y,z\n", 9)),
+             EndsWith(":1: holds a zero byte: it is no text"));
+  CHECK_THAT(error_of(kHeader + std::string("0,1\0,0,0,0,0,0,1\n", 17)),
+             Contains("column 2 is '1?', not a finite number"));
   Device named;
   named.columns = {"t", "x", "y", "up"};
   CHECK_THAT(error_of("t,x,y,z\n0,0,0,0\n", named),

@@ -151,6 +151,12 @@ TEST_CASE("gmsh tool: what it cannot do is said") {
   CHECK_THROWS_WITH(mesh_ball(0.05, BallPart::kWhole, "0.02"),
                     "gmsh: is installed, but cannot be started; is there memory for it? gmsh: "
                     "cannot map a segment");
+  folder.write("gmsh", "#!/bin/sh\nkill -ABRT $$\n");
+  const auto mesh = folder.write("organ.vtk", "no mesh");
+  CHECK_THROWS_WITH(read_tetrahedra(mesh), mesh.string() + ": Gmsh reads no tetrahedra from it; " +
+                                               "gmsh: broke down (Aborted)");
+  folder.write("gmsh", "#!/bin/sh\nexit 3\n");
+  CHECK_THROWS_WITH(read_tetrahedra(mesh), Catch::EndsWith("exit status 3: without a word of why"));
   ::setenv("PATH", path.c_str(), 1);
   if (testing::without_gmsh()) return;
   CHECK_THROWS_AS(run_gmsh("Box(1) = {"), InputError);
