@@ -7,6 +7,18 @@ install(DIRECTORY idl/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate/idl COMPONEN
 
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/palpate COMPONENT dev)
 
+# The pages. Scenes and examples refer to ../docs beside them, pages to ../examples.
+set(page_folder ${CMAKE_INSTALL_DATADIR}/doc/palpate)
+install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${page_folder} COMPONENT programs)
+install(DIRECTORY docs DESTINATION ${page_folder} COMPONENT programs)
+function(install_link target name component)
+  install(CODE "file(CREATE_LINK ${target}
+    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/${name}\" SYMBOLIC)"
+          COMPONENT ${component})
+endfunction()
+install_link(../doc/palpate/docs palpate/docs programs)
+install_link(../../palpate/examples doc/palpate/examples dev)
+
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/palpate)
 configure_package_config_file(cmake/palpate-config.cmake.in
   ${PROJECT_BINARY_DIR}/palpate-config.cmake INSTALL_DESTINATION ${package_folder})

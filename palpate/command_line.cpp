@@ -6,6 +6,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
@@ -19,6 +20,7 @@
 #include "modules/runtime/program.h"
 #include "modules/scene/scene_file.h"
 #include "palpate/check_command.h"
+#include "palpate/completion.h"
 #include "palpate/list_command.h"
 #include "palpate/mesh_command.h"
 #include "palpate/new_command.h"
@@ -64,27 +66,31 @@ void add_settings(Options& command, std::vector<std::string>& settings) {
                    "--set organs[0].tissue.youngs_modulus_pa=8e3; may be given again");
 }
 
-void add_view_options(Options& command, RunOptions& options) {
+void add_view_options(Options& command, RunOptions& options, const Option& frames) {
   command.flag("--headless", options.headless,
                "No window; pictures only with --frames (assumed where there is no display)");
   command
       .add("--frame-interval-s", options.frame_interval,
            "Simulated seconds between two pictures of the sequence")
       .range(0.001, 3600.0)
-      .shows_default();
+      .shows_default()
+      .needs(frames);
 }
 
 void add_run_options(Options& command, RunOptions& options) {
   add_settings(command, options.settings);
-  runtime::add_bus_options(command, options.bus);
-  const Option frames = command.add("--frames", options.frames, "Folder for a PNG sequence");
-  add_view_options(command, options);
+  const Option session = runtime::add_bus_options(command, options.bus);
+  const Option frames = command.add("--frames", options.frames,
+                                    "Folder for a PNG sequence; pictures of an earlier run are "
+                                    "replaced only with --overwrite");
+  add_view_options(command, options, frames);
   command.add("--duration", options.duration, "Seconds to run; else the scene's duration_s")
       .range(0.001, 1e6);
   command.add_output("--record", options.record,
                      "Recording to write (MCAP); one that is there is replaced only with "
                      "--overwrite");
-  command.flag("--overwrite", options.overwrite, "Replace the recording or snapshot of that name");
+  command.flag("--overwrite", options.overwrite,
+               "Replace the recording, snapshot or pictures that are there");
   command.add("--record-topics", options.record_topics,
               "What it holds: all, TOPIC, or TOPIC=HZ for at most so many a second; else all in "
               "lockstep, and in real time all,node_positions=20,contact_model=10,contacts=20");
@@ -95,7 +101,8 @@ void add_run_options(Options& command, RunOptions& options) {
   const Option in_process =
       command.flag("--in-process", options.in_process, "The same bits in one process")
           .excludes(lockstep)
-          .excludes(frames);
+          .excludes(frames)
+          .excludes(session);
   command.add_input("--from-snapshot", options.from_snapshot,
                     "Go on from a snapshot of the same scene, to the bit; with --lockstep or "
                     "--in-process");
@@ -116,12 +123,16 @@ void add_run_options(Options& command, RunOptions& options) {
                  "File that says which host runs which modules, the same on all; with --host")
       .excludes(in_process);
   command.add("--host", options.host, "Which of the hosts of --hosts this one is");
-  command.flag("--close", options.close, "Close the window when the run ends; else it stays");
+  command.flag("--close", options.close, "Close the window when the run ends; else it stays")
+      .excludes(in_process);
   command.flag_off("--no-visualizer", options.visualizer, "Do not start the visualizer")
       .excludes(frames);
   command.flag_off("--no-realtime", options.realtime, "Do not ask for real-time priority");
-  command.flag_off("--no-restart", options.restart,
-                   "Leave processes that die or hang as they are; else they are started again");
+  command
+      .flag_off("--no-restart", options.restart,
+                "Leave processes that die or hang as they are; else they are started again")
+      .excludes(lockstep)
+      .excludes(in_process);
   command.footer(
       "Exit code: 0 if it ran to its end or was stopped, 1 if something failed, or it was stopped "
       "before its snapshot, 2 for bad input, 130 if it was stopped before, while an organ "
@@ -134,15 +145,24 @@ void use_keys(const std::filesystem::path& folder) {
   ::setenv("PALPATE_KEYS", std::filesystem::absolute(folder).c_str(), 1);
 }
 
+/// The environment may give one to whoever uses it.
+void check_domain(const Program& program, const RunOptions& options) {
+  if (!options.in_process || std::getenv("PALPATE_DOMAIN") != nullptr) return;
+  for (const std::string& option : program.given()) {
+    if (option == "--domain") throw InputError("--in-process excludes --domain");
+  }
+}
+
 void add_run(Program& program, RunOptions& options) {
-  Options command =
-      program.command("run", "Run a scene: start, watch and stop its processes", [&options] {
-        outlive_readers();
-        use_keys(options.secure);
-        options.headless |= no_display();
-        options.scene = scene::scene_file(options.scene);
-        return run_command(options, std::cout, std::cerr);
-      });
+  Options command = program.command("run", "Run a scene: start, watch and stop its processes",
+                                    [&program, &options] {
+                                      outlive_readers();
+                                      check_domain(program, options);
+                                      use_keys(options.secure);
+                                      options.headless |= no_display();
+                                      options.scene = scene::scene_file(options.scene);
+                                      return run_command(options, std::cout, std::cerr);
+                                    });
   options.scene = kFirstScene;
   command.add_input("SCENE", options.scene, kSceneHelp).shows_default();
   add_run_options(command, options);
@@ -155,6 +175,7 @@ void add_replay(Program& program, std::filesystem::path& recording, Playing& pla
       [&program, &recording, &playing, &options] {
         outlive_readers();
         check_replay_options(program.given(), playing, options);
+        check_domain(program, options);
         use_keys(options.secure);
         options.headless |= no_display();
         options.scene = scene::scene_file(options.scene);
@@ -176,7 +197,12 @@ void add_inspect(Program& program, recording::InspectOptions& options) {
     return recording::run_inspect_command(options, std::cout, std::cerr);
   });
   command.add("RECORDING", options.recording, "Recording (MCAP)").required();
-  command.add("--csv", options.csv_folder, "Folder for one CSV file per topic");
+  const Option csv =
+      command.add("--csv", options.csv_folder, "Folder for one CSV file per topic and key");
+  command
+      .flag("--overwrite", options.overwrite,
+            "Replace the CSV files that another recording left in that folder")
+      .needs(csv);
   command.add_output("--repair", options.repaired,
                      "File for what can be read of a torn or damaged recording; with its indexes");
   command.add_output("--foxglove", options.foxglove,
@@ -314,10 +340,17 @@ int completion(const Program& program, const std::vector<std::string>& words) {
     std::cout << kCompletion;
     return kExitDone;
   }
-  for (const auto& word : program.completions(words)) std::cout << word << '\n';
-  if (words.size() > 1 && !words.back().starts_with('-')) {
-    for (const auto& scene : scene::shipped_scenes()) std::cout << scene.name << '\n';
+  const std::vector<std::string> commands = program.commands();
+  std::vector<std::string> offered;
+  if (words.size() == 1 || words.front() == "help") {
+    offered = commands;
+  } else if (std::ranges::find(commands, words.front()) != commands.end()) {
+    std::vector<std::string> scenes;
+    for (const auto& scene : scene::shipped_scenes()) scenes.push_back(scene.name);
+    offered =
+        completions(words_in(help_of(words.front())), {words.begin() + 1, words.end()}, scenes);
   }
+  for (const auto& word : offered) std::cout << word << '\n';
   return kExitDone;
 }
 

@@ -212,8 +212,10 @@ class LockstepRun {
 
   int end(bool complete, double wall_time = 0) {
     conductor_.command(session_.state(), SessionCommand::kStop);
+    const bool window = complete && window_stays(options_) && modules_.running("visualizer");
+    const auto any_running = [&] { return any_running_but(window ? "visualizer" : ""); };
     const std::int64_t deadline_ns = runtime::monotonic_now_ns() + kGoodbyeNs;
-    while (complete && modules_.any_running() && runtime::monotonic_now_ns() < deadline_ns &&
+    while (complete && any_running() && runtime::monotonic_now_ns() < deadline_ns &&
            !stop_.requested()) {
       monitor_.wait(kLongestWait);
       monitor_.poll();
@@ -221,12 +223,12 @@ class LockstepRun {
         if (ended.failed) failures_[ended.module] = ended.how;
       }
     }
-    if (complete && modules_.any_running() && !stop_.requested()) {
+    if (complete && any_running() && !stop_.requested()) {
       log_ << "palpate: a process has not ended within 10 s of the session; a recording may lack "
               "its last samples\n";
       exit_code_ = kExitFailed;
     }
-    modules_.stop();
+    modules_.stop_all_but(window && !stop_.requested() ? "visualizer" : "");
     monitor_.poll();
     if (options_.snapshot_at) unite_parts();
     if (wall_time > 0) {
@@ -235,8 +237,28 @@ class LockstepRun {
                       failures_,   true};
       write_summary(said);
     }
+    if (modules_.running("visualizer")) wait_for_window();
     if (exit_code_ != kExitDone) return exit_code_;
     return failures_.empty() ? kExitDone : kExitFailed;
+  }
+
+  bool any_running_but(const std::string& one) {
+    return std::ranges::any_of(modules_.modules(), [&](const std::string& module) {
+      return module != one && modules_.running(module);
+    });
+  }
+
+  /// What was computed stays to be looked at, until the person closes it.
+  void wait_for_window() {
+    log_ << kWindowStays << std::flush;
+    cores_.reset();
+    while (!stop_.requested() && modules_.running("visualizer")) {
+      monitor_.wait(kLongestWait);
+      for (const auto& ended : modules_.poll()) {
+        if (ended.failed) failures_[ended.module] = ended.how;
+      }
+    }
+    modules_.stop();
   }
 
   /// A part may be there before the others have come so far.

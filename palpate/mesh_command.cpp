@@ -124,11 +124,6 @@ TriangleSurface resample(const TriangleSurface& surface, const MeshCommandOption
   }
 }
 
-/// No surface tool reads them.
-bool holds_tetrahedra(const std::filesystem::path& file) {
-  return file.extension() == ".msh" || file.extension() == ".vtk";
-}
-
 /// Of tetrahedra.
 std::string scene_hint(const std::filesystem::path& file) {
   return "A scene takes them as they are: organs: [{mesh: {file: " + file.filename().string() +
@@ -147,16 +142,11 @@ void check_output(const MeshCommandOptions& options) {
 
 void check_options(const MeshCommandOptions& options) {
   const NearMotion& near = options.near;
-  const bool is_filled = holds_tetrahedra(options.input);
+  const bool is_filled = is_tetrahedra_file(options.input);
   if (near.file.empty()) {
-    if (is_filled) {
-      throw InputError(
-          options.input.string() +
-          ": files of this kind are read as tetrahedra; this command prepares surfaces, "
-          "and halves tetrahedra with --near alone. " +
-          scene_hint(options.input));
-    }
-    return;
+    if (!is_filled) return;
+    refuse_tetrahedra(options.input,
+                      "`palpate mesh` prepares surfaces, and halves tetrahedra with --near alone");
   }
   if (!near.columns.empty() && near.columns.size() != 4) {
     throw InputError("--near-columns must name four: time, x, y, z");
@@ -209,7 +199,8 @@ Json::Value json_of(const MeshReport& report) {
 void doubt_size(const MeshCommandOptions& options, double size, Json::Value& json,
                 std::ostream& out) {
   try {
-    launcher::check_organ_size("the surface", {options.input, options.unit}, size);
+    launcher::check_organ_size("the surface", {options.input, options.unit}, size,
+                               launcher::UnitIs::kOption);
   } catch (const InputError& doubt) {
     out << "warning: " << doubt.what() << '\n';
     json["warnings"].append(doubt.what());
@@ -232,6 +223,10 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
   for (const std::string& action : log.actions) out << "  " << action << '\n';
   if (log.actions.empty()) out << "  none needed\n";
   MeshReport report = check_surface(surface);
+  if (report.node_count != found.node_count || report.triangle_count != found.triangle_count) {
+    out << "repaired\n";
+    print_measures(report, out);
+  }
   out << "checks\n";
   print_checks(report, out);
   json["found"] = json_of(found);
@@ -252,7 +247,7 @@ TriangleSurface prepare(const MeshCommandOptions& options, Json::Value& json, st
 
 TetMesh filled(const MeshCommandOptions& options, Json::Value& json, std::ostream& out,
                std::ostream& progress) {
-  if (!holds_tetrahedra(options.input)) {
+  if (!is_tetrahedra_file(options.input)) {
     const TriangleSurface surface = prepare(options, json, out, progress);
     try {
       return fill_surface(surface, mean_edge_length(surface));
@@ -342,6 +337,11 @@ void prepare_and_write(const MeshCommandOptions& options, std::ostream& out,
 }
 
 }  // namespace
+
+void refuse_tetrahedra(const std::filesystem::path& file, const std::string& tool) {
+  read_tetrahedra(file);  // what is wrong with it comes first
+  throw InputError(file.string() + ": holds tetrahedra; " + tool + ". " + scene_hint(file));
+}
 
 int run_mesh_command(const MeshCommandOptions& options, std::ostream& out, std::ostream& err) {
   try {

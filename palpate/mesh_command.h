@@ -23,6 +23,11 @@ struct MeshCommandOptions {
   NearMotion near = {};        ///< fills it with tetrahedra, small where this touches
 };
 
+/// Of a command that takes surfaces: says what a scene does with a file of tetrahedra.
+/// @param tool  what the command does instead, for the message
+/// @throws InputError always: as read_tetrahedra(), or that it holds tetrahedra
+[[noreturn]] void refuse_tetrahedra(const std::filesystem::path& file, const std::string& tool);
+
 /// Reads, repairs, resamples and refines where asked, and prints a one-screen report to `out`;
 /// writes the result only if it holds a volume. What is wrong goes to `err`.
 /// @return kExitDone, kExitBadInput (not written, or not replaced), kExitStopped, or kExitFailed if

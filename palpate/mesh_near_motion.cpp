@@ -10,6 +10,7 @@
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/assets.h"
 #include "modules/scene/touched_places.h"
+#include "modules/trajectories/pose_collector.h"
 #include "modules/trajectories/trajectory_file.h"
 #include "palpate/scene_doubts.h"
 
@@ -45,6 +46,7 @@ std::vector<trajectories::TimedPose> poses_of(const NearMotion& motion,
   if (!motion.topic.empty()) device.topic = motion.topic;
   try {
     auto poses = trajectories::read_trajectory(device, notes);
+    std::erase_if(notes, trajectories::is_of_steps);
     for (std::string& note : notes) note = in_options(note);
     return poses;
   } catch (const InputError& error) {

@@ -16,8 +16,10 @@
 #include "modules/core/whole_file.h"
 #include "modules/geometry/bounding_box.h"
 #include "modules/geometry/mesh_prepare.h"
+#include "modules/geometry/tools/gmsh_tool.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/value_text.h"
+#include "palpate/mesh_command.h"
 #include "palpate/run_options.h"
 #include "palpate/scene_doubts.h"
 
@@ -129,7 +131,9 @@ std::string scene_text(const std::filesystem::path& mesh, const std::string& uni
   const double far = 2.2 * layout.box.sizes().maxCoeff();
   std::string text =
       "# Made from a mesh by `palpate new`. Keys end in their unit; everything is SI.\n"
-      "# docs/scene.md lists every key; `palpate check` says what this holds and costs.\n"
+      "# docs/scene.md lists every key (installed in share/doc/palpate); `palpate check` says what "
+      "this\n"
+      "# holds and costs.\n"
       "palpate_scene: 1\n"
       "organs:\n";
   text += fmt::format("  - name: {}\n    mesh:\n      file: {}\n      unit: {}\n", "organ",
@@ -169,6 +173,9 @@ int new_command(const NewOptions& options, std::ostream& out) {
   if (options.mesh.extension() == ".yaml") {
     throw InputError(options.mesh.string() + ": a scene, not a mesh: palpate run takes it");
   }
+  if (geometry::is_tetrahedra_file(options.mesh)) {
+    geometry::refuse_tetrahedra(options.mesh, "`palpate new` makes scenes of surfaces");
+  }
   std::filesystem::path output = options.output;
   if (output.empty()) output = options.mesh.stem().string() + ".yaml";
   if (std::filesystem::exists(output)) {
@@ -178,7 +185,7 @@ int new_command(const NewOptions& options, std::ostream& out) {
   const Guess guess = unit_of(options);
   auto surface = geometry::load_organ_surface(options.mesh, guess.unit, 0);
   check_organ_size(options.mesh.string(), {options.mesh, guess.unit},
-                   geometry::bounding_box(surface.nodes).sizes().maxCoeff());
+                   geometry::bounding_box(surface.nodes).sizes().maxCoeff(), UnitIs::kOption);
   const std::size_t nodes = surface.nodes.size() > kMostUsualNodes ? kUsualNodes : 0;
   const std::size_t found = surface.nodes.size();
   if (nodes > 0) surface = geometry::load_organ_surface(options.mesh, guess.unit, nodes);

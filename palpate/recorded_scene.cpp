@@ -66,7 +66,7 @@ scene::Scene as_read_by(const std::set<std::string>& stages, const scene::Scene&
 
 }  // namespace
 
-SceneDescription recorded_scene(const std::filesystem::path& recording) {
+std::optional<SceneDescription> scene_told_in(const std::filesystem::path& recording) {
   recording::SampleReader reader(recording);
   while (const auto sample = reader.next()) {
     messages::AnyMessage message;
@@ -74,6 +74,11 @@ SceneDescription recorded_scene(const std::filesystem::path& recording) {
     if (sample->topic->type->decode(sample->payload, message) != nullptr) continue;
     if (const auto* scene = std::get_if<SceneDescription>(&message)) return *scene;
   }
+  return {};
+}
+
+SceneDescription recorded_scene(const std::filesystem::path& recording) {
+  if (auto told = scene_told_in(recording)) return *told;
   throw InputError(recording.string() + ": holds no scene: it began after the session or is torn");
 }
 

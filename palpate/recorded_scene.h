@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -10,7 +11,11 @@
 
 namespace palpate::launcher {
 
-/// The scene that was told first.
+/// The scene that was told first; none where the recording began after the session or is torn.
+/// @throws InputError as SampleReader does
+std::optional<SceneDescription> scene_told_in(const std::filesystem::path& recording);
+
+/// The same.
 /// @throws InputError as SampleReader does, and if there is none
 SceneDescription recorded_scene(const std::filesystem::path& recording);
 

@@ -1,5 +1,8 @@
 #include "palpate/replay_command.h"
 
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -13,10 +16,12 @@
 #include "modules/recording/commands.h"
 #include "modules/recording/player.h"
 #include "modules/runtime/wiring.h"
+#include "modules/scene/placed_files.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
 #include "palpate/known_names.h"
 #include "palpate/module_group.h"
+#include "palpate/recorded_scene.h"
 #include "palpate/rerun.h"
 #include "palpate/run_command.h"
 #include "palpate/session_claim.h"
@@ -32,6 +37,7 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
         "--secure, or PALPATE_KEYS: no key lets one process say what all have said; a recording is "
         "shown without, in a session of its own");
   }
+  check_frames(run);
   recording::check_start(recording, playing.start);  // before anybody is started to look at it
   // Samples of then among those of now would move a running session's organs.
   const SessionClaim claim(run.bus.session, run.bus.domain,
@@ -43,6 +49,7 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   viewing.only = {"visualizer"};
   viewing.record.clear();
   const auto commands = module_commands(viewing, program_folder());
+  clear_frames(run);
   ModuleGroup visualizer(commands, log, Restarting::kNever, folder.path());
   const bool shown = visualizer.any_running();
   if (!shown) log << "palpate: playing into session " << run.bus.session << std::endl;
@@ -60,6 +67,52 @@ int show(const std::filesystem::path& recording, const Playing& playing, const R
   return code;
 }
 
+std::string listed(const std::vector<std::string>& names) {
+  return fmt::format("'{}'", fmt::join(names, "', '"));
+}
+
+/// Of recorded probes, the places in the scene's list of those of the same name; without names, as
+/// of a recording that holds no scene, their own.
+class ProbeMatch {
+ public:
+  ProbeMatch(const std::filesystem::path& recording, const scene::Scene& scene, std::ostream& log)
+      : recording_(recording) {
+    for (const scene::Probe& probe : scene.probes) there_.push_back(probe.name);
+    if (const auto told = scene_told_in(recording)) {
+      recorded_ = scene::probe_names(told->resolved_text);
+      return;
+    }
+    log << fmt::format(
+        "palpate: {}: holds no scene, and so no names of its probes: by their order "
+        "they move {}\n",
+        recording.string(), listed(there_));
+  }
+
+  /// @throws InputError if there is none
+  std::size_t place_of(std::size_t recorded) const {
+    if (recorded >= recorded_.size()) return place_by_order(recorded);
+    const std::string& name = recorded_[recorded];
+    const auto found = std::ranges::find(there_, name);
+    if (found != there_.end()) return static_cast<std::size_t>(found - there_.begin());
+    throw InputError(fmt::format(
+        "{}: moves probe {}, which the scene has not: recorded were {}, the scene has {}; name the "
+        "one that is to move so like it, for the first: --set probes[0].name={}",
+        recording_.string(), listed({name}), listed(recorded_), listed(there_), name));
+  }
+
+ private:
+  std::size_t place_by_order(std::size_t recorded) const {
+    if (recorded_.empty() && recorded < there_.size()) return recorded;
+    throw InputError(fmt::format(
+        "{}: moves a probe number {}, of which it has no name; the scene has {}: give one with as "
+        "many probes",
+        recording_.string(), recorded, listed(there_)));
+  }
+
+  const std::filesystem::path& recording_;
+  std::vector<std::string> recorded_, there_;
+};
+
 /// The scene with the probes of the recording moving as they moved.
 scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::path& recording,
                                   const std::filesystem::path& folder, KnownNames& names,
@@ -67,13 +120,11 @@ scene::Scene with_recorded_motion(scene::Scene scene, const std::filesystem::pat
   std::vector<std::string> warnings;
   const auto trajectories = recording::extract_probe_trajectories(recording, folder, warnings);
   for (const auto& warning : warnings) log << "palpate: " << warning << '\n';
+  const ProbeMatch match(recording, scene, log);
   for (const auto& trajectory : trajectories) {
-    if (trajectory.probe >= scene.probes.size()) {
-      throw InputError(recording.string() + ": moves probe " + std::to_string(trajectory.probe) +
-                       ", the scene has only " + std::to_string(scene.probes.size()));
-    }
     names.add(trajectory.file, recording.string() + ", probe " + std::to_string(trajectory.probe));
-    scene.probes[trajectory.probe].device = scene::TrajectoryDevice{.file = trajectory.file};
+    scene.probes[match.place_of(trajectory.probe)].device =
+        scene::TrajectoryDevice{.file = trajectory.file};
   }
   return scene;
 }
@@ -93,6 +144,7 @@ void check_replay_options(const std::vector<std::string>& given, const Playing& 
   if (!rerun && !run.scene.empty()) return;
   for (const std::string& option : given) {
     if ((rerun ? kRerun : kShowing).contains(option)) continue;
+    if (!rerun && option == "--overwrite" && !run.frames.empty()) continue;  // pictures
     throw InputError(option + (rerun ? ": does not go together with --rerun"
                                      : ": of a replay with SCENE; without, the recording is shown "
                                        "as it was"));

@@ -298,7 +298,7 @@ class Run {
 
   /// What was felt stays to be looked at, until the person closes it.
   void wait_for_window() {
-    log_ << "palpate: the run has ended; its window stays until q closes it\n" << std::flush;
+    log_ << kWindowStays << std::flush;
     while (next_cycle() && session_.phase() != runtime::SessionPhase::kStopped) {
     }
     conductor_.command(session_.state(), SessionCommand::kStop);
@@ -343,7 +343,7 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
   check_recording(options);
   check_snapshots(options);
   if (!options.summary.empty()) check_replaces_its_like(options.summary, "scene ", "summary");
-  if (!options.frames.empty()) make_writable_folder(options.frames, "--frames");
+  check_frames(options);
   if (options.everywhere.empty()) apply_hosts(options);  // once: it comes back with the settings
   if (!options.settings.empty()) {
     const StopSignal stop;         // or a signal would leave the folder
@@ -379,6 +379,7 @@ int run_command(const RunOptions& asked, std::ostream& out, std::ostream& log) {
         "--frames, and no --no-visualizer");
   }
   check_keys_of(commands);
+  clear_frames(options);
   if (options.lockstep) return run_lockstep(options, out, log);
   std::vector<std::string> modules;
   for (const auto& command : commands) modules.push_back(command.module);

@@ -14,6 +14,8 @@
 #include "modules/bus/key_check.h"
 #include "modules/bus/roles.h"
 #include "modules/core/error.h"
+#include "modules/core/files_of_kind.h"
+#include "modules/core/output_file.h"
 #include "modules/core/whole_file.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/sample_reader.h"
@@ -26,6 +28,8 @@
 
 namespace palpate::launcher {
 namespace {
+
+constexpr FileKind kPictures{"frame_", ".png", "\x89PNG", "pictures of a run"};
 
 /// All that a session may have, in the order in which they are started.
 std::vector<std::string> modules_of(std::size_t processes) {
@@ -133,6 +137,7 @@ ModuleCommand module_command(const RunOptions& options, const std::vector<std::s
   if (module == "visualizer") {
     if (options.headless) command.arguments.push_back("--headless");
     if (!options.lockstep && options.only.empty()) command.arguments.push_back("--ends-run");
+    if (options.lockstep && window_stays(options)) command.arguments.push_back("--stays");
     if (!options.frames.empty()) {
       command.arguments.insert(command.arguments.end(),
                                {"--frames", options.frames.string(), "--frame-interval-s",
@@ -250,6 +255,16 @@ ModuleCommand again(ModuleCommand command, int earlier) {
   return command;
 }
 
+void check_frames(const RunOptions& options) {
+  if (options.frames.empty()) return;
+  if (!options.overwrite) check_none_of_kind(options.frames, kPictures, "--frames");
+  make_writable_folder(options.frames, "--frames");
+}
+
+void clear_frames(const RunOptions& options) {
+  if (!options.frames.empty()) remove_files(files_of_kind(options.frames, kPictures));
+}
+
 bool window_stays(const RunOptions& options) {
   return !options.headless && !options.close && options.only.empty() &&
          wanted(options, "visualizer");
@@ -287,7 +302,7 @@ std::string random_session_name() {
 
 void check_recording(const RunOptions& options) {
   if (options.record.empty()) {
-    const bool overwrites = options.overwrite && options.snapshot.empty();
+    const bool overwrites = options.overwrite && options.snapshot.empty() && options.frames.empty();
     if (options.record_topics.empty() && !overwrites) return;
     throw InputError(
         fmt::format("{}: of a recording; give --record FILE, too",

@@ -36,7 +36,7 @@ struct RunOptions {
   std::vector<std::string> everywhere = {};  ///< modules of all hosts; set with `hosts`
   bool conducts = true;          ///< starts the session and ends it; else another host does
   std::filesystem::path record;  ///< recording to write; empty: none
-  bool overwrite = false;        ///< a recording that is there already
+  bool overwrite = false;        ///< a recording, pictures that are there already
   std::vector<std::string> record_topics;  ///< as recording::TopicSelection; empty: the usual
   std::filesystem::path frames;            ///< folder for pictures; empty: none
   double frame_interval = 1;               ///< simulated, between two pictures [s]
@@ -82,8 +82,17 @@ std::vector<std::string> participants_of(const RunOptions& options,
 /// file, FILE.partN.mcap, and replaces nothing; haptics joins a session that runs.
 ModuleCommand again(ModuleCommand command, int earlier);
 
+/// Makes the folder for pictures.
+/// @throws InputError if that fails, or if it holds an earlier run's that are not to be replaced
+void check_frames(const RunOptions& options);
+/// An earlier run's pictures go, before the first new one.
+void clear_frames(const RunOptions& options);
+
 /// A window of this run that stays when the run has ended.
 bool window_stays(const RunOptions& options);
+/// What is said then.
+inline constexpr const char* kWindowStays =
+    "palpate: the run has ended; its window stays until q closes it\n";
 
 /// As one types it.
 std::string command_text(const ModuleCommand& command);

@@ -50,14 +50,16 @@ std::string likely_unit(double size, const std::string& unit) {
 
 /// @throws InputError for a longest side that nothing of its kind has
 void check_size(const std::string& owner, const scene::Mesh& mesh, double size, double smallest,
-                double largest) {
+                double largest, UnitIs unit_is = UnitIs::kKey) {
   if (size >= smallest && size <= largest) return;
   const std::string unit = likely_unit(size, mesh.unit);
   std::string said =
       fmt::format("{} is {} long, read in {}; between {} and {} are allowed", owner,
                   length_text(size), mesh.unit, length_text(smallest), length_text(largest));
   if (!unit.empty()) {
-    said += fmt::format(". With mesh: {{unit: {}}} it would be {}", unit,
+    const bool is_key = unit_is == UnitIs::kKey;
+    said += fmt::format(". With {}{}{} it would be {}", is_key ? "mesh: {unit: " : "--unit ", unit,
+                        is_key ? "}" : "",
                         length_text(size / metres_per_unit(mesh.unit) * metres_per_unit(unit)));
   }
   throw InputError(said);
@@ -174,7 +176,7 @@ class Doubts {
           "times too short?{}",
           owner, approach.fastest, recorded ? " See keys length_unit and time_unit" : "");
     } else if (recorded && approach.extent > 0 && approach.duration >= kLongestLook &&
-               approach.extent / approach.duration < kSlowestHand) {
+               approach.extent / approach.duration < kSlowestHand && !names_time_unit()) {
       say("{} moves over {} in the first {:g} s: are its times in milliseconds? Then say "
           "time_unit: ms",
           owner, length_text(approach.extent), approach.duration);
@@ -184,6 +186,13 @@ class Doubts {
           "surface, at {:.2f} s",
           owner, approach.duration, length_text(approach.nearest), approach.nearest_at);
     }
+  }
+
+  /// As reading a recording does that has hardly a pose a second.
+  bool names_time_unit() const {
+    return std::ranges::any_of(lines_, [](const std::string& line) {
+      return line.find("time_unit: ") != std::string::npos;
+    });
   }
 
   template <class... Values>
@@ -229,8 +238,8 @@ std::string doubt_about_extent(const std::string& owner, double extent) {
                      length_text(extent));
 }
 
-void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size) {
-  check_size(owner, mesh, size, kSmallestOrgan, kLargestOrgan);
+void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size, UnitIs said) {
+  check_size(owner, mesh, size, kSmallestOrgan, kLargestOrgan, said);
 }
 
 SceneDoubts doubts_about(const scene::Scene& scene,

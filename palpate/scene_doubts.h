@@ -49,9 +49,13 @@ trajectories::Progress progress_on(std::ostream& log);
 /// Prints that something is resampled, and how far that is: after a second, then every two.
 scene::Resampling resampling_on(std::ostream& log);
 
+/// Where a mesh's unit is said, for messages: in a scene, or by --unit of a command.
+enum class UnitIs { kKey, kOption };
+
 /// @param owner  what messages call it  @param size  its longest side, read in mesh.unit [m]
 /// @throws InputError for a size that no organ has, naming the likely unit
-void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size);
+void check_organ_size(const std::string& owner, const scene::Mesh& mesh, double size,
+                      UnitIs said = UnitIs::kKey);
 
 /// "OWNER moves over 120 m: are its positions in millimetres?", where a hand would not; else empty.
 /// @param extent  [m]

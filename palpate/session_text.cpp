@@ -15,7 +15,7 @@ namespace {
 std::string organ_lines(const SessionTally& tally) {
   std::string text;
   for (const auto& organ : tally.organs()) {
-    text += fmt::format("organ {:<14} |V-V0|/V0 at most {:.2e}   pressure {:.1f} to {:.1f} Pa",
+    text += fmt::format("organ {:<14} |V-V*|/V* at most {:.2e}   pressure {:.1f} to {:.1f} Pa",
                         organ.name, organ.worst_volume_error, organ.lowest_pressure,
                         organ.highest_pressure);
     if (organ.most_contacts > 0) {
@@ -108,7 +108,7 @@ std::string status_line(const SessionTally& tally, double time,
   };
   std::string line = fmt::format("{:7.1f} s  real time {:.2f}", time, tally.real_time_factor());
   for (const auto& organ : tally.organs()) {
-    line += fmt::format("  V/V0 {} {:.6f}", organ.name, organ.volume_ratio);
+    line += fmt::format("  V/V* {} {:.6f}", organ.name, organ.volume_ratio);
   }
   for (const auto& probe : tally.probes()) {
     line += is_away("haptics") ? fmt::format("  force {} ?", probe.name)

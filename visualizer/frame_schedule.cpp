@@ -20,4 +20,14 @@ std::filesystem::path frame_name(double time) {
   return name.data();
 }
 
+std::filesystem::path unused_name(const std::filesystem::path& file) {
+  std::error_code none;
+  std::filesystem::path name = file;
+  for (int number = 2; std::filesystem::exists(name, none); ++number) {
+    name.replace_filename(file.stem().string() + "-" + std::to_string(number) +
+                          file.extension().string());
+  }
+  return name;
+}
+
 }  // namespace palpate::visualizer

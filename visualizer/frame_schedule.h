@@ -21,6 +21,9 @@ class FrameSchedule {
   double next_ = 0;
 };
 
+/// The file, or FILE-2.png, FILE-3.png, … where that is there already.
+std::filesystem::path unused_name(const std::filesystem::path& file);
+
 /// "frame_000012.500.png": sorts by simulated time [s], 0 … 999999.
 std::filesystem::path frame_name(double time);
 

@@ -5,6 +5,7 @@ int main(int argc, char** argv) {
   const auto add_options = [&](palpate::runtime::Options& added) {
     added.flag("--headless", options.headless, "Draw without a window (needs Xvfb)");
     added.flag("--ends-run", options.ends_run, "q ends the session, not the window alone");
+    added.flag("--stays", options.stays, "The window stays when a lockstep has ended, until q");
     added.add("--frames", options.frames, "Folder for a PNG sequence");
     added
         .add("--frame-interval-s", options.frame_interval,

@@ -190,16 +190,49 @@ void add_color_bar(const SceneView& view, Coloring coloring, const Box2& box, Ov
                        Align::kCenter});
 }
 
+namespace {
+
+/// Where the label of an arrow is: at its tip, or where it leaves the view. Nothing of one that
+/// begins outside.
+std::optional<Pixel> end_in_view(const Camera& camera, const ArrowItem& arrow) {
+  constexpr int kHalvings = 24;
+  const Box2 view{0, 0, double(camera.width), double(camera.height)};
+  const auto at = [&](double part) {
+    return project(camera, arrow.tail + part * (arrow.tip - arrow.tail));
+  };
+  const auto seen = [&](const std::optional<Pixel>& p) { return p && view.contains(p->x, p->y); };
+  if (!seen(at(0))) return {};
+  double inside = 0, outside = 1;
+  if (seen(at(1))) inside = 1;
+  for (int i = 0; i < kHalvings && inside < 1; ++i) {
+    const double middle = 0.5 * (inside + outside);
+    (seen(at(middle)) ? inside : outside) = middle;
+  }
+  return at(inside);
+}
+
+/// Moves a text as little as needed.
+void keep_inside(const Box2& box, TextItem& text) {
+  const Box2 own = extent_of(text);
+  if (own.right() > box.right()) text.x -= own.right() - box.right();
+  if (own.x < box.x) text.x += box.x - own.x;
+  if (own.top() > box.top()) text.y -= own.top() - box.top();
+  if (own.y < box.y) text.y += box.y - own.y;
+}
+
+}  // namespace
+
 void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out) {
   constexpr int kSize = 15, kTries = 9;
   constexpr double kStep = 13;
   for (const ArrowItem& arrow : list.arrows) {
-    const auto tip = project(camera, arrow.tip), tail = project(camera, arrow.tail);
+    const auto tip = end_in_view(camera, arrow), tail = project(camera, arrow.tail);
     if (!tip || !tail) continue;
     const bool to_the_left = tip->x < tail->x;
     TextItem label{
         tip->x + (to_the_left ? -16 : 16),          tip->y + 12, arrow.label, kSize, arrow.color,
         to_the_left ? Align::kRight : Align::kLeft, true};
+    keep_inside({0, 0, double(camera.width), double(camera.height)}, label);
     const auto free = [&] {
       const Box2 own = extent_of(label);
       const bool inside =

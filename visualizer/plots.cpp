@@ -107,7 +107,8 @@ int thousands_exponent(double largest) {
 void add_volume_plot(const SceneView& view, const Box2& box, double since, Overlay& out) {
   std::vector<Curve> curves;
   for (std::size_t i = 0; i < view.organs().size(); ++i) {
-    curves.push_back({&view.organs()[i].volume_error, kOrganColors[i % kOrganColors.size()], 1});
+    curves.push_back({&view.organs()[i].volume_error, kOrganColors[i % kOrganColors.size()], 1,
+                      view.scene().organs[i].name});
   }
   const auto [low, high] = range_of(curves, since);
   const double least = 1e-9;
@@ -122,6 +123,29 @@ void add_volume_plot(const SceneView& view, const Box2& box, double since, Overl
   }
   for (Curve& curve : curves) curve.factor = factor;
   add_plot(unit, curves, since + kPlotSpan, box, least * factor, out);
+}
+
+constexpr double kBetweenValues = 8;
+
+/// Of all curves that have one, from the left; of several with their names, if `named`.
+std::vector<TextItem> newest_values(const std::vector<Curve>& curves, const Axis& axis, double y,
+                                    bool named) {
+  std::vector<TextItem> values;
+  for (const Curve& curve : curves) {
+    if (curve.history->empty()) continue;
+    const double grain = 1e-3 * axis.step;  // digits that the plot cannot show are not written
+    const double newest = grain * std::round(curve.factor * curve.history->newest().value / grain);
+    std::string text = number_text(newest == 0 ? 0.0 : newest);
+    if (named && curves.size() > 1 && !curve.name.empty()) text.insert(0, curve.name + " ");
+    values.push_back({0, y, text, 13, curve.color, Align::kLeft, true});
+  }
+  return values;
+}
+
+double width_of(const std::vector<TextItem>& texts) {
+  double width = texts.empty() ? 0 : -kBetweenValues;
+  for (const TextItem& text : texts) width += extent_of(text).width + kBetweenValues;
+  return width;
 }
 
 }  // namespace
@@ -149,17 +173,16 @@ void add_plot(const std::string& title, const std::vector<Curve>& curves, double
   const TextItem heading =
       fitted({area.x, title_y, title, 13, palette::kText, Align::kLeft, true}, 0.72 * area.width);
   out.texts.push_back(heading);
-  double x = area.right();
-  for (const Curve& curve : curves) {
-    add_curve(curve, axis, area, since, out);
-    if (curve.history->empty()) continue;
-    const double grain = 1e-3 * axis.step;  // digits that the plot cannot show are not written
-    const double newest = grain * std::round(curve.factor * curve.history->newest().value / grain);
-    const TextItem value{
-        x, title_y, number_text(newest == 0 ? 0.0 : newest), 13, curve.color, Align::kRight, true};
-    if (extent_of(value).x < extent_of(heading).right() + 6) break;  // no room
-    out.texts.push_back(value);
-    x = extent_of(value).x - 8;
+  for (const Curve& curve : curves) add_curve(curve, axis, area, since, out);
+  const double room = area.right() - extent_of(heading).right() - kBetweenValues;
+  auto values = newest_values(curves, axis, title_y, true);
+  if (width_of(values) > room) values = newest_values(curves, axis, title_y, false);
+  while (!values.empty() && width_of(values) > room) values.pop_back();
+  double x = area.right() - width_of(values);
+  for (TextItem& value : values) {
+    value.x = x;
+    x += extent_of(value).width + kBetweenValues;
+    out.texts.push_back(std::move(value));
   }
 }
 
@@ -169,10 +192,12 @@ void add_plots(const SceneView& view, const std::array<Box2, 3>& boxes, Overlay&
   add_volume_plot(view, boxes[0], since, out);
   std::vector<Curve> pressures, forces;
   for (std::size_t i = 0; i < view.organs().size(); ++i) {
-    pressures.push_back({&view.organs()[i].pressure, kOrganColors[i % kOrganColors.size()], 1});
+    pressures.push_back({&view.organs()[i].pressure, kOrganColors[i % kOrganColors.size()], 1,
+                         view.scene().organs[i].name});
   }
   for (std::size_t i = 0; i < view.probes().size(); ++i) {
-    forces.push_back({&view.probes()[i].force_magnitude, probe_color(i), 1});
+    forces.push_back(
+        {&view.probes()[i].force_magnitude, probe_color(i), 1, view.probes()[i].description.name});
   }
   add_plot("pressure [Pa]", pressures, time, boxes[1], 1, out);
   add_plot("force [N]", forces, time, boxes[2], 0.1, out);

@@ -15,7 +15,8 @@ inline constexpr double kPlotSpan = 10;  ///< simulated seconds shown
 struct Curve {
   const History* history = nullptr;
   Rgb color{};
-  double factor = 1;  ///< from the history's unit to the axis'
+  double factor = 1;      ///< from the history's unit to the axis'
+  std::string name = {};  ///< written before its newest value, where there are several
 };
 
 /// The vertical axis: round limits and the distance of its grid lines.
@@ -25,7 +26,8 @@ struct Axis {
 /// The smallest round axis of 2 … 6 steps that holds 0 and low … high. At least `least` tall.
 Axis round_axis(double low, double high, double least);
 
-/// One plot in its box: frame, grid, numbers, title with unit and newest value, curves.
+/// One plot in its box: frame, grid, numbers, title with unit and newest values in the order of the
+/// curves, curves.
 void add_plot(const std::string& title, const std::vector<Curve>& curves, double time,
               const Box2& box, double least_height, Overlay& out);
 

@@ -211,6 +211,7 @@ void SceneView::refresh() {
 
 bool SceneView::ended() const {
   const auto deformation = modules_.find("deformation");
+  if (ended_) return true;
   return session_.command == SessionCommand::kPause && deformation != modules_.end() &&
          deformation->second.status.state == ModuleState::kStopped;
 }

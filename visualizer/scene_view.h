@@ -85,6 +85,7 @@ class SceneView {
   const SessionControl& session() const { return session_; }  ///< source time 0 before the first
   /// The run is over, and the window stays: the session stands and its modules have left.
   bool ended() const;
+  void end() { ended_ = true; }  ///< of a session without a clock, whose modules do not say so
   std::uint64_t ignored_messages() const { return ignored_; }
 
   double sim_time() const { return seconds_; }  ///< newest of all organs and probes [s]
@@ -113,6 +114,7 @@ class SceneView {
   std::vector<ProbeView> probes_;
   std::map<std::string, ModuleView> modules_;
   SessionControl session_;
+  bool ended_ = false;
   std::uint64_t ignored_ = 0;
   double seconds_ = 0;
   Vec3 center_ = Vec3::Zero();

@@ -187,6 +187,14 @@ class VisualizerStage : public runtime::Stage {
     return health;
   }
 
+  void finish(const runtime::Cycle& end) override {
+    listen(end.now_ns);
+    if (!stays()) return;
+    view().end();
+    studio_.interaction.hands_off = "The run has ended: q closes the window.";
+  }
+  bool stays() const override { return window_ && options_.stays; }
+
  private:
   SceneView& view() { return studio_.view; }
 
@@ -216,8 +224,7 @@ class VisualizerStage : public runtime::Stage {
     conduct(requests, now);
     if (requests.record) toggle_recording();
     if (requests.screenshot) {
-      const std::filesystem::path file = "palpate_" + frame_name(view().sim_time()).string();
-      take_picture(file);
+      take_picture(unused_name("palpate_" + frame_name(view().sim_time()).string()));
     }
     if (requests.end_run && commands_ && options_.ends_run) {
       conductor_.command(session_, SessionCommand::kStop);
@@ -275,7 +282,8 @@ class VisualizerStage : public runtime::Stage {
       spdlog::info("recording {} {}", file, whole ? "ended" : "failed");
     } else {
       const std::string stem = frame_name(view().sim_time()).stem().string();
-      recorder_.emplace(program_folder() / "palpate-recorder", "palpate_" + stem + ".mcap", bus_);
+      recorder_.emplace(program_folder() / "palpate-recorder",
+                        unused_name("palpate_" + stem + ".mcap"), bus_);
       studio_.interaction.say("Recording into " + recorder_->file().string() + " until v.");
     }
     studio_.interaction.options.recording = recorder_.has_value();

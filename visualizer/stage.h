@@ -9,6 +9,7 @@ namespace palpate::visualizer {
 
 struct VisualizerOptions {
   bool ends_run = false;             ///< --ends-run: q stops the session, too
+  bool stays = false;                ///< --stays: a window, when a lockstep has ended
   bool headless = false;             ///< --headless; also taken where there is no display
   std::filesystem::path frames;      ///< --frames DIR: PNG sequence; empty = none
   double frame_interval = 1;         ///< --frame-interval-s, simulated [0.001 … 3600]

@@ -93,6 +93,7 @@ std::string name_of(ModuleState state) {
 }
 
 void add_status_table(const SceneView& view, const Box2& box, std::int64_t now_ns, Overlay& out) {
+  if (view.modules().empty()) return;  // in lockstep nobody tells the visualizer of himself
   const Columns columns{box.x + 16,  box.x + 104,      box.x + 230,
                         box.x + 268, box.right() - 20, box.width < kNarrow};
   double y = box.top() - kFirstRow;

@@ -17,7 +17,7 @@ scene["probes[0].device"] = {
 
 recorded = scene.copy()
 recorded[E] = STIFFNESS
-with palpate.Session(recorded, record="press.mcap") as session:
+with palpate.Session(recorded, record="press.mcap", overwrite=True) as session:
     session.run(0.8)
 
 recording = palpate.read("press.mcap", ["probe_state", "haptic_force"])

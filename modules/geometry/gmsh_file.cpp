@@ -176,7 +176,11 @@ FileContent read_content(LineReader& lines) {
       lines.refuse(quoted(lines.word(0)) + "; allowed: " + end_of(name));
     }
   }
-  if (content.tetrahedra.empty()) lines.refuse("no tetrahedra");
+  if (content.tetrahedra.empty()) {
+    lines.refuse(
+        "no tetrahedra, which files of this kind are read as; convert a surface to .ply, "
+        ".stl, .obj or .off first");
+  }
   return content;
 }
 

@@ -112,7 +112,8 @@ TriangleSurface read_with_assimp(const std::filesystem::path& file) {
     refuse(file, std::string("is not a surface mesh this program reads (") +
                      importer.GetErrorString() +
                      "); allowed: ply, stl, obj, off, gltf, glb, dae, fbx, 3mf, x3d; convert "
-                     "tetrahedra and VTK or Gmsh files to one of these first");
+                     "VTK or Gmsh files of surfaces to one of these first; a scene takes those of "
+                     "tetrahedra as they are");
   }
   check_indices(*scene, file);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);

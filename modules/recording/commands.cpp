@@ -10,6 +10,7 @@
 #include "modules/bus/dds_bus.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/recording/csv_export.h"
 #include "modules/recording/foxglove_export.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/player.h"
@@ -108,13 +109,15 @@ void tell_repair(const std::filesystem::path& file, const RepairReport& report, 
 
 int run_inspect_command(const InspectOptions& options, std::ostream& out, std::ostream& err) {
   return report_failure(err, [&] {
+    // Before anything is written.
+    if (!options.csv_folder.empty() && !options.overwrite) check_no_tables(options.csv_folder);
     if (!options.repaired.empty()) {
       const RepairReport report = repair(options.recording, options.repaired);
       tell_repair(options.repaired, report, err);
     }
     const auto& file = options.repaired.empty() ? options.recording : options.repaired;
     if (!options.foxglove.empty()) translate(file, options.foxglove, err);
-    const RecordingSummary summary = summarize(file, options.csv_folder);
+    const RecordingSummary summary = summarize(file, options.csv_folder, options.overwrite);
     options.json ? print_json(summary, out) : print_summary(summary, out);
     for (const auto& line : summary.warnings) err << "warning: " << line << '\n';
   });

@@ -16,6 +16,7 @@ struct InspectOptions {
   bool json = false;                    ///< --json
   std::filesystem::path repaired = {};  ///< --repair OUT; empty: none
   std::filesystem::path foxglove = {};  ///< --foxglove OUT; empty: none
+  bool overwrite = false;               ///< tables that are in the CSV folder already
 };
 
 /// Prints the recording's table to `out`; a torn file's warning and errors go to `err`. To repair

@@ -1,8 +1,10 @@
 #include "modules/recording/csv_export.h"
 
+#include <algorithm>
 #include <cctype>
 #include <sstream>
 
+#include "modules/core/files_of_kind.h"
 #include "modules/core/output_file.h"
 #include "modules/messages/csv.h"
 
@@ -10,6 +12,7 @@ namespace palpate::recording {
 namespace {
 
 constexpr const char* kTimeColumns = "time_s,sim_time_s,latency_s,sequence";
+constexpr FileKind kTables{"", ".csv", kTimeColumns, "tables of a recording"};
 
 // A module's name comes from outside: it must not leave the folder.
 std::string file_part(const std::string& key) {
@@ -37,8 +40,13 @@ std::string times_of(const Header& header, std::int64_t received_ns, std::int64_
 
 }  // namespace
 
-CsvExport::CsvExport(std::filesystem::path folder)
-    : folder_(std::move(folder)), is_new_(!is_there(folder_)) {
+void check_no_tables(const std::filesystem::path& folder) {
+  check_none_of_kind(folder, kTables, "--csv");
+}
+
+CsvExport::CsvExport(std::filesystem::path folder, bool overwrite)
+    : folder_(std::move(folder)), overwrite_(overwrite), is_new_(!is_there(folder_)) {
+  if (!overwrite) check_no_tables(folder_);
   make_writable_folder(folder_, "--csv");
 }
 
@@ -81,7 +89,10 @@ void CsvExport::add_inputs(const ModuleStatus& status, const std::string& times)
 }
 
 void CsvExport::close() {
+  auto left = overwrite_ ? files_of_kind(folder_, kTables) : std::vector<std::filesystem::path>();
+  std::erase_if(left, [&](const auto& file) { return files_.contains(file.stem().string()); });
   for (auto& [name, file] : files_) file.finish();
+  remove_files(left);
   is_new_ = false;
 }
 

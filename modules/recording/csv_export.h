@@ -11,10 +11,15 @@
 
 namespace palpate::recording {
 
+/// @throws InputError for a folder that holds tables of a recording
+void check_no_tables(const std::filesystem::path& folder);
+
 class CsvExport {
  public:
-  /// Makes the folder. @throws InputError if that fails
-  explicit CsvExport(std::filesystem::path folder);
+  /// Makes the folder.
+  /// @param overwrite  close() puts its tables in the place of all that another export left there
+  /// @throws InputError if that fails, and without `overwrite` as check_no_tables()
+  CsvExport(std::filesystem::path folder, bool overwrite);
   /// Without close() the folder goes, too, if it was not there before.
   ~CsvExport();
   CsvExport(const CsvExport&) = delete;
@@ -33,6 +38,7 @@ class CsvExport {
   void add_inputs(const ModuleStatus& status, const std::string& times);
 
   std::filesystem::path folder_;
+  bool overwrite_;
   bool is_new_;  ///< the folder, and nothing in it is finished
   std::map<std::string, WholeFile> files_;
 };

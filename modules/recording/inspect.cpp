@@ -131,19 +131,18 @@ double TopicSummary::rate_hz() const {
 }
 
 RecordingSummary summarize(const std::filesystem::path& recording,
-                           const std::filesystem::path& csv_folder) {
+                           const std::filesystem::path& csv_folder, bool overwrite) {
   SampleReader reader(recording);
   Summarizer summarizer;
   std::optional<CsvExport> csv;
+  if (!csv_folder.empty()) csv.emplace(csv_folder, overwrite);
   std::optional<std::int64_t> start_ns;
   messages::AnyMessage message;
   while (const auto sample = reader.next()) {
     if (!start_ns) start_ns = sample->received_time_ns;
     const bool valid = sample->topic->type->decode(sample->payload, message) == nullptr;
     summarizer.add(*sample, reader.about_channel(sample->channel), valid);
-    if (csv_folder.empty() || !valid) continue;
-    if (!csv) csv.emplace(csv_folder);
-    csv->add(*sample, message, *start_ns);
+    if (csv && valid) csv->add(*sample, message, *start_ns);
   }
   if (csv) csv->close();
 

@@ -46,9 +46,11 @@ struct RecordingSummary {
 /// sample), sim_time_s, latency_s (receive time less source time), sequence, and the message's
 /// own; and `module_inputs_haptics.csv` with a row per input of each status. Positions of nodes
 /// are left out.
-/// @throws InputError as SampleReader does; std::runtime_error if a CSV file cannot be written
+/// @param overwrite  those that another recording left there; else they are refused
+/// @throws InputError as SampleReader and CsvExport do; std::runtime_error if a CSV file cannot be
+/// written
 RecordingSummary summarize(const std::filesystem::path& recording,
-                           const std::filesystem::path& csv_folder = {});
+                           const std::filesystem::path& csv_folder = {}, bool overwrite = false);
 
 /// "18.2 MB a minute, 2.1 % of a core, 0 samples lost": of a whole recording in real time.
 std::string cost_text(const McapMap& cost, std::uint64_t bytes);

@@ -74,9 +74,19 @@ class LockstepModule {
         "median, {:.3f} ms in the fastest tenth",
         loop_.cycles, seconds_from_ns(cursor_->next_ns()), 1e3 * cycle_times_.quantile(kHalf),
         1e3 * cycle_times_.quantile(kTenth));
+    if (session_.phase() == SessionPhase::kStopped && stage_->stays()) stay();
   }
 
  private:
+  /// Sockets are read while a command is waited for: the others leave once they are acknowledged.
+  void stay() {
+    const std::int64_t end_ns = cursor_->next_ns();
+    while (!stop_.requested() && !finished_) {
+      wait_for_command();
+      finished_ = stage_->cycle({.sim_time_ns = end_ns, .now_ns = end_ns}).finished;
+    }
+  }
+
   bool goes_on() {
     session_.poll();
     if (!session_.fault().empty()) {

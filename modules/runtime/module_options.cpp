@@ -17,13 +17,15 @@ void start_log(const std::string& name) {
   spdlog::set_default_logger(logger);
 }
 
-void add_bus_options(Options& options, bus::BusOptions& bus) {
-  options.add("--session", bus.session, "Name that keeps simultaneous sessions apart")
-      .shows_default();
+Option add_bus_options(Options& options, bus::BusOptions& bus) {
+  const Option session =
+      options.add("--session", bus.session, "Name that keeps simultaneous sessions apart")
+          .shows_default();
   options.add("--domain", bus.domain, "DDS domain id, 0 to 200")
       .environment("PALPATE_DOMAIN")
       .range(0, 200)
       .shows_default();
+  return session;
 }
 
 Option add_lockstep_options(Options& options, ModuleOptions& module) {

@@ -42,7 +42,8 @@ struct ModuleProgram {
 Option add_lockstep_options(Options& options, ModuleOptions& module);
 
 /// Adds --session and --domain with their checks. PALPATE_DOMAIN is the default of --domain.
-void add_bus_options(Options& options, bus::BusOptions& bus);
+/// @return --session
+Option add_bus_options(Options& options, bus::BusOptions& bus);
 
 /// What a module says goes to stderr: "[haptics] warning: …".
 void start_log(const std::string& name);

@@ -272,18 +272,12 @@ bool Program::refuse_unknown(const std::vector<std::string>& words) const {
   return true;
 }
 
-std::vector<std::string> Program::completions(const std::vector<std::string>& typed) const {
+std::vector<std::string> Program::commands() const {
   std::vector<std::string> words;
   for (const CLI::App* command : app_->get_subcommands([](const CLI::App*) { return true; })) {
-    if (typed.size() <= 1) {
-      words.push_back(command->get_name());
-    } else if (command->get_name() == typed[0]) {
-      for (const CLI::Option* option : command->get_options()) {
-        for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
-      }
-    }
+    words.push_back(command->get_name());
   }
-  if (typed.size() <= 1) words.emplace_back("help");
+  words.emplace_back("help");
   return words;
 }
 

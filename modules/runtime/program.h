@@ -89,9 +89,8 @@ class Program : public Options {
   /// The same where all words that follow, --help too, are the job's.
   void command_with_words(const std::string& word, const std::string& purpose,
                           std::function<int(const std::vector<std::string>&)> job);
-  /// Which words may stand last in what was typed behind the program's name: commands, or options
-  /// of the command that was given.
-  std::vector<std::string> completions(const std::vector<std::string>& typed) const;
+  /// Their words, and "help".
+  std::vector<std::string> commands() const;
   /// Names of the options that were given behind the command, "--frames", when its job runs.
   std::vector<std::string> given() const;
   /// Where what is thrown goes, in one line. Else to stderr, led by the program's name.

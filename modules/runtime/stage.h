@@ -58,6 +58,9 @@ class Stage {
   virtual void prepare() {}
   /// After the last cycle of a lockstep session, all samples of the session being there.
   virtual void finish(const Cycle&) {}
+  /// After that: goes on being shown to a person, by cycles in which time stands, until one is
+  /// the last.
+  virtual bool stays() const { return false; }
   /// All that its cycles depend on beside what is said on the bus; may say things that are states
   /// (bus::Delivery::kState) when it reads. One that begins anew anywhere has nothing.
   virtual void exchange(StateArchive&) {}

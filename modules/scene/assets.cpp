@@ -30,10 +30,6 @@ geometry::TriangleSurface load(const Mesh& mesh, const std::string& owner,
   }
 }
 
-bool holds_tetrahedra(const std::filesystem::path& file) {
-  return file.extension() == ".msh" || file.extension() == ".vtk";
-}
-
 /// Of a refined mesh; a step of so many is minutes.
 constexpr std::size_t kMostRefinedNodes = 50'000;
 
@@ -103,7 +99,7 @@ geometry::TetMesh refined(const geometry::TetMesh& mesh, const Organ& organ) {
 geometry::TriangleSurface load_skin(const Organ& organ, const Resampling& resampling) {
   const std::string owner = "organ '" + organ.name + "'";
   geometry::TriangleSurface skin;
-  if (holds_tetrahedra(organ.mesh.file)) {
+  if (geometry::is_tetrahedra_file(organ.mesh.file)) {
     Organ coarse = organ;
     coarse.solid.refine = {};
     skin = load_tetrahedra(coarse, owner).surface;
@@ -118,7 +114,7 @@ geometry::OrganShape load_organ(const Organ& organ, const Resampling& resampling
   const std::string owner = "organ '" + organ.name + "'";
   const ModelFormat& format = format_of(organ.model);
   geometry::OrganShape shape;
-  if (holds_tetrahedra(organ.mesh.file)) {
+  if (geometry::is_tetrahedra_file(organ.mesh.file)) {
     shape = load_tetrahedra(organ, owner);
     if (!format.is_solid()) shape = geometry::OrganShape(std::move(shape.surface));
   } else {

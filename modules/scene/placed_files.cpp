@@ -40,6 +40,17 @@ std::vector<std::filesystem::path> files_named(const std::string& resolved_text)
   return files;
 }
 
+std::vector<std::string> probe_names(const std::string& resolved_text) {
+  std::vector<std::string> names;
+  const YAML::Node scene = parse_yaml(resolved_text, {"scene", {}});
+  const YAML::Node probes = scene.IsMap() ? scene["probes"] : YAML::Node();
+  for (const auto& probe : probes) {
+    const YAML::Node name = probe.IsMap() ? probe["name"] : YAML::Node();
+    names.push_back(name.IsScalar() ? name.Scalar() : "");
+  }
+  return names;
+}
+
 std::string with_files(
     const std::string& resolved_text,
     const std::function<std::filesystem::path(const std::filesystem::path&)>& place) {

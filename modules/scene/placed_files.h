@@ -1,4 +1,4 @@
-// The files that a scene's text names, and the same text where they lie elsewhere.
+// The files and probes that a scene's text names, and the same text where the files lie elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +12,10 @@ namespace palpate::scene {
 /// @param resolved_text  as resolved_text() gives it
 /// @throws SceneError for what is no YAML
 std::vector<std::filesystem::path> files_named(const std::string& resolved_text);
+
+/// Of its probes, in their order; "" of one without. Its files need not be there.
+/// @throws SceneError for what is no YAML
+std::vector<std::string> probe_names(const std::string& resolved_text);
 
 /// @param place  where each of them is to be
 std::string with_files(

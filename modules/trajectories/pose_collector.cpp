@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -20,6 +21,20 @@ constexpr double kFastestTurn = 50;  // of a wrist, with room [rad/s]
 constexpr std::size_t kToldInFull = 20;
 constexpr std::size_t kMedianOf = 1'000'000;  // steps at most, evenly spread
 
+constexpr double kSlowestRecorder = 0.5;  // of whose poses most are as far apart [s]
+// What tells of steps says so in these words.
+constexpr const char* kGap = "gap of ";
+constexpr const char* kGaps = " gaps, the longest";
+constexpr const char* kApart = " apart ";
+
+/// @param median  step, read as seconds
+std::string doubt_about_times(double median) {
+  const std::pair<const char*, const char*> unit = median < 1e3   ? std::pair("milliseconds", "ms")
+                                                   : median < 1e6 ? std::pair("microseconds", "us")
+                                                                  : std::pair("nanoseconds", "ns");
+  return fmt::format("are its times in {}? Then say time_unit: {}", unit.first, unit.second);
+}
+
 double distance(const TimedPose& a, const TimedPose& b) {
   return (b.pose.position - a.pose.position).norm();
 }
@@ -29,6 +44,12 @@ double angle(const TimedPose& a, const TimedPose& b) {
 }
 
 }  // namespace
+
+bool is_of_steps(const std::string& warning) {
+  return std::ranges::any_of(std::array{kGap, kGaps, kApart}, [&](const char* words) {
+    return warning.find(words) != std::string::npos;
+  });
+}
 
 std::string short_text(double value) { return fmt::format("{:.6g}", value); }
 
@@ -122,7 +143,7 @@ bool PoseCollector::tell(Kind& kind, double size, std::size_t place, const std::
   return true;
 }
 
-double PoseCollector::longest_regular_step() const {
+double PoseCollector::median_step() const {
   const std::size_t stride = (poses_.size() - 1) / kMedianOf + 1;
   std::vector<double> steps;
   for (std::size_t i = 0; i + 1 < poses_.size(); i += stride) {
@@ -130,22 +151,32 @@ double PoseCollector::longest_regular_step() const {
   }
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
   std::nth_element(steps.begin(), middle, steps.end());
-  return std::min(kLongestStep, kGapOverMedian * *middle);
+  return *middle;
 }
 
 void PoseCollector::report_steps() {
-  const double longest_regular = longest_regular_step();
+  const double median = median_step();
+  const bool is_table = ordinal_ == ":";  // a bag's times have no unit to choose
+  if (is_table && median >= kSlowestRecorder && poses_.size() > kToldInFull) {
+    warnings_.push_back(fmt::format("{}: {} poses, {} s{}in the median: {}", file_, poses_.size(),
+                                    short_text(median), kApart, doubt_about_times(median)));
+  } else {
+    report_gaps(std::min(kLongestStep, kGapOverMedian * median));
+  }
+}
+
+void PoseCollector::report_gaps(double longest_regular) {
   Kind gaps;
   for (std::size_t i = 0; i + 1 < poses_.size(); ++i) {
     const double step = poses_[i + 1].time - poses_[i].time;
     if (step <= longest_regular) continue;
     tell(gaps, step, place_of(i + 1),
-         fmt::format("gap of {} s before t = {} s, bridged by interpolation", short_text(step),
+         fmt::format("{}{} s before t = {} s, bridged by interpolation", kGap, short_text(step),
                      short_text(poses_[i + 1].time)));
   }
   if (gaps.count > kToldInFull) {
-    warnings_.push_back(fmt::format("{}in all {} gaps, the longest, here, of {} s",
-                                    at(gaps.worst_place), gaps.count, short_text(gaps.worst)));
+    warnings_.push_back(fmt::format("{}in all {}{}, here, of {} s", at(gaps.worst_place),
+                                    gaps.count, kGaps, short_text(gaps.worst)));
   }
 }
 

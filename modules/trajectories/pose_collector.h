@@ -8,7 +8,8 @@
 // kept (repeated ones not counted), fewer than two, more than kMostPoses.
 // Reported and kept: gaps (a step over 0.1 s or over five times the median step, which the
 // interpolation bridges) and jumps (faster than any hand: kMaxProbeSpeed, or 50 rad/s).
-// Of each kind the first 20 are told in full, the rest by their number.
+// Of each kind the first 20 are told in full, the rest by their number; gaps of half a second and
+// more between most poses of a table are none of a recorder's, but of a wrong unit, and one line.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,9 @@ namespace palpate::trajectories {
 
 inline constexpr double kLongestWayBack = 1;           ///< [s]
 inline constexpr std::size_t kMostPoses = 50'000'000;  ///< of 80 bytes each: 4 GB
+
+/// Of steps alone, which mean nothing where only the way counts.
+bool is_of_steps(const std::string& warning);
 
 class PoseCollector {
  public:
@@ -53,8 +57,9 @@ class PoseCollector {
   };
   std::string wrong_with(const TimedPose& pose) const;
   void report_steps();
+  void report_gaps(double longest_regular);
   void report_jumps();
-  double longest_regular_step() const;
+  double median_step() const;
   std::string at(std::size_t place) const;
   std::size_t place_of(std::size_t pose) const;
   bool tell(Kind& kind, double size, std::size_t place, const std::string& text);

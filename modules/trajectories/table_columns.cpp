@@ -64,8 +64,10 @@ TableColumns by_own_names(const std::vector<std::string>& first, bool scalar_fir
     if (std::find(first.begin(), first.end(), kOwnNames[i]) == first.end()) {
       throw InputError(fmt::format(
           "header is '{}', must hold the columns {}; name others by key columns, as columns: "
-          "[time, px, py, pz, q1, q2, q3, q4] or by number",
-          shown(first), fmt::join(kOwnNames, ",")));
+          "[time, px, py, pz, q1, q2, q3, q4] or by number; of positions alone four are enough, as "
+          "columns: [{}]",
+          shown(first), fmt::join(kOwnNames, ","),
+          first.size() == 4 ? fmt::format("{}", fmt::join(first, ", ")) : "time, px, py, pz"));
     }
     columns.of[i] = place_of(kOwnNames[i], first);
   }

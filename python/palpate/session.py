@@ -32,13 +32,14 @@ class Session(Closing[_core.Session]):
 
     Args:
         scene: a Scene, or the file of one.
-        record: a recording (.mcap) of every message that carries physics goes here, in place of an earlier one; close()
-            ends it.
+        record: a recording (.mcap) of every message that carries physics goes here; close() ends it.
         from_snapshot: a snapshot (save_snapshot(), `palpate run --snapshot-at`) of the same scene; the session goes
             on there, the same bits as one never interrupted, and guides the probes that were guided. positions() are
             those of then at once; forces and contacts are zero until the next step says them.
+        overwrite: replace a recording of that name; nothing else is replaced.
 
     Raises:
+        FileExistsError: there is a file of the recording's name, and it is not to be replaced.
         SceneError, InputError: the scene, or a mesh or recording that it names, or the snapshot cannot be used.
     """
 
@@ -47,11 +48,14 @@ class Session(Closing[_core.Session]):
         scene: Scene | str | os.PathLike[str],
         record: str | os.PathLike[str] | None = None,
         from_snapshot: str | os.PathLike[str] | None = None,
+        overwrite: bool = False,
     ) -> None:
         self._scene = scene.copy() if isinstance(scene, Scene) else Scene.load(scene)
         self._organs = {name: i for i, name in enumerate(self._scene.organs)}
         self._probes = {name: i for i, name in enumerate(self._scene.probes)}
         files = [None if file is None else path_text(file) for file in (record, from_snapshot)]
+        if files[0] is not None and not overwrite and os.path.exists(files[0]):
+            raise FileExistsError(f"{files[0]}: is there already; give another name, or overwrite=True")
         self._core = _core.Session(self._scene._core, *files)
 
     def save_snapshot(self, file: str | os.PathLike[str], overwrite: bool = False) -> float:

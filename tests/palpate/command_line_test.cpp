@@ -39,6 +39,13 @@ TEST_CASE("command line: help WORD is WORD --help, and the shell is told what ma
   const auto options = type("palpate", {"completion", "check", "--re"});
   CHECK_THAT(options.said, Contains("--resolved\n") && Contains("--set\n") && !Contains("stomach"));
   CHECK_THAT(type("palpate", {"completion", "run", "sto"}).said, Contains("stomach_probe\n"));
+  CHECK_THAT(type("palpate", {"completion", "plan", "--"}).said,
+             Contains("--verify\n") && Contains("--points\n"));
+  CHECK_THAT(type("palpate", {"completion", "plan", "l"}).said, Contains("liver_probe\n"));
+  CHECK_THAT(type("palpate", {"completion", "list", "s"}).said,
+             Contains("scenes\n") && Contains("shapes\n") && !Contains("stomach_probe"));
+  CHECK_THAT(type("palpate", {"completion", "chart", "--case", "l"}).said,
+             Contains("liver_4mm\n") && !Contains("liver_probe"));
   const auto script = type("palpate", {"completion"});
   CHECK_THAT(script.said, Contains("complete -o default -F _palpate palpate"));
 }
@@ -57,6 +64,7 @@ TEST_CASE("command line: what is not a command or option is bad input") {
       {"run", "a.yaml", "--in-process", "--only", "haptics"},
       {"run", "a.yaml", "--lockstep", "--only", "haptics"},
       {"run", "a.yaml", "--in-process", "--frames", "f"},
+      {"run", "a.yaml", "--in-process", "--domain", "3"},
       {"check"},
       {"mesh", "a.ply", "--near-unit", "mm"},
       {"mesh", "a.ply", "--radius-m", "0.01"},

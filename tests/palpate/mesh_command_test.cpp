@@ -67,8 +67,19 @@ TEST_CASE("mesh command: repairs are told") {
   write_surface(inside_out(make_ball(0.05, 2)), folder / "in.obj");
   const Outcome outcome = run({folder / "in.obj", folder / "out.off", 0, "m"});
   CHECK(outcome.code == kExitDone);
-  CHECK_THAT(outcome.out, Contains("inside out turned outward: 1"));
+  CHECK_THAT(outcome.out, Contains("inside out turned outward: 1") && !Contains("repaired"));
   CHECK(check_surface(read_surface(folder / "out.off", "m")).holds_volume());
+}
+
+TEST_CASE("mesh command: what repairs leave is measured again") {
+  // Oracle: a node that no triangle uses goes: 162 of 163 stay.
+  const ScratchFolder folder;
+  TriangleSurface ball = make_ball(0.05, 2);
+  ball.nodes.push_back(Vec3::Zero());
+  write_surface(ball, folder / "in.ply");
+  const std::string said = run({folder / "in.ply", {}, 0, "m"}).out;
+  CHECK(said.find("163, 320") < said.find("repairs\n"));
+  CHECK_THAT(said, Contains("repaired\n  nodes, triangles        162, 320\n"));
 }
 
 TEST_CASE("mesh command: a leaking mesh is not written, and what, where and the remedy are told") {
@@ -303,6 +314,13 @@ TEST_CASE("mesh command: what is said of a motion names the options here, not ke
   options = given.near(8e-3);
   given.folder.write("way.csv", "s px py pz\n0 30 30 90\n0.001 30 30 64\n2 30 30 90\n");
   CHECK_THAT(run(options).out, Contains("which no hand is") && Contains(options_here));
+  // The way does not depend on times: rare poses are no gaps here.
+  std::string rare = "s px py pz\n";
+  for (int i = 0; i < 30; ++i) {
+    rare += std::to_string(20 * i) + " 30 30 " + std::to_string(90 - i) + "\n";
+  }
+  given.folder.write("way.csv", rare);
+  CHECK_THAT(run(options).out, !Contains("gap") && !Contains("time_unit") && Contains("touched"));
   // Metres read as millimetres move hardly, and touch where they begin.
   given.folder.write("way.csv", "s px py pz\n0 0.030 0.030 0.090\n1 0.030 0.030 0.064\n");
   options.near.position = {0.03, 0.03, 0.06};

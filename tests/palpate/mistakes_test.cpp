@@ -15,6 +15,9 @@ using palpate::testing::type;
 
 namespace {
 
+constexpr const char* kNoTetrahedra =
+    "no tetrahedra, which files of this kind are read as; convert a surface to .ply";
+
 using Words = std::vector<std::string>;
 
 struct Mistake {
@@ -44,7 +47,11 @@ class Desk {
     }
     geometry::write_surface(two, file("two.ply"));
     write("garbage.stl", "this is no mesh\n");
-    write("tetrahedra.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
+    const std::string nodes =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+        "$EndNodes\n$Elements\n1\n1 ";
+    write("tetrahedra.msh", nodes + "4 2 0 1 1 2 3 4\n$EndElements\n");
+    write("surface.msh", nodes + "2 2 0 1 1 2 3\n$EndElements\n");
     write("empty.yaml", "");
     write("untitled.yaml", "organs: []\n");
     write("quote.yaml", "palpate_scene: 1\nname: \"press\n");
@@ -98,6 +105,13 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {{"run", scene, "--domain", "300"}, "--domain"},
       {{"run", scene, "--lockstep", "--set", "duration_s=0"}, "give --duration"},
       {{"run", scene, "--in-process", "--frames", "f"}, "--frames"},
+      {{"run", scene, "--in-process", "--session", "s"}, "--session"},
+      {{"run", scene, "--in-process", "--close"}, "--close"},
+      {{"run", scene, "--in-process", "--no-restart"}, "--no-restart"},
+      {{"run", scene, "--lockstep", "--no-restart"}, "--no-restart"},
+      {{"run", scene, "--in-process", "--frame-interval-s", "1"}, "requires --frames"},
+      {{"run", scene, "--lockstep", "--frame-interval-s", "1"}, "requires --frames"},
+      {{"inspect", "a.mcap", "--overwrite"}, "requires --csv"},
       {{"run", scene, "--headless", "--only", "hapitcs"}, "hapitcs"},
       {{"run", scene, "--headless", "--record", scene}, "would be overwritten"},
       {{"run", scene, "--headless", "--record-topics", "all"}, "give --record FILE"},
@@ -119,7 +133,15 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {{"mesh", desk.file("garbage.stl")}, "garbage.stl"},
       {{"mesh", desk.file("open.ply")}, "--fill-holes closes 1 hole"},
       {{"mesh", desk.file("two.ply")}, "--largest keeps the shell with"},
-      {{"mesh", desk.file("tetrahedra.msh")}, "files of this kind are read as tetrahedra"},
+      {{"mesh", desk.file("tetrahedra.msh")}, "holds tetrahedra; `palpate mesh` prepares surfaces"},
+      {{"new", desk.file("tetrahedra.msh")}, "A scene takes them as they are: organs: [{mesh: {"},
+      {{"mesh", desk.file("surface.msh")}, kNoTetrahedra},
+      {{"new", desk.file("surface.msh")}, kNoTetrahedra},
+      {{"mesh", "nowhere.vtk"}, "nowhere.vtk: no such file"},
+      {{"new", "nowhere.vtk"}, "nowhere.vtk: no such file"},
+      {{"mesh", desk.file("in_mm.stl")}, "With --unit mm it would be 100 mm"},
+      {{"new", desk.file("in_mm.stl"), "--unit", "m", "-o", desk.file("h.yaml")},
+       "With --unit mm it would be 100 mm"},
       {{"mesh", desk.file("in_mm.stl"), "--near", desk.file("good.csv")}, "needs --radius-m"},
       {{"mesh", desk.file("in_mm.stl"), "--near", desk.file("good.csv"), "--radius-m", "8"},
        "--radius-m"},
@@ -143,6 +165,7 @@ std::vector<Mistake> mistakes(const Desk& desk) {
       {desk.with("organs[0].model=mass_springs"), "mass_springs"},
       {desk.with("organs[0].solid.poisson_ratio=0.4"), "is not read by model"},
       {desk.with("organs[0].mesh.file=nowhere.ply"), "nowhere.ply"},
+      {desk.with("organs[0].mesh={file: surface.msh}"), kNoTetrahedra},
       {desk.with("organs[0].rotation_xyzw=[1, 1, 0, 0]"), "rotation_xyzw"},
       {desk.with("probes[0].shape={sphere: {radius_m: 0.01}, plane: {}}"), "exactly one of"},
       {desk.with("probes=[]"), "at least one entry"},

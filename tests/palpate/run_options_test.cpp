@@ -5,6 +5,7 @@
 #include <set>
 
 #include "modules/core/error.h"
+#include "tests/scratch_folder.h"
 
 using namespace palpate::launcher;
 
@@ -64,8 +65,12 @@ TEST_CASE("run options: a window stays, and its q ends the run, where it is this
   auto options = some_run();
   CHECK(window_stays(options));
   CHECK(has(module_commands(options, "")[3], "--ends-run"));
+  options.lockstep = true;
+  CHECK(has(module_commands(options, "")[3], "--stays"));
+  CHECK_FALSE(has(module_commands(options, "")[3], "--ends-run"));
   options.close = true;
   CHECK_FALSE(window_stays(options));
+  CHECK_FALSE(has(module_commands(options, "")[3], "--stays"));
   options = some_run();
   options.only = {"visualizer"};
   CHECK_FALSE(window_stays(options));
@@ -172,4 +177,24 @@ TEST_CASE("run options: haptics that comes back joins a session that runs") {
   CHECK(again(haptics, 0).arguments == Names{"scene.yaml"});
   CHECK(again(haptics, 1).arguments == Names{"scene.yaml", "--joins"});
   CHECK(again(again(haptics, 1), 2).arguments == Names{"scene.yaml", "--joins"});
+}
+
+TEST_CASE("run options: pictures of an earlier run are refused, or go before the first new one") {
+  // Oracle: the files left; a picture of something else stays.
+  const palpate::ScratchFolder folder;
+  auto options = some_run();
+  options.frames = folder / "frames";
+  check_frames(options);  // makes it
+  CHECK_NOTHROW(check_frames(options));
+  folder.write("frames/frame_000003.000.png", "\x89PNG");
+  folder.write("frames/photo.png", "\x89PNG");
+  CHECK_THROWS_WITH(check_frames(options),
+                    Catch::Contains("holds pictures of a run already (frame_000003.000.png)") &&
+                        Catch::EndsWith("or --overwrite"));
+  options.overwrite = true;
+  CHECK_NOTHROW(check_frames(options));
+  CHECK(std::filesystem::exists(folder / "frames/frame_000003.000.png"));  // a check takes nothing
+  clear_frames(options);
+  CHECK_FALSE(std::filesystem::exists(folder / "frames/frame_000003.000.png"));
+  CHECK(std::filesystem::exists(folder / "frames/photo.png"));
 }

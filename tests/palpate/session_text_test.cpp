@@ -48,7 +48,7 @@ TEST_CASE("status line: one line with time, speed, volume, force, rates and trou
   const auto line = status_line(stomach_tally(), 12);
   CHECK(std::count(line.begin(), line.end(), '\n') == 0);
   CHECK_THAT(line, Contains("12.0 s") && Contains("real time 0.97") &&
-                       Contains("V/V0 stomach 1.000050") && Contains("force finger 0.500 N") &&
+                       Contains("V/V* stomach 1.000050") && Contains("force finger 0.500 N") &&
                        Contains("haptics 1000 Hz (6 missed)") &&
                        Contains("[slower than real time]"));
 }
@@ -81,7 +81,7 @@ TEST_CASE("summary: one screen with what the session was and what failed") {
   CHECK(std::count(text.begin(), text.end(), '\n') <= 24);
   CHECK_THAT(text, Contains("scene stomach_probe: 11.6 s simulated in 12.0 s, "
                             "real-time factor 0.970\n") &&
-                       Contains("|V-V0|/V0 at most 5.00e-05") &&
+                       Contains("|V-V*|/V* at most 5.00e-05") &&
                        Contains("force at most 0.500 N   limits that acted: slew, stale") &&
                        Contains("contacts: 3 searches truncated, 2 with a probe inside without "
                                 "contact, 1 steps not solved\n"));

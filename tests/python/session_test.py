@@ -62,8 +62,8 @@ class SameBitsTest(unittest.TestCase):
                 session.run_until(1.0)
                 end = session.positions().tobytes()
             self.assertEqual(command.read_bytes(), own.read_bytes())
-            for _ in range(2):
-                with palpate.Session(BALL, from_snapshot=own, record=rest) as session:
+            for again in (False, True):
+                with palpate.Session(BALL, from_snapshot=own, record=rest, overwrite=again) as session:
                     self.assertEqual(session.time, 0.4)
                     self.assertEqual(session.positions().tobytes(), then)
                     session.run_until(1.0)
@@ -328,6 +328,23 @@ threading.excepthook = lambda told: print(told.exc_type.__name__ + "\\n", end=""
         self.assertIn("force_n: [0., 0., 0.]", repr(session.latest("haptic_force")))
         with self.assertRaises(TypeError):
             pickle.dumps(session)
+
+    def test_a_recording_is_replaced_only_when_asked(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, other = Path(folder) / "run.mcap", Path(folder) / "notes.txt"
+            with palpate.Session(BALL, record=file) as session:
+                session.run(0.02)
+            before = file.read_bytes()
+            with self.assertRaisesRegex(FileExistsError, "run.mcap: is there already; .* or overwrite=True$"):
+                palpate.Session(BALL, record=file)
+            self.assertEqual(file.read_bytes(), before)
+            with palpate.Session(BALL, record=file, overwrite=True) as session:
+                session.run(0.04)
+            self.assertGreater(len(file.read_bytes()), len(before))
+            other.write_text("notes")
+            with self.assertRaises(palpate.InputError):
+                palpate.Session(BALL, record=other, overwrite=True)
+            self.assertEqual(other.read_text(), "notes")
 
     def test_a_recording_that_cannot_be_written(self):
         with self.assertRaises(RuntimeError):

@@ -3,6 +3,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -23,6 +24,8 @@ inline std::filesystem::path bin(const std::string& name) {
 /// `arguments` with those that name a session.
 inline std::vector<std::string> joined(std::vector<std::string> arguments,
                                        const bus::BusOptions& options) {
+  // One process has no bus, and takes no option of one.
+  if (std::ranges::find(arguments, "--in-process") != arguments.end()) return arguments;
   arguments.insert(arguments.end(),
                    {"--session", options.session, "--domain", std::to_string(options.domain)});
   return arguments;

@@ -43,7 +43,7 @@ TEST_CASE("launcher: runs for its duration, reports each second, sums up and rec
   CHECK(run.wait_for_end() == 0);
   INFO(run.said());
   CHECK_THAT(run.said(),
-             Contains(" s  real time") && Contains("V/V0 ball 1.0000") && Contains(" (of 1000 Hz"));
+             Contains(" s  real time") && Contains("V/V* ball 1.0000") && Contains(" (of 1000 Hz"));
   const auto from = [&run](const char* words) {
     return run.said().substr(std::min(run.said().find(words), run.said().size()));
   };

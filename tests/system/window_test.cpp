@@ -160,6 +160,25 @@ TEST_CASE("window: stays when the run has ended, with the summary said, until q"
   CHECK(session.run.wait_for_end() == 0);
 }
 
+TEST_CASE("window: stays when a lockstep has ended, too, until q or with --close not at all") {
+  // Oracle: the launcher's words and its exit.
+  if (!tools_or_skip()) return;
+  const BallScene scene(
+      "scripted: {start_m: [0, 0, 0.07], moves: [{to_m: [0, 0, 0.05], duration_s: 1}]}");
+  {
+    Windowed session(scene.file(), {"--duration", "0.5", "--lockstep"});
+    REQUIRE(session.run.wait_for_text("its window stays until q closes it"));
+    CHECK(session.run.said().find("probe finger") != std::string::npos);
+    CHECK_FALSE(wait_until([&] { return session.run.child().ended().has_value(); }, 0.5));
+    REQUIRE(session.hand.find_window("Palpate: press"));
+    session.hand.key("q");
+    CHECK(session.run.wait_for_end() == 0);
+  }
+  Windowed closed(scene.file(), {"--duration", "0.5", "--lockstep", "--close"});
+  CHECK(closed.run.wait_for_end() == 0);
+  CHECK(closed.run.said().find("its window stays") == std::string::npos);
+}
+
 TEST_CASE("window: a script is taken over by a drag, and --close ends with the run") {
   // Oracle: a script far from the ball feels nothing by itself.
   if (!tools_or_skip()) return;

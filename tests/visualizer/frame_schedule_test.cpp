@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "tests/scratch_folder.h"
+
 using namespace palpate::visualizer;
 
 TEST_CASE("frame schedule: one picture per interval, at the first chance", "[visualizer]") {
@@ -41,4 +43,15 @@ TEST_CASE("frame names: hold the time and sort by it", "[visualizer]") {
   CHECK(frame_name(12.5) == "frame_000012.500.png");
   CHECK(frame_name(0) == "frame_000000.000.png");
   CHECK(frame_name(9.9995).string() < frame_name(100.25).string());
+}
+
+TEST_CASE("frame names: no picture takes the place of another", "[visualizer]") {
+  // Oracle: worked by hand.
+  const palpate::ScratchFolder folder;
+  const auto wished = folder / "palpate_frame_000012.500.png";
+  CHECK(unused_name(wished) == wished);
+  folder.write("palpate_frame_000012.500.png", "");
+  CHECK(unused_name(wished) == folder / "palpate_frame_000012.500-2.png");
+  folder.write("palpate_frame_000012.500-2.png", "");
+  CHECK(unused_name(wished) == folder / "palpate_frame_000012.500-3.png");
 }

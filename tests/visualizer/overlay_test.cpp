@@ -244,6 +244,27 @@ TEST_CASE("overlay: an arrow's label is beside its tip", "[visualizer][analytic]
   CHECK(overlay.texts[1].align == Align::kRight);
 }
 
+TEST_CASE("overlay: the label of an arrow that leaves the view is at its edge", "[visualizer]") {
+  // Oracle: the view's box; an arrow that begins outside has none.
+  const Camera camera = frontal_camera(Vec3::Zero(), 0.1, 800, 600);
+  for (const Vec3& tip : {Vec3(3, 0, 0), Vec3(-3, 0, 0), Vec3(0, 0, 3), Vec3(1, 0, -3)}) {
+    DrawList list;
+    list.arrows.push_back({Vec3(0.01, 0, 0.01), tip, 0.001, {}, "12.50 N (mesh +12 %)"});
+    Overlay overlay;
+    add_arrow_labels(list, camera, overlay);
+    REQUIRE(overlay.texts.size() == 1);
+    const Box2 own = extent_of(overlay.texts[0]);
+    CHECK(own.x >= 0);
+    CHECK(own.right() <= 800);
+    CHECK(own.y >= 0);
+    CHECK(own.top() <= 600);
+    list.arrows[0].tail = 10 * tip;
+    Overlay none;
+    add_arrow_labels(list, camera, none);
+    CHECK(none.texts.empty());
+  }
+}
+
 TEST_CASE("layout: the parts fill the window and do not overlap", "[visualizer][analytic]") {
   // Oracle: areas add up.
   for (const auto& [width, height] :

@@ -1,5 +1,6 @@
 #include "visualizer/plots.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -157,4 +158,38 @@ TEST_CASE("volume plot: the unit follows the size of the error", "[visualizer]")
   CHECK(unit_at(-0.03) == "volume error [%]");
   CHECK(unit_at(4e-9) == "volume error [ppb]");
   CHECK(unit_at(0) == "volume error [ppb]");
+}
+
+TEST_CASE("plot: newest values stand in the order of the curves, with their names",
+          "[visualizer]") {
+  // Oracle: by hand; without room for names the numbers alone, then the first of them.
+  std::array<History, 3> histories;
+  std::vector<Curve> curves;
+  const std::array<std::string, 3> names{"stomach", "liver", "a_much_longer_name_than_the_others"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    histories[i].push(1, double(i + 1));
+    if (i < 2) curves.push_back({&histories[i], Rgb{1, 2, 3}, 1, names[i]});
+  }
+  const auto values = [&](double width) {
+    Overlay overlay;
+    add_plot("pressure [Pa]", curves, kPlotSpan, {0, 0, width, 150}, 0, overlay);
+    std::vector<TextItem> found;
+    for (const TextItem& text : overlay.texts) {
+      if (text.color == Rgb{1, 2, 3}) found.push_back(text);
+    }
+    return found;
+  };
+  const auto two = values(400);
+  REQUIRE(two.size() == 2);
+  CHECK(two[0].text == "stomach 1");
+  CHECK(two[1].text == "liver 2");
+  CHECK(extent_of(two[0]).right() < extent_of(two[1]).x);
+  CHECK(extent_of(two[1]).right() == Approx(380));
+  curves.push_back({&histories[2], Rgb{1, 2, 3}, 1, names[2]});
+  const auto three = values(400);
+  REQUIRE(three.size() == 3);
+  CHECK(three[0].text == "1");
+  CHECK(three[2].text == "3");
+  curves.resize(1);
+  CHECK(values(400).at(0).text == "1");
 }

@@ -99,3 +99,8 @@ TEST_CASE("status table: every state has a name of its own", "[visualizer]") {
     names.push_back(name);
   }
 }
+
+TEST_CASE("status table: where nobody tells of himself there is no heading", "[visualizer]") {
+  // Oracle: nothing is drawn.
+  CHECK(texts_of(SceneView(visualizer::testing::two_probe_scene()), kSecond).empty());
+}

@@ -175,6 +175,10 @@ void refuse_too_many_nodes(const TriangleSurface& surface, double size) {
 
 TetMesh run_gmsh(const std::string& script) { return run_gmsh_in(TemporaryFolder(), script); }
 
+bool is_tetrahedra_file(const std::filesystem::path& file) {
+  return file.extension() == ".msh" || file.extension() == ".vtk";
+}
+
 TetMesh read_tetrahedra(const std::filesystem::path& file) {
   check_input(file, kMaxMeshFileBytes);
   if (std::filesystem::file_size(file) == 0) throw InputError(file.string() + ": is empty");

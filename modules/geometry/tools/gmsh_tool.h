@@ -16,8 +16,12 @@ namespace palpate::geometry {
 ///         than kMaxNodes
 TetMesh fill_surface(const TriangleSurface& surface, double size);
 
+/// By its name, .msh or .vtk, as scenes and commands decide it: no tool of surfaces reads such.
+bool is_tetrahedra_file(const std::filesystem::path& file);
+
 /// Reads tetrahedra of any format Gmsh reads: MSH 2.2 text at once, others through Gmsh.
-/// @throws InputError as read_gmsh(), or if gmsh is not installed or cannot read the file
+/// @throws InputError as read_gmsh(), with what to do about a file of a surface, or if gmsh is not
+/// installed or cannot read the file
 TetMesh read_tetrahedra(const std::filesystem::path& file);
 
 enum class BallPart { kWhole, kOctant };  ///< octant: x, y, z ≥ 0

@@ -1,6 +1,7 @@
 #include "modules/recording/inspect.h"
 
 #include <catch2/catch.hpp>
+#include <set>
 #include <sstream>
 
 #include "modules/core/error.h"
@@ -203,6 +204,26 @@ TEST_CASE("inspect: writes one CSV file per topic and key") {
       Catch::Contains("a.mcap': must be a folder that can be written (Not a directory)"));
   CHECK(std::filesystem::exists(folder / "csv/module_status_haptics.csv"));
   CHECK_FALSE(std::filesystem::exists(folder / "csv/haptic_force_0.csv"));  // none was valid
+}
+
+TEST_CASE("inspect: tables of another recording are refused, or replaced all") {
+  // Oracle: the names of files; a person's own table stays.
+  const ScratchFolder folder;
+  write_session(folder / "two.mcap");
+  SampleFile one(folder / "one.mcap", {});
+  one.add(raw_sample(bus::kProbeState, probe_state(1, 0, 0, Vec3::Zero()), 1));
+  one.close();
+  summarize(folder / "two.mcap", folder / "csv");
+  folder.write("csv/notes.csv", "time_s,note\n");
+  CHECK_THROWS_WITH(summarize(folder / "one.mcap", folder / "csv"),
+                    Catch::Contains("csv': holds tables of a recording already (") &&
+                        Catch::EndsWith("give another folder, or --overwrite"));
+  summarize(folder / "one.mcap", folder / "csv", true);
+  std::set<std::string> left;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "csv")) {
+    left.insert(file.path().filename().string());
+  }
+  CHECK(left == std::set<std::string>{"notes.csv", "probe_state_0.csv"});
 }
 
 TEST_CASE("inspect: a folder for CSV that no name can be is bad input") {

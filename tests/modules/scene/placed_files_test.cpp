@@ -38,6 +38,15 @@ TEST_CASE("placed files: the text names them, wherever, and others in their plac
   CHECK(with_files(text, [](const std::filesystem::path& file) { return file; }) == text);
 }
 
+TEST_CASE("placed files: probes have their names without the files") {
+  // Oracle: the names by hand; the mesh is nowhere.
+  CHECK(probe_names("organs: [{mesh: {file: nowhere.ply}}]\n"
+                    "probes: [{name: finger, shape: {}}, {shape: {}}, {name: rod}]\n") ==
+        std::vector<std::string>{"finger", "", "rod"});
+  for (const char* text : {"3", "probes: 3", "a: b"}) CHECK(probe_names(text).empty());
+  CHECK_THROWS_AS(probe_names("a: [b"), InputError);
+}
+
 TEST_CASE("placed files: of a text that is somebody else's") {
   // Oracle: by hand; they need not be there.
   CHECK(files_named("").empty());

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "modules/core/error.h"
+#include "modules/trajectories/pose_collector.h"
 #include "tests/scratch_folder.h"
 
 using namespace palpate;
@@ -122,6 +123,36 @@ TEST_CASE("trajectory file: a gap is reported where it ends, with its length") {
   const Outcome by_length = read(text);
   REQUIRE(by_length.warnings.size() == 1);
   CHECK_THAT(by_length.warnings[0], Contains("recording.csv:6: gap of 0.11 s before t = 0.26 s"));
+}
+
+TEST_CASE("trajectory file: times in another unit are one hint, not a gap each") {
+  // Oracle: by hand. 50 poses a second, stamped in each unit and read as seconds.
+  for (const auto& [step, hint] : std::vector<std::pair<std::string, std::string>>{
+           {"20", "milliseconds? Then say time_unit: ms"},
+           {"20000", "microseconds? Then say time_unit: us"},
+           {"20000000", "nanoseconds? Then say time_unit: ns"}}) {
+    std::string text = "t,x,y,z,qx,qy,qz,qw\n";
+    for (int i = 0; i < 40; ++i) {
+      text += std::to_string(i * std::stoll(step)) + ",0,0,0.001,0,0,0,1\n";
+    }
+    const ScratchFolder folder;
+    std::vector<std::string> warnings;
+    read_trajectory({.file = folder.write("long.csv", text)}, warnings);
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Contains("long.csv: 40 poses") && EndsWith("times in " + hint));
+    CHECK(is_of_steps(warnings[0]));
+  }
+  CHECK_FALSE(is_of_steps("a.csv:7: left out: position is beyond 1000 m"));
+}
+
+TEST_CASE("trajectory file: positions alone need four columns, which a refusal of a header says") {
+  // Oracle: the header's own names, with which it is read.
+  const ScratchFolder folder;
+  const auto file = folder.write("xyz.csv", "time,x,y,z\n0,0,0,0\n0.01,0,0,0\n");
+  std::vector<std::string> warnings;
+  CHECK_THROWS_WITH(read_trajectory({.file = file}, warnings),
+                    EndsWith("four are enough, as columns: [time, x, y, z]"));
+  CHECK(read_trajectory({.file = file, .columns = {"time", "x", "y", "z"}}, warnings).size() == 2);
 }
 
 TEST_CASE("trajectory file: many bad rows or gaps are counted, not listed without end") {

@@ -178,7 +178,10 @@ TEST_CASE("gmsh tool: a file without tetrahedra is refused by its own name") {
   std::ofstream(file) << "# vtk DataFile Version 2.0\nshell\nASCII\nDATASET UNSTRUCTURED_GRID\n"
                          "POINTS 3 double\n0 0 0\n1 0 0\n0 1 0\n"
                          "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n";
-  CHECK_THROWS_WITH(read_tetrahedra(file), file.string() + ": no tetrahedra");
+  CHECK_THROWS_WITH(read_tetrahedra(file),
+                    file.string() +
+                        ": no tetrahedra, which files of this kind are read as; convert a surface "
+                        "to .ply, .stl, .obj or .off first");
 }
 
 }  // namespace
