@@ -45,7 +45,7 @@ TEST_CASE("scene check: a mesh that follows is measured as in a slide, not as it
   // its triangle anew on each mesh would jump in every period, a hundred.
   if (geometry::testing::without_gmsh()) return;
   const auto scene = scene::load_scene(scene::scene_file("liver_touch"));
-  const auto check = launcher::check_scene(scene, 0.3);
+  const auto check = launcher::check_scene(scene, 1);  // of the processor: some slide on a slow one
   CHECK(check.mesh_changes > 0);
   CHECK(check.mesh_changes < 20);
 }
