@@ -46,7 +46,7 @@ std::vector<std::string> probe_names(const std::string& resolved_text) {
   const YAML::Node probes = scene.IsMap() ? scene["probes"] : YAML::Node();
   for (const auto& probe : probes) {
     const YAML::Node name = probe.IsMap() ? probe["name"] : YAML::Node();
-    names.push_back(name.IsScalar() ? name.Scalar() : "");
+    names.push_back(name && name.IsScalar() ? name.Scalar() : "");
   }
   return names;
 }

@@ -186,7 +186,7 @@ TetMesh read_tetrahedra(const std::filesystem::path& file) {
   try {
     return run_gmsh_with(TemporaryFolder(), {"-save_all", "-save", file.string()});
   } catch (const InputError& error) {
-    throw InputError(file.string() + ": Gmsh reads no tetrahedra from it; " + error.what());
+    throw InputError(file.string() + ": " + error.what());
   }
 }
 
