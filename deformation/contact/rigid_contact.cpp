@@ -55,11 +55,8 @@ Gap gap_at(const Obstacle& obstacle, const Vec3& position) {
 
 RigidContact::RigidContact(const TaylorHoodElements& solid, std::vector<std::uint32_t> faces,
                            double penalty)
-    : solid_(solid),
-      faces_(std::move(faces)),
-      penalty_(penalty),
-      of_element_(solid.element_count()) {
-  PALPATE_DEMAND(penalty > 0);
+    : solid_(solid), faces_(std::move(faces)), of_element_(solid.element_count()) {
+  set_penalty(penalty);
   for (std::size_t c = 0; c < faces_.size(); ++c) {
     const BoundaryFace& face = solid.mesh().faces.at(faces_[c]);
     areas_.push_back(rest_areas(solid.mesh(), face));
@@ -72,10 +69,17 @@ void RigidContact::set_obstacles(std::vector<Obstacle> obstacles) {
   multipliers_.resize(obstacles_.size() * faces_.size() * kPoints, 0.0);
 }
 
+void RigidContact::set_penalty(double penalty) {
+  PALPATE_DEMAND(penalty > 0);
+  penalty_ = penalty;
+}
+
 void RigidContact::set_multipliers(std::vector<double> multipliers) {
   PALPATE_DEMAND(multipliers.size() == multipliers_.size());
   multipliers_ = std::move(multipliers);
 }
+
+void RigidContact::forget_multipliers() { std::ranges::fill(multipliers_, 0.0); }
 
 Vec3 RigidContact::position(const BoundaryFace& face, int point, const SolidState& state) const {
   static const auto kShapes = [] {

@@ -59,6 +59,7 @@ class RigidContact : public ElementContact {
   /// Places the obstacles; multipliers of the same count of obstacles are kept.
   void set_obstacles(std::vector<Obstacle> obstacles);
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  void set_penalty(double penalty);  ///< ε > 0 [Pa/m]
 
   void add_residual(std::size_t element, const SolidState& state,
                     ElementVector& residual) const override;
@@ -74,6 +75,8 @@ class RigidContact : public ElementContact {
   /// λ of all points, for keeping and giving back.
   const std::vector<double>& multipliers() const { return multipliers_; }
   void set_multipliers(std::vector<double> multipliers);
+  /// λ = 0
+  void forget_multipliers();
 
  private:
   struct Point {

@@ -177,7 +177,6 @@ std::vector<Truth> force_truth(const Body& body, const Question& question, const
       effort.at((static_cast<double>(i) + part) / static_cast<double>(question.stations.size()));
     };
     if (!coarse.press(from, question.stations[i], state, effort.keep_going, at)) break;
-    if (!coarse.settle(question.stations[i], state, effort.keep_going)) break;
     reached.push_back({state, coarse.equilibrium(state, question.marks), {}});
   }
   const auto fine_mesh = refined_at(body.mesh, places, kFiner * effort.fineness, far);

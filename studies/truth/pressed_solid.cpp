@@ -17,12 +17,13 @@ namespace {
 using deformation::SolidState;
 using deformation::TaylorHoodElements;
 
-constexpr double kStride = 0.2;        // radii, of the probes between equilibria
-constexpr int kMostHalvings = 2;       // a fold is not followed: it takes hours
-constexpr double kReach = 4;           // radii: faces within may touch
-constexpr double kPenaltyRatio = 300;  // as in case D of studies/elements
-
-/// Of equilibria on the way, whose penetration does not matter.
+constexpr double kStride = 0.2;   // radii, of the probes between equilibria
+constexpr int kMostHalvings = 2;  // a fold is not followed: it takes hours
+constexpr double kReach = 4;      // radii: faces within may touch
+constexpr double kHard = 300;     // as in case D of studies/elements
+/// Of equilibria on the way, whose penetration does not matter: a hard contact loses points and
+/// catches them again in each iteration, and its tangent is hardly ever positive.
+constexpr double kSoft = 3;
 constexpr deformation::NewtonGoal kOnTheWay{1e-6, std::numeric_limits<double>::infinity(), true};
 constexpr double kForceTolerance = 1e-7;   // of μ size²
 constexpr double kMostPenetration = 1e-3;  // radii
@@ -42,6 +43,10 @@ double smallest_radius(const std::vector<Station>& stations) {
   }
   PALPATE_DEMAND(std::isfinite(smallest) && smallest > 0);
   return smallest;
+}
+
+double penalty_of(double hardness, const TaylorHoodElements& solid, double radius) {
+  return hardness * 3 * solid.tissue().shear_modulus() / radius;
 }
 
 std::vector<char> constrained_nodes(const geometry::TetMesh& mesh, const Body& body) {
@@ -171,7 +176,7 @@ PressedSolid::PressedSolid(TaylorHoodElements solid, std::vector<char> constrain
       cavity_(is_filled ? deformation::cavity_faces(solid_.mesh()) : std::vector<std::uint32_t>{}),
       skin_(skin_of(solid_, cavity_)),
       contact_(solid_, faces_near(solid_, cavity_, stations),
-               kPenaltyRatio * 3 * solid_.tissue().shear_modulus() / smallest_radius(stations)),
+               penalty_of(kHard, solid_, smallest_radius(stations))),
       fluid_(fluid_in(solid_, cavity_)),
       constrained_(std::move(constrained)),
       solver_(solid_, constrained_, &contact_, fluid_ ? &*fluid_ : nullptr),
@@ -182,9 +187,29 @@ PressedSolid::PressedSolid(const geometry::TetMesh& mesh, const Body& body,
     : PressedSolid({deformation::make_quadratic(mesh), body.tissue, kAnyDensity},
                    constrained_nodes(mesh, body), stations, body.is_filled) {}
 
+void PressedSolid::set_hardness(double hardness) {
+  contact_.set_penalty(penalty_of(hardness, solid_, radius_));
+}
+
 bool PressedSolid::press(const Station& from, const Station& to, SolidState& state,
                          const std::function<void()>& keep_going,
                          const std::function<void(double)>& at) {
+  const SolidState before = state;
+  contact_.set_obstacles(obstacles_at(from));
+  auto multipliers = contact_.multipliers();
+  contact_.forget_multipliers();
+  if (follow(from, to, kSoft, state, keep_going, at) && settle(to, state, keep_going)) return true;
+  state = before;
+  contact_.set_multipliers(std::move(multipliers));
+  const auto is_told_already = [](double) {};
+  return follow(from, to, kHard, state, keep_going, is_told_already) &&
+         settle(to, state, keep_going);
+}
+
+bool PressedSolid::follow(const Station& from, const Station& to, double hardness,
+                          SolidState& state, const std::function<void()>& keep_going,
+                          const std::function<void(double)>& at) {
+  set_hardness(hardness);
   const double longest = kStride / way(from, to);
   double done = 0, stride = longest, last = 0;
   SolidState before = state;
@@ -220,6 +245,7 @@ bool PressedSolid::press(const Station& from, const Station& to, SolidState& sta
 bool PressedSolid::settle(const Station& station, SolidState& state,
                           const std::function<void()>& keep_going) {
   contact_.set_obstacles(obstacles_at(station));
+  set_hardness(kHard);
   const deformation::NewtonGoal goal{kForceTolerance, kMostPenetration * radius_ / solid_.size(),
                                      true};
   return solver_.solve(state, {}, goal, keep_going).converged && !is_behind_skin(station, state);

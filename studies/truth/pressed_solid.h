@@ -47,12 +47,12 @@ class PressedSolid {
 
   deformation::SolidState rest_state() const { return solid_.rest_state(); }
 
-  /// Moves the probes in straight lines, stride by stride, an equilibrium after each.
-  /// @param from  where `state` is an equilibrium
+  /// The equilibrium under probes at `to`, that `state` comes to when they move there in straight
+  /// lines: by a soft contact, and where that leads to none, by a hard one.
+  /// @param from  where `state` is an equilibrium, the last one looked for
   /// @param keep_going  as QuasiStaticNewton::solve()
   /// @param at          told after each stride what part of the way is done
-  /// @returns false if Newton's method fails, however short the strides; `state` is then the last
-  ///          equilibrium
+  /// @returns false if none is found, however short the strides
   bool press(
       const Station& from, const Station& to, deformation::SolidState& state,
       const std::function<void()>& keep_going,
@@ -75,6 +75,15 @@ class PressedSolid {
   std::size_t node_count() const { return solid_.mesh().nodes.size(); }
 
  private:
+  /// Moves the probes stride by stride, an equilibrium after each.
+  /// @param hardness  of the contact, see set_hardness()
+  /// @returns false if Newton's method fails, however short the strides; `state` is then the last
+  ///          equilibrium
+  bool follow(const Station& from, const Station& to, double hardness,
+              deformation::SolidState& state, const std::function<void()>& keep_going,
+              const std::function<void(double part)>& at);
+  /// The contact's penalty over 3 μ / R.
+  void set_hardness(double hardness);
   bool is_behind_skin(const Station& station, const deformation::SolidState& state) const;
 
   deformation::TaylorHoodElements solid_;

@@ -50,6 +50,22 @@ TEST_CASE("truth: the force of another package's solution lies within the bar, w
   CHECK(truths[0].displacements[0].z() == Approx(-3e-3).margin(3e-5));
 }
 
+TEST_CASE("truth: the soft contact on the way leaves nothing at its end") {
+  // Oracle: the hard contact all along, an equilibrium after each tenth of a radius. Both end where
+  // no point is deeper than 1e-3 R, which is 1/3000 of the depth.
+  if (geometry::testing::without_gmsh()) return;
+  const auto body = soft_block(geometry::mesh_block({0, 0, 0}, {0.04, 0.04, 0.03}, "0.012 + 0*x"));
+  const auto at = [](double depth) { return ball_at({0.02, 0.02, 0.036 - depth}, 6e-3); };
+  const double deepest = 3e-3;
+  PressedSolid soft(body.mesh, body, {at(deepest)}), hard(body.mesh, body, {at(deepest)});
+  auto by_soft = soft.rest_state(), by_hard = hard.rest_state();
+  REQUIRE(soft.press(at(-1e-4), at(deepest), by_soft, [] {}));
+  for (int i = 1; i <= 5; ++i) REQUIRE(hard.settle(at(i * deepest / 5), by_hard));
+  const Vec3 force = soft.equilibrium(by_soft, {}).forces[0];
+  CHECK(force.z() > 0);
+  CHECK((force - hard.equilibrium(by_hard, {}).forces[0]).norm() < 1e-3 * force.norm());
+}
+
 TEST_CASE("truth: several probes are pressed at once") {
   // Oracle: symmetry: two balls on opposite sides of a block held in its middle find the same
   // force, mirrored.
