@@ -12,9 +12,10 @@ set(page_folder ${CMAKE_INSTALL_DATADIR}/doc/palpate)
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${page_folder} COMPONENT programs)
 install(DIRECTORY docs DESTINATION ${page_folder} COMPONENT programs)
 function(install_link target name component)
-  install(CODE "file(CREATE_LINK ${target}
-    \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/${name}\" SYMBOLIC)"
-          COMPONENT ${component})
+  get_filename_component(folder ${name} DIRECTORY)
+  set(share "\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}")
+  install(CODE "file(MAKE_DIRECTORY \"${share}/${folder}\")
+    file(CREATE_LINK ${target} \"${share}/${name}\" SYMBOLIC)" COMPONENT ${component})
 endfunction()
 install_link(../doc/palpate/docs palpate/docs programs)
 install_link(../../palpate/examples doc/palpate/examples dev)

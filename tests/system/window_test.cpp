@@ -174,8 +174,9 @@ TEST_CASE("window: stays when a lockstep has ended, too, until q or with --close
     session.hand.key("q");
     CHECK(session.run.wait_for_end() == 0);
   }
+  constexpr double kClosedDeadline = 60;  // [s]; of a busy machine
   Windowed closed(scene.file(), {"--duration", "0.5", "--lockstep", "--close"});
-  CHECK(closed.run.wait_for_end() == 0);
+  CHECK(closed.run.wait_for_end(kClosedDeadline) == 0);
   CHECK(closed.run.said().find("its window stays") == std::string::npos);
 }
 
