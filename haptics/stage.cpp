@@ -97,11 +97,11 @@ const char* acting_guard(const RenderedProbe& probe) {
   const std::uint32_t limits = probe.force.limits;
   if (limits & kForceNotFinite) return "a force or pose was not finite: rendered as zero";
   if (probe.several_drivers) return probe.texts.several.c_str();
+  if (limits & kPoseSlewed) return probe.texts.slewed.c_str();
   if (limits & kDriverSilent) return probe.texts.silent.c_str();
   if (limits & kForceStaleFade)
     return "contact model older than stale_after_s: force fades to zero";
   if (limits & kPoseRefused) return probe.texts.refused.c_str();
-  if (limits & kPoseSlewed) return probe.texts.slewed.c_str();
   return "";
 }
 

@@ -57,6 +57,7 @@ void TopicDevice::hear(const DeviceSample& said, std::int64_t source_time_ns, st
                               turn_between(newest_.pose.rotation, said.pose.rotation),
                               std::max(kShortestSpan, time - newest_time_));
   slewing_ = (slewing_ || jumped) && silence <= gone_after_;
+  if (jumped) jumped_time_ = time;
   newest_ = said;
   newest_.pose.rotation.normalize();
   newest_time_ = time;
@@ -78,16 +79,20 @@ DeviceSample TopicDevice::read(double time) {
   const double dt = std::isfinite(time) ? std::clamp(time - last_time_, 0.0, kLongestStep) : 0;
   if (std::isfinite(time)) last_time_ = time;
 
+  const double behind = std::isfinite(time) ? time - jumped_time_ : 0;
+  if (behind > gone_after_) slewing_ = false;
+
   DeviceSample sample = newest_;
-  sample.silence = age;
+  sample.silence = slewing_ ? std::max(age, behind) : age;
   sample.delay = delay_;
   sample.limits = limits_;
   limits_ = kForceNotLimited;
-  const bool too_fast = too_far(newest_.twist.linear, newest_.twist.angular, 1);
+  const bool rests = age >= kLongestCarry;
+  const bool too_fast = !rests && too_far(newest_.twist.linear, newest_.twist.angular, 1);
   sample.twist = {clamp_length(newest_.twist.linear, kMaxSpeed),
                   clamp_length(newest_.twist.angular, kMaxTurn)};
   sample.pose = carried(newest_.pose, sample.twist, std::min(age, kLongestCarry));
-  if (age >= kLongestCarry) sample.twist = {};
+  if (rests) sample.twist = {};
   if (slewing_) sample.pose = slewed(sample.pose, dt, sample.twist);
   if (slewing_ || too_fast) sample.limits |= kPoseSlewed;
   pose_ = sample.pose;

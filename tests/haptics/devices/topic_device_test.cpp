@@ -85,25 +85,49 @@ TEST_CASE("topic device: a driver at 50 Hz that says its speed is followed at ev
 }
 
 TEST_CASE("topic device: a jump is travelled at 2 m/s and 20 rad/s, and said until it is over") {
-  // Oracle: invariant |v| ≤ 2 m/s, and the time of the way: 0.3 m in 150 ticks, 1 rad in 50.
+  // Oracle: invariant |v| ≤ 2 m/s, and the time of the way: 0.099 m in 50 ticks, 0.79 rad in 40.
   Driven driven;
   driven.say(0, Vec3::Zero());
   driven.read(0);
   DeviceSample far;
-  far.pose = {Vec3(0.18, -0.24, 0), rotation_from_vector(Vec3(0, 1, 0))};
+  far.pose = {Vec3(0.0594, -0.0792, 0), rotation_from_vector(Vec3(0, 0.79, 0))};
   Vec3 last = Vec3::Zero();
-  for (std::int64_t i = 1; i <= 160; ++i) {
+  for (std::int64_t i = 1; i <= 60; ++i) {
     driven.say(i, far);
     const DeviceSample sample = driven.read(i);
     REQUIRE((sample.pose.position - last).norm() <= 2 * kTick + kRounding);
-    REQUIRE(((sample.limits & kPoseSlewed) != 0) == (i < 150));
-    if (i < 150) CHECK(sample.twist.linear.norm() == Approx(2).epsilon(1e-6));
-    if (i <= 50) {
+    REQUIRE(((sample.limits & kPoseSlewed) != 0) == (i < 50));
+    REQUIRE(sample.silence < 0.05 + kRounding);
+    if (i < 50) CHECK(sample.twist.linear.norm() == Approx(2).epsilon(1e-6));
+    if (i < 40) {
       CHECK(vector_from_rotation(sample.pose.rotation).norm() == Approx(0.02 * double(i)));
     }
     last = sample.pose.position;
   }
   CHECK(last == far.pose.position);
+}
+
+TEST_CASE("topic device: one far behind its driver counts as silent, then is where its driver is") {
+  // Oracle: the stated rule, 0.05 s to the fade and 0.1 s to its end after the last jump. A first
+  // sample 1 km off, another one on the way back 20 ms later, then a driver that stands still.
+  Driven driven;
+  driven.say(0, Vec3(1000, 0, 0));
+  CHECK(driven.read(0).pose.position == Vec3(1000, 0, 0));
+  constexpr std::int64_t kJumped = 20;
+  for (std::int64_t i = 1; i <= 150; ++i) {
+    driven.say(i, i < kJumped ? Vec3(900, 0, 0) : Vec3(0.1, 0, 0));
+    const DeviceSample sample = driven.read(i);
+    const double behind = 1e-3 * double(i < kJumped ? i - 1 : i - kJumped);
+    if (i <= kJumped + 99) {
+      REQUIRE(sample.limits == kPoseSlewed);
+      REQUIRE(sample.pose.position.x() == Approx(1000 - 2e-3 * double(i)).epsilon(1e-12));
+      REQUIRE(sample.silence == Approx(behind).margin(kRounding));
+    } else if (i > kJumped + 100) {
+      REQUIRE(sample.limits == kForceNotLimited);
+      REQUIRE(sample.pose.position == Vec3(0.1, 0, 0));
+      REQUIRE(sample.silence < kRounding);
+    }
+  }
 }
 
 TEST_CASE("topic device: a speed that no hand has is neither believed nor carried") {
