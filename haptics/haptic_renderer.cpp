@@ -67,7 +67,10 @@ void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce
   const double present = presence(device.silence);
   if (present < 1) limits |= kDriverSilent;
   wanted = present * wanted;
-  Wrench passive_wrench = passive(wanted, device, limits);
+  Wrench unfaded;
+  for (const HeldLaw& law : laws_) unfaded = unfaded + law.unfaded();
+  if (!unfaded.is_finite()) unfaded = wanted;
+  Wrench passive_wrench = passive(wanted, unfaded, device, limits);
   // Who has nothing to go by lets go: a debt must not hold the hand.
   if (present == 0 || tells_nothing(time)) passive_wrench = {};
   const Vec3 damping = contact_damping(passive_wrench.force, device);
@@ -77,8 +80,10 @@ void HapticRenderer::tick(double time, const DeviceSample& device, RenderedForce
   const double length = passive_wrench.force.stableNorm();
   const double cut = length > 0 ? std::min(1.0, out.force.norm() / length) : 1;
   out.torque = torque_limiter_.limit(cut * passive_wrench.torque, limits);
-  // What the damping takes in is lost and pays for nothing.
-  passivity_.held({out.force - damping, out.torque});
+  // What the damping takes in is lost and pays for nothing. What a fade takes away is the tissue's
+  // all the same: a hand that came deeper meanwhile has pressed it there.
+  passivity_.held({out.force - damping + (unfaded.force - wanted.force),
+                   out.torque + (unfaded.torque - wanted.torque)});
   out.limits = limits;
   out.passivity_energy = passivity_.energy();
   out.contact_model_age = newest_age(time);
@@ -167,16 +172,16 @@ Vec3 HapticRenderer::contact_damping(const Vec3& force, const DeviceSample& devi
   return -std::clamp(loss, -most, most) * along;
 }
 
-Wrench HapticRenderer::passive(const Wrench& wanted, const DeviceSample& device,
-                               std::uint32_t& limits) {
-  const bool apart = wanted.is_zero() && force_limiter_.output().isZero(0);
+Wrench HapticRenderer::passive(const Wrench& wanted, const Wrench& unfaded,
+                               const DeviceSample& device, std::uint32_t& limits) {
+  const bool apart = unfaded.is_zero() && force_limiter_.output().isZero(0);
   if (apart || !is_finite(device)) {
     passivity_.clear();
     if (is_finite(device)) passivity_.watch(device.pose);
     pressed_.clear(device.pose.position);
     return wanted;
   }
-  passivity_.observe(device.pose, returnable_energy(device.pose, wanted.force));
+  passivity_.observe(device.pose, returnable_energy(device.pose, unfaded.force));
   const Wrench wrench = passivity_.controlled(wanted, device.twist);
   if (wrench != wanted) limits |= kForcePassivity;
   return wrench;

@@ -62,7 +62,8 @@ class HapticRenderer {
   Wrench propose(const DeviceSample& device, double time, std::uint32_t& limits);
   double returnable_energy(const Pose& pose, const Vec3& force);
   Vec3 contact_damping(const Vec3& force, const DeviceSample& device) const;
-  Wrench passive(const Wrench& wanted, const DeviceSample& device, std::uint32_t& limits);
+  Wrench passive(const Wrench& wanted, const Wrench& unfaded, const DeviceSample& device,
+                 std::uint32_t& limits);
 
   scene::Haptics limits_;
   double period_;

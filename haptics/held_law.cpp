@@ -36,6 +36,7 @@ void HeldLaw::clear() {
   solver_.clear();
   felt_ = false;
   pressing_.setZero();
+  unfaded_ = {};
   cross_fade_left_ = 0;
 }
 
@@ -54,6 +55,7 @@ bool HeldLaw::tells_nothing(double time) const {
 Wrench HeldLaw::wrench_at(const Pose& pose, double time, std::uint32_t& limits) {
   felt_ = false;
   pressing_.setZero();
+  unfaded_ = {};
   if (!current_.valid) return {};
   const double old = age(time);
   const LawForce modelled = solver_.evaluate(pose, current_.law.anchor_age + old);
@@ -74,7 +76,8 @@ Wrench HeldLaw::wrench_at(const Pose& pose, double time, std::uint32_t& limits) 
   const double factor = freshness(old, stale_after_, fade_time_);
   if (factor < 1) limits |= kForceStaleFade;
   felt_ = factor > 0;
-  pressing_ = factor * modelled.pressing;
+  pressing_ = modelled.pressing;
+  unfaded_ = wrench;
   return factor * wrench;
 }
 

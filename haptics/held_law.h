@@ -40,11 +40,14 @@ class HeldLaw {
   void pass_tick() {
     if (cross_fade_left_ > 0) --cross_fade_left_;
   }
-  /// Law, what is left of the cross-fade, fade. @param limits  get the bits that act
+  /// The law with what is left of the cross-fade, faded by age. @param limits  get the bits that
+  /// act
   Wrench wrench_at(const Pose& pose, double time, std::uint32_t& limits);
   double stored_energy() const { return felt_ ? solver_.stored_energy() : 0; }  ///< [J]
-  /// What of the force felt last is normal to the tissue, without the cross-fade [N].
+  /// What of the last force is normal to the tissue, without cross-fade and fade [N].
   const Vec3& pressing() const { return pressing_; }
+  /// The last wrench without what age took of it.
+  const Wrench& unfaded() const { return unfaded_; }
 
   double age(double time) const { return age(current_, time); }  ///< infinity before the first [s]
   double newest_age(double time) const { return age(next_.valid ? next_ : current_, time); }
@@ -52,7 +55,7 @@ class HeldLaw {
   bool tells_nothing(double time) const;
 
   void exchange(StateArchive& archive) {
-    archive(current_, next_, without_rows_, solver_, felt_, pressing_, softening_,
+    archive(current_, next_, without_rows_, solver_, felt_, pressing_, unfaded_, softening_,
             cross_fade_ticks_, cross_fade_left_, cross_fade_);
   }
 
@@ -71,6 +74,7 @@ class HeldLaw {
   LawSolver solver_;         ///< of the current law
   bool felt_ = false;        ///< at the last evaluation: there was a law, and not a stale one
   Vec3 pressing_ = Vec3::Zero();
+  Wrench unfaded_;
   double softening_ = 0;  ///< of a law too stiff for the device [m/N]; 0: not capped
   int cross_fade_ticks_ = 1, cross_fade_left_ = 0;
   Wrench cross_fade_;  ///< old minus new wrench where the new law took over

@@ -56,7 +56,9 @@ Wrench PassivityControl::controlled(const Wrench& wanted, const Twist& twist) co
   const double energy_after = energy_ - period_ * speed * (push - lost);
   if (!(energy_after < 0)) return wanted;
   const double needed = -energy_after / (period_ * speed);
-  const double taken = std::min(needed, std::max(0.0, push) + kMaxAddedDamping * speed);
+  const double most =
+      std::max(0.0, push) * std::min(1.0, speed / kFirmFrom) + kMaxAddedDamping * speed;
+  const double taken = std::min(needed, most);
   return {wanted.force - taken * along, wanted.torque - taken * kArm * kArm * around};
 }
 

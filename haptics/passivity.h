@@ -7,8 +7,10 @@
 // (of translation). dx is the measured motion during which f was held, so the sum is exact for a
 // sampled force. E < 0: the simulation generated energy. Then the controller gives f − a v̂ in place
 // of f, with v the velocity, rotation counted at the arm kArm, and
-//   a = −E(after the coming tick)/(T |v|), at most max(0, f·v̂) + α_max |v|:
+//   a = −E(after the coming tick)/(T |v|), at most max(0, f·v̂) min(1, |v|/v₁) + α_max |v|:
 // it may take away all of the push along the motion, and pay back older debt by at most α_max.
+// Below v₁ it goes with the speed: what takes all of a push from whoever moves at all one way, and
+// gives it back the other way, shakes a hand at rest, and generates the energy that it takes.
 //
 // E is kept within [−debt, W], W what the contact could return at most. The rest was lost in tissue
 // or friction and must not pay for a later leak.
@@ -29,6 +31,7 @@ namespace palpate::haptics {
 class PassivityControl {
  public:
   static constexpr double kMaxAddedDamping = 10;  ///< α_max [N·s/m]; T α_max/2 ≪ any device's mass
+  static constexpr double kFirmFrom = 0.02;       ///< v₁ [m/s]
   static constexpr double kMaxDebt = 0.01;        ///< [J]; 10 mJ: a 10 mm press at 200 N/m
   static constexpr double kRestWay = 1e-4;   ///< r [m]; 55 µm on three axes at once are 95 µm
   static constexpr double kRestTime = 0.05;  ///< that who stands still takes to rest [s]

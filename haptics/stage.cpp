@@ -93,6 +93,8 @@ bool tick(const runtime::Cycle& now, RenderedProbe& probe) {
   return !now.joined || std::isfinite(sample.silence);
 }
 
+bool is_zero(const RenderedForce& force) { return force.force.isZero(0) && force.torque.isZero(0); }
+
 const char* acting_guard(const RenderedProbe& probe) {
   const std::uint32_t limits = probe.force.limits;
   if (limits & kForceNotFinite) return "a force or pose was not finite: rendered as zero";
@@ -174,6 +176,7 @@ struct HapticsStage::Impl {
   std::vector<double> force_errors;  ///< of the newest law, by probe and then process
   std::vector<ProbeExtremes> extremes;
   bool ran = false;                      ///< the session has
+  bool leaves = false;                   ///< takes leave
   std::optional<std::int64_t> stood_ns;  ///< when it last did not run
   std::uint64_t rejected = 0;            ///< of `inputs`, as far as it was noted
 };
@@ -201,6 +204,18 @@ runtime::Health HapticsStage::cycle(const runtime::Cycle& now) {
   impl_->note_extremes(now);
   health.probes = impl_->extremes;
   return health;
+}
+
+bool HapticsStage::take_leave(const runtime::Cycle& now) {
+  bool is_done = true;
+  for (RenderedProbe& probe : impl_->probes) {
+    if (!impl_->leaves) probe.renderer.reset();
+    is_done = is_done && impl_->leaves && is_zero(probe.force);
+    tick(now, probe);
+    impl_->forces.write(probe.force);
+  }
+  impl_->leaves = true;
+  return is_done;
 }
 
 void HapticsStage::exchange(StateArchive& archive) {

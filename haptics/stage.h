@@ -22,6 +22,8 @@ class HapticsStage : public runtime::Stage {
   ~HapticsStage() override;
   runtime::Health cycle(const runtime::Cycle& now) override;
   void prepare() override;
+  /// Forces go to zero within the slew limit: a driver holds what it heard last.
+  bool take_leave(const runtime::Cycle& now) override;
   void exchange(StateArchive& archive) override;
 
   Device& device(std::size_t probe);

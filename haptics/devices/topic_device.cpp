@@ -39,6 +39,7 @@ TopicDevice::TopicDevice(const scene::TopicDevice& config, const scene::Haptics&
     : stale_after_(haptics.stale_after),
       gone_after_(haptics.stale_after + haptics.fade_time),
       newest_time_(-std::numeric_limits<double>::infinity()),
+      by_poses_(kToldByPoses, haptics.stale_after),
       pose_{config.start, config.rotation.normalized()} {
   newest_.pose = pose_;
 }
@@ -57,21 +58,35 @@ void TopicDevice::hear(const DeviceSample& said, std::int64_t source_time_ns, st
                               turn_between(newest_.pose.rotation, said.pose.rotation),
                               std::max(kShortestSpan, time - newest_time_));
   slewing_ = (slewing_ || jumped) && silence <= gone_after_;
-  if (jumped) jumped_time_ = time;
   newest_ = said;
   newest_.pose.rotation.normalize();
   newest_time_ = time;
+  by_poses_.add(time, newest_.pose);
 }
 
-/// From the pose before towards `target`, as far as the limits allow within `dt`.
-Pose TopicDevice::slewed(const Pose& target, double dt, Twist& twist) {
-  const Vec3 way = target.position - pose_.position;
-  const Vec3 turn = turn_between(pose_.rotation, target.rotation);
+bool TopicDevice::says_velocity() const {
+  return !newest_.twist.linear.isZero(0) || !newest_.twist.angular.isZero(0);
+}
+
+/// From the pose before towards the sample's, as far as the limits allow within `dt`; or at once,
+/// the force let go.
+void TopicDevice::slew(DeviceSample& sample, double dt) {
+  const Vec3 way = sample.pose.position - pose_.position;
+  const Vec3 turn = turn_between(pose_.rotation, sample.pose.rotation);
   slewing_ = too_far(way, turn, dt);
-  if (!slewing_) return target;
+  if (!slewing_) return;
+  sample.limits |= kPoseSlewed;
+  if (too_far(way, turn, dt + kLongestLag)) {
+    slewing_ = false;
+    by_poses_.clear();
+    sample.twist = {};
+    sample.silence = std::max(sample.silence, gone_after_);
+    return;
+  }
   const Vec3 step = clamp_length(way, kMaxSpeed * dt), turned = clamp_length(turn, kMaxTurn * dt);
-  if (dt > 0) twist = {step / dt, turned / dt};
-  return {pose_.position + step, (rotation_from_vector(turned) * pose_.rotation).normalized()};
+  if (dt > 0) sample.twist = {step / dt, turned / dt};
+  sample.pose = {pose_.position + step,
+                 (rotation_from_vector(turned) * pose_.rotation).normalized()};
 }
 
 DeviceSample TopicDevice::read(double time) {
@@ -79,22 +94,21 @@ DeviceSample TopicDevice::read(double time) {
   const double dt = std::isfinite(time) ? std::clamp(time - last_time_, 0.0, kLongestStep) : 0;
   if (std::isfinite(time)) last_time_ = time;
 
-  const double behind = std::isfinite(time) ? time - jumped_time_ : 0;
-  if (behind > gone_after_) slewing_ = false;
-
   DeviceSample sample = newest_;
-  sample.silence = slewing_ ? std::max(age, behind) : age;
+  sample.silence = age;
   sample.delay = delay_;
   sample.limits = limits_;
   limits_ = kForceNotLimited;
   const bool rests = age >= kLongestCarry;
+  const Twist moves = says_velocity() ? newest_.twist : by_poses_.twist();
   const bool too_fast = !rests && too_far(newest_.twist.linear, newest_.twist.angular, 1);
-  sample.twist = {clamp_length(newest_.twist.linear, kMaxSpeed),
-                  clamp_length(newest_.twist.angular, kMaxTurn)};
-  sample.pose = carried(newest_.pose, sample.twist, std::min(age, kLongestCarry));
+  sample.twist = {clamp_length(moves.linear, kMaxSpeed), clamp_length(moves.angular, kMaxTurn)};
+  if (says_velocity()) {
+    sample.pose = carried(newest_.pose, sample.twist, std::min(age, kLongestCarry));
+  }
   if (rests) sample.twist = {};
-  if (slewing_) sample.pose = slewed(sample.pose, dt, sample.twist);
-  if (slewing_ || too_fast) sample.limits |= kPoseSlewed;
+  if (too_fast) sample.limits |= kPoseSlewed;
+  if (slewing_) slew(sample, dt);
   pose_ = sample.pose;
   return sample;
 }

@@ -41,6 +41,12 @@ class Module {
   /// (ModuleOptions::joins) gets its first one when a command was heard, or a second has passed.
   bool next_cycle();
 
+  /// Waits for the next period, whatever was said: for a stage that takes leave.
+  void wait_for_period() {
+    while (!loop_.wait_for_period()) {
+    }
+  }
+
   std::int64_t now_ns() const { return loop_.woke_ns(); }  ///< when this cycle began
   double period() const;                                   ///< [s]
   /// Session time of this cycle [s].

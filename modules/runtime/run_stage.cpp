@@ -79,6 +79,16 @@ void run_in_real_time(Module& module, Stage& stage, Readiness readiness, KeptSta
   }
 }
 
+/// Who takes longer to take leave does not get it [ns].
+constexpr std::int64_t kLeaveWithinNs = kNanosecondsPerSecond / 2;
+
+void take_leave(Module& module, Stage& stage) {
+  const std::int64_t until_ns = monotonic_now_ns() + kLeaveWithinNs;
+  do {
+    module.wait_for_period();
+  } while (!stage.take_leave(cycle_of(module)) && module.now_ns() < until_ns);
+}
+
 }  // namespace
 
 void run_stage(const ModuleOptions& options, const scene::Scene& scene, const std::string& name,
@@ -96,6 +106,7 @@ void run_stage(const ModuleOptions& options, const scene::Scene& scene, const st
     spdlog::info("goes on from what its predecessor remembered {:.2f} s ago", *age);
   }
   run_in_real_time(module, *stage, {scene, name}, kept);
+  take_leave(module, *stage);
 }
 
 }  // namespace palpate::runtime

@@ -56,6 +56,9 @@ class Stage {
   /// In lockstep, any number of times before a cycle, while something that it needs has not come:
   /// may take what the cycle would take first, which is there as far as the inputs are open.
   virtual void prepare() {}
+  /// In real time, after the last cycle, at each period until it is done: what others must not be
+  /// left with. @returns whether it is done
+  virtual bool take_leave(const Cycle&) { return true; }
   /// After the last cycle of a lockstep session, all samples of the session being there.
   virtual void finish(const Cycle&) {}
   /// After that: goes on being shown to a person, by cycles in which time stands, until one is

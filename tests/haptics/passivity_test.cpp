@@ -78,6 +78,19 @@ TEST_CASE("passivity: debt is paid back by damping of at most the stated size") 
   CHECK(passivity.controlled(force(0, 0, 2), {}) == force(0, 0, 2));
 }
 
+TEST_CASE("passivity: below 20 mm/s it takes of a push what goes with the speed") {
+  // Oracle: the stated rule. 8 mJ generated, a push of 2 N.
+  PassivityControl passivity(0, kTick);
+  passivity.observe(at(0), kPlenty);
+  passivity.held(force(0, 0, 2));
+  passivity.observe(at(0.004), kPlenty);
+  for (const double speed : {0.0001, 0.005, 0.01, 0.02, 0.05}) {
+    const double part = std::min(1.0, speed / PassivityControl::kFirmFrom);
+    CHECK(passivity.controlled(force(0, 0, 2), moving(0, 0, speed)).force.z() ==
+          Approx(2 - 2 * part - PassivityControl::kMaxAddedDamping * speed));
+  }
+}
+
 TEST_CASE("passivity: energy is bounded by what the contact can return, and by the largest debt") {
   // Oracle: the stated bounds.
   PassivityControl passivity(0, kTick);

@@ -1,6 +1,8 @@
 // A hand at rest around which an elastic wall appears, with a device that reads in encoder steps.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <optional>
 
 #include "haptics/devices/emulated_device.h"
 #include "haptics/haptic_renderer.h"
@@ -78,5 +80,65 @@ TEST_CASE("resting hand: a wall that appears around it is felt without steps, an
         }
       }
     }
+  }
+}
+
+namespace {
+
+/// What keeps a force from a hand for a while: its driver says nothing, or nobody tells laws.
+enum class Silent { kDriver, kLaws };
+
+/// A hand that is a mass on a spring and a damper, and whose driver says poses and velocities as
+/// they are, presses a wall; from 1 s to 1.3 s something is silent, and at 4 s it draws back.
+struct ExactHand {
+  static constexpr double kMass = 0.1, kStiffness = 200, kDamping = 2.2, kWall = 60;
+  double target = -0.006, z = 0, speed = 0;
+  HapticRenderer renderer{scene::Haptics{}, kTick};
+  DeviceSample heard;
+  RenderedForce out;
+
+  void tick(int i, std::optional<Silent> silent) {
+    const double time = kTick * i;
+    if (silent == Silent::kDriver) {
+      heard.silence += kTick;
+    } else {
+      heard.pose.position = Vec3(0, 0, z);
+      heard.twist.linear = Vec3(0, 0, speed);
+      heard.silence = 0;
+    }
+    heard.delay = 0;
+    LocalLaw law = testing::wall_law(heard.pose.position, kWall);
+    law.period = 4 * kTick;
+    if (i % 4 == 0 && silent != Silent::kLaws) renderer.update_law(law, time);
+    renderer.tick(time, heard, out);
+    for (int k = 0; k < 10; ++k) {
+      const double force = out.force.z() + kStiffness * (target - z) - kDamping * speed;
+      speed += force / kMass * kTick / 10;
+      z += speed * kTick / 10;
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("resting hand: it rests again after a silence, however exactly it is read, unpulled") {
+  // Oracle: two springs in series, within a tenth; a step of 0.05 N is not felt; tissue pushes. A
+  // controller that takes all of a push from whoever moves shakes this hand for ever.
+  for (const Silent what : {Silent::kDriver, Silent::kLaws}) {
+    ExactHand hand;
+    double step = 0, least = 1;
+    for (int i = 0; i < 6000; ++i) {
+      const bool is_silent = i >= 1000 && i < 1300;
+      if (i >= 4000) hand.target = -0.006 + 0.03 * kTick * (i - 4000);
+      const double before = hand.out.force.z();
+      hand.tick(i, is_silent ? std::optional(what) : std::nullopt);
+      if (i >= 2500 && i < 4000) step = std::max(step, std::abs(hand.out.force.z() - before));
+      least = std::min(least, hand.out.force.z());
+      const double series = 1 / (1 / ExactHand::kWall + 1 / ExactHand::kStiffness);
+      if (i == 999 || i == 3999) CHECK(hand.out.force.z() == Approx(series * 0.006).epsilon(0.1));
+    }
+    INFO((what == Silent::kDriver ? "driver" : "laws") << " silent");
+    CHECK(step < 0.01);
+    CHECK(least > -0.01);
   }
 }

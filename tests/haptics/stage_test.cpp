@@ -301,6 +301,32 @@ TEST_CASE("haptics stage: a reset lets go within the slew limit") {
   }
 }
 
+TEST_CASE("haptics stage: who is told to end takes leave with a force of zero") {
+  // Oracle: the slew limit, 0.2 N a tick from 1 N; done once a zero was said.
+  Session session;
+  HapticsStage stage(session.scene, session.bus, session.warnings);
+  std::int64_t now = 0;
+  for (int i = 0; i < 20; ++i) {
+    session.push(now += kMs);
+    session.tick(stage, now);
+  }
+  REQUIRE(session.force.force.z() == Approx(1));
+  int ticks = 0;
+  runtime::Cycle cycle;
+  bool is_done = false;
+  while (!is_done && ++ticks < 100) {
+    session.push(now += kMs);  // laws may still come
+    cycle.sim_time_ns = cycle.now_ns = now;
+    const double before = session.force.force.z();
+    is_done = stage.take_leave(cycle);
+    REQUIRE(session.forces.take(session.force));
+    CHECK(session.force.force.z() == Approx(std::max(0.0, before - 0.2)).margin(1e-12));
+  }
+  CHECK(is_done);
+  CHECK(ticks <= 7);
+  CHECK(session.force.force.isZero(0));
+}
+
 TEST_CASE("haptics stage: while the session is paused the law grows stale and the force fades") {
   // Oracle: stale_after + fade_time by the clock of source times; session time stands still.
   Session session;
