@@ -86,10 +86,10 @@ bool FollowingMesh::choose(std::span<const TouchedPlace> places, int coarsening)
     }
     return least;
   };
-  if (!is_quadratic_) return tree_.choose(longest_edge, most_nodes_);
+  if (!is_quadratic_) return tree_.choose(longest_edge, growth_, most_nodes_);
   // No mesh has fewer than two edges for each corner.
   const std::size_t most_corners = std::max(most_nodes_ / 3, tree_.coarse().nodes.size());
-  return tree_.choose(longest_edge, most_corners) &&
+  return tree_.choose(longest_edge, growth_, most_corners) &&
          corners_and_edges() <= static_cast<long>(most_nodes_);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,6 +14,7 @@ namespace {
 
 /// Of a tree; one that has grown beyond it is planted again.
 constexpr std::size_t kMostTetrahedraKept = 400'000;
+constexpr double kSizeRounding = 1e-9;
 
 /// The corner opposite each of kTetrahedronFaces.
 constexpr std::array<int, 4> kOpposite{3, 2, 0, 1};
@@ -35,6 +37,7 @@ BisectionTree::BisectionTree(TetMesh mesh)
 void BisectionTree::plant() {
   nodes_.clear();
   edges_.clear();
+  halved_in_.clear();
   tetrahedra_.clear();
   edge_numbers_.clear();
   leaves_.clear();
@@ -71,6 +74,7 @@ std::uint32_t BisectionTree::edge_between(std::uint32_t a, std::uint32_t b) {
     edge.b = b;
     edge.squared_length = (nodes_[a].place - nodes_[b].place).squaredNorm();
     edges_.push_back(edge);
+    halved_in_.push_back(0);
   }
   return at->second;
 }
@@ -113,50 +117,53 @@ void BisectionTree::halve(std::uint32_t number) {
   }
 }
 
-bool BisectionTree::is_too_large(const Tet& tet, const SizeField& size) {
+bool BisectionTree::is_too_large(const Tet& tet, const Wanted& wanted) {
+  Vec3 mean = Vec3::Zero();
+  for (const auto node : tet.corners) mean += nodes_[node].place / 4;
+  const double at_mean = wanted.size(mean);
+  const double longest = edges_[tet.edges[tet.longest]].squared_length;
+  if (longest > at_mean * at_mean) return true;
+  // No edge's middle is further from the mean than half the longest edge.
+  if (std::sqrt(longest) * (1 + wanted.growth / 2) < (1 - kSizeRounding) * at_mean) return false;
   for (const std::uint32_t e : tet.edges) {
     Edge& edge = edges_[e];
     if (edge.sized_in != choice_) {
-      const double allowed = size((nodes_[edge.a].place + nodes_[edge.b].place) / 2);
+      const double allowed = wanted.size((nodes_[edge.a].place + nodes_[edge.b].place) / 2);
       edge.too_long = edge.squared_length > allowed * allowed;
       edge.sized_in = choice_;
     }
     if (edge.too_long) return true;
   }
-  Vec3 mean = Vec3::Zero();
-  for (const auto node : tet.corners) mean += nodes_[node].place / 4;
-  const double allowed = size(mean);
-  return edges_[tet.edges[tet.longest]].squared_length > allowed * allowed;
+  return false;
 }
 
 bool BisectionTree::lost_an_edge(const Tet& tet) const {
-  return std::ranges::any_of(tet.edges,
-                             [&](std::uint32_t e) { return edges_[e].halved_in == choice_; });
+  return std::ranges::any_of(tet.edges, [&](std::uint32_t e) { return halved_in_[e] == choice_; });
 }
 
 /// Children take their parent's place in the order.
 /// @param is_small_enough  its sizes were looked at
 /// @returns false if there are too many nodes
-bool BisectionTree::append_leaves(std::uint32_t number, bool is_small_enough, const SizeField& size,
-                                  std::size_t most_nodes) {
-  is_small_enough = is_small_enough || !is_too_large(tetrahedra_[number], size);
+bool BisectionTree::append_leaves(std::uint32_t number, bool is_small_enough,
+                                  const Wanted& wanted) {
+  is_small_enough = is_small_enough || !is_too_large(tetrahedra_[number], wanted);
   if (is_small_enough && !lost_an_edge(tetrahedra_[number])) {
     next_leaves_.push_back(number);
     return true;
   }
   if (tetrahedra_[number].halves == kNone) halve(number);
   const Tet& tet = tetrahedra_[number];
-  Edge& edge = edges_[tet.edges[tet.longest]];
-  if (edge.halved_in != choice_) {
-    edge.halved_in = choice_;
-    if (++nodes_chosen_ > most_nodes) return false;
+  std::uint32_t& halved_in = halved_in_[tet.edges[tet.longest]];
+  if (halved_in != choice_) {
+    halved_in = choice_;
+    if (++nodes_chosen_ > wanted.most_nodes) return false;
   }
   const std::uint32_t first = tet.halves;
-  return append_leaves(first, false, size, most_nodes) &&
-         append_leaves(first + 1, false, size, most_nodes);
+  return append_leaves(first, false, wanted) && append_leaves(first + 1, false, wanted);
 }
 
-bool BisectionTree::choose(const SizeField& size, std::size_t most_nodes) {
+bool BisectionTree::choose(const SizeField& size, double growth, std::size_t most_nodes) {
+  const Wanted wanted{size, growth, most_nodes};
   if (tetrahedra_.size() > kMostTetrahedraKept) plant();
   ++choice_;
   nodes_chosen_ = coarse_.nodes.size();
@@ -166,7 +173,7 @@ bool BisectionTree::choose(const SizeField& size, std::size_t most_nodes) {
   while (any) {
     next_leaves_.clear();
     for (const std::uint32_t leaf : leaves_) {
-      if (append_leaves(leaf, looked_at, size, most_nodes)) continue;
+      if (append_leaves(leaf, looked_at, wanted)) continue;
       leaves_.clear();
       return false;
     }
@@ -231,7 +238,7 @@ HalvedMesh BisectionTree::mesh() const {
 
 TetMesh bisected(const TetMesh& mesh, const SizeField& size, std::size_t most_nodes) {
   BisectionTree tree(mesh);
-  if (!tree.choose(size, most_nodes)) {
+  if (!tree.choose(size, std::numeric_limits<double>::infinity(), most_nodes)) {
     throw InputError("refined, it would have more than " + std::to_string(most_nodes) +
                      " nodes; allow longer edges or let them grow faster");
   }

@@ -34,8 +34,8 @@ struct HalvedMesh {
   TetMesh mesh;                            ///< nodes of the coarse mesh first
   std::vector<Parents> parents;            ///< whose middle a node is, rising; kNone: coarse
   std::vector<BoundaryTriangle> boundary;  ///< as boundary_triangles()
-  /// How often each tetrahedron was halved. They are in the order of the trees: what one of another
-  /// mesh of the same halves was divided into is a row of them that has its volume.
+  /// How often each tetrahedron was halved. They are in the order of the trees: what a tetrahedron
+  /// of another mesh of the same halves was divided into is a run of these that has its volume.
   std::vector<std::uint8_t> halvings;
 };
 
@@ -47,8 +47,10 @@ class BisectionTree {
   explicit BisectionTree(TetMesh mesh);
 
   /// Chooses the leaves that bisected() would return.
+  /// @param growth  of sizes between any two places, over their distance, at most: where tetrahedra
+  ///                are much smaller than their mean's size their edges are not looked at
   /// @returns false if that would take more than `most_nodes` nodes; then none are chosen
-  bool choose(const SizeField& size, std::size_t most_nodes);
+  bool choose(const SizeField& size, double growth, std::size_t most_nodes);
   /// The mesh of the leaves chosen last; at first the coarse one.
   HalvedMesh mesh() const;
   /// Of that mesh.
@@ -66,7 +68,6 @@ class BisectionTree {
     std::uint32_t a = 0, b = 0;
     double squared_length = 0;
     std::uint32_t middle = kNone;  ///< its node, once the edge was halved
-    std::uint32_t halved_in = 0;   ///< the last choice that halves it
     std::uint32_t sized_in = 0;    ///< the last choice that looked at it
     bool too_long = false;         ///< in that
   };
@@ -89,15 +90,20 @@ class BisectionTree {
   bool comes_first(const Edge& a, const Edge& b) const;
   std::uint8_t longest_of(const Tet& tet) const;
   void halve(std::uint32_t tet);
-  bool is_too_large(const Tet& tet, const SizeField& size);
+  struct Wanted {
+    const SizeField& size;
+    double growth;
+    std::size_t most_nodes;
+  };
+  bool is_too_large(const Tet& tet, const Wanted& wanted);
   bool lost_an_edge(const Tet& tet) const;
-  bool append_leaves(std::uint32_t tet, bool is_small_enough, const SizeField& size,
-                     std::size_t most_nodes);
+  bool append_leaves(std::uint32_t tet, bool is_small_enough, const Wanted& wanted);
 
   TetMesh coarse_;
   std::vector<std::uint8_t> coarse_outer_;
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
+  std::vector<std::uint32_t> halved_in_;  ///< of an edge: the last choice that halves it
   std::vector<Tet> tetrahedra_;
   std::unordered_map<std::uint64_t, std::uint32_t> edge_numbers_;
   std::vector<std::uint32_t> leaves_, next_leaves_;  ///< chosen, in the tree's order

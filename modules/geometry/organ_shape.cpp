@@ -32,7 +32,7 @@ class EdgeNumbers {
   const std::vector<Edge>& edges() const { return edges_; }
   std::uint32_t at(std::uint32_t a, std::uint32_t b) const {
     const Edge edge = edge_between(a, b);
-    if (edge[0] + 1 >= begins_.size()) return kNone;
+    if (edge[1] + 1 >= begins_.size()) return kNone;
     for (std::uint32_t i = begins_[edge[0]]; i < begins_[edge[0] + 1]; ++i) {
       if (edges_[i][1] == edge[1]) return first_number_ + i;
     }
@@ -135,6 +135,8 @@ OrganShape with_edge_nodes(const OrganShape& shape) {
   const auto renumbered = [&](std::uint32_t node) {
     return node < corner_count ? node : surface_count + (node - corner_count);
   };
+  result.tetrahedra.reserve(shape.tetrahedra.size());
+  result.edge_nodes.reserve(shape.tetrahedra.size());
   for (const auto& corners : shape.tetrahedra) {
     auto& middles = result.edge_nodes.emplace_back();
     for (std::size_t e = 0; e < 6; ++e) {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 
 #include "modules/core/error.h"
-#include "modules/core/sort_unique.h"
 
 namespace palpate::geometry {
 namespace {
@@ -110,24 +110,29 @@ SurfaceBlocks::SurfaceBlocks(std::span<const Triangle> triangles,
   std::partial_sum(first_triangle_.begin(), first_triangle_.end(), first_triangle_.begin());
   triangles_.resize(triangles.size());
   std::vector<std::uint32_t> next = first_triangle_, own;
+  std::uint32_t last = 0;
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     triangles_[next[block_of_triangle[t]]++] = t;
+    for (const std::uint32_t node : triangles[t]) last = std::max(last, node);
   }
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> place(std::size_t{last} + 1, kNone);  // of a node in its block
+  corners_.reserve(triangles.size());
   first_node_.push_back(0);
   for (std::uint32_t block = 0; block < blocks; ++block) {
     own.clear();
     for (const std::uint32_t t : triangles_of(block)) {
-      own.insert(own.end(), triangles[t].begin(), triangles[t].end());
+      for (const std::uint32_t node : triangles[t]) {
+        if (std::exchange(place[node], 0) == kNone) own.push_back(node);
+      }
     }
-    sort_unique(own);
-    const auto place_of = [&](std::uint32_t node) {
-      return static_cast<std::uint32_t>(std::lower_bound(own.begin(), own.end(), node) -
-                                        own.begin());
-    };
+    std::ranges::sort(own);
+    for (std::uint32_t i = 0; i < own.size(); ++i) place[own[i]] = i;
     for (const std::uint32_t t : triangles_of(block)) {
       const auto& [a, b, c] = triangles[t];
-      corners_.push_back({place_of(a), place_of(b), place_of(c)});
+      corners_.push_back({place[a], place[b], place[c]});
     }
+    for (const std::uint32_t node : own) place[node] = kNone;
     nodes_.insert(nodes_.end(), own.begin(), own.end());
     first_node_.push_back(static_cast<std::uint32_t>(nodes_.size()));
   }

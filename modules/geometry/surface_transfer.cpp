@@ -2,15 +2,29 @@
 
 #include <algorithm>
 #include <bit>
-#include <unordered_map>
+#include <numeric>
+#include <utility>
 
 #include "modules/geometry/closest_points.h"
 
 namespace palpate::geometry {
 namespace {
 
-struct PlaceHash {
-  std::size_t operator()(const Vec3& x) const {
+/// Numbers of places by the places, in one row with gaps.
+class PlaceTable {
+ public:
+  explicit PlaceTable(std::span<const Vec3> places)
+      : places_(places), numbers_(std::bit_ceil(2 * places.size() + 1), kNoPlace) {
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+      std::uint32_t& number = numbers_[slot_of(places[i])];
+      if (number == kNoPlace) number = i;
+    }
+  }
+  /// Of the first that is equal; kNoPlace: none.
+  std::uint32_t number_of(const Vec3& place) const { return numbers_[slot_of(place)]; }
+
+ private:
+  static std::size_t hash(const Vec3& x) {
     std::uint64_t hash = 0;
     for (int k = 0; k < 3; ++k) {
       // Sums with 0 make −0 and 0, which are equal, alike.
@@ -19,18 +33,49 @@ struct PlaceHash {
     }
     return hash;
   }
-};
-
-struct CornersHash {
-  std::size_t operator()(const Triangle& t) const {
-    return (std::size_t{t[0]} * 0x9E3779B97F4A7C15u ^ t[1]) * 0x9E3779B97F4A7C15u ^ t[2];
+  std::size_t slot_of(const Vec3& place) const {
+    const std::size_t last = numbers_.size() - 1;
+    std::size_t slot = hash(place) & last;
+    while (numbers_[slot] != kNoPlace && places_[numbers_[slot]] != place) slot = (slot + 1) & last;
+    return slot;
   }
+
+  std::span<const Vec3> places_;
+  std::vector<std::uint32_t> numbers_;
 };
 
-Triangle sorted(Triangle t) {
-  std::ranges::sort(t);
-  return t;
-}
+/// Triangles by their corners.
+class CornerTable {
+ public:
+  CornerTable(std::span<const Triangle> triangles, std::size_t node_count)
+      : begins_(node_count + 1, 0), entries_(triangles.size()) {
+    for (const Triangle& t : triangles) ++begins_[std::ranges::min(t) + 1];
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    std::vector<std::uint32_t> next = begins_;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+      const Triangle corners = sorted(triangles[t]);
+      entries_[next[corners[0]]++] = {corners, t};
+    }
+  }
+  /// Of the first with these corners in any order; kNoPlace: none, or one is kNoPlace.
+  std::uint32_t number_of(const Triangle& corners) const {
+    const Triangle wanted = sorted(corners);
+    if (wanted[2] == kNoPlace) return kNoPlace;
+    for (std::uint32_t i = begins_[wanted[0]]; i < begins_[wanted[0] + 1]; ++i) {
+      if (entries_[i].first == wanted) return entries_[i].second;
+    }
+    return kNoPlace;
+  }
+
+ private:
+  static Triangle sorted(Triangle t) {
+    std::ranges::sort(t);
+    return t;
+  }
+
+  std::vector<std::uint32_t> begins_;  ///< of each lowest corner, in entries_
+  std::vector<std::pair<Triangle, std::uint32_t>> entries_;
+};
 
 TriangleCorners corners_of(const Triangle& t, const std::vector<Vec3>& nodes) {
   return {nodes[t[0]], nodes[t[1]], nodes[t[2]]};
@@ -39,14 +84,10 @@ TriangleCorners corners_of(const Triangle& t, const std::vector<Vec3>& nodes) {
 }  // namespace
 
 std::vector<std::uint32_t> same_places(std::span<const Vec3> from, std::span<const Vec3> to) {
-  std::unordered_map<Vec3, std::uint32_t, PlaceHash> places(2 * to.size());
-  for (std::uint32_t i = 0; i < to.size(); ++i) places.try_emplace(to[i], i);
+  const PlaceTable table(to);
   std::vector<std::uint32_t> same;
   same.reserve(from.size());
-  for (const Vec3& place : from) {
-    const auto found = places.find(place);
-    same.push_back(found == places.end() ? kNoPlace : found->second);
-  }
+  for (const Vec3& place : from) same.push_back(table.number_of(place));
   return same;
 }
 
@@ -58,16 +99,13 @@ SurfaceTransfer::SurfaceTransfer(std::span<const Vec3> from_rest, std::span<cons
       to_(to.begin(), to.end()),
       nodes_(same_places(from_rest, to_rest)),
       triangles_(from.size(), kNoPlace) {
-  std::unordered_map<Triangle, std::uint32_t, CornersHash> corners(2 * to.size());
-  for (std::uint32_t t = 0; t < to.size(); ++t) corners.try_emplace(sorted(to[t]), t);
+  const CornerTable table(to, to_rest.size());
   std::vector<bool> known(to.size(), false);
   for (std::size_t t = 0; t < from.size(); ++t) {
     Triangle same{};
     for (std::size_t k = 0; k < 3; ++k) same[k] = nodes_[from[t][k]];
-    const auto found = corners.find(sorted(same));
-    if (found == corners.end()) continue;
-    triangles_[t] = found->second;
-    known[found->second] = true;
+    triangles_[t] = table.number_of(same);
+    if (triangles_[t] != kNoPlace) known[triangles_[t]] = true;
   }
   // Surfaces that do not divide the same faces find something, too.
   if (std::ranges::find(known, false) == known.end()) known.assign(to.size(), false);

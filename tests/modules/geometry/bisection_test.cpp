@@ -161,8 +161,9 @@ TEST_CASE("bisection: tetrahedra do not go flat, however often they are halved")
 }
 
 TEST_CASE("bisection: a tree that was asked for others gives the mesh that one made anew gives") {
-  // Oracle: bit for bit a fresh tree, and brute force over faces and places; the boundary and each
-  // middle's ends found again from the nodes. Centres at random, some of them outside.
+  // Oracle: bit for bit a fresh tree that is told of no growth and so looks at every edge, and
+  // brute force over faces and places; the boundary and each middle's ends found again from the
+  // nodes. Centres at random, some of them outside.
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-0.01, 0.09);
   const TetMesh coarse = shaken_block(4);
@@ -170,7 +171,7 @@ TEST_CASE("bisection: a tree that was asked for others gives the mesh that one m
   for (int change = 0; change < 60; ++change) {
     const Vec3 centre(place(random), place(random), place(random));
     const SizeField size = about(centre, 8e-3, 5e-3, 0.6);
-    REQUIRE(tree.choose(size, kMostNodes));
+    REQUIRE(tree.choose(size, 0.6, kMostNodes));
     const HalvedMesh used = tree.mesh();
     const TetMesh fresh = bisected(coarse, size, kMostNodes);
     CHECK(used.mesh.nodes == fresh.nodes);
@@ -197,8 +198,8 @@ TEST_CASE("bisection: a tree that would take too many nodes says so and goes on"
   BisectionTree tree(coarse);
   const SizeField size = about({0.04, 0.04, 0.08}, 8e-3, 3e-3, 0.5);
   const TetMesh fine = bisected(coarse, size, kMostNodes);
-  CHECK_FALSE(tree.choose(size, fine.nodes.size() - 1));
-  CHECK(tree.choose(size, fine.nodes.size()));
+  CHECK_FALSE(tree.choose(size, 0.5, fine.nodes.size() - 1));
+  CHECK(tree.choose(size, 0.5, fine.nodes.size()));
   CHECK(tree.mesh().mesh.tetrahedra == fine.tetrahedra);
 }
 
