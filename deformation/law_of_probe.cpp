@@ -6,6 +6,7 @@
 #include "deformation/contact/closing_rows.h"
 #include "deformation/contact/condensed_contacts.h"
 #include "deformation/contact/contact_law.h"
+#include "deformation/force_error.h"
 
 namespace palpate::deformation {
 namespace {
@@ -167,6 +168,18 @@ LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContact
   law.stiffness = stiffness.matrix;
   if (bounded != nullptr) *bounded = stiffness.bounded;
   return law;
+}
+
+double force_error_of_probe(std::span<const WorldOrgan> organs, const ProbeContacts& probe) {
+  double worst = 0;
+  for (std::uint32_t i = 0; i < organs.size(); ++i) {
+    if (!organs[i].tells_mesh_error) continue;
+    const SimulatedOrgan& organ = organs[i].simulated;
+    const TouchedPart part = touched_part(probe, i, organ.model());
+    if (!(part.reach > 0)) continue;
+    worst = std::max(worst, estimated_force_error(organ.model(), organ.state().positions, part));
+  }
+  return worst;
 }
 
 LocalLaw without_rows(const LocalLaw& law) {

@@ -15,7 +15,11 @@ namespace palpate::deformation {
 LocalLaw law_of_probe(std::span<WorldOrgan> organs, std::span<const ProbeContacts> probes,
                       std::size_t index, double period, bool* bounded);
 
-/// The same of a probe that touches nothing, or of which nobody knows what it touches.
+/// How much too large the force on the probe is because of the solids' meshes, 0 … 1
+/// (estimated_force_error()); 0: it presses on none whose model tells it.
+double force_error_of_probe(std::span<const WorldOrgan> organs, const ProbeContacts& probe);
+
+/// The same law of a probe that touches nothing, or of which nobody knows what it touches.
 LocalLaw without_rows(const LocalLaw& law);
 
 }  // namespace palpate::deformation

@@ -70,6 +70,10 @@ OrganContacts::OrganContacts(const scene::Scene& scene, std::vector<SimulatedOrg
       travel_(organs_.size()),
       touched_(organs_.size()),
       volumes_(organs_.size()) {
+  const scene::Misfit misfit = scene::misfit_of_contacts(scene);
+  if (!misfit.none()) {
+    throw scene::error_at(scene, misfit.key, "key '" + misfit.key + "' " + misfit.why);
+  }
   least_reach_ = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < organs_.size(); ++i) {
     const OrganModel& model = organs_[i]->model();

@@ -24,7 +24,8 @@ class OrganContacts {
   static constexpr double kLeastRestDistance = 1e-5;
 
   /// @param organs  at rest; outlive this
-  /// @throws InputError naming the organs if they cross or touch at rest
+  /// @throws InputError naming the organs if they cross or touch at rest, or the key of a model or
+  ///                    integrator that knows no such contacts
   OrganContacts(const scene::Scene& scene, std::vector<SimulatedOrgan*> organs);
 
   /// Before the organs make a step.

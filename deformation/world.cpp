@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "deformation/contact_intake.h"
-#include "deformation/force_error.h"
 #include "deformation/force_history.h"
 #include "deformation/law_of_probe.h"
 #include "deformation/organ_contacts.h"
@@ -37,22 +36,27 @@ struct DeformationWorld::Impl {
   std::vector<ForceHistory> forces;  ///< on each probe
   double time = 0, period = 0;       ///< simulated; of the last advance [s]
 
-  /// One organ from one fraction of the advance to another, all probes moving along. A probe that
-  /// would go through the wall is held by rows where it does.
+  /// Where probes touch it as a step begins. What comes near may be watched from here on.
+  void find_rows(std::uint32_t index, double from, double to) {
+    WorldOrgan& organ = organs[index];
+    organ.rows.clear();
+    if (organ.simulated.contacts_suspended()) return;
+    const double h = (to - from) * period;
+    for (auto& probe : probes) {
+      probe.append_rows(index, *organ.surface, organ.simulated.state(), h, to, organ.rows);
+    }
+  }
+
+  /// One organ from one fraction of the advance to another, all probes moving along, from the rows
+  /// that were found. A probe that would go through the wall is held by more where it does.
   /// @param last_resort  whether the step is taken even if they do not hold it
   /// @returns false if it was not: the organ is as before
   bool step_organ(std::uint32_t index, double from, double to, bool last_resort,
                   AdvanceReport& report) {
     WorldOrgan& organ = organs[index];
     const double h = (to - from) * period;
-    organ.rows.clear();
-    const bool contacts_suspended = organ.simulated.contacts_suspended();
-    for (auto& probe : probes) {
-      if (contacts_suspended) break;
-      probe.append_rows(index, *organ.surface, organ.simulated.state(), h, to, organ.rows);
-    }
     SimulatedOrgan::Revise revise;
-    if (!contacts_suspended && any_may_miss(index)) {
+    if (!organ.simulated.contacts_suspended() && any_may_miss(index)) {
       revise = [&](const OrganState& start, const OrganState& end) {
         return ProbeContacts::hold_missed(probes, index, *organ.surface, start.positions,
                                           end.positions, h, to, organ.rows);
@@ -73,6 +77,7 @@ struct DeformationWorld::Impl {
 
   /// The same; where rows do not hold a probe, in halves.
   void step_apart(std::uint32_t index, double from, double to, int splits, AdvanceReport& report) {
+    find_rows(index, from, to);
     if (step_organ(index, from, to, splits == 0, report)) {
       return take_rows(index, from, to, report);
     }
@@ -114,7 +119,10 @@ struct DeformationWorld::Impl {
   /// @returns false if a probe was not held: the organs are as before, but not as a last resort
   bool try_together(double from, double to, bool last_resort, AdvanceReport& report) {
     bool may_miss = false;
-    for (std::uint32_t i = 0; i < organs.size(); ++i) may_miss |= any_may_miss(i);
+    for (std::uint32_t i = 0; i < organs.size(); ++i) {
+      find_rows(i, from, to);
+      may_miss |= any_may_miss(i);
+    }
     if (may_miss) {
       for (WorldOrgan& organ : organs) organ.simulated.keep(organ.start);
     }
@@ -225,10 +233,6 @@ DeformationWorld::DeformationWorld(const scene::Scene& scene,
     }));
   }
   if (scene.contacts.any()) {
-    const scene::Misfit misfit = scene::misfit_of_contacts(scene);
-    if (!misfit.none()) {
-      throw scene::error_at(scene, misfit.key, "key '" + misfit.key + "' " + misfit.why);
-    }
     std::vector<SimulatedOrgan*> simulated;
     for (WorldOrgan& organ : impl_->organs) simulated.push_back(&organ.simulated);
     impl_->organ_contacts.emplace(scene, std::move(simulated));
@@ -380,15 +384,7 @@ const Vec3& DeformationWorld::force(std::size_t probe) const {
 }
 
 double DeformationWorld::estimated_force_error(std::size_t probe) const {
-  double worst = 0;
-  for (std::uint32_t i = 0; i < impl_->organs.size(); ++i) {
-    if (!impl_->organs[i].tells_mesh_error) continue;
-    const OrganModel& model = impl_->organs[i].simulated.model();
-    const TouchedPart part = touched_part(impl_->probes.at(probe), i, model);
-    if (!(part.reach > 0)) continue;
-    worst = std::max(worst, palpate::deformation::estimated_force_error(model, positions(i), part));
-  }
-  return worst;
+  return force_error_of_probe(impl_->organs, impl_->probes.at(probe));
 }
 
 LocalLaw DeformationWorld::local_law(std::size_t probe, bool* bounded) const {
