@@ -80,10 +80,19 @@ class Doubts {
   SceneDoubts all() && {
     for (std::size_t i = 0; i < skins_.size(); ++i) organ(scene_.organs[i], skins_[i]);
     for (std::size_t i = 0; i < scene_.probes.size(); ++i) probe(i);
+    rates();
     return {std::move(lines_), std::move(motions_)};
   }
 
  private:
+  void rates() {
+    const double period = 1 / scene_.rates.deformation;
+    if (period < scene_.haptics.stale_after) return;
+    say("rates.deformation_hz is {:g}: a force is told every {:g} ms, and after "
+        "haptics.stale_after_s, {:g} ms, it fades; raise one of them",
+        scene_.rates.deformation, 1e3 * period, 1e3 * scene_.haptics.stale_after);
+  }
+
   void organ(const scene::Organ& organ, const geometry::TriangleSurface& skin) {
     const std::string owner = "organ '" + organ.name + "'";
     const double size = geometry::bounding_box(skin.nodes).sizes().maxCoeff();

@@ -56,6 +56,16 @@ TEST_CASE("doubts: a press of a ball on its foot leaves none, and touches when i
   CHECK(warnings.empty());
 }
 
+TEST_CASE("doubts: laws that come more seldom than forces begin to fade are told of") {
+  // Oracle: the periods, 50 ms at 20 Hz and 40 at 25, beside 50 ms of stale_after_s.
+  const BallScene scene(kDownOnBall, "duration_s: 4\n");
+  CHECK_THAT(doubt(scene, {"rates.deformation_hz=20"}),
+             Contains("rates.deformation_hz is 20: a force is told every 50 ms") &&
+                 Contains("stale_after_s, 50 ms, it fades"));
+  CHECK(doubts(scene, {"rates.deformation_hz=25"}).empty());
+  CHECK(doubts(scene, {"rates.deformation_hz=20", "haptics.stale_after_s=0.1"}).empty());
+}
+
 TEST_CASE("doubts: an organ in another unit is refused, and the likely unit named") {
   // Oracle: the ball of 100 mm, read as if its file were in other units.
   const BallScene scene(kDownOnBall, "duration_s: 4\n");
