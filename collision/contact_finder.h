@@ -18,7 +18,7 @@ struct ProbeMotion {
   Vec3 ahead_W = Vec3::Zero();  ///< its way on to the next search's contacts, as it moves now [m]
 };
 
-/// At most so many are handed out.
+/// How many are handed out at most.
 struct ContactLimits {
   std::size_t contacts = 0;  ///< beside faces
   std::size_t faces = 0, face_nodes = 0;

@@ -69,19 +69,19 @@ inline constexpr std::size_t kUsualContacts = 1024;
 /// They say where tissue is; deformation finds its own rows around them (deformation/contact).
 inline constexpr std::size_t kMostOfRound = 64;
 
-/// Of contacts of a sharp probe from `first` on, which may be millions before the search ends,
-/// leaves all that reduce_contacts() would choose from.
+/// Thins the contacts of a sharp probe from `first` on, which may be millions before the search
+/// ends, to all that reduce_contacts() would choose from.
 void leave_choice(std::vector<FoundContact>& found, std::size_t first, const ContactLimits& limits,
                   const ProbeReach& reach);
 
-/// The same place and normal found twice (over triangles that share it) becomes one contact, of the
-/// lowest triangle. And they are reduced: of a round probe to kMostOfRound of an organ; of others
-/// nodes on one plane become a face, as far as faces and their nodes fit. Where the rest is more
-/// than `limits.contacts`, as of a sharp probe in a hurry, which may come to far more than it will,
-/// what touches and of each place the nearest contact that it may come to are kept, up to
-/// `limits.needed`, and the nearest of the others while there are fewer than `limits.contacts`.
-/// Where more are needed than that those are kept that it meets first on its way ahead, and
-/// result.truncated says so. Writes them into result.
+/// Reduces what was found and writes it into result. The same place and normal found twice (over
+/// triangles that share it) becomes one contact, of the lowest triangle. Of a round probe,
+/// kMostOfRound of an organ are kept. Of others, nodes on one plane become a face, as far as faces
+/// and their nodes fit. Where the rest is more than `limits.contacts`, as of a sharp probe in a
+/// hurry, which may come to far more than it will, these are kept: what touches and, of each place,
+/// the nearest contact that it may come to, up to `limits.needed`; then the nearest of the others
+/// while there are fewer than `limits.contacts`. Where more are needed, those are kept that it
+/// meets first on its way ahead, and result.truncated says so.
 void reduce_contacts(std::vector<FoundContact>& found, bool is_round, const ContactLimits& limits,
                      ContactSet& result, const ProbeReach& reach = {});
 

@@ -57,8 +57,7 @@ class CoreContacts {
                         std::vector<std::uint32_t>& triangles);
 
   /// @param candidates  every triangle the core may touch in the step, and those of
-  /// append_near_wall(),
-  ///                    ascending
+  ///                    append_near_wall(); ascending
   void find(const OrganStep& step, const Core& core, std::span<const SweptTriangle> candidates,
             std::vector<FoundContact>& found);
 

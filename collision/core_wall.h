@@ -33,7 +33,7 @@ struct CoreCandidate {
 std::optional<Crossing> crossed_inward(const OrganStep& step, const Core& core,
                                        const CoreCandidate& candidate);
 
-/// Nearer than that a rounding turns the direction of a contact [m].
+/// Nearer than this, rounding turns the direction of a contact [m].
 inline constexpr double kSteadyDistance = 1e-4;
 
 /// Core in front of a triangle at the end.

@@ -1,9 +1,9 @@
 // Which corners of a sharp probe are looked at with which triangles of an organ in a step.
 //
-// Each with all that it may come to. What is past that, of finely meshed tools, is left out from
-// the least needed on: of the walls that corners are behind what is far, with each triangle the
-// corners that are not nearest to it, and triangles beside the way ahead. What a corner outside may
-// go past in the step is left out last, and said.
+// Each corner is looked at with all that it may come to. Where that is too much, as of finely
+// meshed tools, pairs are left out, the least needed first: far parts of the walls that corners are
+// behind, of each triangle the corners that are not nearest to it, and triangles beside the way
+// ahead. What a corner outside may go past in the step is left out last, and said.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ namespace palpate::collision {
 
 class CornerPairs {
  public:
-  /// More pairs, and more than so many with each triangle, are not all looked at.
+  /// Beyond so many pairs, and so many with each triangle, not all are looked at.
   static constexpr std::size_t kManyPairs = 65536, kFewestOfEach = 16;
   /// A tool of so few corners is looked at with all triangles however many they are.
   static constexpr std::size_t kFewCorners = 128;
@@ -33,8 +33,8 @@ class CornerPairs {
   void hold(const OrganStep& step, const ProbeModel& probe, CoreContacts& cores,
             std::vector<std::uint32_t>& triangles);
 
-  /// Whether a tool of many corners comes to more than kManyPairs, and kFewestOfEach with each
-  /// triangle are more, too: fewer triangles are to be near.
+  /// Whether a tool of many corners comes to more than kManyPairs, even with kFewestOfEach for each
+  /// triangle: then fewer triangles are to be near.
   bool are_too_many(const OrganStep& step, const ProbeModel& probe,
                     std::span<const SweptTriangle> triangles);
   /// All pairs, by corner, with places in a list of triangles.

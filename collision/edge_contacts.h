@@ -37,7 +37,7 @@ class EdgeContacts {
 
   /// @param reach  where the probe may go
   /// @param edges  of the organ, ascending, each once: all that may touch in the step and all
-  /// remembered ones
+  ///               remembered ones
   Searched find(const OrganStep& step, const SharpMesh& probe, const ProbeReach& reach,
                 std::span<const std::uint32_t> edges, std::vector<FoundContact>& found);
 

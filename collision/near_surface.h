@@ -17,7 +17,7 @@ namespace palpate::collision {
 
 class NearSurface {
  public:
-  /// Of more triangles near a round core some stand for others.
+  /// Where more triangles are near a round core, some stand for the others.
   static constexpr std::size_t kManyTriangles = 512;
   static constexpr int kCells = 4;  ///< along each axis of their grid
 
@@ -28,8 +28,8 @@ class NearSurface {
   /// The same for a round core that is behind no wall. Where very many triangles are so near
   /// (kManyTriangles), only those that may come within its radius in the step, and of the others
   /// one at the nearest node of each cell of a grid around the core: they say where tissue is.
-  /// @returns whether they are candidates() until sweep_candidates(): very many near a ball that
-  ///          does not turn
+  /// @returns whether they are in candidates() until sweep_candidates() is called, as very many
+  ///          near a ball that does not turn are
   bool gather_front(const OrganStep& step, const Core& core, double reach);
   /// A triangle that is looked at where it ends.
   struct Candidate {
@@ -46,8 +46,8 @@ class NearSurface {
   /// The largest way of a corner, rounded up [m].
   double candidate_travel() const { return SweptTriangle::travel_of(end_travel_squared_); }
   void sweep_candidates(const OrganStep& step);
-  /// The nodes that come so near instead, each once, in no useful order. Of a core without end they
-  /// are far fewer than the triangles' worth.
+  /// Instead of the triangles, the nodes that come so near, each once, in no useful order. Of a
+  /// core without end they are far fewer than the triangles' corners.
   void gather_nodes(const OrganStep& step, const Bounds& core, double reach,
                     std::vector<std::uint32_t>& nodes);
   /// Adds triangles by their indices, each once whether it was there or not.

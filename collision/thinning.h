@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostThinned =
 
 /// Of more than kMostThinned keeps kThinnedDeepest, and of the others the deepest in each cell of a
 /// grid over them.
-/// @param deeper    (T, T) -> bool: a strict order, so that what is kept does not depend on theirs
+/// @param deeper    (T, T) -> bool: a strict order, so that what is kept depends on no other
 /// @param place_of  T -> Vec3 [m]
 template <class T, class Deeper, class PlaceOf>
 void thin(std::vector<T>& all, const Deeper& deeper, const PlaceOf& place_of) {

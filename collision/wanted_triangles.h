@@ -71,7 +71,7 @@ class WantedTriangles {
     at_end.add(end);
     return apart(at_start, at_end);
   }
-  /// Holds of every triangle that is wanted, and of few others, of none if told_by_floats().
+  /// True of every triangle that is wanted, and of few others; of no others if told_by_floats().
   bool may_be(const Apart& x, const Apart& y, const Apart& z) const {
     const Four below = x.below.min(y.below).min(z.below);
     const Four above = x.above.min(y.above).min(z.above);

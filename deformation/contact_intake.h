@@ -1,4 +1,5 @@
-// What deformation believes of the contacts it is told, put on its organs' meshes of now.
+// The contacts that deformation believes of those it is told, carried to its organs' present
+// meshes.
 #pragma once
 
 #include <cstdint>

@@ -14,8 +14,8 @@ class ForceHistory {
  public:
   /// Forces that change faster than this part of themselves in a period are not taken to go on so.
   static constexpr double kMostGrowth = 0.5;
-  /// A law is used for up to a period and a half more: a change over fewer periods than that, which
-  /// a chatter of contacts may be, it would make larger.
+  /// Periods over which forces are compared. A law is used for up to a period and a half more, and
+  /// would enlarge a change over fewer periods than that, which may be a mere chatter of contacts.
   static constexpr std::size_t kPeriods = 3;
 
   /// @param force  over the advance that just ended [N]

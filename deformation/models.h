@@ -35,7 +35,7 @@ struct ModelRow {
   const char* word = "";  ///< as in scene::model_formats()
   VolumeKeeping volume = VolumeKeeping::kNone;
   bool has_volume_constraint = false;  ///< answers an error of the volume with any impulse it takes
-  /// Where nothing holds or touches it; of backward Euler the linear alone.
+  /// Where nothing holds or touches it; by backward Euler linear momentum alone is conserved.
   bool conserves_momentum = true, conserves_angular_momentum = true;
   /// elastic_energy() is all it stores and its contacts' impulses all it is given. Not so where the
   /// contents store energy, or nodes are moved by no force.

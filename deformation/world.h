@@ -51,7 +51,8 @@ class DeformationWorld {
   std::uint32_t generation(std::size_t organ) const;
   /// What the organ will go on with in the next advance, to be told before; nullptr: as it is.
   const OrganMesh* next_mesh(std::size_t organ) const;
-  /// What its next mesh was made for, or that it has; none: it keeps its mesh, or nothing is near.
+  /// What its next mesh, or else its present one, was made for; none: it keeps its mesh, or nothing
+  /// is near.
   std::span<const TouchedPlace> touched_places(std::size_t organ) const;
 
   /// Newest pose X_WP of a probe. Contacts are carried along rigidly with it until the next ones.
@@ -99,14 +100,14 @@ class DeformationWorld {
   std::span<const Vec3> positions(std::size_t organ) const;
   /// Mean force on a probe over the last advance() [N].
   const Vec3& force(std::size_t probe) const;
-  /// How much too large that force is because of the solids' meshes, estimated (force_error.h), 0 …
-  /// 1, in some tenths of a millisecond. 0: it presses on none whose model tells it.
+  /// How much too large that force is because of the solids' meshes, estimated (force_error.h):
+  /// 0 … 1; 0: it presses on none whose model tells it. Takes some tenths of a millisecond.
   double estimated_force_error(std::size_t probe) const;
   /// That force row by row and how it varies with the probe's pose. Costs a small factorisation.
   /// @param bounded  out: its stiffness was bounded, or could not be found (contact_law.h)
   LocalLaw local_law(std::size_t probe, bool* bounded = nullptr) const;
 
-  /// All that comes of it, between two advances; of a world of the same scene.
+  /// All that what follows depends on, between two advances; of a world of the same scene.
   void exchange(StateArchive& archive);
 
  private:

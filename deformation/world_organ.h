@@ -75,8 +75,7 @@ struct WorldOrgan {
 /// @param shape  closed, outward, in W [m]
 /// @param runner  outlives the organ; none: the calling thread alone
 /// @throws InputError naming the organ if it cannot be simulated (all nodes fixed, stable step
-/// below
-///         1 µs, …)
+///         below 1 µs, …)
 WorldOrgan make_organ(const scene::Scene& scene, std::size_t index,
                       const geometry::OrganShape& shape, ChunkRunner* runner, Guarding guarding);
 

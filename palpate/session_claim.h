@@ -21,7 +21,7 @@ class SessionClaim {
   static SessionClaim joining(const std::string& session, int domain,
                               const std::vector<std::string>& modules);
 
-  /// It has ended for good: whoever joins may bring it.
+  /// The module has ended for good: whoever joins may bring it.
   void release(const std::string& module);
 
  private:

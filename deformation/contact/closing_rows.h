@@ -25,8 +25,9 @@ inline constexpr double kWay = 0.25;
 /// @param steps  n ≥ 1, of a period
 double stiffer_by_closing(const LawRow& row, const Vec3& went, double period, int steps);
 
-/// Divides what each row gives way by while those before it are held. W has kRegular of its
-/// diagonal more then. One that is not regular even so stays: it is no compliance.
+/// Divides by `stiffer` what each row gives way by while those before it are held; W's diagonal
+/// then has kRegular of itself more. A W that is not regular even so is left as it is: it is no
+/// compliance.
 /// @param stiffer  a number for each row; 1 for those that press
 /// @param W        of the rows, several directions of each
 void stiffen_closing_rows(std::span<const double> stiffer, Eigen::MatrixXd& W);

@@ -15,14 +15,14 @@ struct PeriodSteps {
   int count = 1;      ///< n
   bool implicit = false;
 
-  /// Means over the steps of the velocities and displacements that their forces are taken at, of an
-  /// even motion, over those at the end: d and k of patch_compliance.h.
+  /// Of an even motion: the means, over the steps, of the velocities and of the displacements at
+  /// which forces are taken, as parts of those at the end: d and k of patch_compliance.h.
   double moving() const { return implicit ? 1 : (count - 1.0) / count; }
   double displaced() const { return (implicit ? count + 1.0 : count - 1.0) / (2.0 * count); }
 };
 
-/// Rows on the same nodes depend on each other, and whether W of them is regular is rounding: it is
-/// with this part more of its diagonal, by which what they share is counted once.
+/// Rows on the same nodes depend on each other, so rounding decides whether their W is regular.
+/// With this part of its diagonal added it is, and what they share is counted once.
 inline constexpr double kRegular = 1e-6;
 
 /// A weighted place on the body and a direction there: a row of C.

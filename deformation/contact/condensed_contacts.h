@@ -17,11 +17,11 @@ struct CondensedContact {
   double fixed_yielding = 0;  ///< how far what is fixed gives way to 1 N any way [m/N]
 };
 
-/// The radius of a row is 0 for a flat probe, and for a round one on a triangle's face: sliding
-/// there, it finds the same normal. Of several taken together it is that of most of the force.
 /// All contacts of a probe at the end of an advance, at most kMaxLawRows: those that press, then
 /// the nearest others. Where more than that press, neighbours are taken together about places far
-/// from each other, with the sum of their forces at its middle.
+/// from each other, each group with the sum of its forces at their middle. The radius of a row is 0
+/// for a flat probe, and for a round one on a triangle's face: sliding there, it finds the same
+/// normal. Of several taken together it is that of most of the force.
 /// @param bodies, states  by organ
 std::vector<CondensedContact> condense_contacts(const ProbeContacts& probe,
                                                 const std::vector<const Body*>& bodies,

@@ -1,7 +1,7 @@
 // Projection onto velocities that change neither the volume nor any active contact.
 //
-// With rows B (the volume gradient g, and n of each closed contact) and node inverse_mass_blocks W,
-// the projection of a force r is
+// With rows B (the volume gradient g, and n of each closed contact) and the nodes' inverse mass
+// blocks W, the projection of a force r is
 //     z = W (r − Bᵀμ),   B z = 0
 // As preconditioner of conjugate gradients it keeps every iterate on the rows, however few
 // iterations: N. Gould, M. Hribar, J. Nocedal, "On the Solution of Equality Constrained Quadratic
@@ -14,7 +14,7 @@
 //
 // The contact rows are sparse: S = C W Cᵀ is factored once per step. The volume row is dense and
 // eliminated by the scalar division, as in contact_solve.h with the roles exchanged. Vectors over
-// nodes are in float like the matrix they go with; what of a row that lets through is taken back
+// nodes are in float, like the matrix they go with; what a row lets through by that is taken back
 // when contact_solve.h has the last word.
 #pragma once
 

@@ -39,7 +39,7 @@ struct ContactRow {
   Vec3 tangential_impulse = Vec3::Zero();  ///< on the tissue, ⟂ n, norm ≤ friction·j [N·s]
 };
 
-/// What its nodes have (positions, velocities) at the place of the tissue that the row is of.
+/// What the row's nodes have (positions, velocities), interpolated to its place on the tissue.
 inline Vec3 at_tissue(const ContactRow& row, std::span<const Vec3> of_nodes) {
   Vec3 sum = Vec3::Zero();
   for (int k = 0; k < 3; ++k) sum += row.weights[k] * of_nodes[row.nodes[k]];
@@ -61,15 +61,15 @@ struct ContactSolveReport {
 /// Penetration is undone no faster than this [m/s], so that a probe which jumps does not shoot the
 /// tissue away; the remaining depth follows in the next steps.
 inline constexpr double kMaxSeparationSpeed = 1.0;
-/// The same where tissue was put into a probe, or a probe into tissue, by no motion of either:
-/// pushed out in a hurry it would swing, or fail again [m/s].
+/// The same where tissue was put into a probe, or a probe into tissue, without either moving
+/// [m/s]: pushed out in a hurry, tissue would swing, or fail again.
 inline constexpr double kGentleSpeed = 0.05;
 
 /// Contacts are solved when no sweep changes the velocity of one by more than this [m/s].
 inline constexpr double kContactVelocityTolerance = 1e-9;
 
-/// A contact whose tissue ends a step deeper in the probe than it may by more than this was not
-/// solved [m]. No node is to be further beyond a plate.
+/// A contact was not solved if its tissue ends a step deeper in the probe than it may, by more than
+/// this [m]. No node is to be further beyond a plate.
 inline constexpr double kUnsolvedDepth = 5e-5;
 
 /// How fast tissue may come nearer to the probe in a step of h [s] [m/s].
@@ -77,8 +77,8 @@ inline double allowed_approach(const ContactRow& row, double h) {
   return std::max(row.gap / h, -kMaxSeparationSpeed);
 }
 
-/// What a row yields by where fixed nodes carry its place, too: what it needs of tissue that can
-/// move is less by that.
+/// How a row yields whose place fixed nodes carry, too: it needs that much less of tissue that can
+/// move.
 struct Yielding {
   double inverse_mass = 0;  ///< of what is fixed, as a step sees it [1/kg]; 0: it does not yield
   double withheld = 0;      ///< speed by which its gap is closed more slowly than it might be [m/s]
@@ -95,8 +95,8 @@ inline Yielding yielding_of(const ContactRow& row, double h) {
 double excess_depth(const Body& body, const ContactRow& row, double h,
                     std::span<const Vec3> velocities);
 
-/// Whether the impulses the rows bring are already in the velocities; and friction of rows that
-/// press stays as it is, but within its cone.
+/// Whether the impulses that the rows bring are yet to be applied to the velocities, or have been;
+/// kFrictionKept: they have been, and friction of rows that press stays, but within its cone.
 enum class WarmStart { kToApply, kApplied, kFrictionKept };
 
 /// Turns unconstrained velocities v̂ (in `velocities`) into v⁺.

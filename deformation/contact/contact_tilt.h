@@ -21,7 +21,7 @@
 
 namespace palpate::deformation {
 
-/// Of the rows of round probes that press.
+/// Appends the couplings of the rows of round probes that press.
 /// @param positions  where the rows were found [m]  (node_count)
 void append_tilt_couplings(std::span<const ContactRow> rows, const std::vector<Vec3>& positions,
                            double h, std::vector<ContactCoupling>& couplings);

@@ -7,8 +7,8 @@
 
 namespace palpate::deformation {
 
-/// Turns blocks W with A ⪯ W⁻¹ into such of A + the coupling's (Σ a_k·u_k)², which is at most
-/// Σ_k |a_k| (Σ_j |a_j|) u_k² along the arms: Cauchy and Schwarz. A step down the gradient by W
+/// Turns blocks W with A ⪯ W⁻¹ into such blocks of A plus the coupling's (Σ a_k·u_k)², which is at
+/// most Σ_k |a_k| (Σ_j |a_j|) u_k² along the arms (Cauchy–Schwarz). A step down the gradient by W
 /// still does not overshoot.
 /// @param inverse_mass_blocks  W, zero for fixed nodes [1/kg]  (node_count)
 void take_coupling(const ContactCoupling& coupling, std::span<Mat3> inverse_mass_blocks);

@@ -22,7 +22,7 @@ namespace palpate::deformation {
 
 class FarAnswers {
  public:
-  /// At most. What more of them find is less than a touch grows by within the period.
+  /// At most. Further ones would find less than a touch grows by within the period.
   static constexpr int kIterations = 8;
 
   /// @param model   of springs, outlives this

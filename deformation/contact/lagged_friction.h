@@ -33,8 +33,8 @@ class LaggedFriction {
   /// −∂t/∂v
   void append_couplings(std::span<const ContactRow> rows,
                         std::vector<ContactCoupling>& couplings) const;
-  /// Gives the rows their t at these velocities, what slides μ j, the others no more; and the
-  /// nodes what that is more than the linear law, which the velocities are of.
+  /// Gives the rows their t at these velocities: μ j to those that slide, no more to the others;
+  /// and gives the nodes the difference from the linear law, which the velocities come from.
   void apply(std::span<const Mat3> inverse_mass_blocks, std::vector<Vec3>& velocities,
              std::span<ContactRow> rows) const;
 

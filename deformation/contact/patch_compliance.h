@@ -55,9 +55,9 @@ class PatchCompliance {
                         const PeriodSteps& steps, std::span<const Vec3> gradient,
                         const AddStiffness& add_stiffness, const StepMatrix& last = {});
 
-  /// What was found for periods before.
+  /// Drops what was found for earlier periods.
   void forget() { solid_.reset(); }
-  /// What was found on a mesh before. @param carried  to this one
+  /// Begins with what was found on an earlier mesh. @param carried  from that one to this
   void begin_with(const PatchCompliance& before, const SolidAnswers::Carry& carried);
 
   /// What was found for periods before.

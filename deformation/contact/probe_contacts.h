@@ -82,10 +82,10 @@ class ProbeContacts {
   void forget_contacts();
   /// @param kept_within  contacts are dropped if it, or an end of its core, went further [m]
   void set_pose(const Pose& pose, double kept_within = std::numeric_limits<double>::infinity());
-  /// Replaces the contacts; one near to where its triangle had one starts from the forces
-  /// of that. Sorted by (organ, triangle). Where
-  /// the probe had no contact with an organ and now has one deeper than GentlePush::kSeenDepth and
-  /// its own way, it was not seen coming: until it is out, it is pushed gently (GentlePush).
+  /// Replaces the contacts, which are sorted by (organ, triangle); one near to where its triangle
+  /// had one starts from the forces of that. Where the probe had no contact with an organ and now
+  /// has one deeper than GentlePush::kSeenDepth and its own way, that was not seen coming: until it
+  /// is out, it is pushed gently (GentlePush).
   void set_contacts(std::span<const Contact> contacts);
 
   /// An organ's surface gets other triangles. Appends a round probe's core if it was kept outside,
@@ -126,7 +126,7 @@ class ProbeContacts {
   bool hold_pierced(std::uint32_t organ, SurfaceWalk& surface, std::span<const Vec3> start,
                     std::span<const Vec3> end, double h, double fraction,
                     std::vector<ContactRow>& rows);
-  /// All of them, for all probes.
+  /// hold_crossed(), hold_swallowed() and hold_pierced(), for all probes.
   static Missed hold_missed(std::span<ProbeContacts> probes, std::uint32_t organ,
                             SurfaceWalk& surface, std::span<const Vec3> start,
                             std::span<const Vec3> end, double h, double fraction,
@@ -141,7 +141,7 @@ class ProbeContacts {
   static bool put_back_outside(std::span<ProbeContacts> probes, std::uint32_t organ,
                                SurfaceWalk& surface, std::span<Vec3> positions, double fraction);
 
-  /// DeformationWorld::holds_on()
+  /// As DeformationWorld::holds_on().
   bool holds_on(double within) const;
   bool has_contacts(std::uint32_t organ) const;
   bool touches(std::uint32_t organ) const;

@@ -21,7 +21,7 @@ namespace palpate::deformation {
 
 class SolidAnswers {
  public:
-  /// At most, for each direction: a touch that begins is answered within some per cent.
+  /// At most, for each direction: a touch that begins is answered to within some per cent.
   static constexpr int kIterations = 8;
 
   /// @param body  outlives this

@@ -44,9 +44,8 @@ class SurfaceWalk {
   void append_near(const Vec3& a, const Vec3& b, std::span<const Vec3> positions, double reach,
                    std::vector<std::uint32_t>& near) const;
 
-  /// Does the core a–b, longer than a point, lie through a triangle where nothing fixed carries it,
-  /// which would yield? Looks at those around it that
-  /// are connected with the seeds.
+  /// Does the core a–b, longer than a point, lie through a triangle, at a place that nothing fixed
+  /// carries (there it would yield)? Looks at those around it that are connected with the seeds.
   bool is_cut(const Vec3& a, const Vec3& b, std::span<const Vec3> positions,
               std::span<const std::uint32_t> seeds, double reach);
 

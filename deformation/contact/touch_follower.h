@@ -22,7 +22,7 @@ namespace palpate::deformation {
 /// Longest edge under a probe over its radius R, for forces that are wrong by at most so much: what
 /// `palpate chart` found at R, R/2 and R/3 (docs/accuracy.md) is about 0.27 (edge/R)^1.6.
 double edge_over_radius(double force_error);
-/// The same the other way, of longer edges, too.
+/// The inverse of edge_over_radius(), defined for longer edges, too.
 double force_error_of_edge(double edge_over_radius);
 /// The same of quadratic tetrahedra: medians at 1.4 R, R and 0.7 R are about 0.027 (edge/R)^2.65.
 double quadratic_edge_over_radius(double force_error);

@@ -26,7 +26,7 @@ struct CoreWay {
   double length() const;  ///< of the longer way of an end [m]
 };
 
-/// Of a point that rests at the origin through a triangle that moves.
+/// The crossing of a triangle that moves by a point that rests at the origin.
 std::optional<WallCrossing> crossing_of_point(const geometry::TriangleCorners& start,
                                               const geometry::TriangleCorners& end);
 
@@ -34,8 +34,8 @@ std::optional<WallCrossing> crossing_of_point(const geometry::TriangleCorners& s
 /// q, r is outward [m].
 using EdgeCorners = std::array<Vec3, 4>;
 
-/// Of a core's side over an edge: it lay across the edge with both triangles beneath it. Weights
-/// are of p, q and r.
+/// The crossing of an edge by a core's side: it lay across the edge with both triangles beneath it.
+/// Weights are of p, q and r.
 std::optional<WallCrossing> crossing_of_side(const CoreWay& core, const EdgeCorners& start,
                                              const EdgeCorners& end);
 

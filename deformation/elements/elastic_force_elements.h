@@ -32,7 +32,7 @@ class ElasticForceElements {
 
   /// For steps that remember pressures (augmented_pressures.h).
   virtual ElementPressures pressures() const { return {}; }
-  /// κ' ε of the shapes at these positions [Pa], to `pressures`, which is resized  (count).
+  /// Writes κ' ε of the shapes at these positions [Pa] to `pressures`, which is resized (count).
   virtual void take_pressures_of_shape(const std::vector<Vec3>&, Eigen::VectorXd&) {}
   /// linearise() takes pressures `kept` + share κ' ε(x) from now on, and K goes with that. Before
   /// this was called all shares are 1 and nothing is kept.  (count)

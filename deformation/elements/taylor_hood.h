@@ -58,7 +58,7 @@ class TaylorHoodElements {
 
   SolidState rest_state() const;
 
-  /// (r_a, r_m) of one element. @returns false, and nothing else, if J ≤ 0 at a point
+  /// (r_a, r_m) of one element. @returns false, and no residual, if J ≤ 0 at a point
   bool residual(std::size_t element, const SolidState& state, ElementVector& residual) const;
 
   /// [K B; Bᵀ −C] of one element. C is that of at least kLeastInverseBulk/μ: where that is more

@@ -32,8 +32,8 @@ struct Body {
 /// Whether a node at this place is held by one of the organ's regions.
 bool is_fixed(const scene::Organ& organ, const Vec3& rest_position);
 
-/// What the tissue before a triangle of fixed nodes resists with: no step moves these, so it gives
-/// way as a block of it would that is as thick as the triangle is wide, E √A [N/m].
+/// Stiffness of the tissue in front of a triangle of fixed nodes, E √A [N/m]: no step moves these,
+/// so it gives way as a block of it would that is as thick as the triangle is wide.
 double fixed_stiffness(const Body& body, std::uint32_t triangle);
 
 /// How far the fixed nodes that carry a place of a triangle, alone or with others, give way to 1 N

@@ -9,8 +9,8 @@
 
 namespace palpate::deformation {
 
-/// Where positions and velocities are kept here, it goes with these: a step that finds the organ
-/// elsewhere, for it was put there from outside, begins with what is there alone.
+/// Where it keeps positions and velocities, it belongs to these: a step that finds the organ
+/// elsewhere, because it was put there from outside, begins with what is there alone.
 struct InternalState {
   /// Taylor–Hood elements: p of the corners; elements that remember theirs: of each
   /// (steppers/augmented_pressures.h); else empty [Pa]

@@ -17,7 +17,7 @@ struct Patch {
   int place(std::uint32_t node) const { return places[node]; }
 };
 
-/// Of what goes along with a touch no more nodes are looked at one by one.
+/// Of the nodes that go along with a touch, no more than this are looked at one by one.
 inline constexpr std::size_t kMostInReach = 400;
 
 /// Neighbours in a body: nodes that share an edge of its triangles or tetrahedra.

@@ -17,7 +17,8 @@ class PatchProduct {
   explicit PatchProduct(SpringHessianProduct& springs, ChunkRunner* runner = nullptr)
       : springs_(springs), runner_(runner) {}
 
-  /// Of surface nodes, if any; A as the springs have it now, without couplings of contacts.
+  /// Takes the patch's surface nodes, if any, and A as the springs have it now, without couplings
+  /// of contacts.
   void take(const Patch& patch);
 
   /// Adds the springs' couplings to A, instead of those before.

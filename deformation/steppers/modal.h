@@ -3,7 +3,7 @@
 //   SIGGRAPH 1989;  D. James, D. Pai, "DyRT", ACM Trans. Graph. 21, 2002.
 //
 // Displacements from rest are u = U a with modes U, UᵀMU = 1, of the quadratic elements
-// (elements/vibration.h). A body nothing holds has its six rigid motions among them, rotation
+// (modal_analysis.h). A body that nothing holds has its six rigid motions among them, rotation
 // linearised: it swells as it turns, by 1.5 % at 10°. Each mode is an oscillator
 //   ä + (2ζω + drag) ȧ + ω² a = Uᵀ (M gravity + contact forces)
 // with ζ the tissue's damping ratio. The amplitudes are state.internal's; of an organ put elsewhere

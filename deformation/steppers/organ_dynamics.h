@@ -42,11 +42,11 @@ class OrganDynamics {
   /// nodes held, to the lower triangle of `sum` [N/m]. A model that has none to tell adds none.
   virtual void add_stiffness(const Patch& /*patch*/, Eigen::MatrixXf& /*sum*/) const {}
 
-  /// Of a solid that keeps one.
+  /// What the last step solved with, of a solid that keeps it; else none.
   virtual StepMatrix step_matrix() const { return {}; }
 
-  /// Of a solid that keeps one: makes it, and what add_stiffness() tells, that of a step to come
-  /// from this state, crushed tissue in it like any other, until there is a step.
+  /// Of a solid that keeps a step_matrix(): makes it, and what add_stiffness() tells, those of a
+  /// step to come from this state, crushed tissue in it like any other, until a step is made.
   virtual void foresee(const OrganState& /*state*/) {}
 
   /// C A⁻¹ Cᵀ of rows on the organ (contact/patch_compliance.h) [m/N], of a model that knows it

@@ -40,8 +40,8 @@ template <class Message>
 class Writer {
  public:
   /// False if the message is not valid (nothing not finite ever leaves a process) or the bus
-  /// refused it. One that nobody reads is counted, and need not be made. No allocation once message
-  /// sizes have been seen.
+  /// refused it. A message that nobody reads is counted, and may be neither checked nor encoded. No
+  /// allocation once message sizes have been seen.
   bool write(Message& message);
   int matched_readers() const { return output_->matched_readers(); }
   /// Waits until every reader of a state topic has what was written, at most `longest` [s]: who

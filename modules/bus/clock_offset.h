@@ -34,7 +34,7 @@ class ClockOffset {
     double error = 0;            ///< it is right within that [s]
   };
 
-  /// One of a negative δ is none and is left out.
+  /// A trip of negative δ cannot have been, and is left out.
   void add(const RoundTrip& trip);
   bool known() const { return !best_.empty(); }
   /// If known(). @param now_ns  on our clock

@@ -19,9 +19,9 @@ class Participant;
 /// scheduling of the thread that constructs it: set real-time priority before.
 class DdsBus : public Bus {
  public:
-  /// @throws InputError for a domain outside 0 to 200, or a session that is not 1 to 64 letters,
-  /// digits, '_', '-', '.', or an address in
-  /// PALPATE_INTERFACES that this host does not have, or one in PALPATE_PEERS that is none
+  /// @throws InputError for a domain outside 0 to 200, a session that is not 1 to 64 letters,
+  /// digits, '_', '-', '.', an address in PALPATE_INTERFACES that this host does not have, or one
+  /// in PALPATE_PEERS that is none
   /// @throws std::runtime_error if DDS cannot start (domain in use up, no loopback, …)
   explicit DdsBus(const BusOptions& options, Arrivals arrivals = Arrivals::kAtOnce);
   ~DdsBus() override;

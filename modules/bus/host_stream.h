@@ -48,7 +48,8 @@ class HostSocket {
 /// blocks nobody.
 class HostStreamWriter : public RawWriter {
  public:
-  /// Who has not greeted yet; of more the first is sent away. Readers greet as they ask.
+  /// Connections that have not greeted yet; of more the first is dropped. Readers greet as they
+  /// ask.
   static constexpr std::ptrdiff_t kMostStrangers = 32;
   static constexpr int kMostAtOnce = 64;  ///< let in by one hear()
 
@@ -79,7 +80,7 @@ class HostStreamWriter : public RawWriter {
   void limit_strangers(std::ptrdiff_t most);
   bool serve(int descriptor);
   bool hear_greeting(Reader& reader) const;
-  /// Both false if it has left.
+  /// Both return false if the reader has left.
   bool send(Reader& reader, messages::Payload sample);
   bool send_waiting(Reader& reader);
   void drop(int descriptor);
@@ -130,7 +131,7 @@ class HostStreamReader : public RawReader {
   /// False if it is to be asked again.
   bool ask(const Met& met);
   bool serve(int descriptor);
-  /// Of what is there all that is whole. False if it is not as it should be.
+  /// Puts all whole samples that are there into the inbox. False if the bytes are no such stream.
   bool read(Writer& writer);
   void drop(int descriptor);
 

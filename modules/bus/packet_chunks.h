@@ -22,7 +22,8 @@
 
 namespace palpate::bus {
 
-/// Of a datagram, without the headers of IP and UDP: an Ethernet packet with room for a tunnel's.
+/// Bytes of a datagram without the headers of IP and UDP: they leave room for a tunnel's in an
+/// Ethernet packet.
 inline constexpr std::size_t kChunkBytes = 1'400;
 
 /// No RTPS packet is one: those begin with "RTPS".

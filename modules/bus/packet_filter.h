@@ -25,7 +25,7 @@ enum class PacketFault {
 };
 const char* text_of(PacketFault fault);  ///< one line, without a full stop
 
-/// A status writer is 3 days old at that [samples].
+/// The widest gap that may pass [samples]: what a writer of statuses says in 3 days.
 inline constexpr std::int64_t kMaxGap = 1 << 20;
 /// The largest message, a topology of an organ at its limits, and room to spare [bytes].
 inline constexpr std::size_t kMaxSampleBytes = std::size_t{64} << 20;
@@ -44,7 +44,7 @@ struct FilteredPacket {
 /// Keeps the sub-messages that RTPS 2.5 (OMG formal/22-04-01, section 9.4.5) describes, well formed
 /// and within our own limits; leaves out those of vendors, which the standard lets every reader
 /// ignore, and what ends a key of a topic, for nothing of ours does. A fault refuses the whole
-/// packet, but a GAP that is too wide: it alone is left out.
+/// packet, except a GAP that is too wide, which alone is left out.
 /// @param packet  of any content and size
 /// @param kept    memory for what is kept of a packet that loses something in its middle
 FilteredPacket filter_packet(std::span<const std::uint8_t> packet, const SampleRules& rules,

@@ -35,9 +35,8 @@ class PolledSockets {
   /// @param addresses  of this host, in dotted form
   /// @param room       of each socket, asked for [bytes]
   /// @param take       called by hear()
-  /// @throws std::system_error as ListeningSocket does, or if the system takes no more, and listens
-  /// at
-  ///                  none of them then
+  /// @throws std::system_error as ListeningSocket does, or if the system takes no more; then it
+  ///                  listens at none of them
   void open(const std::vector<std::string>& addresses, std::uint16_t port, int room,
             const Take& take);
   bool is_open(std::uint16_t port) const;

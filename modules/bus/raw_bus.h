@@ -10,7 +10,7 @@
 
 namespace palpate::bus {
 
-/// Fifty milliseconds of the fastest loop (4 kHz) and more.
+/// Fifty milliseconds of the fastest loop (4 kHz), and some more [samples].
 inline constexpr int kBacklogDepth = 256;
 /// A second of it: what a socket holds and hands out at once to a process that was not let run.
 inline constexpr int kLongBacklogDepth = 4096;

@@ -19,8 +19,8 @@ namespace palpate::bus {
 /// What came for one reader. Thread-safe.
 class SampleInbox {
  public:
-  /// Of one reader, unless told otherwise; what comes then is lost, and a gap in its writer's
-  /// numbers [bytes].
+  /// What may wait for one reader, unless told otherwise [bytes]; what comes beyond is lost, and
+  /// leaves a gap in its writer's numbers.
   static constexpr std::size_t kMostBytes = 16u << 20;
 
   explicit SampleInbox(std::size_t most_bytes = kMostBytes) : most_bytes_(most_bytes) {}

@@ -11,7 +11,7 @@ namespace palpate {
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;     ///< something failed while running
 inline constexpr int kExitBadInput = 2;   ///< scene, mesh, recording or option is not acceptable
-inline constexpr int kExitStopped = 130;  ///< ended by who asked for it: Ctrl-C as shells count it
+inline constexpr int kExitStopped = 130;  ///< stopped on request: as shells count Ctrl-C
 
 /// Input that cannot be accepted. The message names the place ("scene.yaml:12"), the key, the
 /// value and what is allowed.

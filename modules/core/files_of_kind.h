@@ -1,5 +1,5 @@
-// Folders that get many files of a kind: pictures of a run, tables of a recording. What another one
-// left there would be taken for a part of it.
+// Folders that get many files of a kind: pictures of a run, tables of a recording. What an earlier
+// run or recording left there would be taken for a part of the new one.
 #pragma once
 
 #include <filesystem>

@@ -11,7 +11,8 @@ namespace palpate {
 /// to be beside its place), or it is there, and is a folder or closed; empty if it can.
 std::string why_not_writable(const std::filesystem::path& file);
 
-/// Whether that is why: no room, a quota, or a limit on the size of files. A failure, no bad input.
+/// Whether the error says that there is no room: a full disk, a quota or a limit on the size of
+/// files. That is a failure, not bad input.
 bool is_disk_full(int system_error);
 
 /// @throws InputError naming file and reason
@@ -20,8 +21,8 @@ void check_writable(const std::filesystem::path& file);
 /// Made if it is not there. @throws InputError naming the option that asks for it
 void make_writable_folder(const std::filesystem::path& folder, const std::string& option);
 
-/// Of a file that is written anew each time: it takes the place of nothing but its like, which
-/// begins with the same words, or of an empty file. Nor of a FIFO or a device.
+/// For a file that is written anew each time: it may replace only its like, which begins with the
+/// same words, or an empty file; and no FIFO or device.
 /// @param kind  of it, for the message: "summary"
 /// @throws InputError naming file and reason
 void check_replaces_its_like(const std::filesystem::path& file, std::string_view beginning,

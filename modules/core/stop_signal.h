@@ -16,7 +16,8 @@ class StopSignal {
   bool requested() const;
 };
 
-/// Whether one exists and a signal came: for long work that itself is no reason not to be ended.
+/// Whether one exists and a signal came; for long work that is itself no reason to hold signals
+/// back.
 bool stop_requested();
 
 /// While one exists, Ctrl-Z (SIGTSTP) does not stop the program: for one whose children would go on

@@ -14,7 +14,8 @@ namespace palpate {
 /// "HOST-PID": of this process alone on a shared file system.
 std::string process_word();
 
-/// Whether several may write one file at a time; the last then takes the place of the others'.
+/// Whether several may write one file at a time; the one that finishes last then replaces the
+/// others'.
 enum class Writers : std::uint8_t { kSeveral, kOne };
 
 /// A place beside the file, under a name of this process, to write to; finish() puts what is there

@@ -27,8 +27,8 @@ class BoxTree {
   }
   std::span<const Box> boxes() const { return boxes_; }
 
-  /// Calls visit(item) for the items of the leaves that only branches lead to of which
-  /// opens(branch's index) is true, in no useful order.
+  /// Calls visit(item) for the items of the leaves of which, and of all branches that lead to
+  /// which, opens(index) is true; in no useful order.
   template <class Opens, class Visit>
   void visit(const Opens& opens, const Visit& visit) const {
     std::array<std::uint32_t, kMostWaiting> open;

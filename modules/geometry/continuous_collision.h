@@ -7,11 +7,10 @@
 // the box holds no root and is discarded; else it is halved (inclusion-based root finding: Snyder
 // 1992; Wang et al., "A large-scale benchmark and an inclusion-based algorithm for continuous
 // collision detection", 2021). So a root is never lost. The hull is taken along the axes and across
-// each two of F's slopes. Where a box stays only because of that
-// rounding error, it is looked at again in quadruple precision (kMaxQuadTests times): features made
-// of the same numbers often pass each other by less than a double tells. A near miss closer than
-// kImpactTolerance of the coordinates' extent, or one not decided within kMaxImpactBoxes, is
-// reported as a meeting.
+// each two of F's slopes. Where a box stays only because of that rounding error, it is looked at
+// again in quadruple precision (kMaxQuadTests times at most): features made of the same numbers
+// often pass each other by less than a double tells. A near miss closer than kImpactTolerance of
+// the coordinates' extent, or one not decided within kMaxImpactBoxes, is reported as a meeting.
 #pragma once
 
 #include <array>

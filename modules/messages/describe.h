@@ -91,7 +91,7 @@ inline bool counts_without_gaps(const std::vector<std::uint32_t>& numbers) {
   return numbers.empty() || different == greatest + 1;
 }
 
-/// Of so many times six numbers: is none of the first three greater than its like of the others?
+/// Whether in each run of six numbers none of the first three is greater than its like of the last.
 inline bool are_boxes(std::span<const float> numbers) {
   for (; numbers.size() >= 6; numbers = numbers.subspan(6)) {
     if (numbers[0] > numbers[3] || numbers[1] > numbers[4] || numbers[2] > numbers[5]) return false;

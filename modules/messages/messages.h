@@ -1,5 +1,5 @@
 // What the modules tell each other, as plain structs. The wire types in idl/ mirror them; the
-// codecs in modules/bus translate and check. Field units and frames as in idl/README.md.
+// codecs beside them (cdr.h) translate and check. Field units and frames as in idl/README.md.
 #pragma once
 
 #include <array>
@@ -60,7 +60,7 @@ struct ContactModel : LocalLaw {
   double force_error = 0;
 };
 
-/// Deformed nodes of one organ: surface nodes first, then virtual nodes.
+/// Deformed nodes of one organ: surface nodes first, then virtual nodes or a solid's inner nodes.
 struct NodePositions {
   Header header;
   std::uint32_t organ = 0;           ///< (key)
@@ -84,7 +84,7 @@ struct SurfaceTopology {
   };
   Header header;
   std::uint32_t organ = 0;       ///< (key)
-  std::uint32_t generation = 0;  ///< counts restarts and resets of the organ
+  std::uint32_t generation = 0;  ///< counts restarts, resets and changes of the organ's mesh
   std::string name;
   std::uint32_t surface_node_count = 0;
   std::vector<float> rest_positions;                    ///< (node_count × 3) in W [m]

@@ -12,8 +12,8 @@
 
 namespace palpate::recording {
 
-/// Samples of one recording that wait for those of the other; more of them are not compared
-/// [bytes].
+/// Samples of one recording that may wait for those of the other [bytes]; where there would be
+/// more, compare() throws.
 inline constexpr std::size_t kMostWaitingToCompare = 512u << 20;
 
 struct DiffOptions {

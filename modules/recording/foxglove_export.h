@@ -8,9 +8,9 @@
 
 namespace palpate::recording {
 
-/// Of surfaces, transforms and arrows at most so many a second; of poses and wrenches all.
+/// At most so many surfaces, transforms and arrows a second; poses and wrenches all.
 inline constexpr double kFoxglovePictureHz = 30;
-/// Length of the arrows of forces.
+/// Length of a force's arrow per newton.
 inline constexpr double kFoxgloveMetresPerNewton = 0.01;
 
 struct FoxgloveReport {

@@ -45,9 +45,9 @@ class SampleReader {
   explicit SampleReader(const std::filesystem::path& file);
 
   /// The next sample; none at the end, be it regular or torn. Translations for Foxglove
-  /// (foxglove_export.h) are passed over. Behind the end comes the next part,
-  /// if it is of the same session and was begun later; `channel` goes on counting. A part that
-  /// does not even begin as a recording does is left out.
+  /// (foxglove_export.h) are passed over. After the end comes the next part, if it is of the same
+  /// session and was begun later; `channel` goes on counting. A part that does not even begin as a
+  /// recording does is left out.
   /// @throws InputError "file: offset N: …" if the bytes are not records, a topic is not one of
   /// ours, or a schema differs from the present one
   std::optional<RecordedSample> next();

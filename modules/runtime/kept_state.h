@@ -29,7 +29,7 @@ class KeptMemory {
 
 class KeptState {
  public:
-  static constexpr double kEvery = 0.1;  ///< so often it is kept [s]
+  static constexpr double kEvery = 0.1;  ///< between two times that it is kept [s]
   /// A successor that ends sooner after it took what was kept may have ended of that: the next one
   /// begins at rest [s].
   static constexpr double kTrusted = 1.0;

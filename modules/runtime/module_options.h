@@ -48,8 +48,8 @@ Option add_bus_options(Options& options, bus::BusOptions& bus);
 /// What a module says goes to stderr: "[haptics] warning: …".
 void start_log(const std::string& name);
 
-/// The whole of a module's main: parses, starts the log, runs,
-/// and reports what is thrown in one line.
+/// The whole of a module's main: parses, starts the log, runs, and reports what is thrown in one
+/// line.
 /// @return kExitDone, kExitStopped while an organ was filled, kExitBadInput for an InputError or a
 /// wrong command line, else kExitFailed
 int run_module(int argc, char** argv, const ModuleProgram& program,

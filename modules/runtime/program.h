@@ -21,8 +21,8 @@ inline constexpr const char* kExitCodes =
     "Exit code: 0 if it did what was asked, 1 if something failed, 2 for bad input, 130 if it was "
     "stopped (Ctrl-C).";
 
-/// What --version prints: "palpate 0.1.0, protocol 2". Programs with the same protocol can share a
-/// session.
+/// What --version prints: "palpate VERSION, protocol NUMBER". Programs with the same protocol can
+/// share a session.
 std::string version_text();
 
 /// One option, to be told more about.

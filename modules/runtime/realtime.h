@@ -32,7 +32,7 @@ class AwakeCores {
   /// One line: why it cannot, and what grants it. Empty if it can, and where the kernel has no such
   /// thing.
   std::string refused() const;
-  /// From now on, while this lives; without the right to it nothing.
+  /// Keeps them awake from now on, while this lives; without the right to, does nothing.
   void keep() const;
 
  private:
@@ -45,9 +45,9 @@ void give_up_realtime();
 /// What was granted before, for the calling thread.
 void resume_realtime(int fifo_priority);
 
-/// The calling thread, and those it starts from now on, wait when they are woken until a core is
-/// free or who works there has had its turn: of processes that take turns each ends what it is at.
-/// Nothing for who has real-time priority.
+/// When woken, the calling thread, and those it starts from now on, wait until a core is free or
+/// whoever works there has had its turn: of processes that take turns each ends what it is at.
+/// Does nothing for whoever has real-time priority.
 void wait_for_turn();
 
 /// The thread, and those it starts from now on, keep to one core, where there are as many
@@ -56,7 +56,7 @@ void wait_for_turn();
 /// 0
 /// @return whether it does
 bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread = pthread_self());
-/// The same of the cores that another thread has.
+/// The same among the cores that another thread may use.
 bool keep_to_own_core(std::size_t place, std::size_t count, pthread_t thread, pthread_t another);
 
 /// The calling thread, and those it starts from now on, leave the first core to others, where there

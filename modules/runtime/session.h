@@ -29,7 +29,7 @@ class Session {
 
   /// Why this module cannot take part: another scene, another protocol version. Empty if it can.
   const std::string& fault() const { return fault_; }
-  /// The session's scene was heard: no fault then is none.
+  /// The session's scene was heard: only then does an empty fault() mean that there is none.
   bool knows_scene() const { return knows_scene_; }
 
  private:

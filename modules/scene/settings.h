@@ -13,9 +13,8 @@ namespace palpate::scene {
 SceneDocument::Change change_from(const std::string& setting);
 
 /// The scene of a file with these settings in the place of what it says, judged together.
-/// @throws InputError as load_scene(), change_from() and SceneDocument::change() do; of what is
-/// wrong
-///         with a setting it names the setting, not a line of the file
+/// @throws InputError as load_scene(), change_from() and SceneDocument::change() do; where a
+///         setting is wrong it names the setting, not a line of the file
 Scene load_scene_with(const std::filesystem::path& file, const std::vector<std::string>& settings);
 
 }  // namespace palpate::scene

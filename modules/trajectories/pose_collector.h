@@ -24,7 +24,7 @@ namespace palpate::trajectories {
 inline constexpr double kLongestWayBack = 1;           ///< [s]
 inline constexpr std::size_t kMostPoses = 50'000'000;  ///< of 80 bytes each: 4 GB
 
-/// Of steps alone, which mean nothing where only the way counts.
+/// Whether a warning is about steps alone, which mean nothing where only the way counts.
 bool is_of_steps(const std::string& warning);
 
 class PoseCollector {

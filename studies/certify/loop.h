@@ -30,7 +30,7 @@ struct Tick {
   std::uint32_t limits = 0;  ///< what acted
 };
 
-/// Until `end` [s] after the start, or the body has left by 0.2 m.
+/// Runs the loop until `end` [s] after the start, or until the body has left by 0.2 m.
 std::vector<Tick> run_loop(const Loop& loop, const scene::EmulatedDevice& device, double end,
                            const KeepGoing& keep_going);
 

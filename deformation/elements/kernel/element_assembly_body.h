@@ -175,7 +175,7 @@ struct ElementAssembly {
     for (std::size_t i = 0; i < count; ++i) numbers[i] = 0;
   }
 
-  /// Tetrahedra of a batch that are not there to fill it up.
+  /// How many tetrahedra of a batch are real, not there just to fill it up.
   static std::size_t count_in(const ElementPart& part, std::size_t batch) {
     const std::size_t left = part.tetrahedron_count - (batch - part.first_batch) * kLanes;
     return left < kLanes ? left : kLanes;

@@ -15,8 +15,7 @@ inline constexpr double kExplicitStepSafety = 0.9;
 /// Largest step [s] of symplectic Euler for the organ's springs and damping together with forces
 /// of the method's own, a safety factor of 0.9 included. By the triangle inequality of the matrix
 /// norm the squared frequencies add up at most: ω² ≤ ω²_springs + added.
-/// @param added_squared_frequency  bound of the highest eigenvalue of M⁻¹K of those forces
-/// [rad²/s²]
+/// @param added_squared_frequency  bound of those forces' highest eigenvalue of M⁻¹K [rad²/s²]
 double largest_explicit_step(const OrganModel& model, double added_squared_frequency);
 
 /// out_i += scale M⁻¹ g_i over the surface nodes; fixed nodes keep what they have.

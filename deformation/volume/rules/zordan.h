@@ -17,8 +17,9 @@
 // fluid.
 //
 // The largest step is that at rest. Triangles that stretch see more of their pressure, and it
-// falls: a ball takes three times the step it is given at rest, just that step squeezed to 0.3 of
-// its height, 0.6 of it at 0.1. Not counted: no organ is meant to be pressed so far by this method.
+// falls: a ball stands three times the step it is given while at rest, just that step when squeezed
+// to 0.3 of its height, and 0.6 of it at 0.1. That is not counted: no organ is meant to be pressed
+// so far by this method.
 #pragma once
 
 #include "deformation/model/organ_model.h"

@@ -16,7 +16,7 @@ namespace palpate::geometry {
 ///         than kMaxNodes
 TetMesh fill_surface(const TriangleSurface& surface, double size);
 
-/// By its name, .msh or .vtk, as scenes and commands decide it: no tool of surfaces reads such.
+/// Judged by its name, .msh or .vtk, as scenes and commands do: no tool for surfaces reads such.
 bool is_tetrahedra_file(const std::filesystem::path& file);
 
 /// Reads tetrahedra of any format Gmsh reads: MSH 2.2 text at once, others through Gmsh.
