@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "modules/bus/filtered_transport.h"
+#include "modules/core/organ_limits.h"
 
 namespace palpate::bus {
 namespace {
@@ -21,6 +22,7 @@ using eprosima::fastrtps::Duration_t;
 constexpr std::uint32_t kMaxDatagramBytes = 65'500;  // larger samples travel in fragments
 constexpr std::uint32_t kNanosecondsPerMillisecond = 1'000'000;
 constexpr int kUnlimited = -1;
+constexpr int kMostInstances = kMaxKeys;
 // Participants of a domain on a host: each has the first free ones of so many pairs of ports, for
 // that often does 2.9.1 look for them (mutation_tries).
 constexpr std::uint32_t kMaxParticipants = 100;
@@ -43,7 +45,7 @@ void apply_common(const Profile& profile, Qos& qos) {
       reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   qos.durability().kind =
       state ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
-  qos.resource_limits().max_instances = kMaxKeys;
+  qos.resource_limits().max_instances = kMostInstances;
   qos.resource_limits().allocated_samples = 4;
   if (profile.every_sample && !state) {
     qos.history().kind = dds::KEEP_ALL_HISTORY_QOS;
@@ -53,7 +55,7 @@ void apply_common(const Profile& profile, Qos& qos) {
     qos.history().kind = dds::KEEP_LAST_HISTORY_QOS;
     qos.history().depth = depth(profile);
     qos.resource_limits().max_samples_per_instance = depth(profile);
-    qos.resource_limits().max_samples = depth(profile) * kMaxKeys;
+    qos.resource_limits().max_samples = depth(profile) * kMostInstances;
   }
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();

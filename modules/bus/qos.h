@@ -18,9 +18,6 @@ namespace palpate::bus {
 struct PacketTally;
 struct SampleRules;
 
-/// Keys (organs, probes, modules) a topic may carry at a time.
-inline constexpr int kMaxKeys = 256;
-
 /// UDP on our own addresses only, through the packet filter, without multicast or shared memory;
 /// quick discovery, a lease of a day. To other hosts in chunks that fit their packets.
 /// @param rules  for what may pass

@@ -10,6 +10,11 @@ inline constexpr std::size_t kMaxNodes = 200'000;
 inline constexpr std::size_t kMaxTriangles = 400'000;
 inline constexpr std::size_t kMaxSprings = 4'000'000;
 
+/// Keys (organs, probes, contact models, modules) that a topic may carry at a time.
+inline constexpr std::size_t kMaxKeys = 256;
+inline constexpr std::size_t kMaxOrgans = kMaxKeys;
+inline constexpr std::size_t kMaxProbes = kMaxKeys;
+
 inline constexpr std::size_t kMaxTextBytes = 1u << 20;  ///< of a scene written out
 
 /// The paper's three families of springs.

@@ -18,8 +18,6 @@ inline constexpr std::uint32_t kProtocolVersion = 14;
 
 // Bounds of the lists on the wire.
 inline constexpr std::size_t kMaxContactsPerProbe = 16384;
-inline constexpr std::size_t kMaxOrgans = 256;  ///< of a scene
-inline constexpr std::size_t kMaxProbes = 256;  ///< of a scene
 inline constexpr std::size_t kMaxFacesPerProbe = 1024;
 inline constexpr std::size_t kMaxFaceNodes = kMaxNodes;  ///< of all faces of a probe
 inline constexpr std::size_t kMaxLawCompliance = 3 * kMaxLawRows * (3 * kMaxLawRows + 1) / 2;

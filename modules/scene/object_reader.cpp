@@ -100,7 +100,7 @@ void ObjectReader::refuse_key(const YAML::Node& key, const KeyList& allowed) con
 }
 
 void ObjectReader::refuse_many(const char* key, std::size_t count) const {
-  find(key)->refuse("must have at most " + std::to_string(kMostNamed) + " entries, has " +
+  find(key)->refuse("must have at most " + std::to_string(kMaxKeys) + " entries, has " +
                     std::to_string(count));
 }
 

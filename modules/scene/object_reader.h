@@ -6,13 +6,11 @@
 #include <variant>
 #include <vector>
 
+#include "modules/core/organ_limits.h"
 #include "modules/scene/key_list.h"
 #include "modules/scene/yaml_value.h"
 
 namespace palpate::scene {
-
-/// Organs, and probes: as many as the keyed topics hold (bus/qos.h).
-inline constexpr std::size_t kMostNamed = 256;
 
 class ObjectReader {
  public:
@@ -81,7 +79,7 @@ class ObjectReader {
 
   template <class T>
   void unique_names(const char* key, const std::vector<T>& list) const {
-    if (list.size() > kMostNamed) refuse_many(key, list.size());
+    if (list.size() > kMaxKeys) refuse_many(key, list.size());
     for (std::size_t i = 0; i < list.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         if (list[i].name == list[k].name) refuse_name(key, i, k, list[i].name);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modules/core/organ_limits.h"
+
 namespace palpate::scene {
 namespace {
 
@@ -43,11 +45,11 @@ Misfit misfit_of_processes(const Scene& scene) {
       return {key_of(i), "is " + std::to_string(process) + ", but no organ has process " +
                              std::to_string(process - 1) + "; they count up from 1 without a gap"};
     }
-    if (laws > kMaxLaws) {
+    if (laws > kMaxKeys) {
       return {key_of(i), "makes " + std::to_string(laws) + " contact models, one for each of " +
                              std::to_string(scene.probes.size()) +
                              " probes from each process; there may be at most " +
-                             std::to_string(kMaxLaws)};
+                             std::to_string(kMaxKeys)};
     }
     const auto other = std::ranges::find_if(
         scene.organs, [&](const Organ& organ) { return organ.process != process; });

@@ -10,8 +10,6 @@
 namespace palpate::scene {
 
 inline constexpr std::size_t kMaxProcesses = 16;
-/// Of all probes from all processes: as many keys as a topic has (modules/bus/qos.h).
-inline constexpr std::size_t kMaxLaws = 256;
 
 /// Of deformation: as many as the organs name.
 std::size_t process_count(const Scene& scene);

@@ -79,7 +79,7 @@ class SchemaTable {
   template <class T>
   void unique_names(const char* key, const std::vector<T>&) {
     rules_ += std::string("\nRule: no two `") + key + "` have the same name; at most " +
-              std::to_string(kMostNamed) + ".\n";
+              std::to_string(kMaxKeys) + ".\n";
   }
 
   std::string text() const {

@@ -2,9 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "modules/bus/qos.h"
 #include "modules/geometry/mesh_io.h"
-#include "modules/scene/object_reader.h"
 #include "modules/scene/scene_file.h"
 #include "modules/scene/scene_reader.h"
 #include "tests/modules/geometry/tetrahedra.h"
@@ -48,9 +46,4 @@ TEST_CASE("scene check: a mesh that follows is measured as in a slide, not as it
   const auto check = launcher::check_scene(scene, 1);  // of the processor: some slide on a slow one
   CHECK(check.mesh_changes > 0);
   CHECK(check.mesh_changes < 20);
-}
-
-TEST_CASE("scene check: as many organs and probes as a topic has keys") {
-  // Oracle: both limits; more would be refused by nobody and heard by nobody.
-  CHECK(palpate::scene::kMostNamed == palpate::bus::kMaxKeys);
 }

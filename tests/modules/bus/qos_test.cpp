@@ -12,6 +12,7 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 
 #include "modules/bus/participant.h"
+#include "modules/core/organ_limits.h"
 #include "tests/modules/bus/loopback.h"
 
 namespace palpate::bus {
@@ -26,7 +27,7 @@ void check_common(const Qos& qos) {
   CHECK(qos.history().kind == dds::KEEP_LAST_HISTORY_QOS);
   CHECK(qos.history().depth == 1);
   CHECK(qos.data_sharing().kind() == dds::OFF);
-  CHECK(qos.resource_limits().max_instances == kMaxKeys);
+  CHECK(qos.resource_limits().max_instances == int(kMaxKeys));
   CHECK(qos.endpoint().history_memory_policy ==
         eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE);
 }

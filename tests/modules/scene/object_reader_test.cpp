@@ -134,8 +134,8 @@ TEST_CASE("object reader: there are no more probes than the topics have keys for
     }
     return folder.refusal(text);
   };
-  CHECK(said_of(kMostNamed) == "accepted");
-  CHECK_THAT(said_of(kMostNamed + 1),
+  CHECK(said_of(kMaxKeys) == "accepted");
+  CHECK_THAT(said_of(kMaxKeys + 1),
              Catch::Contains("'probes'") && Catch::Contains("at most 256 entries, has 257"));
 }
 

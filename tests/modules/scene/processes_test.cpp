@@ -57,9 +57,9 @@ TEST_CASE("scene processes: gaps, organs that may touch apart, and too many laws
   scene.contacts.organs = true;
   CHECK(misfit_of_processes(scene).key == "organs[1].process");
   scene.contacts.organs = false;
-  scene.probes.resize(kMaxLaws / 2);
+  scene.probes.resize(kMaxKeys / 2);
   CHECK(misfit_of_processes(scene).none());
-  scene.probes.resize(kMaxLaws / 2 + 1);
+  scene.probes.resize(kMaxKeys / 2 + 1);
   CHECK(misfit_of_processes(scene).key == "organs[1].process");
   CHECK(misfit_of_processes(in_one_process(scene)).none());
 }
