@@ -28,21 +28,23 @@ SequenceGaps::Entry& SequenceGaps::entry_of(const WriterId& writer) {
   const auto known =
       std::find_if(entries_.begin(), end, [&](const Entry& e) { return e.writer == writer; });
   if (known != end) return *known;
+  Entry& entry = new_entry();
+  entry.writer = writer;
+  return entry;
+}
 
-  Entry* entry;
-  if (used_ < entries_.size()) {
-    entry = &entries_[used_++];
-  } else {
-    entry = &entries_[oldest_];
-    oldest_ = (oldest_ + 1) % entries_.size();
-    missing_of_forgotten_ += entry->numbers.missing();
-  }
-  *entry = {writer, {}};
-  return *entry;
+SequenceGaps::Entry& SequenceGaps::new_entry() {
+  if (used_ < entries_.size()) return entries_[used_++];
+  Entry& silent = *std::ranges::min_element(entries_, {}, &Entry::heard_at);
+  missing_of_forgotten_ += silent.numbers.missing();
+  silent = {};
+  return silent;
 }
 
 void SequenceGaps::count(const WriterId& writer, std::uint64_t sequence) {
-  entry_of(writer).numbers.count(sequence);
+  Entry& entry = entry_of(writer);
+  entry.heard_at = ++counted_;
+  entry.numbers.count(sequence);
 }
 
 std::uint64_t SequenceGaps::dropped() const {

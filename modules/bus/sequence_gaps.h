@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+
+#include "modules/core/organ_limits.h"
 
 namespace palpate::bus {
 
@@ -29,6 +32,9 @@ class SequenceNumbers {
 /// Gaps in the sequence numbers of several writers. No allocation.
 class SequenceGaps {
  public:
+  /// Known at a time: a writer for each key. Of more the one that was silent longest makes room.
+  static constexpr std::size_t kMostWriters = kMaxKeys;
+
   void count(const WriterId& writer, std::uint64_t sequence);
   std::uint64_t dropped() const;
 
@@ -36,12 +42,14 @@ class SequenceGaps {
   struct Entry {
     WriterId writer{};
     SequenceNumbers numbers;
+    std::uint64_t heard_at = 0;  ///< by counted_
   };
   Entry& entry_of(const WriterId& writer);
+  Entry& new_entry();
 
-  std::array<Entry, 32> entries_;  // writers known at a time; the oldest makes room
+  std::array<Entry, kMostWriters> entries_;
   std::size_t used_ = 0;
-  std::size_t oldest_ = 0;
+  std::uint64_t counted_ = 0;  ///< samples
   std::uint64_t missing_of_forgotten_ = 0;
 };
 

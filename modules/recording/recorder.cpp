@@ -78,7 +78,7 @@ SampleFile::SampleFile(TopicSelection topics, const std::filesystem::path& file)
 
 bool SampleFile::takes(const TopicSample& sample) {
   const std::uint64_t sequence = messages::header_of(sample.payload).sequence;
-  gaps_[{sample.topic, sample.writer}].count(sample.writer, sequence);
+  numbers_[{sample.topic, sample.writer}].count(sequence);
   return topics_.takes(sample);
 }
 
@@ -99,7 +99,7 @@ void SampleFile::write(const TopicSample& sample) {
 
 std::uint64_t SampleFile::lost() const {
   std::uint64_t sum = lost_;
-  for (const auto& [writer, gaps] : gaps_) sum += gaps.dropped();
+  for (const auto& [writer, numbers] : numbers_) sum += numbers.missing();
   return sum;
 }
 

@@ -92,7 +92,7 @@ class SampleFile {
   std::int64_t to_time_of_day_ns_ = 0;
   std::map<std::string_view, std::uint16_t> schemas_;  ///< by type name
   std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, std::uint16_t> channels_;
-  std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, bus::SequenceGaps> gaps_;
+  std::map<std::pair<const bus::TopicInfo*, bus::WriterId>, bus::SequenceNumbers> numbers_;
   std::uint64_t lost_ = 0;  ///< beside them
   std::string scene_digest_;
   std::set<std::string> attached_;  ///< names that add_attachment() was given

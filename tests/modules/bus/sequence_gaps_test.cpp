@@ -5,9 +5,10 @@
 namespace palpate::bus {
 namespace {
 
-WriterId writer(unsigned char name) {
+WriterId writer(std::size_t name) {
   WriterId id{};
-  id[0] = name;
+  id[0] = static_cast<unsigned char>(name);
+  id[1] = static_cast<unsigned char>(name >> 8);
   return id;
 }
 
@@ -63,13 +64,36 @@ TEST_CASE("sequence gaps: a number that leaps beyond what can be missed is no lo
 }
 
 TEST_CASE("sequence gaps: what forgotten writers dropped stays counted", "[bus]") {
-  // Oracle: each of 100 writers leaves a gap of one; more than can be known at a time.
+  // Oracle: each of three times as many writers as can be known at a time leaves a gap of one.
+  constexpr std::size_t kWriters = 3 * SequenceGaps::kMostWriters;
   SequenceGaps gaps;
-  for (unsigned char name = 1; name <= 100; ++name) {
+  for (std::size_t name = 0; name < kWriters; ++name) {
     gaps.count(writer(name), 1);
     gaps.count(writer(name), 3);
   }
-  CHECK(gaps.dropped() == 100);
+  CHECK(gaps.dropped() == kWriters);
+}
+
+TEST_CASE("sequence gaps: as many writers in turn as a topic has keys are all known", "[bus]") {
+  // Oracle: each of 256 organs' writers loses one sample of three. Of 32 in turn none was known
+  // any more when it came again.
+  SequenceGaps gaps;
+  for (const std::uint64_t sequence : {1, 3}) {
+    for (std::size_t name = 0; name < kMaxKeys; ++name) gaps.count(writer(name), sequence);
+  }
+  CHECK(gaps.dropped() == kMaxKeys);
+}
+
+TEST_CASE("sequence gaps: of too many writers those that have ended are forgotten", "[bus]") {
+  // Oracle: counts by hand. Of as many as can be known the newest two end; two come in their place.
+  SequenceGaps gaps;
+  constexpr std::size_t kMost = SequenceGaps::kMostWriters;
+  const auto name_of = [](std::size_t k) { return k < kMost - 2 ? k : k + 2; };
+  for (std::size_t name = 0; name < kMost; ++name) gaps.count(writer(name), 1);
+  for (const std::uint64_t sequence : {2, 4}) {  // 3
+    for (std::size_t k = 0; k < kMost; ++k) gaps.count(writer(name_of(k)), sequence);
+  }
+  CHECK(gaps.dropped() == kMost);
 }
 
 }  // namespace palpate::bus
