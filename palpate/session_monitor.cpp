@@ -29,7 +29,7 @@ SessionMonitor::SessionMonitor(bus::Bus& bus, const scene::Scene& scene)
 
 void SessionMonitor::poll() {
   while (statuses_.take(status_)) {
-    tally_.receive(status_);
+    tally_.receive(status_, statuses_.writer());
     const std::int64_t now_ns = runtime::monotonic_now_ns();
     heard_ns_[status_.module] = now_ns;
     if (!runtime::may_be_several(status_.module))

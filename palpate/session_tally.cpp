@@ -35,15 +35,15 @@ void SessionTally::start() {
   }
 }
 
-void SessionTally::receive(const ModuleStatus& status) {
+void SessionTally::receive(const ModuleStatus& status, const bus::WriterId& writer) {
   ModuleTally& module = modules_[status.module];
   const bool another = module.newest.process_id != status.process_id;  // started again
   // Counts of one process never go back: sums since the start would wrap.
   if (another || status.cycles < module.newest.cycles || status.overruns < module.newest.overruns) {
-    of_ended_ += module.newest.contacts;
     module = {};
   }
   module.newest = status;
+  of_processes_[{status.module, status.process_id, writer}] = status.contacts;
   receive(status.organs);
   receive(status.probes);
   if (!started_ || standing_) return;
@@ -88,9 +88,8 @@ void SessionTally::receive(std::span<const ProbeExtremes> probes) {
 }
 
 ContactTroubles SessionTally::contact_troubles() const {
-  ContactTroubles sum = of_ended_;
-  sum += of_session_;
-  for (const auto& [name, module] : modules_) sum += module.newest.contacts;
+  ContactTroubles sum = of_session_;
+  for (const auto& [process, contacts] : of_processes_) sum += contacts;
   return sum;
 }
 

@@ -4,8 +4,10 @@
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "modules/bus/sequence_gaps.h"
 #include "modules/messages/messages.h"
 #include "modules/scene/scene.h"
 
@@ -40,7 +42,8 @@ class SessionTally {
   /// While a session stands, whoever waits for news calls it old: that is no trouble.
   void stands(bool standing) { standing_ = standing; }
 
-  void receive(const ModuleStatus& status);
+  /// @param writer  of the process: numbers of processes are those of its host
+  void receive(const ModuleStatus& status, const bus::WriterId& writer = {});
   void receive(std::span<const OrganExtremes> organs);
   void receive(std::span<const ProbeExtremes> probes);
 
@@ -66,7 +69,9 @@ class SessionTally {
   std::vector<ProbeTally> probes_;
   std::map<std::string, ModuleTally> modules_;
   std::vector<std::string> troubles_;
-  ContactTroubles of_ended_, of_session_;
+  /// Newest of each, those that ended too: by module, process_id and writer.
+  std::map<std::tuple<std::string, std::int64_t, bus::WriterId>, ContactTroubles> of_processes_;
+  ContactTroubles of_session_;
 };
 
 }  // namespace palpate::launcher

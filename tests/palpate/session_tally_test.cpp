@@ -149,6 +149,24 @@ TEST_CASE("session tally: troubles of contacts add up over modules, started agai
   CHECK(tally.contact_troubles().truncated == 224);
 }
 
+TEST_CASE("session tally: troubles of two processes that are one module count once each") {
+  // Oracle: by hand. Each turn of the two added what they had said so far. Their hosts may have
+  // given both the same number.
+  for (const std::int64_t number_of_second : {1, 2}) {
+    auto tally = some_tally();
+    ModuleStatus first = status("collision", 500, 0, 1);
+    ModuleStatus second = status("collision", 40, 0, number_of_second);
+    first.contacts = {0, 1, 0};
+    for (int turn = 0; turn < 10; ++turn) {
+      tally.receive(first, bus::WriterId{1});
+      tally.receive(second, bus::WriterId{2});
+      second.contacts.truncated = 3;
+    }
+    CHECK(tally.contact_troubles().lost == 1);
+    CHECK(tally.contact_troubles().truncated == 3);
+  }
+}
+
 TEST_CASE("session tally: a pause is no trouble") {
   // Oracle: by hand.
   auto tally = some_tally();
