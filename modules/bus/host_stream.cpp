@@ -268,8 +268,17 @@ bool HostStreamReader::ask_all() {
   return true;
 }
 
-/// Whoever is not there has left: he listens before he is told of.
+/// Without a descriptor left nobody can be asked, until there is one: callers have a cycle to end.
 bool HostStreamReader::ask(const Met& met) {
+  try {
+    return connect(met);
+  } catch (const std::system_error&) {
+    return false;
+  }
+}
+
+/// Whoever is not there has left: he listens before he is told of.
+bool HostStreamReader::connect(const Met& met) {
   const auto is_known = [&](const auto& writer) { return writer.second.id == met.id; };
   if (std::ranges::any_of(writers_, is_known)) return true;
   Writer writer(new_socket(), met.id);

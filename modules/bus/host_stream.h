@@ -128,8 +128,10 @@ class HostStreamReader : public RawReader {
 
   void ring(std::int64_t after_ns) const;
   bool ask_all();
-  /// False if it is to be asked again.
+  /// Both return false if it is to be asked again.
   bool ask(const Met& met);
+  /// @throws std::system_error if the system gives no descriptor
+  bool connect(const Met& met);
   bool serve(int descriptor);
   /// Puts all whole samples that are there into the inbox. False if the bytes are no such stream.
   bool read(Writer& writer);

@@ -1,6 +1,7 @@
 #include "modules/bus/host_stream.h"
 
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -106,6 +108,22 @@ struct RawClient {
   }
   int socket;
   bool connected = false;
+};
+
+/// While it is there the system gives this process no descriptor.
+class NoDescriptors {
+ public:
+  NoDescriptors() {
+    ::getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    ::setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoDescriptors() { ::setrlimit(RLIMIT_NOFILE, &before_); }
+  NoDescriptors(const NoDescriptors&) = delete;
+  NoDescriptors& operator=(const NoDescriptors&) = delete;
+
+ private:
+  rlimit before_{};
 };
 
 /// Listens, and does no more by itself.
@@ -301,6 +319,32 @@ TEST_CASE("host stream: a writer before whose door there is no place is asked ag
   for (int k = 0; k < 5; ++k) reader.stream.wait(0.02);
   pollfd asked{server.listening.descriptor(), POLLIN, 0};
   CHECK(::poll(&asked, 1, 0) == 1);
+}
+
+TEST_CASE("host stream: without a descriptor nobody throws, and who is met is asked later",
+          "[bus]") {
+  // Oracle: counts. A reader that hears one writer took the error of asking two more into its
+  // take(), which throws nothing, and forgot both.
+  StreamWriter known, first, second;
+  StreamReader reader;
+  REQUIRE(reader.connect(known, 1));
+  reader.stream.meet(writer_id(2), first.name);
+  reader.stream.meet(writer_id(3), second.name);
+  {
+    const NoDescriptors none;
+    RawSample sample;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
+    while (std::chrono::steady_clock::now() < end) {
+      bool taken = false;
+      REQUIRE_NOTHROW(taken = reader.stream.take(sample));
+      CHECK_FALSE(taken);
+    }
+    CHECK(reader.stream.matched_writers() == 1);
+  }
+  CHECK(wait_until([&] {
+    const int readers = first.stream.matched_readers() + second.stream.matched_readers();
+    return reader.stream.matched_writers() == 3 && readers == 2;
+  }));
 }
 
 TEST_CASE("host stream: a writer whose samples cannot be is heard no more", "[bus]") {
