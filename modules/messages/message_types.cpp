@@ -7,6 +7,7 @@
 #include "modules/messages/cdr.h"
 #include "modules/messages/describe.h"
 #include "modules/messages/key_of.h"
+#include "modules/messages/message_checks.h"
 
 namespace palpate::messages {
 namespace {
@@ -49,6 +50,9 @@ void append_big_endian(KeyBytes& key, std::uint32_t value) {
   for (const int shift : {24, 16, 8, 0})
     key.bytes[key.size++] = static_cast<std::uint8_t>(value >> shift);
 }
+
+/// Strictly within what a codec takes: the sum of two such fits.
+bool can_be_added(std::int64_t time_ns) { return -kMaxTimeNs < time_ns && time_ns < kMaxTimeNs; }
 
 KeyBytes unreadable() {
   KeyBytes key;
@@ -122,10 +126,11 @@ void shift_times(const MessageType& type, std::int64_t shift_ns,
                  std::vector<std::uint8_t>& payload) {
   if (payload.size() < kEncapsulationBytes + kHeaderBytes) return;
   const std::int64_t source_ns = number<std::int64_t>(payload, kSourceTimeAt);
+  if (!can_be_added(source_ns) || !can_be_added(shift_ns)) return;
   put<std::int64_t>(std::max<std::int64_t>(1, source_ns + shift_ns), payload, kSourceTimeAt);
   if (&type != &type_of<SessionControl>()) return;
   SessionControl control;
-  if (read_payload(payload, control) != nullptr) return;
+  if (read_payload(payload, control) != nullptr || !can_be_added(control.start_time_ns)) return;
   control.start_time_ns += shift_ns;
   write_payload(control, payload);
 }

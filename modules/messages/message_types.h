@@ -71,7 +71,8 @@ void set_sequence(std::span<std::uint8_t> payload, std::uint64_t sequence);
 
 /// Puts the times of a message that are of its writer's clock on another, `shift_ns` ahead of it:
 /// the source time of every message (1 ns at least: 0 says none), the start of a session's time.
-/// A payload too short for a header stays as it is, and so does a start time that cannot be read.
+/// A payload too short for a header stays as it is, and so do times that no codec takes, or by so
+/// much, and a start time that cannot be read.
 void shift_times(const MessageType& type, std::int64_t shift_ns,
                  std::vector<std::uint8_t>& payload);
 

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <limits>
 
 #include "tests/modules/messages/generated_code.h"
 
@@ -263,6 +264,38 @@ TEST_CASE("cdr: times are put on another clock, in either byte order, and nothin
   std::vector<std::uint8_t> cut(20, 7);
   shift_times(type_of<HapticForce>(), 1, cut);
   CHECK(cut == std::vector<std::uint8_t>(20, 7));
+}
+
+TEST_CASE("cdr: times that no codec takes stay on their clock, and are refused there",
+          "[messages]") {
+  // Oracle: the bytes before, and the codec. 2^63 - 1 and a second more came out as 1 ns, a time.
+  using Limits = std::numeric_limits<std::int64_t>;
+  constexpr std::int64_t kAhead = 1'000'000'000;
+  HapticForce force;
+  force.header = {1, 2, 0, 0};
+  for (const std::int64_t absurd : {Limits::max(), Limits::min(), kMaxTimeNs + 1}) {
+    force.header.source_time_ns = absurd;
+    std::vector<std::uint8_t> payload;
+    write_payload(force, payload);
+    const auto before = payload;
+    for (const std::int64_t shift_ns : {kAhead, -kAhead}) {
+      shift_times(type_of<HapticForce>(), shift_ns, payload);
+      REQUIRE(payload == before);
+    }
+    CHECK(decode(payload, force) == std::string("source_time_ns"));
+  }
+
+  SessionControl control;
+  control.header = {1, 2, 3'000, 4};
+  control.start_time_ns = Limits::max();
+  std::vector<std::uint8_t> payload;
+  write_payload(control, payload);
+  const auto before = payload;
+  shift_times(type_of<SessionControl>(), Limits::max(), payload);
+  REQUIRE(payload == before);
+  shift_times(type_of<SessionControl>(), kAhead, payload);
+  CHECK(header_of(payload).source_time_ns == 3'000 + kAhead);
+  CHECK(decode(payload, control) == std::string("start_time_ns"));
 }
 
 }  // namespace palpate::messages
