@@ -103,6 +103,25 @@ class Lister {
   std::size_t entry_ = Value::kNone;
 };
 
+/// A visitor of describe() that leaves one entry in each list that is described itself.
+struct OneEntry {
+  template <class List>
+  void list(const char*, List& list, std::size_t, const char*) {
+    list.resize(1);
+  }
+  void header(const Header&) {}
+  template <class... Any>
+  void key(const Any&...) {}
+  template <class... Any>
+  void field(const Any&...) {}
+  template <class... Any>
+  void numbers(const Any&...) {}
+  template <class... Any>
+  void derived(const Any&...) {}
+  template <class... Any>
+  void require(const Any&...) {}
+};
+
 }  // namespace
 
 bool Value::same_as(const Value& other) const {
@@ -118,6 +137,18 @@ void list_values(const AnyMessage& message, std::vector<Value>& values) {
   values.clear();
   Lister lister(values);
   std::visit([&](const auto& m) { describe(lister, m); }, message);
+}
+
+std::set<std::string_view> field_names() {
+  std::set<std::string_view> names;
+  std::vector<Value> values;
+  for (AnyMessage message : one_of_each()) {
+    OneEntry one_entry;
+    std::visit([&](auto& m) { describe(one_entry, m); }, message);
+    list_values(message, values);
+    for (const Value& value : values) names.insert(value.field);
+  }
+  return names;
 }
 
 std::string text_of(const Value& value) {

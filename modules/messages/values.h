@@ -1,6 +1,7 @@
 // Every value of a message, one after the other: for comparing messages of any kind.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,9 @@ struct Value {
 
 /// Replaces `values` by all of the message's, header and key included, in the order of the wire.
 void list_values(const AnyMessage& message, std::vector<Value>& values);
+
+/// Names of the fields of all kinds of message, those of entries of lists too.
+std::set<std::string_view> field_names();
 
 /// "0.25", "7", "running".
 std::string text_of(const Value& value);

@@ -26,7 +26,6 @@ std::set<std::string> tested_elsewhere() {
           "modules/bus/output.cpp",        // the same
           "modules/bus/payload_type.cpp",  // the same, and bus_wire_test.cpp
           "modules/messages/message_types.cpp",
-          "modules/messages/values.cpp",
           "modules/runtime/lockstep_module.cpp",   // tests/system/lockstep_test.cpp
           "palpate/lockstep_run.cpp",              // the same
           "modules/recording/recorder_stage.cpp",  // the same
