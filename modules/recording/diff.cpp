@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <iomanip>
+#include <limits>
 #include <optional>
 #include <ostream>
 #include <stdexcept>
@@ -95,10 +96,14 @@ class Comparison {
                         const std::deque<RecordedSample>& others) {
     return these.size() > 1 && apart(these[1], others[0]) < apart(these[0], others[0]);
   }
-  /// In simulated time [ns].
+  /// In simulated time [ns], 292 years at most: those of what no codec takes may be farther apart.
   static std::int64_t apart(const RecordedSample& a, const RecordedSample& b) {
-    return std::abs(messages::header_of(a.payload).sim_time_ns -
-                    messages::header_of(b.payload).sim_time_ns);
+    const std::int64_t of_a = messages::header_of(a.payload).sim_time_ns;
+    const std::int64_t of_b = messages::header_of(b.payload).sim_time_ns;
+    const std::uint64_t apart_ns = static_cast<std::uint64_t>(std::max(of_a, of_b)) -
+                                   static_cast<std::uint64_t>(std::min(of_a, of_b));
+    constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+    return static_cast<std::int64_t>(std::min<std::uint64_t>(apart_ns, kMost));
   }
   void pop(std::deque<RecordedSample>& samples) {
     waiting_ -= cost_of(samples.front());

@@ -93,7 +93,7 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
       return RecordedSample{topic->second,
                             static_cast<std::uint16_t>(channel),
                             about_.at(message->channel_id).contains(kThinned),
-                            static_cast<std::int64_t>(message->log_time_ns) - to_time_of_day_ns_,
+                            session_ns(message->log_time_ns),
                             message->log_time_ns,
                             message->publish_time_ns,
                             std::move(message->data)};
@@ -114,6 +114,11 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
     }
   }
   return std::nullopt;
+}
+
+/// Unsigned: a file may say any number of each.
+std::int64_t SampleReader::session_ns(std::uint64_t time_of_day_ns) const {
+  return static_cast<std::int64_t>(time_of_day_ns - static_cast<std::uint64_t>(to_time_of_day_ns_));
 }
 
 void SampleReader::read_clocks(const McapMap& session) {

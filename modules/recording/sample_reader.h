@@ -77,6 +77,7 @@ class SampleReader {
   void look_for_next_part();
   std::unique_ptr<SampleReader> part_that_goes_on(int number);
   void read_clocks(const McapMap& session);
+  std::int64_t session_ns(std::uint64_t time_of_day_ns) const;
   void add(const McapSchema& schema);
   void add(const McapChannel& channel);
   [[noreturn]] void refuse(const std::string& what) const;

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <limits>
 #include <span>
 #include <sstream>
 
@@ -203,6 +204,25 @@ TEST_CASE("diff: a sample of real time is compared with the nearest in simulated
     CHECK_THAT(said.str(), Catch::StartsWith("recorded in real time: each sample beside the one "
                                              "nearest in simulated time, at most 0.0003 s away"));
   }
+}
+
+TEST_CASE("diff: simulated times that no codec takes are as far apart as can be told") {
+  // Oracle: 2^63 - 1 ns, though they are 2^64 - 1 apart: as a difference of signed numbers 1 ns.
+  using Limits = std::numeric_limits<std::int64_t>;
+  const ScratchFolder folder;
+  const auto record_at = [&](const std::filesystem::path& file, std::int64_t sim_time_ns) {
+    SampleFile recording(file, {});
+    NodePositions nodes = node_positions(1, 1e-3, 10);
+    nodes.header.sim_time_ns = sim_time_ns;
+    recording.add(raw_sample(bus::kNodePositions, nodes, 1, 1));
+    recording.close();
+    return file;
+  };
+  const auto a = record_at(folder / "a.mcap", Limits::max());
+  const auto b = record_at(folder / "b.mcap", Limits::min());
+  const RecordingDifference difference = compare({.a = a, .b = b});
+  CHECK(difference.farthest_ns == Limits::max());
+  CHECK(compare({.a = b, .b = a}).farthest_ns == Limits::max());
 }
 
 TEST_CASE("diff: of real time, what no two runs agree in is left out, and said") {
