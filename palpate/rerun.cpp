@@ -117,12 +117,12 @@ class RecordedInputs {
       const bool anew = stages.contains(std::string(wire.writer));
       if (!anew && wire.topic != bus::kScene.name) topics_.insert(wire.topic);
     }
-    next_ = reader_.next();
+    read_next();
   }
 
   /// All that was said before `time_ns` and a little more.
   void say_until(std::int64_t time_ns) {
-    for (; next_ && said_ns(*next_) < time_ns + kAheadNs; next_ = reader_.next()) say(*next_);
+    for (; next_ && said_ns(*next_) < time_ns + kAheadNs; read_next()) say(*next_);
   }
   /// Nothing is left, and the newest sample was said before `time_ns`.
   bool at_end(std::int64_t time_ns) const { return !next_ && newest_ns_ < time_ns; }
@@ -130,6 +130,22 @@ class RecordedInputs {
   const std::set<std::string>& thinned() const { return thinned_; }
 
  private:
+  /// Of times beyond what any codec takes nobody hears; the rerun would wait for them for ever.
+  void read_next() {
+    do {
+      next_ = reader_.next();
+    } while (next_ && !has_times(*next_));
+  }
+
+  /// Strictly within: the difference of two such fits.
+  bool has_times(const recording::RecordedSample& sample) const {
+    const auto is_time = [](std::int64_t ns) {
+      return -messages::kMaxTimeNs < ns && ns < messages::kMaxTimeNs;
+    };
+    return is_time(messages::header_of(sample.payload).source_time_ns) &&
+           is_time(sample.received_time_ns) && is_time(said_ns(sample));
+  }
+
   /// Drivers stamp by any clock, or not at all, and what others say of the future was not said
   /// then: it was when it came.
   std::int64_t said_ns(const recording::RecordedSample& sample) const {
@@ -144,8 +160,6 @@ class RecordedInputs {
 
   void say(recording::RecordedSample& sample) {
     if (runtime::find_wire(sample.topic->name) == nullptr) return;
-    // Beyond what any codec takes.
-    if (messages::header_of(sample.payload).source_time_ns > messages::kMaxTimeNs) return;
     const std::int64_t time_ns = said_ns(sample);
     newest_ns_ = std::max(newest_ns_, time_ns);
     if (!topics_.contains(sample.topic->name)) return;

@@ -1,11 +1,13 @@
 #include "palpate/rerun.h"
 
 #include <catch2/catch.hpp>
+#include <limits>
 #include <map>
 #include <sstream>
 
 #include "modules/core/error.h"
 #include "modules/messages/cdr.h"
+#include "modules/messages/message_checks.h"
 #include "modules/recording/diff.h"
 #include "modules/recording/inspect.h"
 #include "modules/recording/sample_reader.h"
@@ -279,4 +281,41 @@ TEST_CASE("rerun: a driver that stamps by a clock of its own is heard when it ca
   }
   CHECK(highest == Approx(0.13).margin(2e-3));
   CHECK(last_ns < 1'000'000'000);
+}
+
+TEST_CASE("rerun: a time that no codec takes is not waited for") {
+  // Oracle: the recording without such samples, and where it ends. The rerun of one in lockstep
+  // said nothing behind the first of them, and never ended.
+  using Limits = std::numeric_limits<std::int64_t>;
+  const palpate::testing::BallScene scene(kPressAndSlide);
+  const auto run = recorded(scene), again = scene.folder() / "again.mcap";
+  const auto with_them = scene.folder() / "absurd.mcap";
+  {
+    auto file = recording::SampleFile::of_lockstep(with_them);
+    recording::SampleReader reader(run);
+    while (auto sample = reader.next()) {
+      recording::TopicSample copy;
+      copy.topic = sample->topic;
+      copy.writer[0] = 1;
+      copy.received_time_ns = sample->received_time_ns;
+      copy.payload = sample->payload;
+      file.add(copy);
+      if (sample->topic->name != bus::kContacts.name) continue;
+      HapticForce force;
+      for (const std::int64_t absurd : {Limits::max(), messages::kMaxTimeNs + 1, Limits::min()}) {
+        force.header = {1, 0, absurd, 0};
+        file.add(recording::raw_sample(bus::kHapticForce, force, copy.received_time_ns, 2));
+      }
+    }
+    file.close();
+  }
+  RunOptions options;
+  options.record = again;
+  options.duration = 1;
+  Playing playing;
+  playing.rerun = {"haptics"};
+  std::ostringstream out, log;
+  CHECK(replay_command(with_them, playing, options, out, log) == kExitDone);
+  CHECK(log.str() == "palpate: the recording ends there, before the 1 s asked for\n");
+  CHECK(recording::compare({run, again}).equal());
 }
