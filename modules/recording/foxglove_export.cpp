@@ -214,7 +214,7 @@ class Export {
   McapWriter writer_;
   FoxgloveReport report_;
   std::map<std::string, std::uint16_t, std::less<>> schemas_;  ///< by type
-  std::map<std::uint16_t, std::uint16_t> copies_;              ///< channels, there → here
+  std::map<std::uint32_t, std::uint16_t> copies_;              ///< channels, there → here
   std::map<std::string, Translation> translations_;            ///< by topic
   std::map<std::string, std::int64_t> newest_period_;
   std::map<std::uint32_t, SurfaceTopology> surfaces_;  ///< by organ

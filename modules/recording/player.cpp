@@ -34,7 +34,7 @@ bool sleep_until(std::int64_t due_ns, const std::function<bool()>& stop_requeste
 // @return the newest of each topic, writer and key, in the order they were received
 std::vector<RecordedSample> skip_to(std::int64_t start_ns, std::optional<RecordedSample>& next,
                                     SampleReader& recording) {
-  std::map<std::tuple<std::string_view, std::uint16_t, std::string>, RecordedSample> newest;
+  std::map<std::tuple<std::string_view, std::uint32_t, std::string>, RecordedSample> newest;
   messages::AnyMessage message;
   for (; next && next->received_time_ns < start_ns; next = recording.next()) {
     if (next->topic->type->decode(next->payload, message) != nullptr) continue;

@@ -74,7 +74,7 @@ void SampleReader::look_for_next_part() {
 
 std::unique_ptr<SampleReader> SampleReader::part_that_goes_on(int number) {
   std::unique_ptr<SampleReader> part(new SampleReader(recording_, number));
-  part->first_channel_ = static_cast<std::uint16_t>(first_channel_ + channel_count_);
+  part->first_channel_ = first_channel_ + channel_count_;
   part->first_ = part->next_of_part();
   const bool taken = goes_on(metadata(kSessionMetadata), part->metadata(kSessionMetadata));
   return taken ? std::move(part) : nullptr;
@@ -89,9 +89,8 @@ std::optional<RecordedSample> SampleReader::next_of_part() {
     if (auto* message = std::get_if<McapMessage>(&*record)) {
       const auto topic = topics_.find(message->channel_id);
       if (topic == topics_.end()) continue;  // a translation
-      const int channel = first_channel_ + message->channel_id;
       return RecordedSample{topic->second,
-                            static_cast<std::uint16_t>(channel),
+                            first_channel_ + message->channel_id,
                             about_.at(message->channel_id).contains(kThinned),
                             session_ns(message->log_time_ns),
                             message->log_time_ns,
@@ -149,11 +148,10 @@ void SampleReader::add(const McapChannel& channel) {
   if (is_translation(type)) return;
   topics_[channel.id] = bus::find_topic(channel.topic);
   about_[channel.id] = channel.metadata;
-  channel_count_ =
-      std::max<std::uint16_t>(channel_count_, static_cast<std::uint16_t>(channel.id + 1));
+  channel_count_ = std::max(channel_count_, channel.id + std::uint32_t{1});
 }
 
-const McapMap& SampleReader::about_channel(std::uint16_t channel) const {
+const McapMap& SampleReader::about_channel(std::uint32_t channel) const {
   if (later_ && channel >= later_->first_channel_) return later_->about_channel(channel);
   return about_.at(static_cast<std::uint16_t>(channel - first_channel_));
 }

@@ -16,7 +16,7 @@ namespace palpate::recording {
 
 struct RecordedSample {
   const bus::TopicInfo* topic = nullptr;
-  std::uint16_t channel = 0;          ///< one for each writer of a topic
+  std::uint32_t channel = 0;          ///< one for each writer of a topic, over all parts
   bool thinned = false;               ///< of its writer's samples only some are here
   std::int64_t received_time_ns = 0;  ///< monotonic clock of the recorder's host
   std::uint64_t log_time_ns = 0;      ///< the same, on the file's clock
@@ -60,7 +60,7 @@ class SampleReader {
   bool selected(const std::string& topic) const;
 
   /// Metadata of a sample's channel: `writer`, kThinned.
-  const McapMap& about_channel(std::uint16_t channel) const;
+  const McapMap& about_channel(std::uint32_t channel) const;
 
   const std::filesystem::path& file() const { return file_; }
   std::uint64_t file_bytes() const;                                 ///< with those of parts begun
@@ -87,8 +87,8 @@ class SampleReader {
   std::filesystem::path file_;
   McapReader reader_;
   std::int64_t to_time_of_day_ns_ = 0;
-  std::uint16_t first_channel_ = 0;  ///< in the numbers that next() gives
-  std::uint16_t channel_count_ = 0;
+  std::uint32_t first_channel_ = 0;  ///< in the numbers that next() gives
+  std::uint32_t channel_count_ = 0;
   std::unique_ptr<SampleReader> later_;
   bool looked_for_later_ = false;
   std::vector<std::string> left_out_;    ///< parts behind this one

@@ -75,6 +75,33 @@ TEST_CASE("sample reader: goes on in the parts of a recorder that was started ag
   CHECK_FALSE(reader.torn());
 }
 
+TEST_CASE(
+    "sample reader: a part with all the channels that a file can have is told from the next") {
+  // Oracle: the writer that each part's channels name. Numbers of 16 bits began anew behind it.
+  const ScratchFolder folder;
+  const auto file = folder / "a.mcap";
+  const auto write = [&](int part, int channels) {
+    McapWriter writer(part_of(file, part));
+    writer.add_metadata({kSessionMetadata, {{"start_unix_ns", std::to_string(part)}}});
+    const std::uint16_t schema = writer.add_schema(probe_schema());
+    McapMessage message;
+    for (int k = 0; k < channels; ++k) {
+      message.channel_id =
+          writer.add_channel({0, schema, "probe_state", "cdr", {{"writer", std::to_string(part)}}});
+    }
+    writer.add_message(message, cdr_of(probe_state(1, 0, 1, {4, 5, 6})));
+    writer.close();
+  };
+  write(1, 0xFFFF);
+  write(2, 1);
+  SampleReader reader(file);
+  std::vector<std::uint32_t> channels;
+  while (auto sample = reader.next()) channels.push_back(sample->channel);
+  REQUIRE(channels.size() == 2);
+  CHECK(reader.about_channel(channels[0]).at("writer") == "1");
+  CHECK(reader.about_channel(channels[1]).at("writer") == "2");
+}
+
 TEST_CASE("sample reader: a topic was selected if each part says so") {
   // Oracle: the selections given; thinned is selected. A recording that does not say has none.
   const ScratchFolder folder;
