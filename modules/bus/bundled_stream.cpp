@@ -3,6 +3,18 @@
 #include <utility>
 
 namespace palpate::bus {
+namespace {
+
+/// The bundle's writer with the sample's number in its last four bytes: those of its participant
+/// stay.
+WriterId numbered_writer(WriterId bundled, std::uint32_t number) {
+  for (auto byte = bundled.rbegin(); number != 0; ++byte, number >>= 8) {
+    *byte ^= static_cast<std::uint8_t>(number);
+  }
+  return bundled;
+}
+
+}  // namespace
 
 bool BundleSender::add(messages::Payload sample, std::uint32_t writer) {
   const bool sent = bundle_.size() + sample.size() <= kMostBytes || send();
@@ -33,8 +45,7 @@ bool BundledReader::take(RawSample& sample) {
     return true;
   }
   const BundleReader::Sample next = samples_.next();
-  sample.writer = bundle_.writer;
-  sample.writer.back() ^= static_cast<std::uint8_t>(next.writer);
+  sample.writer = numbered_writer(bundle_.writer, next.writer);
   sample.received_time_ns = bundle_.received_time_ns;
   sample.clock_error = bundle_.clock_error;
   sample.payload.assign(next.bytes.begin(), next.bytes.end());

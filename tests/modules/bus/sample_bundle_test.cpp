@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <random>
+#include <set>
 
 #include "modules/bus/bundled_stream.h"
 #include "modules/bus/memory_bus.h"
@@ -139,6 +140,26 @@ TEST_CASE("bundled stream: what two writers wrote travels as one, and is of each
   CHECK(writers[0] != writers[1]);
   CHECK_FALSE(together.reader.wait(0));
   CHECK_FALSE(together.reader.take(sample));
+}
+
+TEST_CASE("bundled stream: more writers than a byte can number have names of their own", "[bus]") {
+  // Oracle: as many names as writers; the 257th was called as the first. All begin as the bundle's.
+  constexpr std::size_t kWriters = 600, kOfParticipant = 12;
+  Together together(info_of(kNodePositions));
+  const Bytes written{1, 2, 3, 4};
+  for (std::size_t k = 0; k < kWriters; ++k) {
+    REQUIRE(BundledWriter(together.sender).write(written));
+  }
+  REQUIRE(together.sender->send());
+  RawSample sample, bundle;
+  REQUIRE(together.plain->take(bundle));
+  std::set<WriterId> names;
+  while (together.reader.take(sample)) {
+    names.insert(sample.writer);
+    CHECK(std::equal(sample.writer.begin(), sample.writer.begin() + kOfParticipant,
+                     bundle.writer.begin()));
+  }
+  CHECK(names.size() == kWriters);
 }
 
 TEST_CASE("bundled stream: a bundle leaves by itself before it outgrows a datagram", "[bus]") {
