@@ -10,11 +10,8 @@
 #include "modules/bus/dds_bus.h"
 #include "modules/messages/describe.h"
 #include "modules/messages/key_of.h"
-#include "modules/runtime/clock.h"
-#include "python/bindings.h"
 #include "python/busy.h"
 #include "python/message_arrays.h"
-#include "python/numbers.h"
 #include "python/topic_columns.h"
 #include "python/unlocked.h"
 
@@ -24,8 +21,8 @@ namespace palpate::python {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{2};
-constexpr double kLongestWait = 1e6;           ///< [s]
-constexpr std::size_t kMostUntaken = 100'000;  ///< messages of a topic that nobody takes
+constexpr double kLongestWait = 1e6;                   ///< [s]
+constexpr std::size_t kMostUntakenBytes = 256u << 20;  ///< of a topic
 constexpr const char* kWhat = "the connection";
 
 std::string key_text_of(const messages::AnyMessage& message) {
@@ -68,7 +65,7 @@ Live::Topic& Live::topic_of(const std::string& name) {
   const bus::TopicInfo* info = bus::find_topic(name);
   if (info == nullptr) throw py::key_error("no topic '" + name + "'");
   auto reader = bus_->raw_reader(*info, bus::Keep::kBacklog);
-  return topics_.emplace(name, Topic{info, std::move(reader), {}, {}, {}}).first->second;
+  return topics_.emplace(name, Topic{info, std::move(reader), false, {}, 0, {}, {}}).first->second;
 }
 
 void Live::receive(Topic& topic) {
@@ -78,7 +75,17 @@ void Live::receive(Topic& topic) {
     if (topic.info->type->decode(sample.payload, *message) != nullptr) continue;
     topic.last_key = key_text_of(*message);
     topic.newest[topic.last_key] = message;
-    if (topic.untaken.size() < kMostUntaken) topic.untaken.push_back(std::move(message));
+    if (topic.is_taken)
+      keep(topic, {std::move(message), sizeof(messages::AnyMessage) + sample.payload.size()});
+  }
+}
+
+void Live::keep(Topic& topic, Untaken untaken) {
+  topic.untaken_bytes += untaken.bytes;
+  topic.untaken.push_back(std::move(untaken));
+  while (topic.untaken_bytes > kMostUntakenBytes) {
+    topic.untaken_bytes -= topic.untaken.front().bytes;
+    topic.untaken.pop_front();
   }
 }
 
@@ -143,9 +150,11 @@ py::tuple Live::take(const std::string& name) {
   TopicColumns columns;
   {
     const Unlocked unlocked;
+    topic.is_taken = true;
     receive(topic);
-    for (const auto& message : topic.untaken) columns.add(*message);
+    for (const Untaken& untaken : topic.untaken) columns.add(*untaken.message);
     topic.untaken.clear();
+    topic.untaken_bytes = 0;
   }
   const std::size_t messages = columns.size();
   return py::make_tuple(columns.take(), messages);

@@ -4,12 +4,12 @@
 #include <pybind11/pybind11.h>
 
 #include <atomic>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "modules/bus/bus.h"
 #include "modules/bus/packet_senders.h"
@@ -28,8 +28,9 @@ class Live {
   /// @param key  "0" of probe or organ 0, "haptics" of a module; empty: whichever came last
   /// @return None if none came
   pybind11::object newest(const std::string& topic, const std::string& key, double timeout);
-  /// All that came since the topic was asked for last, (columns, messages). A reader that looks too
-  /// rarely loses the oldest (bus::kBacklogDepth per key).
+  /// All that came since the last take(), at the first since the topic was asked for last,
+  /// (columns, messages). A reader that looks too rarely loses the oldest (bus::kBacklogDepth per
+  /// key; of those that newest() read meanwhile, what is beyond 256 MiB).
   pybind11::tuple take(const std::string& topic);
 
   /// False if the bus refused it. @param source_time  by this host's monotonic clock
@@ -46,16 +47,23 @@ class Live {
   bool closed() const { return closed_; }
 
  private:
+  struct Untaken {
+    std::shared_ptr<const messages::AnyMessage> message;
+    std::size_t bytes;
+  };
   struct Topic {
     const bus::TopicInfo* info;
     std::unique_ptr<bus::RawReader> reader;
-    std::vector<std::shared_ptr<const messages::AnyMessage>> untaken;
+    bool is_taken = false;  ///< somebody calls take(): what newest() reads meanwhile is kept
+    std::deque<Untaken> untaken;
+    std::size_t untaken_bytes = 0;
     std::map<std::string, std::shared_ptr<const messages::AnyMessage>> newest;
     std::string last_key;
   };
   void check_open() const;
   Topic& topic_of(const std::string& name);
-  void receive(Topic& topic);
+  static void receive(Topic& topic);
+  static void keep(Topic& topic, Untaken untaken);
   void poll_controls();
   /// Source time of the newest command that a launcher said; 0 before any.
   std::int64_t launcher_said_ns() const;

@@ -41,8 +41,8 @@ class Live(Closing[_core.Live]):
         return Message(topic, fields)
 
     def take(self, topic: str) -> Topic:
-        """All that came of a topic since it was asked for last, as arrays of their own. Who looks less often than
-        every 50 ms may miss some of the fastest topics (`sequence_number` tells).
+        """All that came of a topic since the last `take`, as arrays of their own; the first time since it was asked
+        for last. Who looks less often than every 50 ms may miss some of the fastest topics (`sequence_number` tells).
 
         Raises:
             KeyError, ClosedError, BusyError.

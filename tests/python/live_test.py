@@ -106,6 +106,21 @@ class LiveTest(unittest.TestCase):
         self.assertGreater(strongest, 0.05)
         self.assertGreater(heard, 10)
 
+    def test_what_nobody_takes_is_not_kept(self):
+        # Oracle: sequence numbers. Whoever asked for the newest alone grew by every message.
+        with palpate.connect(SESSION, DOMAIN) as fresh:
+            first = fresh.latest("haptic_force", timeout_s=10)["sequence_number"]
+            until(lambda: fresh.latest("haptic_force")["sequence_number"] > first + 20)
+            newest = fresh.latest("haptic_force")["sequence_number"]
+            taken = []
+            until(lambda: taken.append(fresh.take("haptic_force")) or taken[-1].messages > 0)
+            self.assertGreater(taken[-1]["sequence_number"].min(), newest)
+            # Once somebody takes, what is read for the newest is kept for the next take.
+            last = taken[-1]["sequence_number"].max()
+            until(lambda: fresh.latest("haptic_force")["sequence_number"] > last)
+            newest = fresh.latest("haptic_force")["sequence_number"]
+            self.assertIn(newest, fresh.take("haptic_force")["sequence_number"])
+
     def test_commands(self):
         self.live.control("pause")
         until(lambda: self.live.phase == "paused")
