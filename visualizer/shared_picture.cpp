@@ -19,6 +19,24 @@ bool on_this_host(Display* display) {
   return name.starts_with(":") || name.starts_with("unix:");
 }
 
+/// Said by the handler of Xlib's errors, which knows nobody else.
+bool refused = false;
+
+/// False where the server cannot: it is of another user or IPC namespace, as in a container. Xlib's
+/// own handler would end the program.
+bool attach(Display* display, XShmSegmentInfo& segment) {
+  XSync(display, False);  // errors of before are another handler's
+  refused = false;
+  const auto before = XSetErrorHandler([](Display*, XErrorEvent*) {
+    refused = true;
+    return 0;
+  });
+  const bool asked = XShmAttach(display, &segment) != 0;
+  XSync(display, False);
+  XSetErrorHandler(before);
+  return asked && !refused;
+}
+
 /// Bytes R, G, B, A as one little-endian number → B, G, R, A.
 std::uint32_t red_and_blue_swapped(std::uint32_t rgba) {
   return (rgba & 0xff00ff00u) | ((rgba & 0xffu) << 16) | ((rgba >> 16) & 0xffu);
@@ -33,35 +51,40 @@ struct SharedPicture::Impl {
   GC context = nullptr;
   XShmSegmentInfo segment{};
   XImage* image = nullptr;
+  bool attached = false;  ///< by the server, too
 
+  /// None is left if it could not.
   bool make_image(int width, int height) {
     drop_image();
     image = XShmCreateImage(display, attributes.visual, static_cast<unsigned>(attributes.depth),
                             ZPixmap, nullptr, &segment, static_cast<unsigned>(width),
                             static_cast<unsigned>(height));
-    if (image == nullptr || image->bits_per_pixel != 32) return false;
-    const auto size = static_cast<std::size_t>(image->bytes_per_line) * std::size_t(height);
+    attached = image != nullptr && image->bits_per_pixel == 32 && share_memory();
+    if (!attached) drop_image();
+    return attached;
+  }
+
+  bool share_memory() {
+    const auto size = static_cast<std::size_t>(image->bytes_per_line) * std::size_t(image->height);
     segment.shmid = shmget(IPC_PRIVATE, size, IPC_CREAT | 0600);
     if (segment.shmid < 0) return false;
     void* memory = shmat(segment.shmid, nullptr, 0);
-    const bool attached = memory != reinterpret_cast<void*>(-1);
-    if (attached) {
-      segment.shmaddr = image->data = static_cast<char*>(memory);
-      segment.readOnly = True;
-      XShmAttach(display, &segment);
-      XSync(display, False);
-    }
+    const bool mapped = memory != reinterpret_cast<void*>(-1);
+    if (mapped) segment.shmaddr = image->data = static_cast<char*>(memory);
+    segment.readOnly = True;
+    const bool done = mapped && attach(display, segment);
     shmctl(segment.shmid, IPC_RMID, nullptr);  // gone with the last that holds it, however it ends
-    return attached;
+    return done;
   }
 
   void drop_image() {
     if (image == nullptr) return;
-    if (segment.shmaddr != nullptr) {
+    if (attached) {
       XShmDetach(display, &segment);
       XSync(display, False);
-      shmdt(segment.shmaddr);
     }
+    if (segment.shmaddr != nullptr) shmdt(segment.shmaddr);
+    attached = false;
     image->data = nullptr;
     XDestroyImage(image);
     image = nullptr;

@@ -1,6 +1,11 @@
 #include "visualizer/shared_picture.h"
 
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <iostream>
 #include <vector>
 
 #include "tests/visualizer/display_or_skip.h"
@@ -72,4 +77,31 @@ TEST_CASE("shared picture: too few pixels are not shown", "[visualizer][fault]")
   REQUIRE(picture);
   CHECK_FALSE(picture->show(ramp(10, 10), 40, 30));
   CHECK(shown.pixel(0, 0) == 0);
+}
+
+TEST_CASE("shared picture: a server that cannot see our memory is told from one that can, twice",
+          "[visualizer][fault]") {
+  // Oracle: the exit code of a process in an IPC namespace of its own, as of a container; Xlib's
+  // own handler of errors ends it with 1.
+  if (!palpate::visualizer::testing::xvfb_or_skip()) return;
+  const OffscreenDisplay server;
+  constexpr int kNoNamespace = 77;
+  const pid_t child = fork();
+  if (child == 0) {
+    if (unshare(CLONE_NEWIPC) != 0) _exit(kNoNamespace);
+    Shown shown;
+    const auto picture = SharedPicture::make(shown.display, shown.window);
+    if (!picture) _exit(2);
+    const bool once = picture->show(ramp(40, 30), 40, 30),
+               again = picture->show(ramp(40, 30), 40, 30);
+    _exit(once || again ? 3 : 0);
+  }
+  int status = -1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == kNoNamespace) {
+    std::cout << "SKIPPED: the kernel allows no IPC namespace\n";
+    return;
+  }
+  CHECK(WEXITSTATUS(status) == 0);
 }
