@@ -310,6 +310,7 @@ int Program::run(int argc, char** argv, const std::function<int()>& body) {
 
 int Program::run_body(int argc, char** argv, const std::function<int()>& body) {
   const std::vector<std::string> words = typed(argc, argv);
+  std::signal(SIGCHLD, SIG_DFL);  // who starts us may ignore it: no child's exit code is told then
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer
   if (refuse_unknown(words)) return kExitBadInput;
   try {

@@ -25,7 +25,8 @@ int run_program(const std::vector<std::string>& words, const KeepGoing& keep_goi
     return -1;
   }
   int status = 0;
-  while (waitpid(process, &status, WNOHANG) == 0) {
+  pid_t waited = 0;
+  while ((waited = waitpid(process, &status, WNOHANG)) == 0) {
     try {
       if (keep_going) keep_going();
     } catch (...) {
@@ -35,7 +36,7 @@ int run_program(const std::vector<std::string>& words, const KeepGoing& keep_goi
     }
     usleep(kAskEvery);
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return waited == process && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 namespace {

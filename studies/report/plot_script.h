@@ -9,7 +9,8 @@
 
 namespace palpate::report {
 
-/// Exit code of a program that speaks for itself; -1 if it could not be started or was killed.
+/// Exit code of a program that speaks for itself; -1 if it could not be started, was killed, or
+/// nobody knows (where SIGCHLD is ignored).
 /// @param keep_going  asked meanwhile, several times a second; what it throws ends the program
 int run_program(const std::vector<std::string>& words, const KeepGoing& keep_going = {});
 

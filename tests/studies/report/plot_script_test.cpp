@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 
 #include "modules/core/data_folder.h"
@@ -35,6 +36,15 @@ TEST_CASE("plot script: whoever wants the drawing to end ends it") {
   CHECK_THROWS_AS(draw_figures(kScript, "/nowhere", {}, [] { throw Stop{}; }), Stop);
   CHECK(std::chrono::steady_clock::now() < begin + std::chrono::seconds(10));
   CHECK(run_program({"sh", "-c", "exit 7"}, [] {}) == 7);
+}
+
+TEST_CASE("plot script: what nobody knows of a program is no success") {
+  // Oracle: waitpid(2): children of who ignores SIGCHLD leave no status.
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  CHECK(run_program({"sh", "-c", "exit 7"}) == -1);
+  std::signal(SIGCHLD, before);
+  CHECK(run_program({"sh", "-c", "exit 7"}) == 7);
+  CHECK(run_program({"/nowhere"}) == -1);
 }
 
 }  // namespace
