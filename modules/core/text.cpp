@@ -36,6 +36,13 @@ bool has_control_bytes(std::string_view text) {
   });
 }
 
+std::string after_colon(std::string_view line) {
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos) return {};
+  const std::size_t begin = line.find_first_not_of(' ', colon + 1);
+  return begin == std::string_view::npos ? std::string() : std::string(line.substr(begin));
+}
+
 std::string printable(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);

@@ -10,6 +10,9 @@ namespace palpate {
 bool is_utf8(std::string_view text);
 /// What a terminal obeys: bytes below 0x20, and 0x7F.
 bool has_control_bytes(std::string_view text);
+/// What stands behind the first colon and the spaces after it: of "model name\t: Xeon" the last
+/// word. Empty without one.
+std::string after_colon(std::string_view line);
 /// Control characters, U+0080 to U+009F among them, as '?'.
 std::string printable(std::string text);
 

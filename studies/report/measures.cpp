@@ -11,6 +11,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
+#include "modules/core/text.h"
 
 namespace palpate::report {
 
@@ -44,14 +45,15 @@ double processor_time() {
 }
 
 std::string machine_name() {
-  std::string name = "unknown processor";
+  std::string name;
   std::ifstream info("/proc/cpuinfo");
   for (std::string line; std::getline(info, line);) {
     if (line.rfind("model name", 0) != 0) continue;
-    name = line.substr(line.find(':') + 2);
+    name = after_colon(line);
     break;
   }
-  return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores seen";
+  return (name.empty() ? "unknown processor" : name) + ", " +
+         std::to_string(std::thread::hardware_concurrency()) + " cores seen";
 }
 
 void make_out_folder(const std::filesystem::path& folder, const std::string& option) {

@@ -71,7 +71,8 @@ std::string complaints(const std::filesystem::path& log) {
   for (std::string line; std::getline(stream, line);) {
     if (line.rfind("Error", 0) != 0) continue;
     if (!found.empty()) found += "; ";
-    found += line.substr(line.find(':') + 2);
+    const std::string words = after_colon(line);
+    found += words.empty() ? line : words;
   }
   return found;
 }

@@ -22,3 +22,11 @@ TEST_CASE("text: what a terminal would obey is found, and shown as question mark
   for (const char* bad : {"\x1b[2J", "a\n", "\x7f", "\t"}) CHECK(has_control_bytes(bad));
   CHECK(printable("a\x1b[2J\n\x07\x7f \xc3\xa9 \xc2\x9b") == "a?[2J??? \xc3\xa9 ??");
 }
+
+TEST_CASE("text: what stands behind a colon, where there is anything") {
+  // Oracle: by hand; lines of /proc/cpuinfo and of Gmsh's log.
+  CHECK(after_colon("model name\t: Xeon: 2 GHz") == "Xeon: 2 GHz");
+  CHECK(after_colon("Error   :no space") == "no space");
+  for (const char* none : {"", "Error", "Error   :", "Error   : "})
+    CHECK(after_colon(none).empty());
+}

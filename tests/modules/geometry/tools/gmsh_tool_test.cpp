@@ -154,6 +154,8 @@ TEST_CASE("gmsh tool: what it cannot do is said") {
   folder.write("gmsh", "#!/bin/sh\nkill -ABRT $$\n");
   const auto mesh = folder.write("organ.vtk", "no mesh");
   CHECK_THROWS_WITH(read_tetrahedra(mesh), mesh.string() + ": gmsh: broke down (Aborted)");
+  folder.write("gmsh", "#!/bin/sh\necho 'Error   :'\nexit 0\n");
+  CHECK_THROWS_WITH(read_tetrahedra(mesh), Catch::EndsWith("exit status 0: Error   :"));
   folder.write("gmsh", "#!/bin/sh\nexit 3\n");
   CHECK_THROWS_WITH(read_tetrahedra(mesh), Catch::EndsWith("exit status 3: without a word of why"));
   ::setenv("PATH", path.c_str(), 1);
