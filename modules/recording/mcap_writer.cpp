@@ -80,8 +80,11 @@ void check_recording_target(const std::filesystem::path& file) {
   refuse_to_replace_what_is_written(file);
 }
 
+McapWriter::McapWriter(Names names) : file_(names.file), named_(names.named) {}
+
+// Delegated: where this throws, the destructor closes what is open, and its lock.
 McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem::path& named)
-    : file_(file), named_(named) {
+    : McapWriter(Names{file, named}) {
   refuse_to_replace_what_is_no_recording(file);
   descriptor_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("open", errno);
@@ -95,10 +98,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, const std::filesystem:
 
 /// By nobody while another writes it; the kernel gives the lock back with the descriptor.
 void McapWriter::empty() {
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    ::close(descriptor_);
-    refuse_written(named_);
-  }
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) refuse_written(named_);
   if (::ftruncate(descriptor_, 0) != 0) fail("empty", errno);
 }
 

@@ -70,6 +70,10 @@ class McapWriter {
     McapStatistics messages;  ///< of the chunks
   };
 
+  struct Names {
+    std::filesystem::path file, named;
+  };
+  explicit McapWriter(Names names);
   void empty();
   void mark();
   void go_back_to(const Mark& mark);

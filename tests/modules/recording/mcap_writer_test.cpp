@@ -2,7 +2,10 @@
 
 #include <zstd.h>
 
+#include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -345,6 +348,29 @@ TEST_CASE("mcap writer: a file that another one writes is refused and keeps what
     CHECK(std::filesystem::file_size(file) == size);
   }
   CHECK_NOTHROW(McapWriter(file));
+}
+
+TEST_CASE("mcap writer: a file that cannot be begun is let go, and may be tried again") {
+  // Oracle: the kernel's list of what is open; a file in memory may be sealed against what is
+  // asked.
+  const int seal = GENERATE(F_SEAL_SHRINK, F_SEAL_WRITE);
+  const int memory = ::memfd_create("sealed", MFD_ALLOW_SEALING);
+  REQUIRE(memory >= 0);
+  if (seal == F_SEAL_SHRINK) {
+    REQUIRE(::write(memory, kDataSection.data(), kDataSection.size()) > 0);
+  }
+  REQUIRE(::fcntl(memory, F_ADD_SEALS, seal) == 0);
+  const auto open_count = [] {
+    const std::filesystem::directory_iterator open("/proc/self/fd");
+    return std::distance(begin(open), end(open));
+  };
+  const auto before = open_count();
+  for (int i = 0; i < 2; ++i) {
+    CHECK_THROWS_WITH(McapWriter("/proc/self/fd/" + std::to_string(memory)),
+                      Catch::EndsWith("Operation not permitted"));
+  }
+  CHECK(open_count() == before);
+  ::close(memory);
 }
 
 TEST_CASE("mcap writer: a file that cannot be opened is named") {
