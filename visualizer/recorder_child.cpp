@@ -6,10 +6,19 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <utility>
 
 namespace palpate::visualizer {
+namespace {
+
+constexpr std::chrono::seconds kPatience{10};  // the window stands meanwhile
+constexpr std::chrono::milliseconds kAskEvery{5};
+
+}  // namespace
 
 RecorderChild::RecorderChild(const std::filesystem::path& program,
                              const std::filesystem::path& file, const bus::BusOptions& session)
@@ -29,15 +38,27 @@ RecorderChild::RecorderChild(const std::filesystem::path& program,
   _exit(127);
 }
 
-RecorderChild::~RecorderChild() {
-  if (!running()) return;
-  kill(process_id_, SIGTERM);
-  waitpid(process_id_, nullptr, 0);
-}
+RecorderChild::~RecorderChild() { end(); }
 
 bool RecorderChild::running() {
-  if (process_id_ > 0 && waitpid(process_id_, nullptr, WNOHANG) == process_id_) process_id_ = -1;
-  return process_id_ > 0;
+  int status = 0;
+  const pid_t waited = process_id_ > 0 ? waitpid(process_id_, &status, WNOHANG) : 0;
+  if (waited == 0) return process_id_ > 0;
+  whole_ = waited == process_id_ && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  process_id_ = -1;
+  return false;
+}
+
+bool RecorderChild::end() {
+  if (running()) kill(process_id_, SIGTERM);
+  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  while (running() && std::chrono::steady_clock::now() < give_up) {
+    std::this_thread::sleep_for(kAskEvery);
+  }
+  if (!running()) return whole_;
+  kill(process_id_, SIGKILL);
+  waitpid(std::exchange(process_id_, -1), nullptr, 0);
+  return false;
 }
 
 }  // namespace palpate::visualizer

@@ -16,17 +16,21 @@ class RecorderChild {
   /// @throws std::runtime_error if no process can be made
   RecorderChild(const std::filesystem::path& program, const std::filesystem::path& file,
                 const bus::BusOptions& session);
-  /// Ends it and waits until the recording is whole. It ends by itself, too, if this process dies.
+  /// As end(). It ends by itself, too, if this process dies.
   ~RecorderChild();
   RecorderChild(const RecorderChild&) = delete;
   RecorderChild& operator=(const RecorderChild&) = delete;
 
-  bool running();  ///< false once it has ended by itself: it could not record
+  bool running();  ///< false once it has ended by itself
+  /// Ends it and waits until it has written the end, ten seconds at most: then it is killed.
+  /// @returns whether the recording is whole, by its exit code
+  bool end();
   const std::filesystem::path& file() const { return file_; }
 
  private:
   std::filesystem::path file_;
-  pid_t process_id_ = -1;
+  pid_t process_id_ = -1;  ///< -1: it has ended
+  bool whole_ = false;     ///< once it has ended
 };
 
 }  // namespace palpate::visualizer

@@ -275,7 +275,7 @@ class VisualizerStage : public runtime::Stage {
 
   void toggle_recording() {
     if (recorder_) {
-      const bool whole = recorder_->running();
+      const bool whole = recorder_->end();
       const std::string file = recorder_->file().string();
       recorder_.reset();
       studio_.interaction.say(whole ? "Recorded: " + file : "Not recorded: " + file);

@@ -35,6 +35,9 @@ TEST_CASE("recorder child: what is said while it lives is in the file when it ha
     }));
     CHECK(recorder.running());
     CHECK(recorder.file() == file);
+    CHECK(recorder.end());
+    CHECK_FALSE(recorder.running());
+    CHECK(recorder.end());
   }
   std::ifstream stream(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
@@ -49,4 +52,22 @@ TEST_CASE("recorder child: one that cannot record is told from one that does",
   RecorderChild recorder(kRecorder, folder.path() / "no" / "such" / "folder.mcap",
                          palpate::testing::own_bus_options());
   CHECK(palpate::testing::wait_until([&] { return !recorder.running(); }));
+  CHECK_FALSE(recorder.end());
+}
+
+TEST_CASE("recorder child: one that fails at its end, or that does not end, has recorded nothing",
+          "[visualizer][fault]") {
+  // Oracle: a script's exit code; the stated patience of ten seconds.
+  const ScratchFolder folder;
+  const auto program = folder.path() / "recorder";
+  const auto begun = folder.path() / "begun";
+  const std::string at_term = GENERATE("exit 1", "true");
+  std::ofstream(program) << "#!/bin/sh\ntrap '" << at_term << "' TERM\necho > " << begun.string()
+                         << "\nwhile true; do sleep 0.01; done\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  RecorderChild recorder(program, folder.path() / "a.mcap", palpate::testing::own_bus_options());
+  REQUIRE(palpate::testing::wait_until([&] { return std::filesystem::exists(begun); }));
+  CHECK(recorder.running());
+  CHECK_FALSE(recorder.end());
+  CHECK_FALSE(recorder.running());
 }
