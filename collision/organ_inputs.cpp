@@ -5,6 +5,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/units.h"
+#include "modules/messages/message_checks.h"
 #include "modules/messages/message_state.h"
 #include "modules/runtime/wiring.h"
 
@@ -72,9 +73,23 @@ void OrganInputs::OrganInput::exchange(StateArchive& archive) {
           boxes_misfit, placed, anew, came_ns);
   std::size_t told = next.size();
   archive(told);
-  if (told > kMostTold) throw InputError("its state holds surfaces that cannot be");
+  if (told > kMostTold || (archive.reads() && !is_surface()))
+    throw InputError("its state holds surfaces that cannot be");
   next.resize(told);
   for (SurfaceTopology& surface : next) messages::exchange_message(archive, surface);
+}
+
+bool OrganInputs::OrganInput::is_surface() const {
+  if (rest_positions.empty()) return surface_node_count == 0 && triangles.empty();
+  SurfaceTopology surface;
+  surface.header.sequence = 1;  // this and a name are of whoever said it
+  surface.name = "organ";
+  surface.surface_node_count = static_cast<std::uint32_t>(surface_node_count);
+  surface.rest_positions = rest_positions;
+  surface.triangles = triangles;
+  surface.triangle_blocks = triangle_blocks;
+  return surface.surface_node_count == surface_node_count &&
+         messages::first_invalid_field(surface) == nullptr;
 }
 
 /// The first surface puts its organ at rest. One of the same triangles starts it anew: what was

@@ -55,6 +55,7 @@ class OrganInputs {
     std::int64_t came_ns = 0;   ///< source time of the newest positions; 0: none
 
     void exchange(StateArchive& archive);
+    bool is_surface() const;  ///< by the rules of the wire; or none was heard
   };
 
   void take_surface();

@@ -185,8 +185,10 @@ void LawSolver::change(int direction, double by) {
 void LawSolver::exchange(StateArchive& archive) {
   archive(anchor_, longest_, growth_, half_period_, friction_, validity_radius_, directions_,
           per_row_);
-  if (directions_ < 0 || directions_ > kMost || per_row_ < 1)
-    throw InputError("its state is no law");
+  const bool fits = (per_row_ == 1 || per_row_ == 3) && directions_ >= 0 &&
+                    directions_ % per_row_ == 0 &&
+                    directions_ / per_row_ <= static_cast<int>(kMaxLawRows);
+  if (!fits) throw InputError("its state is no law");
   const auto count = static_cast<std::size_t>(directions_);
   for (std::size_t i = 0; i < count; ++i) {
     archive(anchor_forces_[i], forces_[i]);

@@ -1,7 +1,9 @@
 #include "collision/organ_inputs.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
+#include <cstring>
 
 #include "collision/stage.h"
 #include "modules/bus/memory_bus.h"
@@ -216,4 +218,33 @@ TEST_CASE("organ inputs: a collision that was stopped says nothing before it hea
   pressed.tell_finger(-5e-4 - 0.01);
   REQUIRE(pressed.search(stage));
   CHECK(std::abs(pressed.newest.deepest_gap() + 5e-4) < 5e-5);
+}
+
+TEST_CASE("organ inputs: a state whose surface names nodes that are not there is refused") {
+  // Oracle: the rules of a surface on the wire; the one number that is the count of its nodes.
+  Pressed pressed;
+  const auto inputs = [&] {
+    return collision::OrganInputs(pressed.bus, collision::load_probes(pressed.scene),
+                                  pressed.scene.organs);
+  };
+  auto told = inputs();
+  pressed.tell_surface(runtime::CycleGrid::kSetUp);
+  told.take();
+  StateArchive written;
+  told.exchange(written);
+  std::vector<std::uint8_t> bytes = written.bytes();
+  const auto read = [&] {
+    StateArchive archive{std::span<const std::uint8_t>(bytes)};
+    inputs().exchange(archive);
+  };
+  CHECK_NOTHROW(read());
+  const std::uint64_t count = pressed.ball.nodes.size();
+  std::array<std::uint8_t, sizeof count> searched;
+  std::memcpy(searched.data(), &count, sizeof count);
+  const auto found = std::ranges::search(bytes, searched);
+  REQUIRE(found);
+  for (const std::uint64_t other : {count + 1, count / 2, count + (std::uint64_t{1} << 32)}) {
+    std::memcpy(&*found.begin(), &other, sizeof other);
+    CHECK_THROWS_WITH(read(), "its state holds surfaces that cannot be");
+  }
 }

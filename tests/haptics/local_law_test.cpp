@@ -306,3 +306,23 @@ TEST_CASE("local law: only complete, finite laws are usable") {
   CHECK(refused([&](LocalLaw& m) { m.compliance[2] = nan; }));
   CHECK(refused([&](LocalLaw& m) { m.compliance[1] = 0.0072; }));  // > √(1/200 · 1/100)
 }
+
+TEST_CASE("local law: a state that is no law's is refused") {
+  // Oracle: the members of a law; 16 rows of 1 or 3 directions at most.
+  const auto read = [](int directions, int per_row) {
+    Pose anchor;
+    double number = 0;
+    StateArchive archive;
+    archive(anchor, number, number, number, number, number, directions, per_row);
+    StateArchive from(std::span(archive.bytes()));
+    LawSolver solver;
+    solver.exchange(from);
+  };
+  for (const auto& [directions, per_row] :
+       {std::pair{-1, 1}, {2, 2}, {0, 0}, {0, 100}, {4, 3}, {17, 1}, {48, 1}, {51, 3}}) {
+    CAPTURE(directions, per_row);
+    CHECK_THROWS_WITH(read(directions, per_row), "its state is no law");
+  }
+  CHECK_NOTHROW(read(0, 1));
+  CHECK_NOTHROW(read(0, 3));
+}
