@@ -13,6 +13,7 @@
 
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
+#include "modules/core/organ_limits.h"
 #include "modules/core/units.h"
 #include "modules/geometry/off_file.h"
 #include "modules/geometry/ply_file.h"
@@ -20,6 +21,10 @@
 
 namespace palpate::geometry {
 namespace {
+
+/// Vertices and faces of a file's meshes as often as it places them: of fifty of the largest
+/// organs.
+constexpr std::uint64_t kMostPlaced = 50 * (kMaxNodes + kMaxTriangles);
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
   throw InputError(file.string() + ": " + what);
@@ -60,6 +65,29 @@ void check_indices(const aiScene& scene, const std::filesystem::path& file) {
       }
     }
   }
+}
+
+/// Vertices and faces.
+std::uint64_t size_of(const aiMesh& mesh) {
+  return std::uint64_t{mesh.mNumVertices} + mesh.mNumFaces;
+}
+
+std::uint64_t placed_size(const aiScene& scene, const aiNode& node) {
+  std::uint64_t size = 0;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) size += size_of(*scene.mMeshes[node.mMeshes[m]]);
+  for (unsigned c = 0; c < node.mNumChildren; ++c) size += placed_size(scene, *node.mChildren[c]);
+  return size;
+}
+
+/// A small file may place a mesh as often as it likes.
+void check_placed(const aiScene& scene, const std::filesystem::path& file) {
+  std::uint64_t held = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) held += size_of(*scene.mMeshes[m]);
+  const std::uint64_t placed = placed_size(scene, *scene.mRootNode);
+  const std::uint64_t most = std::max(held, kMostPlaced);
+  if (placed <= most) return;
+  refuse(file, "places its meshes so often that they have " + std::to_string(placed) +
+                   " vertices and faces; at most " + std::to_string(most) + " are allowed");
 }
 
 void append_mesh(const aiMesh& mesh, const aiMatrix4x4& to_file, TriangleSurface& surface) {
@@ -118,6 +146,7 @@ TriangleSurface read_with_assimp(const std::filesystem::path& file) {
   check_indices(*scene, file);
   scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   if (scene == nullptr) refuse(file, "its polygons cannot be triangulated");
+  check_placed(*scene, file);
   TriangleSurface surface;
   append_node(*scene, *scene->mRootNode, aiMatrix4x4(), surface);
   return surface;

@@ -86,6 +86,33 @@ TEST_CASE("read: transforms of a file's nodes are applied") {
   CHECK(report.min_corner.x() == Approx(5).epsilon(1e-6));
 }
 
+TEST_CASE("read: a small file that places a mesh very often is refused") {
+  // Oracle: arithmetic: 15,001 times 1,000 triangles and their corners are over 30 million.
+  const ScratchFolder folder;
+  std::string numbers, corners, nodes;
+  for (int i = 0; i < 1002; ++i) numbers += std::to_string(i % 7) + " " + std::to_string(i) + " 0 ";
+  for (int i = 0; i < 1000; ++i) {
+    for (int k = 0; k < 3; ++k) corners += std::to_string(i + k) + " ";
+  }
+  for (int i = 0; i < 15'001; ++i) nodes += "<node><instance_geometry url=\"#g\"/></node>\n";
+  const auto file = folder.write("often.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="3006">)" +
+                                                  numbers +
+                                                  R"(</float_array>
+<technique_common><accessor source="#pa" count="1002" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1000"><input semantic="VERTEX" source="#v" offset="0"/>
+<p>)" + corners + R"(</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s">)" + nodes +
+                                                  R"(</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)");
+  CHECK_THAT(refusal(file), Contains("often.dae: places its meshes so often") &&
+                                Contains("at most 30000000 are allowed"));
+}
+
 TEST_CASE("read: a missing file, a folder and an empty file are refused by name") {
   // Oracle: the rules of read_surface.
   const ScratchFolder folder;
