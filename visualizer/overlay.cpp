@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "modules/core/text.h"
 #include "visualizer/plots.h"
 #include "visualizer/status_table.h"
 
@@ -108,7 +109,7 @@ TextItem fitted(TextItem text, double width) {
   if (extent_of(text).width <= width) return text;
   const double letter = extent_of(text).width / double(text.text.size());
   const auto letters = static_cast<std::size_t>(std::max(3.0, width / letter));
-  text.text = text.text.substr(0, letters - 3) + "...";
+  text.text = std::string(cut_at_letter(text.text, letters - 3)) + "...";
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "modules/core/text.h"
 #include "modules/core/units.h"
 
 namespace palpate::visualizer {
@@ -44,10 +45,10 @@ std::array<std::string, 2> two_lines(const std::string& text, double width) {
   const std::size_t letters = static_cast<std::size_t>(std::max(8.0, width / (0.6 * 11)));
   if (text.size() <= letters) return {text, ""};
   const std::size_t space = text.rfind(' ', letters);
-  const std::size_t end = space == std::string::npos ? letters : space;
-  std::string second = text.substr(text[end] == ' ' ? end + 1 : end);
-  if (second.size() > letters) second.replace(letters - 3, std::string::npos, "...");
-  return {text.substr(0, end), second};
+  const std::string first(cut_at_letter(text, space == std::string::npos ? letters : space));
+  const std::string second = text.substr(first.size() + (text[first.size()] == ' ' ? 1 : 0));
+  if (second.size() <= letters) return {first, second};
+  return {first, std::string(cut_at_letter(second, letters - 3)) + "..."};
 }
 
 void add_row(const ModuleView& module, const Columns& columns, double y, std::int64_t now_ns,

@@ -1,6 +1,7 @@
 // Texts from elsewhere: whether they can be shown, and what is shown of those that cannot.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,8 @@ namespace palpate {
 bool is_utf8(std::string_view text);
 /// What a terminal obeys: bytes below 0x20, and 0x7F.
 bool has_control_bytes(std::string_view text);
+/// Its first so many bytes; fewer where they would end within a letter of several (UTF-8).
+std::string_view cut_at_letter(std::string_view text, std::size_t bytes);
 /// What stands behind the first colon and the spaces after it: of "model name\t: Xeon" the last
 /// word. Empty without one.
 std::string after_colon(std::string_view line);

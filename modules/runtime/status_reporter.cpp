@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "modules/core/error.h"
+#include "modules/core/text.h"
 #include "modules/core/units.h"
 
 namespace palpate::runtime {
@@ -29,7 +30,7 @@ StatusReporter::StatusReporter(bus::Bus& bus, std::string module, double nominal
 }
 
 void StatusReporter::set_state(ModuleState state, std::string_view error) {
-  error = error.substr(0, kMaxErrorBytes);
+  error = cut_at_letter(error, kMaxErrorBytes);
   if (state == status_.state && error == status_.last_error) return;
   status_.state = state;
   status_.last_error.assign(error);

@@ -81,9 +81,7 @@ std::string shortened(std::string text) {
     if (static_cast<unsigned char>(c) < 0x20) c = ' ';
   }
   if (text.size() <= kLongestShown) return text;
-  std::size_t cut = kLongestShown;
-  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0) == 0x80) --cut;  // UTF-8
-  return text.substr(0, cut) + "…";
+  return std::string(cut_at_letter(text, kLongestShown)) + "…";
 }
 
 std::string why_not_yaml(const YAML::Exception& error) {

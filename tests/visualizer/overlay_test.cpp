@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/core/text.h"
 #include "modules/geometry/primitives.h"
 #include "tests/times.h"
 #include "tests/visualizer/fake_session.h"
@@ -148,6 +149,8 @@ TEST_CASE("overlay: a text is made smaller, then cut, to fit", "[visualizer]") {
   for (const double width : {300.0, 200.0, 100.0, 60.0}) {
     CHECK(extent_of(fitted(text, width)).width <= width);
   }
+  const TextItem greek{0, 0, "αβγδεζηθικλμνξοπρστυφχψω", 14, {}};
+  for (double width = 30; width < 200; width += 5) CHECK(is_utf8(fitted(greek, width).text));
 }
 
 TEST_CASE("overlay: title, time, units of every scale are there", "[visualizer]") {

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/core/text.h"
 #include "tests/times.h"
 #include "tests/visualizer/fake_session.h"
 
@@ -88,6 +89,12 @@ TEST_CASE("status table: a long error is broken into two lines and cut", "[visua
   view.receive(status, kSecond);
   texts = texts_of(view, kSecond);
   CHECK(texts.back().size() <= 50);
+  for (const std::string before : {"", "x"}) {  // letters of two bytes begin at even ones, at odd
+    status.last_error = before;
+    for (int i = 0; i < 200; ++i) status.last_error += "\xc3\xa9";
+    view.receive(status, kSecond);
+    for (const std::string& text : texts_of(view, kSecond)) CHECK(is_utf8(text));
+  }
 }
 
 TEST_CASE("status table: every state has a name of its own", "[visualizer]") {

@@ -23,6 +23,16 @@ TEST_CASE("text: what a terminal would obey is found, and shown as question mark
   CHECK(printable("a\x1b[2J\n\x07\x7f \xc3\xa9 \xc2\x9b") == "a?[2J??? \xc3\xa9 ??");
 }
 
+TEST_CASE("text: a text is cut between letters") {
+  // Oracle: by hand; letters of one to four bytes.
+  const std::string text = "a\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80";
+  const std::size_t ends[] = {0, 1, 1, 3, 3, 3, 6, 6, 6, 6, 10, 10};
+  for (std::size_t bytes = 0; bytes < std::size(ends); ++bytes) {
+    CHECK(cut_at_letter(text, bytes) == text.substr(0, ends[bytes]));
+    CHECK(is_utf8(cut_at_letter(text, bytes)));
+  }
+}
+
 TEST_CASE("text: what stands behind a colon, where there is anything") {
   // Oracle: by hand; lines of /proc/cpuinfo and of Gmsh's log.
   CHECK(after_colon("model name\t: Xeon: 2 GHz") == "Xeon: 2 GHz");

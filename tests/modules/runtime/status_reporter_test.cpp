@@ -125,5 +125,10 @@ TEST_CASE("status: an endless error is cut, not lost") {
   r.reporter.publish(monotonic_now_ns(), 0, r.loop);
   REQUIRE(r.take());
   CHECK(r.newest.last_error == std::string(StatusReporter::kMaxErrorBytes, 'x'));
+  const std::string before(StatusReporter::kMaxErrorBytes - 1, 'x');  // a letter of two bytes on
+  r.reporter.set_state(ModuleState::kFault, before + "\xc3\xa9");
+  r.reporter.publish(monotonic_now_ns(), 0, r.loop);
+  REQUIRE(r.take());
+  CHECK(r.newest.last_error == before);
   CHECK(r.newest.state == ModuleState::kFault);
 }
