@@ -32,8 +32,10 @@ double LoopStatistics::on_time_fraction() const {
   return static_cast<double>(cycles) / static_cast<double>(cycles + overruns);
 }
 
-PeriodicLoop::PeriodicLoop(double rate_hz) : period_ns_(ns_from_seconds(1.0 / rate_hz)) {
-  PALPATE_DEMAND(rate_hz > 0 && period_ns_ > 0);
+PeriodicLoop::PeriodicLoop(double rate_hz) {
+  const double period = 1.0 / rate_hz;
+  PALPATE_DEMAND(period >= 1e-9 && period <= kLongestPeriod);  // before it becomes a number of ns
+  period_ns_ = ns_from_seconds(period);
   prctl(PR_SET_TIMERSLACK, 1);
 }
 

@@ -33,7 +33,7 @@ struct LoopStatistics {
 class PeriodicLoop {
  public:
   /// Sets the timer slack of the calling thread, which has to be the one that loops, to 1 ns.
-  /// @param rate_hz  > 0
+  /// @param rate_hz  1e-9 … 1e9
   explicit PeriodicLoop(double rate_hz);
 
   /// Sleeps until the next period begins; the first begins at the first call. Returns early, with
@@ -48,7 +48,8 @@ class PeriodicLoop {
   const LoopStatistics& statistics() const { return statistics_; }
 
  private:
-  std::int64_t period_ns_;
+  static constexpr double kLongestPeriod = 1e9;  ///< [s]
+  std::int64_t period_ns_ = 0;
   std::int64_t scheduled_ns_ = 0;  ///< of the next cycle; 0 before the first
   std::int64_t woke_ns_ = 0;
   bool in_cycle_ = false;

@@ -1,6 +1,10 @@
 #include "modules/runtime/periodic_loop.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <csignal>
 #include <random>
 
@@ -96,4 +100,22 @@ TEST_CASE("periodic loop: a signal ends the wait") {
   timer_delete(timer);
   CHECK(palpate::testing::wait_until([&] { return stop.requested(); }));
   CHECK(loop.statistics().cycles == 1);
+}
+
+TEST_CASE("periodic loop: a rate without a period stops the program") {
+  // Oracle: the documented range; the signal that ends a child process.
+  for (const double rate : {0.0, -1.0, std::nan(""), 1e-12, 1e10}) {
+    CAPTURE(rate);
+    const pid_t child = fork();
+    if (child == 0) {
+      std::signal(SIGABRT, SIG_DFL);
+      close(STDERR_FILENO);
+      const PeriodicLoop loop(rate);
+      _exit(0);
+    }
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    CHECK(WIFSIGNALED(status));
+    CHECK(WTERMSIG(status) == SIGABRT);
+  }
 }
