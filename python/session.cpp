@@ -254,11 +254,13 @@ void Session::close() {
   // cppcheck-suppress unreadVariable
   const Unlocked unlocked(Unlocked::AtEnd::kAllowed);
   closed_ = true;
-  session_->finish(std::min(asked_for_, session_->time()));
-  scenes_.reset();
-  session_.reset();
-  team_.reset();
   guided_.clear();
+  // Taken out first: what finish() throws leaves nothing open. Gone in this order, the last first.
+  const auto team = std::move(team_);
+  const auto session = std::move(session_);
+  const auto scenes = std::move(scenes_);
+  scenes_.reset();
+  session->finish(std::min(asked_for_, session->time()));
 }
 
 void Session::guide_probe(std::size_t probe, const Pose& pose, const Twist& twist) {

@@ -350,6 +350,20 @@ threading.excepthook = lambda told: print(told.exc_type.__name__ + "\\n", end=""
         with self.assertRaises(RuntimeError):
             palpate.Session(STOMACH, record="/nowhere/run.mcap")
 
+    def test_a_recording_that_cannot_be_ended(self):
+        # It is told of once, and the session is closed all the same.
+        with tempfile.TemporaryDirectory() as folder:
+            session = palpate.Session(BALL, record=Path(folder) / "run.mcap")
+            session.run(0.02)
+            for file in Path(folder).iterdir():
+                file.unlink()
+            with self.assertRaisesRegex(RuntimeError, "was removed or replaced while it was recorded"):
+                session.close()
+            self.assertTrue(session.closed)
+            session.close()
+            with self.assertRaises(palpate.ClosedError):
+                session.step()
+
 
 if __name__ == "__main__":
     unittest.main()
