@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "modules/bus/clock_ns.h"
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
 #include "modules/recording/idl_text.h"
@@ -17,11 +18,6 @@
 
 namespace palpate::recording {
 namespace {
-
-template <class Clock>
-std::int64_t now_ns() {
-  return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
-}
 
 std::string hex(const bus::WriterId& id) {
   constexpr std::string_view kDigits = "0123456789abcdef";
@@ -45,9 +41,7 @@ std::set<std::filesystem::path> files_of(const std::string& resolved_text) {
 
 }  // namespace
 
-Clocks Clocks::now() {
-  return {now_ns<std::chrono::steady_clock>(), now_ns<std::chrono::system_clock>()};
-}
+Clocks Clocks::now() { return {bus::monotonic_ns(), bus::clock_ns<std::chrono::system_clock>()}; }
 
 SampleFile::SampleFile(const std::filesystem::path& file, const bus::BusOptions& session,
                        const Clocks& clocks, TopicSelection topics)

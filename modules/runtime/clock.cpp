@@ -5,18 +5,11 @@
 #include "modules/core/units.h"
 
 namespace palpate::runtime {
-namespace {
 
-std::int64_t now_ns(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return now.tv_sec * kNanosecondsPerSecond + now.tv_nsec;
+std::int64_t thread_time_ns() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return time.tv_sec * kNanosecondsPerSecond + time.tv_nsec;
 }
-
-}  // namespace
-
-std::int64_t monotonic_now_ns() { return now_ns(CLOCK_MONOTONIC); }
-
-std::int64_t thread_time_ns() { return now_ns(CLOCK_THREAD_CPUTIME_ID); }
 
 }  // namespace palpate::runtime

@@ -1,12 +1,13 @@
-// The one place where modules read a clock.
+// The clocks that modules read.
 #pragma once
 
 #include <cstdint>
 
+#include "modules/bus/clock_ns.h"
+
 namespace palpate::runtime {
 
-/// CLOCK_MONOTONIC: the same for every process of a host, never set back [ns].
-std::int64_t monotonic_now_ns();
+inline std::int64_t monotonic_now_ns() { return bus::monotonic_ns(); }
 
 /// What the calling thread itself computed so far, whoever else is busy on the machine [ns].
 std::int64_t thread_time_ns();
