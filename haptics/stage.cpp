@@ -24,9 +24,6 @@ struct ProbeTexts {
   std::string several, silent, refused, slewed;
 };
 
-/// After its start, and after a pause, so long is what fades because of them no news [ns].
-constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
-
 /// What a probe's force has been since the session first ran. While that stands, whoever waits for
 /// news calls it old, and forces fade: no limit that tells of the touch. All others count.
 void note_extremes(const HapticForce& said, double force_error, bool runs, bool stands,
@@ -149,7 +146,7 @@ struct HapticsStage::Impl {
   void note_extremes(const runtime::Cycle& now) {
     if (!now.running) stood_ns = now.now_ns;
     ran = ran || now.running;
-    const bool stands = stood_ns && now.now_ns - *stood_ns < kGoesOnWithinNs;
+    const bool stands = stood_ns && now.now_ns - *stood_ns < runtime::kGoesOnWithinNs;
     for (std::size_t k = 0; k < probes.size(); ++k) {
       const auto errors = std::span(force_errors).subspan(k * processes, processes);
       haptics::note_extremes(probes[k].force, std::ranges::max(errors), ran, stands, extremes[k]);

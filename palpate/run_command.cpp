@@ -18,6 +18,7 @@
 #include "modules/runtime/clock.h"
 #include "modules/runtime/periodic_loop.h"
 #include "modules/runtime/session.h"
+#include "modules/runtime/stage.h"
 #include "modules/scene/processes.h"
 #include "modules/scene/scene_reader.h"
 #include "modules/scene/settings.h"
@@ -41,8 +42,6 @@ constexpr std::int64_t kLineEveryNs = kNanosecondsPerSecond;
 constexpr std::int64_t kDiscoveryNs = kNanosecondsPerSecond / 2;
 /// With keys each pair has to prove who it is first.
 constexpr std::int64_t kSecureDiscoveryNs = 3 * kNanosecondsPerSecond;
-/// After a pause, and after the start, all have heard each other by then, and statuses say so.
-constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
 
 /// One run from start to summary.
 class Run {
@@ -82,7 +81,8 @@ class Run {
     session_.poll();
     repeat_new_command();
     if (session_.phase() == runtime::SessionPhase::kPaused) stood_ns_ = loop_.woke_ns();
-    monitor_.tally().stands(stood_ns_ != 0 && loop_.woke_ns() - stood_ns_ < kGoesOnWithinNs);
+    monitor_.tally().stands(stood_ns_ != 0 &&
+                            loop_.woke_ns() - stood_ns_ < runtime::kGoesOnWithinNs);
     monitor_.poll();
     for (const auto& line : monitor_.take_warnings()) {
       log_ << "palpate: warning: " << line << std::endl;

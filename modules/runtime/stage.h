@@ -17,6 +17,10 @@ namespace palpate::runtime {
 /// Age from which an input no longer counts as telling the present [s].
 inline constexpr double kInputStaleAfter = 0.05;
 
+/// After a start, and after a pause, all have heard each other by then, and statuses say so: until
+/// then what is stale or fades because of it is no trouble [ns].
+inline constexpr std::int64_t kGoesOnWithinNs = 3 * kNanosecondsPerSecond / 2;
+
 /// One cycle of a stage.
 struct Cycle {
   std::int64_t sim_time_ns = 0;  ///< session time at its beginning
