@@ -59,7 +59,6 @@ class BisectionTree {
   std::size_t boundary_count() const;  ///< of triangles
 
   const TetMesh& coarse() const { return coarse_; }
-  std::size_t tetrahedra_kept() const { return tetrahedra_.size(); }
 
  private:
   static constexpr std::uint32_t kNone = HalvedMesh::kNone;

@@ -40,7 +40,8 @@ struct Sample {
   double load = 0;  ///< compression [1], depth [m], time [s]; exact frequency [Hz] of vibration
   double force = kUnknown;  ///< on the probe [N]; the frequency [Hz] of vibration
   double reference_force = kUnknown;
-  double shape = kUnknown;  ///< see Case::shape_name [m]
+  /// Growth of the ball's equator, bulge of the block's face, sag of the beam's tip [m].
+  double shape = kUnknown;
   double reference_shape = kUnknown;
   double field_error = kUnknown;     ///< RMS distance of points from where they should be [m]
   double contact_radius = kUnknown;  ///< of the touching nodes' share of the surface [m]
@@ -75,10 +76,7 @@ enum class Reference {
 
 struct Case {
   const char* name;
-  const char* load_name;   ///< with unit, for axes
-  const char* shape_name;  ///< what Sample::shape is; empty: nothing
-  int level_count;         ///< meshes there are
-  bool dynamic;            ///< needs velocities: kinematic models are left out
+  int level_count;  ///< meshes there are
   Reference reference;
   /// Of a truth that has a bar: its parts, all of them it. None: a reference on kReferenceLevels
   /// meshes.

@@ -38,7 +38,7 @@ bool LoadPath::advance_to(double load, const Apply& apply) {
     const double next = left > stride ? load_ + left / std::ceil(left / stride - 1e-9) : load;
     if (attempt(next, apply)) continue;
     stride = std::min(stride, left) / 2;
-    if (stride < std::ldexp(longest_stride_, -most_halvings_)) return false;
+    if (stride < std::ldexp(longest_stride_, -kMostHalvings)) return false;
   }
   return true;
 }

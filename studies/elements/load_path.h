@@ -17,10 +17,9 @@ class LoadPath {
            deformation::RigidContact* contact, const Setting& setting);
 
   void set_longest_stride(double stride) { longest_stride_ = stride; }
-  void set_most_halvings(int count) { most_halvings_ = count; }
 
   /// Equal strides up to `load`, halved after a failure.
-  /// @returns false if the longest stride fails even when halved that often; the state is the last
+  /// @returns false if the longest stride fails even when halved six times; the state is the last
   ///          equilibrium.
   /// @throws what Setting::keep_going does
   bool advance_to(double load, const Apply& apply);
@@ -29,6 +28,7 @@ class LoadPath {
   int take_iterations();  ///< Newton iterations since the call before
 
  private:
+  static constexpr int kMostHalvings = 6;  ///< of a stride
   bool attempt(double load, const Apply& apply);
 
   deformation::QuasiStaticNewton& solver_;
@@ -36,7 +36,7 @@ class LoadPath {
   const Setting& setting_;
   deformation::SolidState state_;
   double load_ = 0, longest_stride_ = 0.1;
-  int most_halvings_ = 6, iterations_ = 0;
+  int iterations_ = 0;
 };
 
 }  // namespace palpate::elements_bench

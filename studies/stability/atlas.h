@@ -15,8 +15,6 @@ namespace palpate::stability {
 
 struct Map {
   const char* name;
-  const char* x_name;  ///< with unit
-  const char* y_name;
   std::vector<std::string> series;  ///< models, or ways to close a loop
   std::vector<double> xs, ys;       ///< rising; ys > 0
   double precision;                 ///< of the frontier: bisected until the ratio is below 1 + this

@@ -24,8 +24,7 @@ double precision(bool quick) { return quick ? kQuickPrecision : kPrecision; }
 
 Map step_stiffness(bool quick) {
   const auto shapes = std::make_shared<Shapes>();
-  Map map{
-      "step_stiffness", "youngs_modulus_pa", "step_s", names_of(quick, false), {}, {}, 0, {}, {}};
+  Map map{"step_stiffness", names_of(quick, false), {}, {}, 0, {}, {}};
   map.xs = quick ? geometric(1e3, 1e6, 3) : geometric(1e3, 1e7, 9);
   map.ys = geometric(1e-5, 0.1, quick ? 9 : 17);
   map.precision = precision(quick);
@@ -43,7 +42,7 @@ Map step_stiffness(bool quick) {
 
 Map squeezes(bool quick) {
   const auto shapes = std::make_shared<Shapes>();
-  Map map{"squeeze", "squeeze", "step_s", names_of(quick, false), {0, 0.3, 0.6}, {}, 0, {}, {}};
+  Map map{"squeeze", names_of(quick, false), {0, 0.3, 0.6}, {}, 0, {}, {}};
   if (!quick) map.xs = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
   map.ys = quick ? geometric(1e-3, 0.03, 4) : geometric(2.5e-4, 0.032, 8);
   map.precision = precision(quick);
@@ -67,15 +66,7 @@ Map squeezes(bool quick) {
 
 Map probe_speeds(bool quick) {
   const auto shapes = std::make_shared<Shapes>();
-  Map map{"probe_speed",
-          "speed_m_per_s",
-          "step_s",
-          names_of(quick, false),
-          {0.1, 0.5, 3},
-          {},
-          0,
-          {},
-          {}};
+  Map map{"probe_speed", names_of(quick, false), {0.1, 0.5, 3}, {}, 0, {}, {}};
   if (!quick) map.xs = geometric(0.01, 3, 7);
   map.ys = quick ? geometric(1e-3, 0.03, 4) : geometric(5e-4, 0.032, 7);
   map.precision = precision(quick);
@@ -94,15 +85,7 @@ Map probe_speeds(bool quick) {
 }
 
 Map mesh_quality(bool quick) {
-  Map map{"mesh_quality",
-          "edge_over_height",
-          "step_s",
-          names_of(quick, true),
-          {4, 60, 1000},
-          {},
-          0,
-          {},
-          {}};
+  Map map{"mesh_quality", names_of(quick, true), {4, 60, 1000}, {}, 0, {}, {}};
   if (!quick) map.xs = geometric(4, 1000, 7);
   map.ys = geometric(1e-5, 0.03, quick ? 8 : 15);
   map.precision = precision(quick);
@@ -140,7 +123,7 @@ const Loop& loop_named(const std::string& name) {
 }
 
 Map haptic_loop(bool quick) {
-  Map map{"haptic_loop", "delay_s", "stiffness_n_per_m", {}, {0.002, 0.01, 0.04}, {}, 0, {}, {}};
+  Map map{"haptic_loop", {}, {0.002, 0.01, 0.04}, {}, 0, {}, {}};
   for (const NamedLoop& each : loops()) {
     if (!quick || each.loop.rate == 1000) map.series.emplace_back(each.name);
   }

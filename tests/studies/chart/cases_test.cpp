@@ -56,7 +56,7 @@ TEST_CASE("cases: what a reference's bar allows is said with every error") {
   second.samples = {{.load = 1, .force = 2, .place = 1, .force_bar = 0.1},
                     {.load = 1, .force = 4, .place = 2, .force_bar = 0.04},
                     {.load = 1, .place = 3}};
-  const Case places{"", "", "", 1, false, Reference::kOwn, 2};
+  const Case places{"", 1, Reference::kOwn, 2};
   refer(whole_reference(places, {first, second}), m);
   CHECK(m.samples[1].reference_force == 2);
   CHECK(std::isnan(m.samples[3].reference_force));

@@ -16,7 +16,7 @@ using report::kKeepOn;
 
 /// Stands up to 0.7/x; above that oscillates, above three times that diverges.
 Map made_up(int* tries = nullptr) {
-  Map map{"made_up", "x", "y", {"one"}, {1, 2}, geometric(0.01, 10, 4), 0.01, {}, {}};
+  Map map{"made_up", {"one"}, {1, 2}, geometric(0.01, 10, 4), 0.01, {}, {}};
   map.attempt = [tries](const std::string&, double x, double y, const KeepGoing& keep_going) {
     keep_going();
     if (tries != nullptr) ++*tries;

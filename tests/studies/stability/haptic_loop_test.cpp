@@ -12,7 +12,7 @@ namespace {
 using report::kKeepOn;
 
 Frontier frontier(const Loop& loop, double delay) {
-  Map map{"loop", "delay_s", "stiffness", {"one"}, {delay}, geometric(1, 1e3, 4), 0.02, {}, {}};
+  Map map{"loop", {"one"}, {delay}, geometric(1, 1e3, 4), 0.02, {}, {}};
   map.attempt = [&](const std::string&, double x, double y, const KeepGoing& keep_going) {
     return close_loop(loop, x, y, keep_going);
   };
