@@ -23,17 +23,14 @@ class Trajectory {
   /// @param samples  at least two, times increasing. The first is played at time 0
   /// @param loop     false: before the first and after the last sample the pose is held, at rest.
   ///                 true: after the last sample the pose returns to the first along the same kind
-  ///                 of curve, within return_time(), and starts again
+  ///                 of curve and starts again: in 0.5 s, or longer so that its mean speeds stay
+  ///                 within 0.05 m/s and 1 rad/s
   Trajectory(std::vector<TimedPose> samples, bool loop);
 
   /// `time` [s] counts from the first sample; any finite value. Never allocates or throws.
   DeviceSample at(double time) const;
 
   double duration() const { return samples_.back().time; }  ///< first to last sample [s]
-
-  /// Duration of the way back of a loop [s]: 0.5 s, or longer so that its mean speeds stay within
-  /// 0.05 m/s and 1 rad/s. 0 if not looped.
-  double return_time() const { return end_ - duration(); }
 
  private:
   struct Interval;

@@ -66,13 +66,6 @@ Tap record_tap(std::function<void(const Passing&)> record) {
   };
 }
 
-Tap meter_tap(Traffic& traffic) {
-  return record_tap([&traffic](const Passing& passing) {
-    ++traffic.samples;
-    traffic.bytes += passing.payload.size();
-  });
-}
-
 Tap delay_tap(std::size_t samples) {
   return [samples, waiting = std::deque<Bytes>()](const Passing& passing,
                                                   const Forward& forward) mutable {
@@ -110,14 +103,6 @@ Tap tap_while(std::function<bool(const Passing&)> acts, Tap tap) {
   return [acts = std::move(acts), tap = std::move(tap)](const Passing& passing,
                                                         const Forward& forward) mutable {
     acts(passing) ? tap(passing, forward) : forward(passing.payload);
-  };
-}
-
-Tap corrupt_tap(std::function<void(Bytes&)> change) {
-  return [change = std::move(change)](const Passing& passing, const Forward& forward) {
-    Bytes bytes = copy_of(passing.payload);
-    change(bytes);
-    forward(bytes);
   };
 }
 

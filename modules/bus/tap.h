@@ -1,5 +1,5 @@
 // Taps sit between a bus and its writers: they see each payload written on a topic, and record,
-// meter, delay, lose, repeat or corrupt it. Faults and measurements then need no second wiring of a
+// delay, lose, repeat or change it. Faults and measurements then need no second wiring of a
 // session: its stages run on a tapped bus.
 #pragma once
 
@@ -48,12 +48,6 @@ class TappedBus : public Bus {
 /// Hands every payload to `record` too.
 Tap record_tap(std::function<void(const Passing&)> record);
 
-struct Traffic {
-  std::uint64_t samples = 0, bytes = 0;
-};
-/// Counts into `traffic`, which must outlive the bus.
-Tap meter_tap(Traffic& traffic);
-
 /// Each payload travels when `samples` more have been written.
 Tap delay_tap(std::size_t samples);
 /// Each payload travels with the first one written at least `delay_ns` later.
@@ -64,9 +58,6 @@ Tap lose_tap(std::function<bool(const Passing&)> lost);
 
 /// Each payload travels `times` times.
 Tap repeat_tap(std::size_t times);
-
-/// Changes the bytes.
-Tap corrupt_tap(std::function<void(std::vector<std::uint8_t>&)> change);
 
 /// Changes the message. With checks, one that is no longer valid does not travel, as if its writer
 /// had refused it; without, its reader must refuse it.

@@ -1,4 +1,4 @@
-// Physical constants, and the length units accepted at the border. Inside, everything is SI.
+// The length units accepted at the border, and nanoseconds. Inside, everything is SI.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,6 @@
 
 namespace palpate {
 
-inline constexpr double kStandardGravity = 9.80665;  ///< [m/s²]
 inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 /// Metres per unit for "m", "dm", "cm", "mm", "um", "in".

@@ -48,8 +48,3 @@ TEST_CASE("units: nanoseconds survive the way through seconds and back") {
     CHECK(ns_from_seconds(seconds_from_ns(-ns)) == -ns);
   }
 }
-
-TEST_CASE("units: standard gravity is the value of the third CGPM") {
-  // Oracle: CGPM 1901, resolution 2.
-  CHECK(kStandardGravity == 9.80665);
-}
