@@ -147,13 +147,13 @@ class Outputs {
         organs_(organs),
         models_(bus.writer(bus::kContactModel)),
         force_errors_(probes, kForceErrorsEvery),
-        elastic_energies_(organs.count(), kEnergiesEvery) {
+        elastic_energies_(organs.count(), kEnergiesEvery),
+        process_(static_cast<std::uint32_t>(process)) {
     for (std::size_t organ = 0; organ < organs.count(); ++organ) {
       extremes_.push_back({organs.in_scene(organ)});
       surfaces_.push_back(bus.writer(bus::kSurface));
       positions_.push_back(bus.writer(bus::kNodePositions));
     }
-    model_.process = static_cast<std::uint32_t>(process);
   }
 
   void publish_surfaces(const DeformationWorld& world) {
@@ -202,21 +202,20 @@ class Outputs {
     force_errors_.look(world.time(), [&](std::size_t p) { return world.estimated_force_error(p); });
     for (std::size_t probe = 0; probe < world.probe_count(); ++probe) {
       bool bounded = false;
-      LocalLaw law = world.local_law(probe, &bounded);
+      ContactModel model = contact_model_message(world, probe, &bounded);
       if (inputs.silent(probe, now_ns)) {
-        law = without_rows(law);
+        static_cast<LocalLaw&>(model) = without_rows(model);
         bounded = false;
       }
-      static_cast<LocalLaw&>(model_) = std::move(law);
-      model_.probe = static_cast<std::uint32_t>(probe);
       any_bounded |= bounded;
-      model_.header = header;
+      model.process = process_;
+      model.header = header;
       // The law's age counts from the cycle's beginning, where its probes were.
-      const std::int64_t law_ns = model_.rows.empty() ? now_ns : inputs.law_ns(probe, now_ns);
-      model_.header.source_time_ns = law_ns;
-      model_.anchor_age = inputs.age(probe, law_ns);
-      model_.force_error = model_.touching() ? force_errors_.of(probe) : 0;
-      models_.write(model_);
+      const std::int64_t law_ns = model.rows.empty() ? now_ns : inputs.law_ns(probe, now_ns);
+      model.header.source_time_ns = law_ns;
+      model.anchor_age = inputs.age(probe, law_ns);
+      model.force_error = model.touching() ? force_errors_.of(probe) : 0;
+      models_.write(model);
     }
     bus_.flush();
     return any_bounded;
@@ -261,8 +260,8 @@ class Outputs {
   std::vector<geometry::SurfaceBlocks> blocks_;   ///< by organ
   std::vector<NextBlocks> next_blocks_;           ///< told last
   NodePositions node_positions_;
-  ContactModel model_;
   std::vector<OrganExtremes> extremes_;  ///< by organ
+  std::uint32_t process_;                ///< this one's number
   bool ran_ = false;
 };
 

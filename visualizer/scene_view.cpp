@@ -75,15 +75,10 @@ SceneView::SceneView(const scene::Scene& scene)
   }
 }
 
-bool SceneView::ignore() {
-  ++ignored_;
-  return false;
-}
-
 void SceneView::note_time(std::int64_t sim_time_ns) { seconds_ = seconds_from_ns(sim_time_ns); }
 
 bool SceneView::receive(SurfaceTopology surface) {
-  if (surface.organ >= organs_.size() || !indices_fit(surface)) return ignore();
+  if (surface.organ >= organs_.size() || !indices_fit(surface)) return false;
   OrganView& organ = organs_[surface.organ];
   if (organ.known) {
     if (organ.next.size() == kMostNext) organ.next.erase(organ.next.begin());
@@ -111,7 +106,7 @@ void SceneView::show(SurfaceTopology surface) {
 }
 
 bool SceneView::receive(NodePositions positions, std::int64_t now_ns) {
-  if (positions.organ >= organs_.size()) return ignore();
+  if (positions.organ >= organs_.size()) return false;
   OrganView& organ = organs_[positions.organ];
   const auto next =
       std::ranges::find(organ.next, positions.generation, &SurfaceTopology::generation);
@@ -122,7 +117,7 @@ bool SceneView::receive(NodePositions positions, std::int64_t now_ns) {
   }
   if (!organ.known || positions.generation != organ.surface.generation ||
       positions.positions.size() != organ.surface.rest_positions.size()) {
-    return ignore();
+    return false;
   }
   organ.newest = std::move(positions);
   organ.received_ns = now_ns;
@@ -137,7 +132,7 @@ bool SceneView::receive(NodePositions positions, std::int64_t now_ns) {
 }
 
 bool SceneView::receive(const ProbeState& probe) {
-  if (probe.probe >= probes_.size()) return ignore();
+  if (probe.probe >= probes_.size()) return false;
   probes_[probe.probe].seen = true;
   probes_[probe.probe].pose = probe.pose;
   const bool organ_tells_time = std::any_of(organs_.begin(), organs_.end(),
@@ -147,13 +142,13 @@ bool SceneView::receive(const ProbeState& probe) {
 }
 
 bool SceneView::receive(Contacts contacts) {
-  if (contacts.probe >= probes_.size()) return ignore();
+  if (contacts.probe >= probes_.size()) return false;
   probes_[contacts.probe].contacts = std::move(contacts);
   return true;
 }
 
 bool SceneView::receive(const ContactModel& law) {
-  if (law.probe >= probes_.size()) return ignore();
+  if (law.probe >= probes_.size()) return false;
   ProbeView& probe = probes_[law.probe];
   if (law.process != probe.error_of_process && law.force_error <= probe.force_error) return true;
   probe.force_error = law.force_error;
@@ -162,7 +157,7 @@ bool SceneView::receive(const ContactModel& law) {
 }
 
 bool SceneView::receive(const HapticForce& force) {
-  if (force.probe >= probes_.size()) return ignore();
+  if (force.probe >= probes_.size()) return false;
   ProbeView& probe = probes_[force.probe];
   const double time = seconds_from_ns(force.header.sim_time_ns), newton = force.force.norm();
   const double since = time - seconds_from_ns(probe.force.header.sim_time_ns);

@@ -65,7 +65,7 @@ class SceneView {
 
   // Newest message of each topic. False: it names an organ or probe that the scene does not have,
   // another generation than the surface known, or indices and sizes that do not fit; it is then
-  // counted and changes nothing. now_ns: monotonic clock at arrival.
+  // refused and changes nothing. now_ns: monotonic clock at arrival.
   bool receive(SurfaceTopology surface);
   bool receive(NodePositions positions, std::int64_t now_ns);
   bool receive(const ProbeState& probe);
@@ -86,7 +86,6 @@ class SceneView {
   /// The run is over, and the window stays: the session stands and its modules have left.
   bool ended() const;
   void end() { ended_ = true; }  ///< of a session without a clock, whose modules do not say so
-  std::uint64_t ignored_messages() const { return ignored_; }
 
   double sim_time() const { return seconds_; }  ///< newest of all organs and probes [s]
   double real_time_factor() const;              ///< as the deformation reports it; 0 = unknown
@@ -103,7 +102,6 @@ class SceneView {
   double displacement_top() const { return displacement_top_; }  ///< [m]
 
  private:
-  bool ignore();
   void show(SurfaceTopology surface);
   void note_time(std::int64_t sim_time_ns);
   void find_extent();
@@ -115,7 +113,6 @@ class SceneView {
   std::map<std::string, ModuleView> modules_;
   SessionControl session_;
   bool ended_ = false;
-  std::uint64_t ignored_ = 0;
   double seconds_ = 0;
   Vec3 center_ = Vec3::Zero();
   double radius_ = 0.1;

@@ -25,18 +25,6 @@ double enclosed_volume(std::span<const Vec3> nodes, std::span<const Triangle> tr
   return six_volumes / 6;
 }
 
-void volume_gradient(std::span<const Vec3> nodes, std::span<const Triangle> triangles,
-                     std::vector<Vec3>& gradient) {
-  const Vec3 origin = reference_point(nodes);
-  gradient.assign(nodes.size(), Vec3::Zero());
-  for (const auto& [a, b, c] : triangles) {
-    const Vec3 x_a = nodes[a] - origin, x_b = nodes[b] - origin, x_c = nodes[c] - origin;
-    gradient[a] += x_b.cross(x_c) / 6;
-    gradient[b] += x_c.cross(x_a) / 6;
-    gradient[c] += x_a.cross(x_b) / 6;
-  }
-}
-
 double surface_area(std::span<const Vec3> nodes, std::span<const Triangle> triangles) {
   double area = 0;
   for (const Triangle& triangle : triangles) area += area_vector(nodes, triangle).norm();

@@ -21,11 +21,6 @@ struct TriangleSurface {
 /// from the origin keeps its digits. Negative if oriented inward. Meaningful if closed.
 double enclosed_volume(std::span<const Vec3> nodes, std::span<const Triangle> triangles);
 
-/// g_i = ∂V/∂x_i = (1/6) Σ_{t∋i} x_j×x_k [m²], for every node (zero for nodes of no triangle).
-/// `gradient` is resized to nodes.size().
-void volume_gradient(std::span<const Vec3> nodes, std::span<const Triangle> triangles,
-                     std::vector<Vec3>& gradient);
-
 double surface_area(std::span<const Vec3> nodes, std::span<const Triangle> triangles);  ///< [m²]
 
 /// Area-weighted normal (not unit) of one triangle: ½ (b−a)×(c−a) [m²].

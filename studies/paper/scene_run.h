@@ -26,8 +26,7 @@ class FarField {
  public:
   explicit FarField(const SurfaceTopology& topology);
 
-  double far_distance() const { return distance_; }  ///< [m]
-  /// Mean displacement [m] of the free surface nodes farther than far_distance() from `p_W`.
+  /// Mean displacement [m] of the free surface nodes so far from `p_W`.
   double displacement(const NodePositions& nodes, const Vec3& p_W) const;
 
  private:

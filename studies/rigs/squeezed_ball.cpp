@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "deformation/model/organ_model.h"
-#include "deformation/organ_messages.h"
 #include "modules/geometry/primitives.h"
 #include "modules/geometry/tools/gmsh_tool.h"
 
@@ -56,34 +55,6 @@ double equatorial_radius(const std::vector<geometry::Triangle>& triangles,
     }
   }
   return sum / crossings;
-}
-
-ContactSet plate_contacts(const deformation::DeformationWorld& world, std::uint32_t probe,
-                          double height, int side, double margin) {
-  const SurfaceTopology& topology = deformation::surface_message(world, 0);
-  NodePositions nodes;
-  deformation::write_node_positions(world, 0, nodes);
-  std::vector<std::pair<std::uint32_t, int>> corners(topology.surface_node_count);
-  for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      corners[topology.triangles[t][static_cast<std::size_t>(k)]] = {t, k};
-    }
-  }
-  ContactSet contacts;
-  contacts.probe = probe;
-  contacts.probe_pose.position = Vec3(0, 0, height);
-  for (std::size_t node = 0; node < corners.size(); ++node) {
-    const float* p = &nodes.positions[3 * node];
-    Contact contact;
-    contact.gap = side * (height - p[2]);
-    if (contact.gap > margin) continue;
-    contact.triangle = corners[node].first;
-    contact.barycentric = Vec3::Unit(corners[node].second);
-    contact.point_P = Vec3(p[0], p[1], 0);
-    contact.normal_P = Vec3(0, 0, side);
-    contacts.contacts.push_back(contact);
-  }
-  return contacts;
 }
 
 double Plates::contact_area(const deformation::OrganState& state) const {

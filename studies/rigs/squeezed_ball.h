@@ -34,12 +34,6 @@ double minimum_jerk(double t);
 double equatorial_radius(const std::vector<geometry::Triangle>& triangles,
                          const std::function<Vec3(std::size_t)>& position);
 
-/// Contacts of a plate at z = height with every node of the world's first organ near it, one each.
-/// @param side  +1: the plate is above and pushes down, −1: below and pushes up
-/// @param margin  nodes whose gap is no more than this [m]
-ContactSet plate_contacts(const deformation::DeformationWorld& world, std::uint32_t probe,
-                          double height, int side, double margin);
-
 /// The two plates without a world: the organ's stepper is given a contact row per near node.
 class Plates {
  public:

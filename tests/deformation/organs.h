@@ -9,12 +9,12 @@
 #include "deformation/world.h"
 #include "modules/geometry/primitives.h"
 #include "studies/rigs/squeezed_ball.h"
+#include "tests/deformation/plate_contacts.h"
 
 namespace palpate::deformation::testing {
 
 using rigs::ball_organ;
 using rigs::kBallRadius;
-using rigs::plate_contacts;
 
 inline constexpr double kPeriod = 4e-3;  ///< of an advance [s]
 

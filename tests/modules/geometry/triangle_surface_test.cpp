@@ -58,62 +58,6 @@ TEST_CASE("enclosed volume: keeps its digits one kilometre away") {
   CHECK((solid_centroid(far) - solid_centroid(surface) - Vec3(1000, -1000, 1000)).norm() < 1e-11);
 }
 
-TEST_CASE("volume gradient: sums to zero, and Σ x·g = 3 V") {
-  // Oracle: invariants: V does not change with translation, and is homogeneous of degree three.
-  const TriangleSurface surface = moved(crumpled_ball(), {0.2, -0.1, 0.4});
-  std::vector<Vec3> gradient;
-  volume_gradient(surface.nodes, surface.triangles, gradient);
-  REQUIRE(gradient.size() == surface.nodes.size());
-  Vec3 sum = Vec3::Zero();
-  double moment = 0, size = 0;
-  for (std::size_t i = 0; i < gradient.size(); ++i) {
-    sum += gradient[i];
-    moment += surface.nodes[i].dot(gradient[i]);
-    size += gradient[i].norm();
-  }
-  CHECK(sum.norm() < 1e-14 * size);  // rounding of 162 additions
-  CHECK(moment == Approx(3 * volume_of(surface)).epsilon(1e-12));
-}
-
-TEST_CASE("volume gradient: equals central differences of the volume") {
-  // Oracle: finite differences; V is linear in each coordinate, so only rounding of V (~1e-16·V
-  // over the step) remains: 1e-19/1e-6 against |g| ~ 1e-4.
-  TriangleSurface surface = crumpled_ball();
-  std::vector<Vec3> gradient;
-  volume_gradient(surface.nodes, surface.triangles, gradient);
-  const double step = 1e-6;
-  for (const std::size_t node : {0u, 17u, 161u}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      double& coordinate = surface.nodes[node][axis];
-      const double rest = coordinate;
-      coordinate = rest + step;
-      const double above = volume_of(surface);
-      coordinate = rest - step;
-      const double below = volume_of(surface);
-      coordinate = rest;
-      CHECK(gradient[node][axis] == Approx((above - below) / (2 * step)).margin(1e-11));
-    }
-  }
-}
-
-TEST_CASE("volume gradient: a third of the sum of the adjacent area vectors, zero where unused") {
-  // Oracle: invariant of closed surfaces.
-  TriangleSurface surface = crumpled_ball();
-  surface.nodes.push_back({9, 9, 9});
-  std::vector<Vec3> gradient(3, Vec3::Ones()), thirds(surface.nodes.size(), Vec3::Zero());
-  volume_gradient(surface.nodes, surface.triangles, gradient);
-  for (const Triangle& triangle : surface.triangles) {
-    for (const std::uint32_t node : triangle) {
-      thirds[node] += area_vector(surface.nodes, triangle) / 3;
-    }
-  }
-  REQUIRE(gradient.size() == thirds.size());
-  for (std::size_t i = 0; i < thirds.size(); ++i) {
-    CHECK((gradient[i] - thirds[i]).norm() < 1e-16);
-  }
-  CHECK(gradient.back() == Vec3::Zero());
-}
-
 TEST_CASE("surface area: exact for a box, close below 4πr² for a ball") {
   // Oracle: analytic.
   const TriangleSurface box = make_box({1, 2, 3}, 3), ball = make_ball(1, 4);

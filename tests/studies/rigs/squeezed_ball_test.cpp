@@ -5,6 +5,7 @@
 
 #include "modules/geometry/primitives.h"
 #include "studies/rigs/test_body.h"
+#include "tests/deformation/plate_contacts.h"
 
 namespace palpate::rigs {
 namespace {
@@ -24,7 +25,8 @@ TEST_CASE("squeezed ball: a plate has one contact with each node near it") {
   const deformation::DeformationWorld world(scene, {ball});
   constexpr double kHeight = 0.045, kMargin = 2e-3;
   for (const int side : {1, -1}) {
-    const ContactSet contacts = plate_contacts(world, 0, side * kHeight, side, kMargin);
+    const ContactSet contacts =
+        deformation::testing::plate_contacts(world, 0, side * kHeight, side, kMargin);
     std::set<std::uint32_t> touched;
     for (const Contact& contact : contacts.contacts) {
       int corner = 0;
