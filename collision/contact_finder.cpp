@@ -15,7 +15,6 @@
 #include "modules/core/error.h"
 #include "modules/core/sort_unique.h"
 #include "modules/core/tolerances.h"
-#include "modules/geometry/continuous_collision.h"
 
 namespace palpate::collision {
 namespace {

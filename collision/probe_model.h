@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include "collision/contact_finder.h"
 #include "collision/core_sweep.h"
 #include "collision/mesh_solid.h"
 #include "collision/probe_solid.h"

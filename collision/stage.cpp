@@ -13,6 +13,7 @@
 #include "modules/core/units.h"
 #include "modules/messages/message_state.h"
 #include "modules/runtime/pause_watch.h"
+#include "modules/runtime/silence_watch.h"
 #include "modules/runtime/wiring.h"
 #include "modules/scene/assets.h"
 

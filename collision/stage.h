@@ -3,7 +3,6 @@
 
 #include "collision/contact_finder.h"
 #include "modules/bus/bus.h"
-#include "modules/runtime/silence_watch.h"
 #include "modules/runtime/stage.h"
 #include "modules/scene/scene.h"
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "deformation/model/mesh_change.h"
+#include "deformation/models.h"
 #include "modules/core/error.h"
 #include "modules/scene/probe_shape.h"
 

@@ -16,7 +16,7 @@
 #include "deformation/contact/touch_follower.h"
 #include "deformation/model/following_mesh.h"
 #include "deformation/model/organ_model.h"
-#include "deformation/models.h"
+#include "deformation/steppers/organ_dynamics.h"
 #include "modules/core/state_archive.h"
 #include "modules/core/touch.h"
 #include "modules/geometry/surface_transfer.h"

@@ -16,7 +16,6 @@
 #include "deformation/pressed_copy.h"
 #include "deformation/simulated_organ.h"
 #include "deformation/springs/patch_springs.h"
-#include "deformation/springs/spring_forces.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/scene/scene.h"
 

@@ -5,7 +5,6 @@
 
 #include "modules/core/error.h"
 #include "modules/core/organ_limits.h"
-#include "modules/core/units.h"
 #include "modules/geometry/mesh_io.h"
 #include "modules/geometry/mesh_prepare.h"
 #include "python/bindings.h"

@@ -12,6 +12,7 @@
 #include "modules/scene/scene_error.h"
 #include "python/busy.h"
 #include "python/message_arrays.h"
+#include "python/topic_columns.h"
 #include "python/unlocked.h"
 
 namespace py = pybind11;

@@ -11,10 +11,9 @@
 #include <vector>
 
 #include "modules/runtime/worker_team.h"
-#include "modules/scene/scene_document.h"
+#include "modules/scene/scene.h"
 #include "palpate/session/in_process.h"
 #include "python/guided_device.h"
-#include "python/topic_columns.h"
 
 namespace palpate::python {
 

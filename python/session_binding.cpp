@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "modules/core/error.h"
+#include "modules/scene/scene_document.h"
 #include "python/bindings.h"
 #include "python/numbers.h"
 #include "python/session.h"

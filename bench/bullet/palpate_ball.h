@@ -3,7 +3,6 @@
 
 #include "bench/bullet/squeezed_ball.h"
 #include "deformation/models.h"
-#include "haptics/devices/device.h"
 #include "palpate/session/in_process.h"
 
 namespace palpate::bench {

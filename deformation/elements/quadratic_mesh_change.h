@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "deformation/model/organ_model.h"
+#include "deformation/model/organ_state.h"
 #include "modules/core/simd_vectors.h"
 
 namespace palpate::deformation {

@@ -4,7 +4,6 @@
 #include <variant>
 
 #include "deformation/model/body.h"
-#include "deformation/model/organ_state.h"
 #include "deformation/model/spring_network.h"
 #include "deformation/model/tet_mesh.h"
 #include "modules/geometry/organ_shape.h"

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "deformation/materials/elastic_constants.h"
-#include "modules/geometry/organ_shape.h"
+#include "modules/core/types.h"
+#include "modules/geometry/tet_mesh.h"
 
 namespace palpate::deformation {
 

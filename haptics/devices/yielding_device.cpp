@@ -1,7 +1,6 @@
 #include "haptics/devices/yielding_device.h"
 
 #include "modules/core/tolerances.h"
-#include "modules/core/vector_checks.h"
 
 namespace palpate::haptics {
 

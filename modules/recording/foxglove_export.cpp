@@ -12,7 +12,6 @@
 #include "modules/core/whole_file.h"
 #include "modules/recording/foxglove_messages.h"
 #include "modules/recording/idl_text.h"
-#include "modules/recording/mcap_bytes.h"
 #include "modules/recording/mcap_writer.h"
 #include "modules/recording/recorder.h"
 #include "modules/recording/sample_reader.h"

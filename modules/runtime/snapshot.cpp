@@ -9,7 +9,6 @@
 #include "modules/core/crc32.h"
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
-#include "modules/core/output_file.h"
 #include "modules/core/state_archive.h"
 #include "modules/core/whole_file.h"
 #include "modules/runtime/program.h"

@@ -10,7 +10,6 @@
 
 #include "modules/core/error.h"
 #include "modules/core/input_file.h"
-#include "modules/core/units.h"
 #include "modules/trajectories/pose_collector.h"
 #include "modules/trajectories/pose_topics.h"
 #include "modules/trajectories/ros_message.h"

@@ -5,6 +5,7 @@
 
 #include "collision/stage.h"
 #include "deformation/organ_messages.h"
+#include "modules/bus/memory_bus.h"
 #include "modules/core/error.h"
 #include "modules/core/units.h"
 #include "modules/runtime/wiring.h"

@@ -12,7 +12,6 @@
 
 #include "deformation/stage.h"
 #include "haptics/stage.h"
-#include "modules/bus/memory_bus.h"
 #include "modules/geometry/organ_shape.h"
 #include "modules/geometry/triangle_surface.h"
 #include "modules/runtime/lockstep.h"

@@ -16,7 +16,6 @@
 #include "studies/certify/certificate.h"
 #include "studies/certify/disturbance.h"
 #include "studies/certify/group_store.h"
-#include "studies/certify/hands.h"
 #include "studies/certify/law.h"
 #include "studies/certify/press.h"
 #include "studies/certify/real_processes.h"

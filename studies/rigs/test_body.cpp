@@ -1,6 +1,7 @@
 #include "studies/rigs/test_body.h"
 
 #include "deformation/model/organ_model.h"
+#include "deformation/models.h"
 
 namespace palpate::rigs {
 

@@ -3,8 +3,11 @@
 
 #include <memory>
 
-#include "deformation/models.h"
+#include "deformation/model/organ_model.h"
+#include "deformation/model/organ_state.h"
+#include "deformation/steppers/organ_dynamics.h"
 #include "modules/geometry/organ_shape.h"
+#include "modules/scene/scene.h"
 
 namespace palpate::rigs {
 

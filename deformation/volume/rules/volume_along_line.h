@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "deformation/model/organ_model.h"
+#include "modules/geometry/triangle_surface.h"
 
 namespace palpate::deformation {
 
