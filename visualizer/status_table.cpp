@@ -7,6 +7,7 @@
 
 #include "modules/core/text.h"
 #include "modules/core/units.h"
+#include "modules/messages/describe.h"
 
 namespace palpate::visualizer {
 namespace {
@@ -60,7 +61,7 @@ void add_row(const ModuleView& module, const Columns& columns, double y, std::in
   const Rgb numbers = lost || stopped ? palette::kQuiet : palette::kText;
   out.texts.push_back({columns.name, y, status.module, 12, numbers});
   out.texts.push_back({columns.state, y,
-                       lost ? text_of("lost %.0f s", silent) : name_of(status.state), 12,
+                       lost ? text_of("lost %.0f s", silent) : messages::word_of(status.state), 12,
                        lost ? palette::kBad : color_of(status.state)});
   if (!columns.narrow) {
     out.texts.push_back(
@@ -72,26 +73,6 @@ void add_row(const ModuleView& module, const Columns& columns, double y, std::in
 }
 
 }  // namespace
-
-std::string name_of(ModuleState state) {
-  switch (state) {
-    case ModuleState::kStarting:
-      return "starting";
-    case ModuleState::kReady:
-      return "ready";
-    case ModuleState::kRunning:
-      return "running";
-    case ModuleState::kPaused:
-      return "paused";
-    case ModuleState::kDegraded:
-      return "degraded";
-    case ModuleState::kFault:
-      return "fault";
-    case ModuleState::kStopped:
-      return "stopped";
-  }
-  return "?";
-}
 
 void add_status_table(const SceneView& view, const Box2& box, std::int64_t now_ns, Overlay& out) {
   if (view.modules().empty()) return;  // in lockstep nobody tells the visualizer of himself

@@ -97,16 +97,6 @@ TEST_CASE("status table: a long error is broken into two lines and cut", "[visua
   }
 }
 
-TEST_CASE("status table: every state has a name of its own", "[visualizer]") {
-  // Oracle: pairwise difference.
-  std::vector<std::string> names;
-  for (int state = 0; state <= int(ModuleState::kStopped); ++state) {
-    const std::string name = name_of(static_cast<ModuleState>(state));
-    CHECK_FALSE(contains(names, name));
-    names.push_back(name);
-  }
-}
-
 TEST_CASE("status table: where nobody tells of himself there is no heading", "[visualizer]") {
   // Oracle: nothing is drawn.
   CHECK(texts_of(SceneView(visualizer::testing::two_probe_scene()), kSecond).empty());
