@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "modules/core/text.h"
 #include "visualizer/plots.h"
@@ -121,12 +120,6 @@ void clear_under(const Box2& panel, Overlay& out) {
     }
     return false;
   });
-}
-
-std::string text_of(const char* format, double value) {
-  std::array<char, 64> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, value);
-  return buffer.data();
 }
 
 Layout make_layout(int width, int height) {

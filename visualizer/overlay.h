@@ -93,7 +93,4 @@ void add_color_bar(const SceneView& view, Coloring coloring, const Box2& box, Ov
 void add_arrow_labels(const DrawList& list, const Camera& camera, Overlay& out);
 void add_help(const Box2& box, Overlay& out);
 
-/// printf-style number text.
-std::string text_of(const char* format, double value);
-
 }  // namespace palpate::visualizer

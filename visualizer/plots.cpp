@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modules/core/text.h"
+
 namespace palpate::visualizer {
 namespace {
 

@@ -1,6 +1,8 @@
 #include "modules/core/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 
 namespace palpate {
 
@@ -34,6 +36,12 @@ bool has_control_bytes(std::string_view text) {
     const auto byte = static_cast<unsigned char>(c);
     return byte < 0x20 || byte == 0x7f;
   });
+}
+
+std::string text_of(const char* format, double value) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
 }
 
 std::string_view cut_at_letter(std::string_view text, std::size_t bytes) {

@@ -1,4 +1,5 @@
-// Texts from elsewhere: whether they can be shown, and what is shown of those that cannot.
+// Texts: whether those from elsewhere can be shown, what is shown of those that cannot, and
+// numbers.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +12,8 @@ namespace palpate {
 bool is_utf8(std::string_view text);
 /// What a terminal obeys: bytes below 0x20, and 0x7F.
 bool has_control_bytes(std::string_view text);
+/// A number, printf-style: text_of("%.2f s", 1.234).
+std::string text_of(const char* format, double value);
 /// Its first so many bytes; fewer where they would end within a letter of several (UTF-8).
 std::string_view cut_at_letter(std::string_view text, std::size_t bytes);
 /// What stands behind the first colon and the spaces after it: of "model name\t: Xeon" the last

@@ -3,23 +3,14 @@
 #include <time.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <thread>
 
 #include "modules/core/error.h"
 #include "modules/core/output_file.h"
-#include "modules/core/text.h"
 
 namespace palpate::report {
-
-std::string text_of(const char* format, double value) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
 
 double median(std::vector<double> values) {
   PALPATE_DEMAND(!values.empty());

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "modules/core/text.h"
+
 namespace palpate::report {
 
-/// printf-style text of one number.
-std::string text_of(const char* format, double value);
+using palpate::text_of;
 
 /// The middle value; the upper one of the two middle ones. @param values  not empty
 double median(std::vector<double> values);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <iomanip>
 #include <limits>
@@ -43,9 +42,7 @@ struct Column {
 std::string text(const char* format, double value) {
   if (std::isnan(value)) return "-";
   if (std::isinf(value)) return "diverged";
-  std::array<char, 32> letters{};
-  std::snprintf(letters.data(), letters.size(), format, value);
-  return letters.data();
+  return text_of(format, value);
 }
 
 double unless_diverged(const VolumeErrors& errors, double value) {

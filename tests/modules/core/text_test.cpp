@@ -23,6 +23,12 @@ TEST_CASE("text: what a terminal would obey is found, and shown as question mark
   CHECK(printable("a\x1b[2J\n\x07\x7f \xc3\xa9 \xc2\x9b") == "a?[2J??? \xc3\xa9 ??");
 }
 
+TEST_CASE("text: a number as printf writes it") {
+  // Oracle: by hand.
+  CHECK(text_of("%.2f s", 1.234) == "1.23 s");
+  CHECK(text_of("%.0f", -0.4) == "-0");
+}
+
 TEST_CASE("text: a text is cut between letters") {
   // Oracle: by hand; letters of one to four bytes.
   const std::string text = "a\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80";
