@@ -19,9 +19,10 @@ struct ProbeTexts {
       : several("probe '" + name +
                 "': several programs move it on probe_input: it jumps between their poses"),
         silent("probe '" + name + "': its driver is silent on probe_input: no force"),
+        unheard("probe '" + name + "': its driver is silent so far: nothing on probe_input"),
         refused("probe '" + name + "': a sample from its driver was refused"),
         slewed("probe '" + name + "': its driver moves too fast: the pose is slewed") {}
-  std::string several, silent, refused, slewed;
+  std::string several, silent, unheard, refused, slewed;
 };
 
 /// What a probe's force has been since the session first ran. While that stands, whoever waits for
@@ -48,6 +49,7 @@ struct RenderedProbe {
   ProbeTexts texts;
   ProbeState state;
   HapticForce force;
+  bool is_heard = true;  ///< somebody says where it is
 
   void set_device(std::unique_ptr<Device> other) {
     device = std::move(other);
@@ -81,13 +83,14 @@ bool tick(const runtime::Cycle& now, RenderedProbe& probe) {
   const double source_time = seconds_from_ns(now.now_ns);
   const bool by_source = probe.device->clock() == Device::Clock::kSource;
   const DeviceSample sample = probe.device->read(by_source ? source_time : now.time());
+  probe.is_heard = std::isfinite(sample.silence);
   probe.state.header = probe.force.header = now.header();
   probe.renderer.tick(source_time, sample, probe.force);
   probe.device->feel(probe.force);
   probe.state.pose = sample.pose;
   probe.state.twist = sample.twist;
   probe.state.buttons = sample.buttons;
-  return !now.joined || std::isfinite(sample.silence);
+  return !now.joined || probe.is_heard;
 }
 
 bool is_zero(const RenderedForce& force) { return force.force.isZero(0) && force.torque.isZero(0); }
@@ -97,7 +100,9 @@ const char* acting_guard(const RenderedProbe& probe) {
   if (limits & kForceNotFinite) return "a force or pose was not finite: rendered as zero";
   if (probe.several_drivers) return probe.texts.several.c_str();
   if (limits & kPoseSlewed) return probe.texts.slewed.c_str();
-  if (limits & kDriverSilent) return probe.texts.silent.c_str();
+  if (limits & kDriverSilent) {
+    return probe.is_heard ? probe.texts.silent.c_str() : probe.texts.unheard.c_str();
+  }
   if (limits & kForceStaleFade)
     return "contact model older than stale_after_s: force fades to zero";
   if (limits & kPoseRefused) return probe.texts.refused.c_str();

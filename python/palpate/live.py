@@ -59,8 +59,9 @@ class Live(Closing[_core.Live]):
         angular_velocity_rad_per_s: npt.ArrayLike = (0, 0, 0),
         buttons: int = 0,
     ) -> None:
-        """Moves a probe whose device in the scene is `topic`, as a driver does: say it at least every 50 ms, or
-        the force fades (docs/haptic_safety.md).
+        """Moves a probe whose device in the scene is `topic`, as a driver does: as often as the device is read, a
+        thousand times a second if it can be. At 20 to 60 Hz forces come in steps of the slew limit; after 50 ms of
+        silence they fade (docs/haptic_safety.md). Without a velocity the poses tell it.
 
         Raises:
             TypeError, ValueError: another shape, or not finite.
