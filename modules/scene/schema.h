@@ -264,7 +264,10 @@ void describe(V& v, Needs& needs) {
   v.field("contents", needs.contents,
           plain("what the organ is: a wall filled with fluid, or one solid"));
   v.field("force_error", needs.force_error,
-          ranged("", 1e-3, 10, "of the probes' forces, RMS over their RMS").otherwise("any"));
+          ranged("", 1e-3, 10,
+                 "of a probe's force where it is worst, of the force there; without truths RMS "
+                 "over its RMS")
+              .otherwise("any"));
   v.field("surface_error_m", needs.surface_error,
           ranged("m", 1e-6, 1, "of the surface's positions, RMS").otherwise("any"));
   v.field("volume_error", needs.volume_error,

@@ -83,6 +83,22 @@ void take_costs(const rigs::PressedOrgan& pressed, const scene::Rates& rates, Co
   course.contacts = pressed.contact_troubles();
 }
 
+double largest_force(std::span<const TrueTouch> truths) {
+  double largest = 0;
+  for (const TrueTouch& touch : truths) {
+    for (const Vec3& force : touch.truth.forces) largest = std::max(largest, force.norm());
+  }
+  return largest;
+}
+
+/// Both the difference and what it is a part of are known to the bar.
+void take_worse(double error, double bar, Errors& worst) {
+  bar *= 1 + error;
+  if (error + bar <= worst.force + worst.force_bar) return;
+  worst.force = error;
+  worst.force_bar = bar;
+}
+
 }  // namespace
 
 std::vector<Vec3> marks_on(const geometry::TriangleSurface& surface) {
@@ -160,17 +176,18 @@ Errors compare(const Course& course, const Course& reference) {
   return errors;
 }
 
-Errors compare(const Course& course, std::span<const TrueTouch> truths) {
+Errors compare(const Course& course, std::span<const TrueTouch> truths, std::size_t count) {
   Errors errors;
   errors.volume = course.volume_error;
-  if (course.diverged || course.held_forces.size() < truths.size()) {
+  if (course.diverged || course.held_forces.size() < count) {
     errors.force = errors.surface = std::numeric_limits<double>::infinity();
     return errors;
   }
-  double off = 0, scale = 0, bars = 0, moved = 0, across = 0, surface = 0, surface_bars = 0;
+  const double light = kLight * largest_force(truths);
+  double scale = 0, moved = 0, across = 0, surface = 0, surface_bars = 0;
   double ratios = 0, squared_ratios = 0;
-  std::size_t count = 0, marks = 0;
-  for (std::size_t k = 0; k < truths.size(); ++k) {
+  std::size_t touches = 0, marks = 0;
+  for (std::size_t k = 0; k < count; ++k) {
     const auto& [time, probes, truth] = truths[k];
     for (std::size_t j = 0; j < probes.size(); ++j) {
       const double expected = truth.forces[j].norm();
@@ -179,25 +196,22 @@ Errors compare(const Course& course, std::span<const TrueTouch> truths) {
       const Vec3 held = course.held_forces[k][probes[j]],
                  moving = course.moving_forces[k][probes[j]];
       const double found = held.dot(along), ratio = found / expected - 1;
-      off += (found - expected) * (found - expected);
+      take_worse(std::abs(found - expected) / std::max(expected, light),
+                 truth.bars[j] / std::max(expected, light), errors);
       scale += expected * expected;
-      bars += truth.bars[j] * truth.bars[j];
       moved += std::pow(moving.dot(along) - found, 2);
       across += (moving - moving.dot(along) * along).squaredNorm();
       ratios += ratio;
       squared_ratios += ratio * ratio;
-      ++count;
+      ++touches;
     }
     for (std::size_t m = 0; m < truth.displacements.size(); ++m, ++marks) {
       surface += (course.held_surfaces[k][m] - truth.displacements[m]).squaredNorm();
       surface_bars += truth.displacement_bar * truth.displacement_bar;
     }
   }
-  if (count > 0) {
-    const double n = static_cast<double>(count), mean = ratios / n;
-    errors.force = std::sqrt(off / scale);
-    // Both the difference and what it is a part of are known to the bar.
-    errors.force_bar = std::sqrt(bars / scale) * (1 + errors.force);
+  if (touches > 0) {
+    const double n = static_cast<double>(touches), mean = ratios / n;
     errors.feel = {mean, std::sqrt(std::max(0.0, squared_ratios / n - mean * mean)),
                    std::sqrt(moved / scale), std::sqrt(across / scale)};
   }

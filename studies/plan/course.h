@@ -49,7 +49,9 @@ struct Feel {
 
 /// How far a course is from the reference solution.
 struct Errors {
-  double force = 0;    ///< RMS over the reference's RMS; 0 where nothing was touched
+  /// By truths the worst instant's, of the true force there or, where that is light, of kLight of
+  /// the largest; by a reference RMS over its RMS. 0 where nothing was touched.
+  double force = 0;
   double surface = 0;  ///< RMS [m]
   double volume = 0;
   double force_bar = 0, surface_bar = 0;  ///< how far the errors themselves may be off
@@ -75,8 +77,13 @@ Course run_course(
 
 /// All forces and surfaces on the way.
 Errors compare(const Course& course, const Course& reference);
+/// A part of the largest true force.
+inline constexpr double kLight = 0.2;
 /// Forces along the true ones and surfaces, where the probes were held.
-/// @param truths  of the first of those instants, or of all
-Errors compare(const Course& course, std::span<const TrueTouch> truths);
+/// @param truths  of all instants  @param count  so many of them, the first, are compared
+Errors compare(const Course& course, std::span<const TrueTouch> truths, std::size_t count);
+inline Errors compare(const Course& course, std::span<const TrueTouch> truths) {
+  return compare(course, truths, truths.size());
+}
 
 }  // namespace palpate::plan

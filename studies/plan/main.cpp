@@ -38,8 +38,8 @@ int main(int argc, char** argv) {
               "I/N, one of N runs on the same --points: judges candidates that no other run does, "
               "writes no scene; afterwards a run without it does");
   program.footer(
-      "Exit code: 0 if a candidate meets the needs, 1 if none does or --verify found no truth to "
-      "judge it by, 2 for bad input, 130 if it was stopped.");
+      "Exit code: 0 if a candidate meets the needs, 1 if none does, --verify refuted the choice or "
+      "found no truth, 2 for bad input, 130 if it was stopped.");
   return program.run(argc, argv, [&] {
     if (shard) options.shard = report::shard_from(*shard);
     return plan::run_plan(options, std::cout, std::cerr);

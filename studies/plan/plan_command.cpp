@@ -205,7 +205,9 @@ int verify(const scene::Scene& scene, const PlanOptions& options, std::vector<Or
       scene::Scene alone = scene;
       alone.organs = {scene.organs[i]};
       plan.verification = verified(alone, plan.chosen->candidate, options, log, keep_going);
-      if (plan.verification->instants == 0) code = kExitFailed;
+      if (plan.verification->instants == 0 || plan.verification->refutes(scene.needs)) {
+        code = kExitFailed;
+      }
     }
   } catch (const report::Stopped&) {
     return stopped();
@@ -261,7 +263,7 @@ int run_plan(const PlanOptions& options, std::ostream& out, std::ostream& log) {
     }
     int code = is_met ? kExitDone : kExitFailed;
     if (options.verify && is_met) code = verify(scene, options, plans, log, keep_going);
-    options.json ? print_json(plans, sharing.machines, file, out)
+    options.json ? print_json(scene.needs, plans, sharing.machines, file, out)
                  : print_text(scene, plans, sharing.machines, file, out);
     return code;
   } catch (const report::Stopped&) {

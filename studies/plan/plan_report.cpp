@@ -75,8 +75,9 @@ void print_margins(const scene::Needs& needs, const Verdict& v, std::ostream& ou
 
 }  // namespace
 
-void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>& machines,
-                const std::filesystem::path& written, std::ostream& out) {
+void print_json(const scene::Needs& needs, const std::vector<OrganPlan>& plans,
+                const std::set<std::string>& machines, const std::filesystem::path& written,
+                std::ostream& out) {
   Json::Value value;
   value["machine"] = machines_text(machines);
   value["candidates"] = Json::arrayValue;
@@ -111,6 +112,7 @@ void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>
     if (plan.verification->instants > 0) {
       row["force_error"] = plan.verification->errors.force;
       row["force_error_bar"] = plan.verification->errors.force_bar;
+      row["refuted"] = plan.verification->refutes(needs);
     }
     value["verified"].append(row);
   }
@@ -129,9 +131,10 @@ void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
     if (plans.size() > 1) out << "\norgan '" << plan.name << "'\n";
     print(plan, by_truth, out);
   }
-  out << "load: of one core; force: RMS difference from the "
-      << (by_truth ? "truth, along it, over its RMS, and how far that may be off; on "
-                   : "reference over its RMS; on ")
+  out << "load: of one core; force: "
+      << (by_truth ? "largest difference from the truth, along it, over the true force there (or a "
+                     "fifth of the largest), and how far that may be off; on "
+                   : "RMS difference from the reference over its RMS; on ")
       << machines_text(machines) << '\n';
   if (written.empty()) {
     out << "\nnothing meets the needs. What would:\n";
@@ -148,8 +151,13 @@ void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
       out << "not verified: on finer meshes no equilibrium was found at any other instant\n";
     } else if (plan.verification) {
       const Errors& found = plan.verification->errors;
-      out << fmt::format("verified by a finer truth at {} other instants: force {}\n",
+      out << fmt::format("{} by a finer truth at {} other instants: force {}",
+                         plan.verification->refutes(scene.needs) ? "refuted" : "verified",
                          plan.verification->instants, percent(found.force, found.force_bar));
+      if (scene.needs.force_error) {
+        out << fmt::format(" of {:.2g}% allowed", 100 * *scene.needs.force_error);
+      }
+      out << '\n';
     }
   }
   out << "written: " << written.string() << '\n';

@@ -16,6 +16,11 @@ namespace palpate::plan {
 struct Verification {
   Errors errors;
   std::size_t instants = 0;  ///< that had one
+
+  /// Whether the choice misses what is needed, by more than the truth may be off.
+  bool refutes(const scene::Needs& needs) const {
+    return needs.force_error && errors.force - errors.force_bar > *needs.force_error;
+  }
 };
 
 /// What was measured of one organ, the cheapest first.
@@ -31,7 +36,8 @@ struct OrganPlan {
 void print_text(const scene::Scene& scene, const std::vector<OrganPlan>& plans,
                 const std::set<std::string>& machines, const std::filesystem::path& written,
                 std::ostream& out);
-void print_json(const std::vector<OrganPlan>& plans, const std::set<std::string>& machines,
-                const std::filesystem::path& written, std::ostream& out);
+void print_json(const scene::Needs& needs, const std::vector<OrganPlan>& plans,
+                const std::set<std::string>& machines, const std::filesystem::path& written,
+                std::ostream& out);
 
 }  // namespace palpate::plan

@@ -15,14 +15,6 @@ constexpr std::size_t kEnoughInstants = 2;
 /// Loads over that of one which meets all needs.
 constexpr double kDear = 2;
 
-double squared_forces(std::span<const TrueTouch> truths) {
-  double sum = 0;
-  for (const TrueTouch& touch : truths) {
-    for (const Vec3& force : touch.truth.forces) sum += force.squaredNorm();
-  }
-  return sum;
-}
-
 }  // namespace
 
 void Rivals::add(const Verdict& verdict, const Course& course) {
@@ -33,7 +25,7 @@ void Rivals::add(const Verdict& verdict, const Course& course) {
               verdict.failures.empty(),
               {}};
   for (std::size_t k = 1; k <= truths_.size(); ++k) {
-    rival.errors.push_back(compare(course, std::span(truths_).first(k)));
+    rival.errors.push_back(compare(course, truths_, k));
   }
   rivals_.push_back(std::move(rival));
 }
@@ -48,10 +40,8 @@ std::string Rivals::why_too_slow(const Course& so_far) const {
 
 /// If all that is still to come were right.
 bool Rivals::misses_for_sure(const Errors& so_far, std::size_t instants) const {
-  const auto seen = std::span(truths_).first(instants);
-  const double of_forces = std::sqrt(squared_forces(seen) / squared_forces(truths_));
   const double of_marks = std::sqrt(double(instants) / double(truths_.size()));
-  return (needs_.force_error && so_far.force * of_forces > *needs_.force_error) ||
+  return (needs_.force_error && so_far.force > *needs_.force_error) ||
          (needs_.surface_error && so_far.surface * of_marks > *needs_.surface_error) ||
          (needs_.volume_error && so_far.volume > *needs_.volume_error);
 }
@@ -60,7 +50,7 @@ std::string Rivals::why_stop(const Candidate& candidate, const Course& so_far) c
   const std::string slow = why_too_slow(so_far);
   const std::size_t k = so_far.held_forces.size(), all = truths_.size();
   if (!slow.empty() || k >= all || 2 * k < std::min(2 * kEnoughInstants, all)) return slow;
-  const Errors errors = compare(so_far, std::span(truths_).first(k));
+  const Errors errors = compare(so_far, truths_, k);
   const bool misses = misses_for_sure(errors, k);
   const double load = total_load(needs_, so_far);
   for (const Rival& rival : rivals_) {

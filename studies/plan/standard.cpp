@@ -186,7 +186,7 @@ Errors Standard::errors_of(const Course& course) const {
     return truths_.empty() ? compare(course, reference_) : compare(course, truths_);
   }
   if (!course.held_forces.empty()) {
-    return compare(course, std::span(truths_).first(course.held_forces.size()));
+    return compare(course, truths_, course.held_forces.size());
   }
   Errors errors;
   errors.force = errors.surface = std::numeric_limits<double>::quiet_NaN();
@@ -256,6 +256,16 @@ Verification verified(const scene::Scene& scene, const Candidate& chosen,
   const auto changed = scene_with(scene, chosen);
   const Course course = run_course(changed, scene::load_organ(changed.organs[0]), {},
                                    options.seconds, times, keep_going);
+  for (std::size_t k = 0; k < course.held_forces.size(); ++k) {
+    for (std::size_t j = 0; j < truths[k].probes.size(); ++j) {
+      const Vec3& expected = truths[k].truth.forces[j];
+      log << fmt::format("  {:.2f} s: the choice gives {:.4g} N along the {:.4g} N of probe '{}'",
+                         times[k],
+                         course.held_forces[k][truths[k].probes[j]].dot(expected.normalized()),
+                         expected.norm(), scene.probes[truths[k].probes[j]].name)
+          << std::endl;
+    }
+  }
   return {compare(course, truths), times.size()};
 }
 

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "modules/core/organ_limits.h"
 #include "modules/scene/scene_reader.h"
 #include "tests/modules/scene/scene_text.h"
 

@@ -33,7 +33,7 @@ TEST_CASE("plan: of a solid the force along the true one is judged, where the pr
   course.held_surfaces = {{Vec3(2e-3, 0, 0)}, {Vec3(1e-3, 0, 0)}};
   const Errors errors = compare(course, std::vector{first, second});
   CHECK(errors.force == Approx(0.2));
-  CHECK(errors.force_bar == Approx(std::sqrt(0.02 / 5) * 1.2));
+  CHECK(errors.force_bar == Approx(0.1 * 1.2));  // where it is worst, errors alike: of 1 N
   CHECK(errors.surface == Approx(std::sqrt(4e-6 / 2)));
   CHECK(errors.surface_bar == Approx(1e-4));
   CHECK(errors.feel.stiffness == Approx(0.2));
@@ -42,6 +42,23 @@ TEST_CASE("plan: of a solid the force along the true one is judged, where the pr
   CHECK(errors.feel.sideways == Approx(std::sqrt(0.18 / 5)));
   course.held_forces.pop_back();
   CHECK(std::isinf(compare(course, std::vector{first, second}).force));
+}
+
+TEST_CASE("plan: the worst instant decides, and of light touches a part of the largest force") {
+  // Oracle: by hand. Forces of 2, 1 and 0.1 N; 0.1, 0.3 and 0.2 N too much: 5 %, 30 % and, of a
+  // fifth of 2 N, 50 %.
+  std::vector<TrueTouch> truths;
+  Course course;
+  for (const auto& [force, more] : {std::pair(2.0, 0.1), {1.0, 0.3}, {0.1, 0.2}}) {
+    truths.push_back({0.1, {0}, {{Vec3(0, 0, force)}, {0.01}, {}, 0}});
+    course.held_forces.push_back({Vec3(0, 0, force + more)});
+  }
+  course.moving_forces = course.held_forces;
+  course.held_surfaces.resize(3);
+  CHECK(compare(course, truths, 1).force == Approx(0.05));
+  CHECK(compare(course, truths, 2).force == Approx(0.3));
+  CHECK(compare(course, truths).force == Approx(0.5));
+  CHECK(compare(course, truths).force_bar == Approx(0.01 / 0.4 * 1.5));
 }
 
 TEST_CASE("plan: a course that need not run on ends where somebody says so, and tells why") {

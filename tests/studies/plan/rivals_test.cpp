@@ -66,14 +66,14 @@ TEST_CASE(
 }
 
 TEST_CASE("rivals: beside one that misses a need, only what misses it for sure is stopped") {
-  // Oracle: by hand. Of forces of 1 and 2 N a miss of 0.4 N at the first is 0.4/√5 = 18 % at least,
-  // one of 0.5 N 22 %.
+  // Oracle: by hand. The rival is 10 and 30 % off, and 20 are allowed: after the first instant 15 %
+  // are worse than its own, and allowed, 25 % are not.
   const auto needs = needs_of_force(0.2);
   const auto truths = two_truths();
   Rivals rivals(needs, truths, false);
-  add(rivals, needs, truths, loaded_course(0.1, {1.3, 2.6}));
-  CHECK(rivals.why_stop({}, loaded_course(0.15, {1.4})).empty());
-  CHECK_FALSE(rivals.why_stop({}, loaded_course(0.15, {1.5})).empty());
+  add(rivals, needs, truths, loaded_course(0.1, {1.1, 2.6}));
+  CHECK(rivals.why_stop({}, loaded_course(0.15, {1.15})).empty());
+  CHECK_FALSE(rivals.why_stop({}, loaded_course(0.15, {1.25})).empty());
 }
 
 TEST_CASE("rivals: where all organs are to have one rate, those of another are none") {
