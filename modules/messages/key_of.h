@@ -4,19 +4,19 @@
 #include <cstdint>
 #include <string>
 
+#include "modules/messages/idle_visitor.h"
 #include "modules/messages/message_types.h"
 
 namespace palpate::messages {
 
 /// A visitor of describe() (describe.h).
-class KeyOf {
+class KeyOf : public IdleVisitor {
  public:
   MessageType::Key kind = MessageType::Key::kNone;
   /// A number in decimals; of two numbers the first, then, unless it is 1, "/" and the second;
   /// "" without a key.
   std::string text;
 
-  void header(const Header&) {}
   void key(const char*, std::uint32_t number) {
     if (kind == MessageType::Key::kNumber) {
       kind = MessageType::Key::kTwoNumbers;
@@ -30,16 +30,6 @@ class KeyOf {
     kind = MessageType::Key::kText;
     text = name;
   }
-  template <class... Any>
-  void field(const Any&...) {}
-  template <class... Any>
-  void numbers(const Any&...) {}
-  template <class... Any>
-  void list(const Any&...) {}
-  template <class... Any>
-  void derived(const Any&...) {}
-  template <class... Any>
-  void require(const Any&...) {}
 };
 
 }  // namespace palpate::messages

@@ -5,6 +5,7 @@
 
 #include "modules/messages/csv.h"
 #include "modules/messages/describe.h"
+#include "modules/messages/idle_visitor.h"
 
 namespace palpate::messages {
 namespace {
@@ -104,22 +105,11 @@ class Lister {
 };
 
 /// A visitor of describe() that leaves one entry in each list that is described itself.
-struct OneEntry {
+struct OneEntry : IdleVisitor {
   template <class List>
   void list(const char*, List& list, std::size_t, const char*) {
     list.resize(1);
   }
-  void header(const Header&) {}
-  template <class... Any>
-  void key(const Any&...) {}
-  template <class... Any>
-  void field(const Any&...) {}
-  template <class... Any>
-  void numbers(const Any&...) {}
-  template <class... Any>
-  void derived(const Any&...) {}
-  template <class... Any>
-  void require(const Any&...) {}
 };
 
 }  // namespace
